@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the result of one replay enters the cohort database.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/cohort_database.h"
+#include "recorder/identity.h"
+#include "recorder/observer.h"
+
+namespace calot::analytics {
+
+/// What assessing one recording gave.
+struct AssessedAttempt {
+  recorder::AttemptHeader header;
+  recorder::Outcome outcome = recorder::Outcome::running;
+  bool complete = false;
+  std::uint64_t steps = 0;
+  std::array<std::byte, 32> chainHead{};
+  Verification verification;
+  std::vector<CheckpointValue> values;  ///< of CheckpointCollector::values(); empty where the replay failed
+  std::string fileName;                 ///< base name or path; the base name is kept
+};
+
+/// One transaction; idempotent. @throws Error 3 on a conflict (CohortDatabase::storeAttempt).
+Imported store(CohortDatabase& database, const AssessedAttempt& assessed);
+
+/// The row that store() writes.
+AttemptRecord recordOf(const AssessedAttempt& assessed);
+
+/// Closing table of `calot assess`: every attempt of the database with outcome, verification and its main checkpoints;
+/// synthetic ones are marked.
+void printAttempts(const CohortDatabase& database, std::ostream& out);
+
+}  // namespace calot::analytics

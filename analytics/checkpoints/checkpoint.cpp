@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/checkpoints/checkpoint.h"
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace calot::analytics {
+
+std::string nameOf(Direction direction) {
+  switch (direction) {
+    case Direction::none:
+      return "none";
+    case Direction::lower:
+      return "lower";
+    case Direction::higher:
+      return "higher";
+  }
+  return "unknown";
+}
+
+std::string nameOf(Origin origin) {
+  switch (origin) {
+    case Origin::resimulated:
+      return "re-simulated";
+    case Origin::observables:
+      return "observables";
+    case Origin::samples:
+      return "samples";
+  }
+  return "unknown";
+}
+
+std::string nameOf(Aggregation aggregation) {
+  switch (aggregation) {
+    case Aggregation::attempt:
+      return "attempt";
+    case Aggregation::hand:
+      return "hand";
+    case Aggregation::organ:
+      return "organ";
+  }
+  return "unknown";
+}
+
+std::string nameOf(Finality finality) { return finality == Finality::running ? "running" : "final"; }
+
+void Checkpoint::onStep(const recorder::StepRecord& /*record*/) {}
+
+CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
+                            Availability availability, std::string reason) {
+  assert(availability != Availability::value && !reason.empty());
+  CheckpointValue v;
+  v.name = definition.name;
+  v.subject = std::move(subject);
+  v.version = definition.version;
+  v.availability = availability;
+  v.reason = std::move(reason);
+  v.unit = definition.unit;
+  v.origin = origin;
+  v.filter = definition.filter;
+  return v;
+}
+
+CheckpointValue makeValue(const CheckpointDefinition& definition, std::string subject, Origin origin, double value,
+                          std::string note) {
+  if (!std::isfinite(value)) {
+    return makeMissing(definition, std::move(subject), origin, Availability::notAvailable, "the figure is not finite");
+  }
+  CheckpointValue v;
+  v.name = definition.name;
+  v.subject = std::move(subject);
+  v.version = definition.version;
+  v.value = value;
+  v.note = std::move(note);
+  v.unit = definition.unit;
+  v.origin = origin;
+  v.filter = definition.filter;
+  return v;
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a checkpoint is: one figure of an attempt (or one per hand, or one per organ), computed from the stream of steps.
+// docs/metrics.md gives the formula, source and pitfalls of each; a test holds it against the registry.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recorder/identity.h"
+#include "recorder/observer.h"
+
+namespace calot::analytics {
+
+/// Which way is better. `none`: the figure describes, it doesn't judge.
+enum class Direction : std::uint8_t { none, lower, higher };
+
+/// Where a value comes from (section 6 of the design). Numbers are stored and never reused.
+enum class Origin : std::uint8_t {
+  resimulated = 0,  ///< the simulation ran again, bit for bit, in the same simulation version
+  observables = 1,  ///< recorded StepResults and forces, read by any later software
+  samples = 2,      ///< motion of the operator's hands alone (the real tip)
+};
+
+/// What the figure is given for: once for the attempt, for each hand, or for each organ of the scene.
+enum class Aggregation : std::uint8_t { attempt, hand, organ };
+
+/// `running`: known after every step. `final`: its filter looks ahead, so before the end it is provisional.
+enum class Finality : std::uint8_t { running, final };
+
+std::string nameOf(Direction direction);      ///< "none", "lower", "higher"
+std::string nameOf(Origin origin);            ///< "re-simulated", "observables", "samples"
+std::string nameOf(Aggregation aggregation);  ///< "attempt", "hand", "organ"
+std::string nameOf(Finality finality);        ///< "running", "final"
+
+/// What a checkpoint declares of itself.
+struct CheckpointDefinition {
+  std::string name;     ///< "path-length": key in the database, never reused for another meaning
+  std::string title;    ///< "Path length of the instrument's tip"
+  std::string unit;     ///< SI, of stored values: "s", "m", "N", "1"
+  std::string displayUnit;    ///< at the edges: "mm"
+  double displayFactor = 1.0; ///< displayed = stored * displayFactor
+  Direction direction = Direction::none;
+  std::string window;   ///< part of the attempt that is covered: "whole attempt"
+  Aggregation aggregation = Aggregation::attempt;
+  std::string instruments;    ///< how several instruments are joined: "each hand by itself", "union over instruments", ...
+  std::string filter;   ///< resampling and filter with all their constants, or "none"
+  std::vector<Origin> origins;  ///< allowed ones
+  Finality finality = Finality::running;
+  std::uint32_t version = 1;  ///< changes whenever a value may change
+  std::string definition;     ///< the formula in words and symbols, one line
+  std::string paperReading;   ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
+};
+
+enum class Availability : std::uint8_t {
+  value = 0,          ///< there is a number
+  notApplicable = 1,  ///< the question has no answer for this attempt ("no instrument in the left hand")
+  notAvailable = 2,   ///< it has one, but what is recorded doesn't give it ("time limit reached")
+};
+
+/// One figure. @invariant availability == value exactly when `value` holds a finite number; else `reason` is not empty.
+struct CheckpointValue {
+  std::string name;
+  std::string subject;         ///< "" (attempt), "left" / "right" (hand), or the organ's name
+  std::uint32_t version = 1;   ///< of the checkpoint's definition
+  Availability availability = Availability::value;
+  std::optional<double> value; ///< in `unit`
+  std::string reason;          ///< why there is no value
+  std::string note;            ///< what a reader of the value must know ("0.340 s without measurement"), or empty
+  std::string unit;            ///< SI
+  Origin origin = Origin::resimulated;
+  std::string filter;          ///< as declared when the value was made
+  bool operator==(const CheckpointValue&) const = default;
+};
+
+/// What is known before the first step.
+struct AttemptContext {
+  double tickSeconds = tickLength;
+  std::uint32_t ticksPerStep = 10;
+  std::vector<std::string> organs;  ///< in the Model's order
+};
+
+struct Motion;
+class ForceTrack;
+
+/// What is known after the last step (or, for provisional values, after the newest one).
+struct AttemptEnd {
+  std::uint64_t steps = 0;
+  recorder::Outcome outcome = recorder::Outcome::running;
+  Origin origin = Origin::resimulated;  ///< of forces and contacts; motion is always `samples`
+  std::array<const Motion*, handCount> motion{};  ///< both hands' motion, never null (checkpoints/motion.h)
+  const ForceTrack* force = nullptr;  ///< both hands' haptic forces, never null (checkpoints/force.h)
+};
+
+/// One running computation of one definition over one attempt. Deterministic contract: IEEE + - * / sqrt in
+/// source-fixed order, so that a replay gives the bits that the live run gave.
+class Checkpoint {
+ public:
+  virtual ~Checkpoint() = default;
+  /// Called once per step, in order. Motion and haptic forces are collected once for all: AttemptEnd has them.
+  virtual void onStep(const recorder::StepRecord& record);
+  /// The figures so far: one per subject, in the order of hands or organs. May be called more than once.
+  [[nodiscard]] virtual std::vector<CheckpointValue> values(const AttemptEnd& end) const = 0;
+};
+
+/// An entry of the one list of checkpoints.
+struct CheckpointEntry {
+  CheckpointDefinition definition;
+  std::unique_ptr<Checkpoint> (*make)(const AttemptContext& context);
+};
+
+/// Builders of values, with name, version, unit and filter taken from the definition.
+CheckpointValue makeValue(const CheckpointDefinition& definition, std::string subject, Origin origin, double value,
+                          std::string note = {});
+CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
+                            Availability availability, std::string reason);
+
+}  // namespace calot::analytics

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/checkpoints/collector.h"
+
+#include <array>
+#include <cassert>
+
+#include "analytics/checkpoints/force.h"
+#include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/registry.h"
+
+namespace calot::analytics {
+
+struct CheckpointCollector::Storage {
+  Storage(const recorder::AttemptHeader& header, Origin from)
+      : origin(from), track{MotionTrack(header.tickSeconds), MotionTrack(header.tickSeconds)} {
+    const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.organs};
+    for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint.push_back(entry.make(context));
+  }
+  Origin origin;
+  std::array<MotionTrack, handCount> track;
+  ForceTrack force;
+  std::vector<std::unique_ptr<Checkpoint>> checkpoint;
+  std::uint64_t steps = 0;
+  recorder::Outcome outcome = recorder::Outcome::running;
+  bool ended = false;
+};
+
+CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, Origin origin)
+    : storage_(std::make_unique<Storage>(header, origin)) {
+  assert(origin != Origin::samples);
+}
+
+CheckpointCollector::~CheckpointCollector() = default;
+
+void CheckpointCollector::onStep(const recorder::StepRecord& record) {
+  assert(!storage_->ended);
+  for (const TickSamples& tick : record.samples) {
+    for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
+  }
+  storage_->force.add(record);
+  for (const auto& checkpoint : storage_->checkpoint) checkpoint->onStep(record);
+  ++storage_->steps;
+}
+
+void CheckpointCollector::onEnd(recorder::Outcome outcome) {
+  storage_->outcome = outcome;
+  storage_->ended = true;
+}
+
+std::vector<CheckpointValue> CheckpointCollector::values() const {
+  std::array<Motion, handCount> motion;
+  AttemptEnd end;
+  end.steps = storage_->steps;
+  end.outcome = storage_->outcome;
+  end.origin = storage_->origin;
+  end.force = &storage_->force;
+  for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
+    motion[h] = storage_->track[h].motion();
+    end.motion[h] = &motion[h];
+  }
+  std::vector<CheckpointValue> result;
+  for (const auto& checkpoint : storage_->checkpoint) {
+    for (CheckpointValue& value : checkpoint->values(end)) result.push_back(std::move(value));
+  }
+  return result;
+}
+
+bool CheckpointCollector::ended() const { return storage_->ended; }
+std::uint64_t CheckpointCollector::steps() const { return storage_->steps; }
+
+}  // namespace calot::analytics

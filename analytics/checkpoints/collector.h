@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+
+namespace calot::analytics {
+
+/// The observer that feeds every checkpoint of the registry. Attach it to a live run, to a replay, or to a reader of
+/// observables; the same steps give the same values, bit for bit.
+class CheckpointCollector final : public recorder::Observer {
+ public:
+  /// @param origin what the StepRecords are: `resimulated` (live or replay) or `observables` (read from the file).
+  explicit CheckpointCollector(const recorder::AttemptHeader& header, Origin origin = Origin::resimulated);
+  ~CheckpointCollector() override;
+  CheckpointCollector(const CheckpointCollector&) = delete;
+  CheckpointCollector& operator=(const CheckpointCollector&) = delete;
+
+  void onStep(const recorder::StepRecord& record) override;
+  void onEnd(recorder::Outcome outcome) override;
+
+  /// Every figure in the registry's order, subjects in the order of hands or organs. After onEnd() they are final;
+  /// before, those whose definition says `final` are provisional.
+  [[nodiscard]] std::vector<CheckpointValue> values() const;
+  [[nodiscard]] bool ended() const;
+  [[nodiscard]] std::uint64_t steps() const;
+
+ private:
+  struct Storage;
+  std::unique_ptr<Storage> storage_;
+};
+
+}  // namespace calot::analytics

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/checkpoints/registry.h"
+
+#include "analytics/checkpoints/entries.h"
+
+namespace calot::analytics {
+
+const std::vector<CheckpointEntry>& checkpointRegistry() {
+  static const std::vector<CheckpointEntry> registry{
+      elapsedTimeEntry(),   attemptDurationEntry(), pathLengthEntry(),      contactTimeUnionEntry(),
+      contactTimeSumEntry(), forceMaximumEntry(),    forcePercentileEntry(), forceMeanEntry(),
+  };
+  return registry;
+}
+
+const CheckpointDefinition* findCheckpoint(std::string_view name) {
+  for (const CheckpointEntry& entry : checkpointRegistry()) {
+    if (entry.definition.name == name) return &entry.definition;
+  }
+  return nullptr;
+}
+
+}  // namespace calot::analytics

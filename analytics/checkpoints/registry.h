@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+
+namespace calot::analytics {
+
+/// Every checkpoint that this build knows, in the order in which tables show them. An explicit list: what is not in
+/// registry.cpp doesn't exist.
+const std::vector<CheckpointEntry>& checkpointRegistry();
+
+/// The definition of a name, or null.
+const CheckpointDefinition* findCheckpoint(std::string_view name);
+
+}  // namespace calot::analytics

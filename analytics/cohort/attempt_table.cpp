@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include "analytics/cohort/tables.h"
+
+namespace calot::analytics::tables {
+namespace {
+
+constexpr const char* attemptColumns =
+    "SELECT a.uuid, a.parent_uuid, coalesce(p.pseudonym, ''), a.scene, a.scene_major, a.scene_minor, a.operator_kind, "
+    "a.profile, a.profile_version, a.mode, a.purpose, a.outcome, a.start_utc, a.seed, a.device, a.calibration, "
+    "a.simulation_version, a.comparability_key, a.synthetic, r.file_name, r.complete, r.steps, r.step_seconds, r.chain_head, "
+    "v.verdict, v.detail, v.software, v.verified_utc, coalesce(p.study_group, ''), coalesce(p.arm, ''), coalesce(p.site, ''), "
+    "a.imported_utc, e.reason, e.excluded_by FROM attempt a JOIN recording r ON r.attempt = a.id "
+    "LEFT JOIN verification v ON v.attempt = a.id LEFT JOIN participant p ON p.id = a.participant "
+    "LEFT JOIN exclusion e ON e.attempt = a.id ";
+
+AttemptRow attemptRow(SQLite::Statement& row) {
+  AttemptRow a;
+  int c = 0;
+  a.uuid = text(row.getColumn(c++));
+  a.parent = text(row.getColumn(c++));
+  a.participant = text(row.getColumn(c++));
+  a.scene = text(row.getColumn(c++));
+  a.sceneMajor = row.getColumn(c++).getUInt();
+  a.sceneMinor = row.getColumn(c++).getUInt();
+  a.operatorKind = enumeration<recorder::OperatorKind>(row.getColumn(c++));
+  a.profile = text(row.getColumn(c++));
+  a.profileVersion = text(row.getColumn(c++));
+  a.mode = enumeration<recorder::Mode>(row.getColumn(c++));
+  a.purpose = text(row.getColumn(c++));
+  a.outcome = enumeration<recorder::Outcome>(row.getColumn(c++));
+  a.startUtc = text(row.getColumn(c++));
+  a.seed = std::strtoull(text(row.getColumn(c++)).c_str(), nullptr, 10);
+  a.device = text(row.getColumn(c++));
+  a.calibration = text(row.getColumn(c++));
+  a.simulationVersion = row.getColumn(c++).getUInt();
+  a.comparabilityKey = text(row.getColumn(c++));
+  a.synthetic = row.getColumn(c++).getInt() != 0;
+  a.fileName = text(row.getColumn(c++));
+  a.complete = row.getColumn(c++).getInt() != 0;
+  a.steps = static_cast<std::uint64_t>(row.getColumn(c++).getInt64());
+  a.stepSeconds = row.getColumn(c++).getDouble();
+  const SQLite::Column head = row.getColumn(c++);
+  std::memcpy(a.chainHead.data(), head.getBlob(), std::min<std::size_t>(a.chainHead.size(), static_cast<std::size_t>(head.getBytes())));
+  const SQLite::Column verdict = row.getColumn(c++);
+  a.verification.verdict = verdict.isNull() ? Verdict::notChecked : enumeration<Verdict>(verdict);
+  a.verification.text = text(row.getColumn(c++));
+  a.verification.software = text(row.getColumn(c++));
+  a.verifiedUtc = text(row.getColumn(c++));
+  a.group = text(row.getColumn(c++));
+  a.arm = text(row.getColumn(c++));
+  a.site = text(row.getColumn(c++));
+  a.importedUtc = text(row.getColumn(c++));
+  const SQLite::Column reason = row.getColumn(c++);
+  a.excluded = !reason.isNull();
+  if (a.excluded) a.exclusionReason = fmt::format("{} ({})", text(reason), text(row.getColumn(c)));
+  return a;
+}
+
+}  // namespace
+
+std::int64_t attemptId(SQLite::Database& db, const std::string& uuid) {
+  SQLite::Statement find(db, "SELECT id FROM attempt WHERE uuid = ?");
+  find.bind(1, uuid);
+  return find.executeStep() ? find.getColumn(0).getInt64() : -1;
+}
+
+std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& uuid) {
+  SQLite::Statement select(db, std::string(attemptColumns) + "WHERE a.uuid = ?");
+  select.bind(1, uuid);
+  if (!select.executeStep()) return std::nullopt;
+  return attemptRow(select);
+}
+
+std::vector<AttemptRow> readAttempts(SQLite::Database& db) {
+  SQLite::Statement select(db, std::string(attemptColumns) + "ORDER BY a.start_utc, a.uuid");
+  std::vector<AttemptRow> rows;
+  while (select.executeStep()) rows.push_back(attemptRow(select));
+  return rows;
+}
+
+}  // namespace calot::analytics::tables

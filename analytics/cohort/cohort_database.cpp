@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/cohort/cohort_database.h"
+
+#include <fmt/format.h>
+
+#include "analytics/cohort/connection.h"
+#include "analytics/cohort/tables.h"
+
+namespace calot::analytics {
+
+using namespace tables;
+
+struct CohortDatabase::Storage {
+  std::string path;
+  std::unique_ptr<SQLite::Database> db;
+};
+
+std::string nameOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::verified:
+      return "verified";
+    case Verdict::diverged:
+      return "diverged";
+    case Verdict::damaged:
+      return "damaged";
+    case Verdict::notCheckableHere:
+      return "not checkable here";
+    case Verdict::notChecked:
+      return "not checked";
+  }
+  return "unknown";
+}
+
+CohortDatabase::CohortDatabase(const std::string& path, Access access, std::chrono::milliseconds patience)
+    : storage_(std::make_unique<Storage>()) {
+  storage_->path = path;
+  storage_->db = openCohort(path, access, patience);
+}
+
+CohortDatabase::~CohortDatabase() = default;
+CohortDatabase::CohortDatabase(CohortDatabase&&) noexcept = default;
+CohortDatabase& CohortDatabase::operator=(CohortDatabase&&) noexcept = default;
+
+const std::string& CohortDatabase::path() const { return storage_->path; }
+
+int CohortDatabase::schemaVersion() const {
+  return guarded(path(), [&] { return storage_->db->execAndGet("PRAGMA user_version").getInt(); });
+}
+
+void CohortDatabase::addParticipant(const Participant& p) {
+  checkPseudonym(p.pseudonym);
+  checkDetails(p.experience, p.consent);
+  guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    if (participantId(db, p.pseudonym) >= 0) {
+      throw Error(ExitCode::no, fmt::format("{}: participant \"{}\" is there already; use `participant set` to change it", path(), p.pseudonym));
+    }
+    writeDetails(db, insertParticipant(db, p), p.experience, p.consent);
+    audit(db, "participant-add", p.pseudonym, fmt::format("group \"{}\", arm \"{}\", site \"{}\"", p.group, p.arm, p.site));
+    transaction.commit();
+  });
+}
+
+void CohortDatabase::setParticipant(const std::string& pseudonym, const ParticipantChange& change) {
+  checkDetails(change.experience, change.consent);
+  guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::int64_t id = participantId(db, pseudonym);
+    if (id < 0) {
+      throw Error(ExitCode::no, fmt::format("{}: no participant \"{}\"; use `participant add`", path(), pseudonym));
+    }
+    std::string detail;
+    const auto set = [&](const char* column, const char* word, const std::optional<std::string>& value) {
+      if (!value) return;
+      SQLite::Statement update(db, fmt::format("UPDATE participant SET {} = ? WHERE id = ?", column));
+      SQLite::bind(update, *value, id);
+      update.exec();
+      detail += fmt::format("{} \"{}\"; ", word, *value);
+    };
+    set("study_group", "group", change.group);
+    set("arm", "arm", change.arm);
+    set("site", "site", change.site);
+    writeDetails(db, id, change.experience, change.consent);
+    for (const auto& item : change.experience) detail += fmt::format("experience {} = {}; ", item.first, item.second);
+    for (const auto& item : change.consent) detail += fmt::format("consent {} {}; ", item.first, item.second);
+    audit(db, "participant-set", pseudonym, detail);
+    transaction.commit();
+  });
+}
+
+std::vector<Participant> CohortDatabase::participants() const {
+  return guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    std::vector<Participant> result;
+    std::map<std::int64_t, std::size_t> index;
+    SQLite::Statement select(db, "SELECT id, pseudonym, study_group, arm, site FROM participant ORDER BY pseudonym");
+    while (select.executeStep()) {
+      index[select.getColumn(0).getInt64()] = result.size();
+      result.push_back({text(select.getColumn(1)), text(select.getColumn(2)), text(select.getColumn(3)), text(select.getColumn(4)), {}, {}});
+    }
+    SQLite::Statement experience(db, "SELECT participant, criterion, value FROM participant_experience");
+    while (experience.executeStep()) {
+      if (const auto at = index.find(experience.getColumn(0).getInt64()); at != index.end())
+        result[at->second].experience[text(experience.getColumn(1))] = text(experience.getColumn(2));
+    }
+    SQLite::Statement consent(db, "SELECT participant, purpose, given_on FROM consent");
+    while (consent.executeStep()) {
+      if (const auto at = index.find(consent.getColumn(0).getInt64()); at != index.end())
+        result[at->second].consent[text(consent.getColumn(1))] = text(consent.getColumn(2));
+    }
+    return result;
+  });
+}
+
+std::optional<Participant> CohortDatabase::participant(const std::string& pseudonym) const {
+  for (Participant& p : participants()) {
+    if (p.pseudonym == pseudonym) return std::move(p);
+  }
+  return std::nullopt;
+}
+
+Imported CohortDatabase::storeAttempt(const AttemptRecord& attempt, const std::vector<CheckpointValue>& values) {
+  checkAttempt(attempt, path());
+  return guarded(path(), [&] {
+    SQLite::Transaction transaction(*storage_->db, SQLite::TransactionBehavior::IMMEDIATE);
+    const Imported imported = importAttempt(*storage_->db, path(), attempt, &values);
+    transaction.commit();
+    return imported;
+  });
+}
+
+Imported CohortDatabase::upsertAttempt(const AttemptRecord& attempt) {
+  checkAttempt(attempt, path());
+  return guarded(path(), [&] {
+    SQLite::Transaction transaction(*storage_->db, SQLite::TransactionBehavior::IMMEDIATE);
+    const Imported imported = importAttempt(*storage_->db, path(), attempt, nullptr);
+    transaction.commit();
+    return imported;
+  });
+}
+
+void CohortDatabase::storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values) {
+  guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::int64_t id = attemptId(db, attempt);
+    if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path(), attempt));
+    if (replaceValues(db, id, values)) audit(db, "attempt-values", attempt, fmt::format("{} values", values.size()));
+    transaction.commit();
+  });
+}
+
+void CohortDatabase::excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by) {
+  if (by.empty()) throw Error(ExitCode::usage, "exclusion: name who decides");
+  guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::int64_t id = attemptId(db, attempt);
+    if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path(), attempt));
+    SQLite::Statement clear(db, "DELETE FROM exclusion WHERE attempt = ?");
+    clear.bind(1, id);
+    clear.exec();
+    if (!reason.empty()) {
+      SQLite::Statement put(db, "INSERT INTO exclusion VALUES (?, ?, ?, ?)");
+      SQLite::bind(put, id, reason, by, nowUtc());
+      put.exec();
+    }
+    audit(db, reason.empty() ? "attempt-include" : "attempt-exclude", attempt, fmt::format("{} (by {})", reason, by));
+    transaction.commit();
+  });
+}
+
+std::vector<AttemptRow> CohortDatabase::listAttempts() const {
+  return guarded(path(), [&] { return readAttempts(*storage_->db); });
+}
+
+std::optional<AttemptRow> CohortDatabase::attempt(const std::string& uuid) const {
+  return guarded(path(), [&] { return findAttempt(*storage_->db, uuid); });
+}
+
+std::vector<CheckpointValue> CohortDatabase::values(const std::string& attempt) const {
+  return guarded(path(), [&] { return readValues(*storage_->db, attemptId(*storage_->db, attempt)); });
+}
+
+std::vector<AttemptValue> CohortDatabase::allValues() const {
+  return guarded(path(), [&] { return readAllValues(*storage_->db); });
+}
+
+std::vector<GroupCount> CohortDatabase::groups() const {
+  return guarded(path(), [&] {
+    SQLite::Statement select(*storage_->db,
+                             "SELECT coalesce(p.study_group, ''), count(DISTINCT p.id), count(a.id) FROM attempt a "
+                             "FULL OUTER JOIN participant p ON p.id = a.participant GROUP BY 1 ORDER BY 1");
+    std::vector<GroupCount> groups;
+    while (select.executeStep()) {
+      groups.push_back({text(select.getColumn(0)), static_cast<std::uint64_t>(select.getColumn(1).getInt64()),
+                        static_cast<std::uint64_t>(select.getColumn(2).getInt64())});
+    }
+    return groups;
+  });
+}
+
+}  // namespace calot::analytics

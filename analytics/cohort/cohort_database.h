@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cohort database: participants, attempts, recordings' identities and checkpoint values, in one SQLite file
+// (docs/cohort.md, schemas/cohort/*.sql).
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+
+namespace calot::analytics {
+
+/// What a replay said of a recording. Numbers are stored and never reused.
+enum class Verdict : std::uint8_t {
+  verified = 0,          ///< every digest and force equal, bit for bit
+  diverged = 1,          ///< chain broken or a difference
+  damaged = 2,           ///< unreadable or a bad checksum
+  notCheckableHere = 3,  ///< another simulation version
+  notChecked = 4,
+};
+std::string nameOf(Verdict verdict);  ///< "verified", "diverged", "damaged", "not checkable here", "not checked"
+
+struct Verification {
+  Verdict verdict = Verdict::notChecked;
+  std::string text;      ///< one line: where it diverged, what is damaged; or empty
+  std::string software;  ///< what judged: "calot 0.1.0"
+};
+
+/// A person behind a pseudonym. Experience is recorded as criteria ("laparoscopies" = "240"), never as a label alone.
+struct Participant {
+  std::string pseudonym;
+  std::string group;  ///< study group ("expert", "novice"), or empty
+  std::string arm;
+  std::string site;
+  std::map<std::string, std::string> experience;
+  std::map<std::string, std::string> consent;  ///< purpose -> date (YYYY-MM-DD)
+};
+
+/// What setParticipant() changes: only what is given.
+struct ParticipantChange {
+  std::optional<std::string> group, arm, site;
+  std::map<std::string, std::string> experience;
+  std::map<std::string, std::string> consent;
+};
+
+/// An attempt as the database knows it from its recording.
+struct AttemptRecord {
+  std::string uuid;
+  std::string parent;       ///< uuid, or empty
+  std::string participant;  ///< pseudonym, or empty
+  std::string scene;
+  std::uint32_t sceneMajor = 0, sceneMinor = 0;
+  recorder::OperatorKind operatorKind = recorder::OperatorKind::performer;
+  std::string profile, profileVersion;  ///< performer's
+  recorder::Mode mode = recorder::Mode::practice;
+  std::string purpose;
+  recorder::Outcome outcome = recorder::Outcome::running;
+  std::string startUtc;     ///< ISO 8601 with Z
+  std::uint64_t seed = 0;
+  std::string device;       ///< class
+  std::string calibration;
+  std::uint32_t simulationVersion = 0;
+  std::string comparabilityKey;
+  bool synthetic = false;   ///< made by a performer
+
+  std::string fileName;     ///< of the recording, without folder
+  bool complete = false;
+  std::uint64_t steps = 0;
+  double stepSeconds = 0.01;
+  std::array<std::byte, 32> chainHead{};  ///< BLAKE2b-256 of the content
+  Verification verification;
+};
+
+/// A row of the list of attempts, with what the database adds.
+struct AttemptRow : AttemptRecord {
+  std::string group, arm, site;   ///< the participant's
+  std::string verifiedUtc;        ///< when the verdict was reached
+  std::string importedUtc;        ///< when the attempt first came in
+  bool excluded = false;
+  std::string exclusionReason;    ///< reason and by whom
+};
+
+/// What upsertAttempt() did.
+enum class Imported : std::uint8_t { added, unchanged, extended };
+
+struct GroupCount {
+  std::string group;          ///< "" for attempts without participant or group
+  std::uint64_t participants = 0;
+  std::uint64_t attempts = 0;
+};
+
+/// One value with the attempt that it belongs to.
+struct AttemptValue {
+  std::string attempt;
+  CheckpointValue value;
+};
+
+/// One connection to a cohort database. WAL mode, foreign keys on, strict tables; two processes may write at once (the
+/// second waits). Every changing call is one transaction: killed in the middle, nothing of it is there. Not for use by
+/// two threads at once: open one each.
+///
+/// Every call throws calot::Error with the file's name: 4 (missing, not a database, another program's database,
+/// corrupt), 5 (schema of a newer Calot), 3 (conflict), 1 (locked beyond the waiting time, read-only, disk full).
+class CohortDatabase {
+ public:
+  enum class Access : std::uint8_t {
+    read,    ///< must exist; nothing is changed
+    write,   ///< must exist; older schemas are migrated
+    create,  ///< as write, and made when it doesn't exist
+  };
+
+  CohortDatabase(const std::string& path, Access access, std::chrono::milliseconds patience = std::chrono::seconds(10));
+  ~CohortDatabase();
+  CohortDatabase(CohortDatabase&&) noexcept;
+  CohortDatabase& operator=(CohortDatabase&&) noexcept;
+
+  /// Number of migrations applied.
+  [[nodiscard]] int schemaVersion() const;
+  [[nodiscard]] const std::string& path() const;
+
+  /// Adds a participant. @throws Error 3 if the pseudonym is taken; Error 2 for an empty or malformed pseudonym or date.
+  void addParticipant(const Participant& participant);
+  /// Changes what is given. @throws Error 3 if there is no such participant.
+  void setParticipant(const std::string& pseudonym, const ParticipantChange& change);
+  [[nodiscard]] std::optional<Participant> participant(const std::string& pseudonym) const;
+  [[nodiscard]] std::vector<Participant> participants() const;  ///< by pseudonym
+
+  /// Adds the attempt with its values, or brings what is known of the same recording up to date (a recovered or longer
+  /// file of the same uuid); one transaction. Running it again changes nothing. A participant unknown so far is added
+  /// without group.
+  /// @throws Error 3 "conflict" when the same uuid came in before with another content of the same length, or with
+  /// another scene, seed, participant or operator.
+  Imported storeAttempt(const AttemptRecord& attempt, const std::vector<CheckpointValue>& values);
+  /// The same without values.
+  Imported upsertAttempt(const AttemptRecord& attempt);
+  /// Replaces the attempt's values. @throws Error 3 if there is no such attempt.
+  void storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values);
+
+  /// Marks an attempt as excluded from studies (an empty reason takes the mark away); audited.
+  void excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
+
+  [[nodiscard]] std::vector<AttemptRow> listAttempts() const;  ///< by start, then uuid
+  [[nodiscard]] std::optional<AttemptRow> attempt(const std::string& uuid) const;
+  /// An attempt's values in the order in which they were stored (the registry's).
+  [[nodiscard]] std::vector<CheckpointValue> values(const std::string& attempt) const;
+  /// Values of all attempts, by attempt, then in stored order.
+  [[nodiscard]] std::vector<AttemptValue> allValues() const;
+  [[nodiscard]] std::vector<GroupCount> groups() const;  ///< by name
+
+ private:
+  struct Storage;
+  std::unique_ptr<Storage> storage_;
+};
+
+/// "touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment": attempts are compared only within
+/// one key. Checkpoint versions belong to the key too; they stand beside each value, so that a new version of one
+/// checkpoint separates that checkpoint's values and no others.
+std::string comparabilityKey(const recorder::AttemptHeader& header);
+
+}  // namespace calot::analytics

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/cohort/connection.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <system_error>
+#include <thread>
+
+#include "analytics/cohort/embedded.h"
+
+namespace calot::analytics {
+namespace {
+
+using Access = CohortDatabase::Access;
+
+/// Refuses what SQLite would silently take for an empty database. @returns whether the file is there.
+bool checkFile(const std::string& path, Access access) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  const bool exists = std::filesystem::exists(status);
+  if (!exists) {
+    if (access == Access::create) return false;
+    throw Error(ExitCode::damaged, fmt::format("{}: no such cohort database", path));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (not a file)", path));
+  }
+  if (access != Access::create && std::filesystem::file_size(path, error) == 0) {
+    throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (empty file)", path));
+  }
+  return true;
+}
+
+int pragma(SQLite::Database& db, const char* name) { return db.execAndGet(fmt::format("PRAGMA {}", name)).getInt(); }
+
+/// Path as an SQLite URI.
+std::string uriOf(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/' || c == '.' ||
+                       c == '_' || c == '-';
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  }
+  return uri + "?immutable=1";
+}
+
+std::unique_ptr<SQLite::Database> connect(const std::string& path, Access access, int patience) {
+  if (access != Access::read) {
+    const int create = access == Access::create ? SQLite::OPEN_CREATE : 0;
+    return std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE | create, patience);
+  }
+  auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, patience);
+  try {
+    pragma(*db, "schema_version");
+  } catch (const SQLite::Exception& error) {
+    // A reader of a WAL database makes its index beside it. Where it may not (read-only medium) and nobody writes, the
+    // file alone is the whole database.
+    const int code = error.getErrorCode() & 0xFF;
+    if ((code != SQLITE_CANTOPEN && code != SQLITE_READONLY) || std::filesystem::exists(path + "-wal")) throw;
+    db = std::make_unique<SQLite::Database>(uriOf(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI, patience);
+    pragma(*db, "schema_version");
+  }
+  return db;
+}
+
+/// The one pragma that SQLite refuses at once, without waiting, while another process does the same.
+void setWriteAheadLog(SQLite::Database& db, std::chrono::milliseconds patience) {
+  const auto until = std::chrono::steady_clock::now() + patience;
+  while (true) {
+    try {
+      db.exec("PRAGMA journal_mode = WAL");
+      return;
+    } catch (const SQLite::Exception& error) {
+      if ((error.getErrorCode() & 0xFF) != SQLITE_BUSY || std::chrono::steady_clock::now() >= until) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+}
+
+/// Which schema the file has; 0 for a new one. @throws Error for what is not ours or is newer.
+int schemaOf(SQLite::Database& db, const std::string& path) {
+  const int application = pragma(db, "application_id");
+  const int version = pragma(db, "user_version");
+  const bool empty = db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
+  if (application == 0 && version == 0 && empty) return 0;
+  if (application != cohortApplicationId) {
+    throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (another program's SQLite file)", path));
+  }
+  const int known = static_cast<int>(cohortMigrations().size());
+  if (version > known) {
+    throw Error(ExitCode::undecided, fmt::format("{}: cohort schema {} is newer than this program's {}; use a newer Calot", path, version, known));
+  }
+  if (version < 1) throw Error(ExitCode::damaged, fmt::format("{}: cohort schema {} does not exist", path, version));
+  return version;
+}
+
+void migrate(SQLite::Database& db, const std::string& path) {
+  // Asked again inside the transaction: another process may just have done it.
+  SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+  const std::vector<Migration>& migrations = cohortMigrations();
+  for (auto version = static_cast<std::size_t>(schemaOf(db, path)); version < migrations.size(); ++version) {
+    db.exec(migrations[version].sql);
+    db.exec(fmt::format("PRAGMA user_version = {}", version + 1));
+  }
+  db.exec(fmt::format("PRAGMA application_id = {}", cohortApplicationId));
+  transaction.commit();
+}
+
+}  // namespace
+
+std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access access, std::chrono::milliseconds patience) {
+  return guarded(path, [&] {
+    checkFile(path, access);
+    auto db = connect(path, access, static_cast<int>(patience.count()));
+    db->exec("PRAGMA foreign_keys = ON");
+    db->exec("PRAGMA trusted_schema = OFF");
+    const int version = schemaOf(*db, path);
+    const int known = static_cast<int>(cohortMigrations().size());
+    if (access == Access::read) {
+      if (version == 0) throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (no tables)", path));
+      if (version < known) {
+        throw Error(ExitCode::failure, fmt::format("{}: cohort schema {} must be brought to {} first; run any command that writes to it", path, version, known));
+      }
+      return db;
+    }
+    if (version == 0 && access != Access::create) {
+      throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (no tables)", path));
+    }
+    if (sqlite3_db_readonly(db->getHandle(), "main") == 1) throw databaseError(SQLITE_READONLY, "", path);
+    setWriteAheadLog(*db, patience);
+    db->exec("PRAGMA synchronous = FULL");
+    if (version < known) migrate(*db, path);
+    return db;
+  });
+}
+
+std::string nowUtc() {
+  using namespace std::chrono;
+  const auto now = floor<seconds>(system_clock::now());
+  const auto day = floor<days>(now);
+  const year_month_day date(day);
+  const hh_mm_ss time(now - day);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()), time.hours().count(), time.minutes().count(), time.seconds().count());
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opening a cohort database: which file it is, its schema, migrations. CohortDatabase builds on it.
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/cohort/sqlite_errors.h"
+
+namespace calot::analytics {
+
+/// "Calo": what a cohort database says of itself in SQLite's header.
+inline constexpr int cohortApplicationId = 0x43616C6F;
+
+/// Opens, checks and (unless read-only) migrates. @throws Error as CohortDatabase says.
+std::unique_ptr<SQLite::Database> openCohort(const std::string& path, CohortDatabase::Access access,
+                                             std::chrono::milliseconds patience);
+
+/// Runs `work` and turns SQLite's exceptions into calot::Error.
+template <class Work>
+auto guarded(const std::string& path, Work&& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& error) {
+    throw databaseError(error.getErrorCode(), error.what(), path);
+  }
+}
+
+/// Now, ISO 8601 UTC in seconds: "2014-05-17T09:30:00Z".
+std::string nowUtc();
+
+}  // namespace calot::analytics

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reading and writing single tables; CohortDatabase's calls put them together. Nothing here begins a transaction.
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/VariadicBind.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/cohort/cohort_database.h"
+
+namespace calot::analytics::tables {
+
+template <class Enum>
+int number(Enum value) {
+  return static_cast<int>(value);
+}
+
+/// An enumeration from the database, whose CHECK keeps it in range.
+template <class Enum>
+Enum enumeration(const SQLite::Column& column) {
+  return static_cast<Enum>(column.getInt());
+}
+
+inline std::string text(const SQLite::Column& column) { return column.getString(); }
+
+void audit(SQLite::Database& db, const std::string& action, const std::string& subject, const std::string& detail);
+
+/// @throws Error 2.
+void checkPseudonym(const std::string& pseudonym);
+/// Names of criteria and purposes, dates of consent. @throws Error 2.
+void checkDetails(const std::map<std::string, std::string>& experience, const std::map<std::string, std::string>& consent);
+/// -1: there is none.
+std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym);
+std::int64_t insertParticipant(SQLite::Database& db, const Participant& participant);
+/// Adds or replaces the criteria and consents that are given.
+void writeDetails(SQLite::Database& db, std::int64_t participant, const std::map<std::string, std::string>& experience,
+                  const std::map<std::string, std::string>& consent);
+
+/// -1: there is none.
+std::int64_t attemptId(SQLite::Database& db, const std::string& uuid);
+std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& uuid);
+/// By start, then uuid.
+std::vector<AttemptRow> readAttempts(SQLite::Database& db);
+/// @throws Error 4 for what no recording can say.
+void checkAttempt(const AttemptRecord& attempt, const std::string& path);
+/// CohortDatabase::storeAttempt() without its transaction; null: values are left alone.
+Imported importAttempt(SQLite::Database& db, const std::string& path, const AttemptRecord& attempt,
+                       const std::vector<CheckpointValue>* values);
+
+std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
+std::vector<AttemptValue> readAllValues(SQLite::Database& db);
+/// @returns whether anything changed.
+bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
+
+}  // namespace calot::analytics::tables

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "analytics/cohort/tables.h"
+
+namespace calot::analytics::tables {
+namespace {
+
+constexpr const char* valueColumns =
+    "c.name, c.subject, c.version, c.availability, c.value, c.reason, c.note, c.unit, c.origin, c.filter ";
+
+CheckpointValue valueRow(SQLite::Statement& row, int c) {
+  CheckpointValue v;
+  v.name = text(row.getColumn(c++));
+  v.subject = text(row.getColumn(c++));
+  v.version = row.getColumn(c++).getUInt();
+  v.availability = enumeration<Availability>(row.getColumn(c++));
+  const SQLite::Column value = row.getColumn(c++);
+  if (!value.isNull()) v.value = value.getDouble();
+  v.reason = text(row.getColumn(c++));
+  v.note = text(row.getColumn(c++));
+  v.unit = text(row.getColumn(c++));
+  v.origin = enumeration<Origin>(row.getColumn(c++));
+  v.filter = text(row.getColumn(c));
+  return v;
+}
+
+}  // namespace
+
+std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t id) {
+  SQLite::Statement select(db, fmt::format("SELECT {} FROM checkpoint_value c WHERE c.attempt = ? ORDER BY c.position", valueColumns));
+  select.bind(1, id);
+  std::vector<CheckpointValue> values;
+  while (select.executeStep()) values.push_back(valueRow(select, 0));
+  return values;
+}
+
+bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<CheckpointValue>& values) {
+  if (readValues(db, id) == values) return false;
+  SQLite::Statement clear(db, "DELETE FROM checkpoint_value WHERE attempt = ?");
+  clear.bind(1, id);
+  clear.exec();
+  SQLite::Statement put(db, "INSERT INTO checkpoint_value VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const CheckpointValue& v = values[i];
+    put.reset();
+    put.clearBindings();
+    put.bind(1, id);
+    put.bind(2, static_cast<std::int64_t>(i));
+    put.bind(3, v.name);
+    put.bind(4, v.subject);
+    put.bind(5, v.version);
+    put.bind(6, number(v.availability));
+    if (v.value) {
+      put.bind(7, *v.value);
+    } else {
+      put.bind(7);
+    }
+    put.bind(8, v.reason);
+    put.bind(9, v.note);
+    put.bind(10, v.unit);
+    put.bind(11, number(v.origin));
+    put.bind(12, v.filter);
+    put.exec();
+  }
+  return true;
+}
+
+std::vector<AttemptValue> readAllValues(SQLite::Database& db) {
+  SQLite::Statement select(db, fmt::format("SELECT a.uuid, {} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt "
+                                           "ORDER BY a.uuid, c.position",
+                                           valueColumns));
+  std::vector<AttemptValue> values;
+  while (select.executeStep()) values.push_back({text(select.getColumn(0)), valueRow(select, 1)});
+  return values;
+}
+
+}  // namespace calot::analytics::tables

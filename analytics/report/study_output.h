@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A study as text, JSON and CSV. Numbers are written with a point, whatever the locale.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "analytics/report/study.h"
+
+namespace calot::analytics {
+
+/// Heading, flow, table and remarks for the terminal.
+void printStudy(const Study& study, std::ostream& out);
+
+/// Everything of the model, in one JSON object; numbers that don't exist are null, with a reason beside them.
+std::string studyJson(const Study& study);
+
+/// Writes study.csv (a row a checkpoint), values.csv (a row a participant and checkpoint) and flow.csv into a folder,
+/// which is made; files that are there are kept unless `force`.
+/// @throws Error 2 when a file is there already, Error 1 when writing fails.
+void writeStudyCsv(const Study& study, const std::string& folder, bool force);
+
+}  // namespace calot::analytics

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace calot::analytics {
+
+/// A table of text with aligned columns for the terminal.
+class TextTable {
+ public:
+  enum class Align { left, right };
+  explicit TextTable(std::vector<std::pair<std::string, Align>> columns);
+  /// @pre as many cells as columns.
+  void add(std::vector<std::string> cells);
+  /// Header, rule, rows; columns two blanks apart; empty columns are left out.
+  void print(std::ostream& out) const;
+  [[nodiscard]] std::size_t rows() const { return rows_.size(); }
+
+ private:
+  std::vector<std::pair<std::string, Align>> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// `digits` significant digits, never in a locale's way, no exponent between 1e-4 and 1e7: "0.0432", "113", "12.5".
+std::string significant(double value, int digits = 4);
+
+/// "p" with what a reader may believe: "< 0.0001", "0.0433".
+std::string pText(double p);
+
+}  // namespace calot::analytics

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cassert>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace calot::analytics {
+
+/// A result, or the reason why there is none. Degenerate input (an empty group, all values tied, n = 1) is an answer to
+/// be printed, not an error and never a NaN.
+template <class T>
+class Answer {
+ public:
+  Answer(T value) : value_(std::move(value)) {}  // NOLINT: implicit on purpose, a result is an answer
+  static Answer none(std::string reason) {
+    Answer answer;
+    answer.reason_ = std::move(reason);
+    return answer;
+  }
+
+  explicit operator bool() const { return value_.has_value(); }
+  /// @pre there is a result.
+  const T& operator*() const {
+    assert(value_.has_value());
+    return *value_;
+  }
+  const T* operator->() const {
+    assert(value_.has_value());
+    return &*value_;
+  }
+  /// One line; empty exactly when there is a result.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  Answer() = default;
+  std::optional<T> value_;
+  std::string reason_;
+};
+
+}  // namespace calot::analytics

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two independent groups x and y: rank test, effect size, shift. All from one statistic, U = #{x > y} + #{x = y} / 2
+// (R's W). One value per participant: the caller's duty.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "analytics/statistics/answer.h"
+
+namespace calot::analytics {
+
+enum class RankTest { automatic, exact, asymptotic };
+
+/// Pooled sizes up to which `automatic` counts the exact distribution (some ten milliseconds at the limit).
+inline constexpr std::size_t exactRankTestLimit = 80;
+
+struct MannWhitney {
+  double u = 0.0;     ///< of x
+  double p = 1.0;     ///< two-sided
+  bool exact = false; ///< permutation distribution of the mid-rank sum, ties included; else normal approximation
+  bool ties = false;
+};
+
+/// Mann-Whitney U, two-sided (Mann and Whitney 1947). Exact: P(|R - E R| >= |r - E R|) over all assignments of the
+/// pooled mid-ranks (with no ties this is the classical exact test). Asymptotic: normal with the variance corrected for
+/// ties and a continuity correction of 1/2. `automatic`: exact up to exactRankTestLimit values. No answer for an empty
+/// group, values that are not finite, or when all values are tied.
+Answer<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y,
+                                RankTest method = RankTest::automatic);
+
+/// Probability of superiority and its linear image; one statistic under two names.
+struct Superiority {
+  double a = 0.5;      ///< Vargha and Delaney's A = U / (nx ny): P(X > Y) + P(X = Y) / 2, the area under the ROC curve
+  double delta = 0.0;  ///< Cliff's delta = 2 A - 1 = P(X > Y) - P(X < Y)
+};
+Answer<Superiority> superiority(std::span<const double> x, std::span<const double> y);
+
+/// Hodges-Lehmann estimate of the shift: median of all x_i - y_j (positive: x is larger). O(nx ny) memory.
+Answer<double> hodgesLehmann(std::span<const double> x, std::span<const double> y);
+
+struct ShiftInterval {
+  double lower = 0.0, upper = 0.0;
+  double attained = 0.0;  ///< coverage that the discrete distribution really gives, >= the one asked for
+};
+
+/// Distribution-free interval of that shift: order statistics of the differences at the quantiles of the exact
+/// distribution of U (Hollander and Wolfe). No answer with ties, beyond exactRankTestLimit, or where the groups are too
+/// small for the level. @pre 0 < level < 1.
+Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y, double level = 0.95);
+
+}  // namespace calot::analytics

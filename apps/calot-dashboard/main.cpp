@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot-dashboard: options, then the window.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <QApplication>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "gui/dashboard/dashboard_window.h"
+#include "recorder/errors.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App options{"Shows the attempts and checkpoints of a cohort database."};
+  std::string database, pictures;
+  options.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
+  options.add_option("database", database, "Cohort database, as `calot assess --cohort` writes it");
+  options.add_option("--pictures", pictures, "Write a PNG of each page into this folder, and end");
+  try {
+    options.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return options.exit(error);
+    fmt::print(stderr, "calot-dashboard: {}; try --help\n", error.what());
+    return static_cast<int>(calot::ExitCode::usage);
+  }
+
+  // A file that cannot be opened is told before there is a window, and needs none.
+  std::shared_ptr<const calot::gui::CohortDocument> document;
+  if (!database.empty()) document = std::make_shared<const calot::gui::CohortDocument>(database);
+
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("Calot");
+  calot::gui::DashboardWindow window;
+  if (document) window.setDocument(document);
+  window.show();
+  if (!pictures.empty()) {
+    window.savePictures(QString::fromLocal8Bit(pictures.c_str()));
+    return 0;
+  }
+  return QApplication::exec();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const calot::Error& error) {
+    fmt::print(stderr, "calot-dashboard: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "calot-dashboard: {}\n", error.what());
+    return static_cast<int>(calot::ExitCode::failure);
+  }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot checkpoints: what this build computes, and how it is defined.
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "analytics/checkpoints/registry.h"
+#include "apps/calot/commands.h"
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+using analytics::CheckpointDefinition;
+
+std::vector<std::string> originNames(const CheckpointDefinition& d) {
+  std::vector<std::string> names;
+  for (const analytics::Origin origin : d.origins) names.push_back(nameOf(origin));
+  return names;
+}
+
+nlohmann::ordered_json jsonOf(const CheckpointDefinition& d) {
+  return {{"name", d.name},
+          {"title", d.title},
+          {"unit", d.unit},
+          {"display_unit", d.displayUnit},
+          {"display_factor", d.displayFactor},
+          {"direction", nameOf(d.direction)},
+          {"window", d.window},
+          {"aggregation", nameOf(d.aggregation)},
+          {"instruments", d.instruments},
+          {"filter", d.filter},
+          {"origins", originNames(d)},
+          {"finality", nameOf(d.finality)},
+          {"version", d.version},
+          {"definition", d.definition},
+          {"paper", d.paperReading}};
+}
+
+void print(const CheckpointDefinition& d) {
+  std::string origins;
+  for (const std::string& name : originNames(d)) origins += (origins.empty() ? "" : ", ") + name;
+  std::cout << fmt::format("{} (version {}): {}\n", d.name, d.version, d.title);
+  const auto line = [](const char* word, const std::string& text) {
+    if (!text.empty()) std::cout << fmt::format("  {:<12} {}\n", word, text);
+  };
+  line("definition", d.definition);
+  line("unit", d.unit == d.displayUnit ? d.unit : fmt::format("{} (shown in {})", d.unit, d.displayUnit));
+  line("better", nameOf(d.direction));
+  line("given for", fmt::format("each {}", nameOf(d.aggregation)));
+  line("instruments", d.instruments);
+  line("window", d.window);
+  line("filter", d.filter);
+  line("origin", origins);
+  line("known", d.finality == analytics::Finality::running ? "after every step" : "at the end");
+  line("paper", d.paperReading);
+}
+
+}  // namespace
+
+void addCheckpoints(CLI::App& app, Run& run) {
+  const auto json = std::make_shared<bool>(false);
+  CLI::App* command = app.add_subcommand("checkpoints", "List the checkpoints and their definitions");
+  command->add_flag("--json", *json, "Print JSON");
+  command->callback([json, &run] {
+    run = [json] {
+      nlohmann::ordered_json list = nlohmann::ordered_json::array();
+      for (const analytics::CheckpointEntry& entry : analytics::checkpointRegistry()) {
+        if (*json) {
+          list.push_back(jsonOf(entry.definition));
+        } else {
+          print(entry.definition);
+        }
+      }
+      if (*json) std::cout << list.dump(2) << '\n';
+      return static_cast<int>(ExitCode::yes);
+    };
+  });
+}
+
+}  // namespace calot::apps

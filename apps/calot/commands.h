@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Commands of `calot`: each adds its subcommand with its options to the application and, when chosen, sets `run` to
+// what main() shall call; `run` returns the exit code or throws calot::Error.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace calot::apps {
+
+using Run = std::function<int()>;
+
+void addRecord(CLI::App& app, Run& run);
+void addReplay(CLI::App& app, Run& run);
+void addInspect(CLI::App& app, Run& run);
+void addRecover(CLI::App& app, Run& run);
+void addExport(CLI::App& app, Run& run);
+void addState(CLI::App& app, Run& run);
+void addDiff(CLI::App& app, Run& run);
+void addMesh(CLI::App& app, Run& run);
+void addRender(CLI::App& app, Run& run);
+void addAssess(CLI::App& app, Run& run);
+void addStudy(CLI::App& app, Run& run);
+void addParticipant(CLI::App& app, Run& run);
+void addScenes(CLI::App& app, Run& run);
+void addCheckpoints(CLI::App& app, Run& run);
+
+}  // namespace calot::apps

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/calot/environment.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <system_error>
+
+#include "recorder/errors.h"
+#include "recorder/formats/scene_file.h"
+
+namespace calot::apps {
+
+std::vector<std::filesystem::path> assetFolders() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return recorder::assetRoots(program.parent_path(), CALOT_ASSETS);
+}
+
+Progress::Progress(std::string what, bool quiet) : what_(std::move(what)), terminal_(!quiet && isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (drawn_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::show(std::uint64_t done, std::uint64_t of) {
+  if (!terminal_) return;
+  const std::int64_t now =
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  if (now - last_ < 100) return;
+  last_ = now;
+  drawn_ = true;
+  const std::string text = of > 0 ? fmt::format("\r\033[K{}: {} of {} ({:.0f} %)", what_, done, of,
+                                                100.0 * static_cast<double>(done) / static_cast<double>(of))
+                                  : fmt::format("\r\033[K{}: {}", what_, done);
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
+double parseTime(const std::string& text) {
+  std::string rest = text;
+  if (!rest.empty() && rest.back() == 's') rest.pop_back();
+  double minutes = 0.0;
+  const auto number = [&](const std::string& part, double& out) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), out);
+    return error == std::errc() && end == part.data() + part.size() && out >= 0.0 && out < 1e7;
+  };
+  const std::size_t colon = rest.find(':');
+  double seconds = 0.0;
+  bool good = true;
+  if (colon != std::string::npos) {
+    good = number(rest.substr(0, colon), minutes);
+    rest = rest.substr(colon + 1);
+  }
+  good = good && number(rest, seconds);
+  if (!good) throw Error(ExitCode::usage, fmt::format("'{}' is no time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
+  return 60.0 * minutes + seconds;
+}
+
+void refuseExisting(const std::filesystem::path& file, bool force) {
+  if (!force && std::filesystem::exists(file)) {
+    throw Error(ExitCode::usage, fmt::format("{}: is there already; --force replaces it", file.string()));
+  }
+}
+
+}  // namespace calot::apps

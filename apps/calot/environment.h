@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What commands share: where assets are, progress on a terminal, reading a time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace calot::apps {
+
+/// Folders that may hold scenes, organs and performers (recorder::assetRoots of this program).
+std::vector<std::filesystem::path> assetFolders();
+
+/// A line that is drawn again and again on a terminal; nothing in a pipe or with --json.
+class Progress {
+ public:
+  explicit Progress(std::string what, bool quiet = false);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// @param of 0: no end is known
+  void show(std::uint64_t done, std::uint64_t of);
+
+ private:
+  std::string what_;
+  bool terminal_;
+  bool drawn_ = false;
+  std::int64_t last_ = 0;
+};
+
+/// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (usage)
+double parseTime(const std::string& text);
+
+/// Refuses a target that is there. @throws Error (usage)
+void refuseExisting(const std::filesystem::path& file, bool force);
+
+}  // namespace calot::apps

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/calot/commands.h"
+#include "recorder/errors.h"
+#include "recorder/recording/header.h"
+#include "recorder/recording/reader.h"
+#include "sim/scene/version.h"
+
+namespace calot::apps {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Attributes {
+  ordered_json& json;
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    json[name] = value;
+  }
+  template <class T>
+  void constant(const char* name, const T& value) {
+    json[name] = value;
+  }
+  template <class T, std::size_t N>
+  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
+    json[name] = names[static_cast<std::size_t>(value)];
+  }
+};
+
+ordered_json describe(const recorder::Recording& recording, const recorder::ChainVerdict& chain) {
+  const recorder::AttemptHeader& header = recording.header();
+  ordered_json out;
+  out["file"] = recording.path().string();
+  out["state"] = recording.complete() ? "complete" : "incomplete";
+  out["outcome"] = recorder::outcomeNames[static_cast<std::size_t>(recording.outcome())];
+  out["seconds"] = recording.seconds();
+  out["steps"] = recording.stepCount();
+  out["ticks"] = recording.tickCount();
+  out["events"] = recording.eventCount();
+  out["keyframes"] = recording.keyframeSteps().size();
+  out["flushes"] = recording.status().size() - 1;
+  out["chain"] = chain.intact ? "intact" : "broken";
+  if (!chain.intact) out["chain_broken_at_flush"] = chain.flush;
+  std::string head;
+  for (const std::uint8_t byte : recording.status().back().chain) head += fmt::format("{:02x}", byte);
+  out["chain_head"] = head;
+  out["this_simulation_version"] = simulationVersion;
+  ordered_json attributes;
+  Attributes visit{attributes};
+  recorder::visitAttributes(header, visit);
+  out["attempt"] = attributes;
+  out["organs"] = header.organs;
+  ordered_json assets = ordered_json::array();
+  for (const recorder::Asset& asset : header.assets) assets.push_back({{"name", asset.name}, {"bytes", asset.bytes.size()}});
+  out["scene_files"] = assets;
+  return out;
+}
+
+std::string shown(const ordered_json& value) { return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
+
+void print(const ordered_json& d) {
+  for (const auto& [key, value] : d.items()) {
+    if (key == "attempt") {
+      for (const auto& [name, v] : value.items()) {
+        if (!(v.is_string() && v.get<std::string>().empty())) fmt::print("{:<24} {}\n", name, shown(v));
+      }
+    } else if (key == "scene_files") {
+      for (const auto& asset : value) fmt::print("{:<24} {} ({} bytes)\n", "scene file", shown(asset["name"]), shown(asset["bytes"]));
+    } else {
+      fmt::print("{:<24} {}\n", key, shown(value));
+    }
+  }
+}
+
+}  // namespace
+
+void addInspect(CLI::App& app, Run& run) {
+  struct Options {
+    std::string file;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("inspect", "Say what a recording holds, and whether its content chain is intact");
+  command->add_option("recording", options->file, "Recording (.h5)")->required();
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &run] {
+    run = [options] {
+      const recorder::ChainVerdict chain = recorder::probe(options->file);
+      const recorder::Recording recording(options->file);
+      const ordered_json d = describe(recording, chain);
+      if (options->json) {
+        fmt::print("{}\n", d.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+      } else {
+        print(d);
+      }
+      if (!chain.intact) throw Error(ExitCode::no, fmt::format("{}: {}", options->file, chain.what));
+      return static_cast<int>(ExitCode::yes);
+    };
+  });
+}
+
+}  // namespace calot::apps

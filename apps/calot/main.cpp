@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "apps/calot/commands.h"
+#include "recorder/attempt.h"
+#include "recorder/errors.h"
+#include "sim/scene/version.h"
+
+namespace {
+
+int fail(calot::ExitCode code, const std::string& message) {
+  std::cerr << "calot: " << message << '\n';
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace calot;
+  CLI::App app("Records, replays and assesses virtual laparoscopic cholecystectomy training.", "calot");
+  app.set_version_flag("--version", recorder::softwareName() + " (" + recorder::buildName() + "), simulation version " +
+                                        std::to_string(simulationVersion));
+  app.require_subcommand(1);
+  apps::Run run;
+  for (const auto add : {apps::addRecord, apps::addReplay, apps::addInspect, apps::addRecover, apps::addExport, apps::addState,
+                         apps::addDiff, apps::addAssess, apps::addStudy, apps::addParticipant, apps::addRender, apps::addMesh,
+                         apps::addScenes, apps::addCheckpoints}) {
+    add(app, run);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    const CLI::App* at = &app;
+    while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
+    std::string name = at == &app ? "calot" : "calot " + at->get_name();
+    return fail(ExitCode::usage, std::string(e.what()) + " (try: " + name + " --help)");
+  }
+  try {
+    return run();
+  } catch (const Error& e) {
+    return fail(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::failure, "not enough memory");
+  } catch (const std::exception& e) {
+    return fail(ExitCode::failure, e.what());
+  }
+}

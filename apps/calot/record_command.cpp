@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "recorder/errors.h"
+#include "recorder/attempt.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/live/worker_pool.h"
+#include "recorder/recording/writer.h"
+#include "recorder/sources/kinematics_source.h"
+#include "recorder/sources/performer_source.h"
+
+namespace calot::apps {
+
+namespace {
+
+struct Options {
+  std::string scene, performer, kinematics, participant, station, purpose = "training", handedness = "unknown", output;
+  std::string mode = "practice";
+  std::uint64_t seed = 1;
+  double seconds = 0.0;
+  unsigned threads = 1;
+  bool paced = false, force = false, json = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+std::unique_ptr<recorder::SampleSource> makeSource(const Options& o, const SceneDescription& scene) {
+  if (!o.kinematics.empty()) return std::make_unique<recorder::KinematicsSource>(o.kinematics, scene);
+  const recorder::PerformerProfile profile = recorder::loadPerformer(recorder::findPerformer(o.performer, assetFolders()));
+  return std::make_unique<recorder::PerformerSource>(profile, scene, o.seed);
+}
+
+const char* outcomeText(recorder::Outcome outcome) {
+  switch (outcome) {
+    case recorder::Outcome::completed: return "completed";
+    case recorder::Outcome::timeLimit: return "time limit";
+    case recorder::Outcome::stopped: return "stopped";
+    default: return "running";
+  }
+}
+
+int record(const Options& o) {
+  refuseExisting(o.output, o.force);
+  recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
+  const Model::Built built = Model::build(scene.description);
+  if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", o.scene, built.error));
+  const std::unique_ptr<recorder::SampleSource> source = makeSource(o, built.model->scene());
+  recorder::AttemptSettings settings;
+  settings.participant = o.participant;
+  settings.station = o.station;
+  settings.purpose = o.purpose;
+  settings.handedness = o.handedness;
+  settings.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
+  settings.seed = o.seed;
+  const recorder::AttemptHeader header =
+      recorder::makeHeader(*built.model, std::move(scene.assets), source->provenance(), settings);
+  recorder::RecordingWriter writer(o.output, header, {o.force});
+  recorder::WorkerPool pool(o.threads);
+  recorder::Session session(*built.model, o.seed, pool);
+  session.join(writer);
+  Progress progress("recording, seconds", o.json);
+  recorder::RunSettings run;
+  run.seconds = o.seconds;
+  run.paced = o.paced;
+  run.stop = &interrupted;
+  const double stepSeconds = built.model->stepSeconds();
+  run.progress = [&](std::uint64_t step) {
+    progress.show(static_cast<std::uint64_t>(static_cast<double>(step) * stepSeconds), static_cast<std::uint64_t>(o.seconds));
+  };
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const recorder::RunReport report = recorder::runAttempt(session, *source, run);
+  writer.finish();
+  if (o.json) {
+    const nlohmann::json out{{"attempt", header.attempt}, {"file", o.output}, {"outcome", outcomeText(report.outcome)},
+                             {"steps", report.steps}, {"seconds", static_cast<double>(report.steps) * stepSeconds},
+                             {"wall_seconds", report.wallSeconds}, {"late_ticks", report.lateTicks},
+                             {"largest_lateness_s", report.largestLateness}, {"clock_stretched_s", report.stretched}};
+    std::cout << out.dump(2) << '\n';
+    return 0;
+  }
+  fmt::print("{}: attempt {}, {:.2f} s, {}\n", o.output, header.attempt, static_cast<double>(report.steps) * stepSeconds,
+             outcomeText(report.outcome));
+  if (o.paced) {
+    fmt::print("paced: {} late ticks, at most {:.1f} ms late, clock stretched by {:.3f} s\n", report.lateTicks,
+               1e3 * report.largestLateness, report.stretched);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addRecord(CLI::App& app, Run& run) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("record", "Runs an attempt and records it.");
+  command->add_option("--scene", o->scene, "name of a scene (calot scenes), or a scene file")->required();
+  auto* source = command->add_option_group("source", "who acts");
+  source->add_option("--performer", o->performer, "profile of a synthetic operator: skilled, unskilled, or a file");
+  source->add_option("--kinematics", o->kinematics, "two-handed motion file, 76 columns at 30 Hz");
+  source->require_option(1);
+  command->add_option("--seed", o->seed, "of performer and simulation")->capture_default_str();
+  command->add_option("--seconds", o->seconds, "stop after so much attempt time; 0: when the source ends")
+      ->check(CLI::Range(0.0, 36000.0));
+  command->add_option("--participant", o->participant, "pseudonym")->check([](const std::string& p) {
+    return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
+  });
+  command->add_option("--station", o->station, "name of this training station");
+  command->add_option("--purpose", o->purpose, "training, study, demo, golden")
+      ->check(CLI::IsMember({"training", "study", "demo", "golden"}))
+      ->capture_default_str();
+  command->add_option("--handedness", o->handedness, "right, left, unknown")
+      ->check(CLI::IsMember({"right", "left", "unknown"}))
+      ->capture_default_str();
+  command->add_option("--mode", o->mode, "practice or assessment")
+      ->check(CLI::IsMember({"practice", "assessment"}))
+      ->capture_default_str();
+  command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
+  command->add_option("--threads", o->threads, "of the simulation; 0: all")->check(CLI::Range(0U, 64U))->capture_default_str();
+  command->add_option("-o,--output", o->output, "the recording")->required();
+  command->add_flag("--force", o->force, "replace the output if it is there");
+  command->add_flag("--json", o->json, "print the result as JSON");
+  command->callback([o, &run] { run = [o] { return record(*o); }; });
+}
+
+}  // namespace calot::apps

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <iostream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "recorder/errors.h"
+#include "apps/calot/replay_report.h"
+#include "recorder/replay.h"
+
+namespace calot::apps {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string junit;
+  unsigned threads = 1, jobs = 1;
+  bool anyway = false, json = false;
+};
+
+int replay(const Options& o) {
+  std::vector<recorder::ReplayReport> reports(o.files.size());
+  const bool single = o.files.size() == 1;
+  Progress progress(single ? "replaying, step" : "replaying, recordings", o.json);
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::size_t> done{0};
+  std::mutex drawing;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < o.files.size(); i = next++) {
+      recorder::ReplaySettings settings;
+      settings.threads = o.threads;
+      settings.anyway = o.anyway;
+      if (single) settings.progress = [&](std::uint64_t step, std::uint64_t of) { progress.show(step, of); };
+      try {
+        reports[i] = recorder::replayRecording(o.files[i], settings);
+      } catch (...) {
+        const std::lock_guard lock(drawing);
+        failure = std::current_exception();
+        reports[i].path = o.files[i];
+        reports[i].message = "failed inside";
+      }
+      ++done;
+      const std::lock_guard lock(drawing);
+      if (!single) progress.show(done, o.files.size());
+    }
+  };
+  const std::size_t jobs = std::min<std::size_t>(o.jobs == 0 ? std::thread::hardware_concurrency() : o.jobs, o.files.size());
+  std::vector<std::thread> threads;
+  for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back(work);
+  work();
+  for (std::thread& t : threads) t.join();
+  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports);
+  if (failure) std::rethrow_exception(failure);
+  if (o.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const recorder::ReplayReport& r : reports) list.push_back(reportJson(r));
+    std::cout << list.dump(2) << '\n';
+  } else {
+    for (const recorder::ReplayReport& r : reports) printReport(r);
+    const auto exact = std::count_if(reports.begin(), reports.end(), [](const recorder::ReplayReport& r) {
+      return r.verdict == recorder::ReplayVerdict::exact;
+    });
+    if (reports.size() > 1) fmt::print("{} recordings, {} bit-exact\n", reports.size(), exact);
+  }
+  return static_cast<int>(worstOf(reports));
+}
+
+}  // namespace
+
+void addReplay(CLI::App& app, Run& run) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("replay", "Re-simulates recordings and compares every digest and force.");
+  command->add_option("recordings", o->files, "recordings")->required();
+  command->add_option("--threads", o->threads, "of each simulation; 0: all")->check(CLI::Range(0U, 64U))->capture_default_str();
+  command->add_option("--jobs", o->jobs, "recordings at a time; 0: one a processor")->check(CLI::Range(0U, 64U))->capture_default_str();
+  command->add_option("--junit", o->junit, "write the result as JUnit XML");
+  command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
+  command->add_flag("--json", o->json, "print the result as JSON");
+  command->callback([o, &run] { run = [o] { return replay(*o); }; });
+}
+
+}  // namespace calot::apps

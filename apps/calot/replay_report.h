@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "recorder/replay.h"
+
+namespace calot::apps {
+
+/// "R.h5: bit-exact, 46.70 s (4670 steps), 12.3 x real time"; what is not exact goes to stderr.
+void printReport(const recorder::ReplayReport& report);
+
+nlohmann::json reportJson(const recorder::ReplayReport& report);
+
+/// Exit code over many inputs: the first present of 1, 4, 3, 5, 0.
+ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports);
+
+}  // namespace calot::apps

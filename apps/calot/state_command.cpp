@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "recorder/errors.h"
+#include "recorder/live/worker_pool.h"
+#include "recorder/recording/state_file.h"
+#include "recorder/replay.h"
+#include "recorder/state_fields.h"
+#include "sim/scene/flat.h"
+#include "sim/scene/version.h"
+
+namespace calot::apps {
+
+namespace {
+
+constexpr std::uint64_t flatSteps = 200;
+
+struct StateOptions {
+  std::string recording, output;
+  std::uint64_t step = 0;
+  bool flat = false, force = false;
+};
+
+int state(const StateOptions& o) {
+  refuseExisting(o.output, o.force);
+  recorder::probe(o.recording);
+  recorder::Recording recording(o.recording);
+  if (o.step >= recording.stepCount()) {
+    throw Error(ExitCode::usage, fmt::format("{}: has steps 0 to {}, not {}", o.recording,
+                                             static_cast<std::int64_t>(recording.stepCount()) - 1, o.step));
+  }
+  recorder::WorkerPool pool(1);
+  recorder::Seeker seeker(recording, pool);
+  seeker.seek(o.step);
+  if (!o.flat) {
+    std::vector<recorder::NamedNumbers> fields;
+    for (recorder::StateField& f : recorder::stateFields(seeker.model(), seeker.session().state())) {
+      fields.emplace_back(std::move(f.name), std::move(f.values));
+    }
+    recorder::writeStateFile(o.output, o.step, simulationVersion, fields, o.force);
+    return 0;
+  }
+  FlatState flat;
+  flat.scene = seeker.model().scene();
+  flat.state = saveState(seeker.session().state());
+  const std::uint64_t last = std::min(recording.stepCount(), o.step + 1 + flatSteps);
+  for (std::uint64_t n = o.step + 1; n < last; ++n) {
+    const recorder::RecordedStep& step = recording.step(n);
+    flat.ticks.insert(flat.ticks.end(), step.samples.begin(), step.samples.end());
+  }
+  const std::vector<std::byte> bytes = saveFlat(flat);
+  const std::string part = o.output + ".part";
+  std::ofstream out(part, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be written; is the folder there and the disk not full?", o.output));
+  }
+  std::filesystem::rename(part, o.output);
+  return 0;
+}
+
+struct DiffOptions {
+  std::string first, second;
+  bool json = false;
+};
+
+int diff(const DiffOptions& o) {
+  const recorder::StateFile a = recorder::readStateFile(o.first);
+  const recorder::StateFile b = recorder::readStateFile(o.second);
+  const auto fields = [](const recorder::StateFile& file) {
+    std::vector<recorder::StateField> out;
+    for (const recorder::NamedNumbers& f : file.fields) out.push_back({f.first, f.second});
+    return out;
+  };
+  const auto difference = recorder::firstDifference(fields(a), fields(b));
+  if (o.json) {
+    nlohmann::json json{{"equal", !difference}};
+    if (difference) {
+      json["field"] = difference->field;
+      json["index"] = difference->index;
+      json["first"] = difference->first;
+      json["second"] = difference->second;
+    }
+    std::cout << json.dump(2) << '\n';
+  } else if (difference) {
+    fmt::print("{} index {}: {} and {}\n", difference->field, difference->index, difference->first, difference->second);
+  } else {
+    fmt::print("equal: {} fields of step {}\n", a.fields.size(), a.step);
+  }
+  if (a.step != b.step && !o.json) fmt::print("the first is of step {}, the second of step {}\n", a.step, b.step);
+  return static_cast<int>(difference ? ExitCode::no : ExitCode::yes);
+}
+
+}  // namespace
+
+void addState(CLI::App& app, Run& run) {
+  auto o = std::make_shared<StateOptions>();
+  CLI::App* command = app.add_subcommand("state", "Writes the State after a step, as HDF5 or as plain bytes.");
+  command->add_option("recording", o->recording, "recording")->required();
+  command->add_option("--step", o->step, "the step after which")->required();
+  command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
+  command->add_option("-o,--output", o->output, "file to write")->required();
+  command->add_flag("--force", o->force, "replace the output if it is there");
+  command->callback([o, &run] { run = [o] { return state(*o); }; });
+}
+
+void addDiff(CLI::App& app, Run& run) {
+  auto o = std::make_shared<DiffOptions>();
+  CLI::App* command = app.add_subcommand("diff", "First field, index and both values that differ between two State files.");
+  command->add_option("first", o->first, "file of `calot state`")->required();
+  command->add_option("second", o->second, "file of `calot state`")->required();
+  command->add_flag("--json", o->json, "print the result as JSON");
+  command->callback([o, &run] { run = [o] { return diff(*o); }; });
+}
+
+}  // namespace calot::apps

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot-organs: writes the organ surfaces of this folder, or checks that they are what it would write.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "assets/organs/organ_shapes.h"
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/obj.h"
+#include "sim/geometry/surface_report.h"
+
+namespace {
+
+struct Organ {
+  std::string file;
+  calot::TriangleMesh mesh;
+  const char* head;
+};
+
+int run(const std::filesystem::path& folder, bool check, bool force) {
+  using namespace calot;
+  const std::vector<Organ> organs{{"liver.obj", organs::makeLiver(), organs::liverHead},
+                                  {"gallbladder.obj", organs::makeGallbladder(), organs::gallbladderHead}};
+  int result = 0;
+  for (const Organ& organ : organs) {
+    const SurfaceReport report = inspectSurface(organ.mesh);
+    if (!report.closedManifold() || report.components != 1) {
+      throw Error(ExitCode::failure, organ.file + ": the shape's surface is not one closed manifold");
+    }
+    const Vec3 size = 1000.0 * (report.box.upper - report.box.lower);
+    fmt::print("{}: {} triangles, {:.1f} mL, {:.0f} x {:.0f} x {:.0f} mm\n", organ.file, report.triangles,
+               1e6 * report.volume, size[0], size[1], size[2]);
+    const std::filesystem::path path = folder / organ.file;
+    if (!check) {
+      recorder::writeObj(path, organ.mesh, organ.head, force);
+      continue;
+    }
+    const std::string wanted = recorder::formatObj(organ.mesh, organ.head);
+    const auto found = recorder::readFileBytes(path, path.string(), wanted.size() + 1'000'000);
+    const bool same = std::equal(found.begin(), found.end(), wanted.begin(), wanted.end(),
+                                 [](std::byte x, char y) { return x == static_cast<std::byte>(y); });
+    fmt::print("{}: {}\n", path.string(), same ? "as made" : "differs");
+    if (!same) result = static_cast<int>(ExitCode::no);
+  }
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Makes the organ surfaces liver.obj and gallbladder.obj from implicit shapes.");
+  std::string folder;
+  bool check = false;
+  bool force = false;
+  app.add_option("folder", folder, "where to write them")->required();
+  app.add_flag("--check", check, "write nothing; exit 3 where a file differs from what would be written");
+  app.add_flag("--force", force, "replace files that are there");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(calot::ExitCode::usage);
+  }
+  try {
+    return run(folder, check, force);
+  } catch (const calot::Error& error) {
+    fmt::print(stderr, "calot-organs: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "calot-organs: {}\n", error.what());
+    return static_cast<int>(calot::ExitCode::failure);
+  }
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <QWidget>
+#include <memory>
+
+#include "gui/dashboard/attempt_filter.h"
+#include "gui/dashboard/attempt_table_model.h"
+#include "gui/dashboard/checkpoint_table_model.h"
+#include "gui/dashboard/cohort_document.h"
+
+class QBoxLayout;
+class QComboBox;
+class QLabel;
+class QLineEdit;
+class QTableView;
+
+namespace calot::gui {
+
+/// The attempts of a cohort with search and filters, and the checkpoints of the selected one.
+class AttemptsPage : public QWidget {
+  Q_OBJECT
+ public:
+  explicit AttemptsPage(QWidget* parent = nullptr);
+  /// Shows a document; the first attempt is selected. @pre not null
+  void setDocument(std::shared_ptr<const CohortDocument> document);
+  void focusSearch();
+
+ signals:
+  /// Something could not be read: one line for the user.
+  void problem(const QString& message);
+
+ private:
+  void buildFilters(QBoxLayout& layout);
+  void buildDetails(QBoxLayout& layout);
+  void showCount();
+  void showSelected();
+
+  std::shared_ptr<const CohortDocument> document_;
+  AttemptTableModel attempts_;
+  AttemptFilter filter_;
+  CheckpointTableModel checkpoints_;
+  QLineEdit* search_ = nullptr;
+  QComboBox* verdict_ = nullptr;
+  QComboBox* operators_ = nullptr;
+  QLabel* count_ = nullptr;
+  QTableView* table_ = nullptr;
+  QLabel* identity_ = nullptr;
+  QLabel* badge_ = nullptr;
+  QLabel* watermark_ = nullptr;
+  QTableView* details_ = nullptr;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/compare_page.h"
+
+#include <QBoxLayout>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QSignalBlocker>
+
+#include "gui/dashboard/comparison_chart.h"
+#include "gui/dashboard/words.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+
+ComparePage::ComparePage(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  auto* row = new QHBoxLayout;
+  const auto addBox = [&](const char* name, const char* text, int stretch) {
+    auto* box = new QComboBox;
+    box->setObjectName(name);
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(14);
+    auto* label = new QLabel(text);
+    label->setBuddy(box);
+    row->addWidget(label);
+    row->addWidget(box, stretch);
+    connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
+    return box;
+  };
+  figure_ = addBox("figure", "&Checkpoint", 3);
+  groupBy_ = addBox("group-by", "&By", 1);
+  key_ = addBox("key", "Comparable &within", 3);
+  {
+    const QSignalBlocker quiet(groupBy_);
+    groupBy_->addItems({"group", "performer's profile", "participant"});
+  }
+  synthetic_ = new QCheckBox("&Synthetic attempts");
+  synthetic_->setObjectName("synthetic");
+  synthetic_->setChecked(true);
+  connect(synthetic_, &QCheckBox::toggled, this, [this] { redraw(); });
+  row->addWidget(synthetic_);
+  layout->addLayout(row);
+  chart_ = new ComparisonChart;
+  layout->addWidget(chart_, 1);
+  caption_ = new QLabel;
+  caption_->setObjectName("caption");
+  caption_->setTextFormat(Qt::PlainText);
+  caption_->setWordWrap(true);
+  layout->addWidget(caption_);
+}
+
+void ComparePage::setDocument(std::shared_ptr<const CohortDocument> document) {
+  document_ = std::move(document);
+  read_ = false;
+  if (isVisible()) readValues();
+}
+
+void ComparePage::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  readValues();
+}
+
+void ComparePage::readValues() {
+  if (read_ || !document_) return;
+  read_ = true;
+  try {
+    values_ = document_->allValues();
+  } catch (const Error& error) {
+    values_.clear();
+    emit problem(QString::fromUtf8(error.what()));
+  }
+  figures_ = figuresOf(values_);
+  keys_ = comparabilityKeysOf(document_->attempts());
+  {
+    const QSignalBlocker quietFigure(figure_), quietKey(key_), quietGroup(groupBy_);
+    figure_->clear();
+    for (const Figure& f : figures_) figure_->addItem(figureTitle(f.name, f.subject));
+    key_->clear();
+    for (const std::string& key : keys_) key_->addItem(QString::fromStdString(key));
+    // Nobody has a study group: then profiles tell more.
+    bool grouped = false;
+    for (const analytics::AttemptRow& attempt : document_->attempts()) grouped = grouped || !attempt.group.empty();
+    groupBy_->setCurrentIndex(static_cast<int>(grouped ? GroupBy::group : GroupBy::profile));
+  }
+  redraw();
+}
+
+void ComparePage::redraw() {
+  if (!document_ || !read_) return;
+  ComparisonRequest request;
+  request.groupBy = static_cast<GroupBy>(groupBy_->currentIndex());
+  request.includeSynthetic = synthetic_->isChecked();
+  const int figure = figure_->currentIndex(), key = key_->currentIndex();
+  if (figure < 0 || key < 0) {
+    chart_->showComparison({}, "No checkpoint has a value yet");
+    caption_->clear();
+    return;
+  }
+  request.figure = figures_[static_cast<std::size_t>(figure)];
+  request.comparabilityKey = keys_[static_cast<std::size_t>(key)];
+  const Comparison comparison = compare(document_->attempts(), values_, request);
+  chart_->showComparison(comparison, figureTitle(request.figure.name, request.figure.subject));
+  caption_->setText(QString::fromStdString(captionOf(comparison)));
+}
+
+}  // namespace calot::gui

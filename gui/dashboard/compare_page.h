@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <QWidget>
+#include <memory>
+#include <vector>
+
+#include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/comparison.h"
+
+class QCheckBox;
+class QComboBox;
+class QLabel;
+
+namespace calot::gui {
+
+class ComparisonChart;
+
+/// One checkpoint over attempts by group, within one comparability key.
+class ComparePage : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ComparePage(QWidget* parent = nullptr);
+  /// @pre not null. The values are read when the page is first shown.
+  void setDocument(std::shared_ptr<const CohortDocument> document);
+
+ signals:
+  void problem(const QString& message);
+
+ protected:
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  void readValues();
+  void redraw();
+
+  std::shared_ptr<const CohortDocument> document_;
+  bool read_ = false;
+  std::vector<analytics::AttemptValue> values_;
+  std::vector<Figure> figures_;
+  std::vector<std::string> keys_;
+  QComboBox* figure_ = nullptr;
+  QComboBox* groupBy_ = nullptr;
+  QComboBox* key_ = nullptr;
+  QCheckBox* synthetic_ = nullptr;
+  ComparisonChart* chart_ = nullptr;
+  QLabel* caption_ = nullptr;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/comparison.h"
+
+#include <algorithm>
+#include <map>
+
+#include "analytics/statistics/descriptive.h"
+#include "gui/dashboard/words.h"
+
+namespace calot::gui {
+
+using analytics::AttemptRow;
+using analytics::AttemptValue;
+using analytics::CheckpointValue;
+using analytics::Verdict;
+
+std::vector<Figure> figuresOf(const std::vector<AttemptValue>& values) {
+  std::vector<Figure> figures;
+  for (const AttemptValue& v : values) {
+    if (!v.value.value) continue;
+    Figure figure{v.value.name, v.value.subject};
+    if (std::find(figures.begin(), figures.end(), figure) == figures.end()) figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+std::vector<std::string> comparabilityKeysOf(const std::vector<AttemptRow>& attempts) {
+  std::map<std::string, int> count;
+  for (const AttemptRow& a : attempts) ++count[a.comparabilityKey];
+  std::vector<std::string> keys;
+  for (const auto& entry : count) keys.push_back(entry.first);
+  std::stable_sort(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) { return count[a] > count[b]; });
+  return keys;
+}
+
+namespace {
+
+std::string groupName(const AttemptRow& attempt, GroupBy by) {
+  const std::string& name = by == GroupBy::group     ? attempt.group
+                            : by == GroupBy::profile ? attempt.profile
+                                                     : attempt.participant;
+  return name.empty() ? "(none)" : name;
+}
+
+void summarize(ComparisonGroup& group) {
+  std::sort(group.point.begin(), group.point.end(), [](const ComparisonPoint& a, const ComparisonPoint& b) {
+    return a.value != b.value ? a.value < b.value : a.attempt < b.attempt;
+  });
+  std::vector<double> sorted;
+  for (const ComparisonPoint& p : group.point) sorted.push_back(p.value);
+  group.smallest = sorted.front();
+  group.lowerQuartile = analytics::quantileOfSorted(sorted, 0.25);
+  group.median = analytics::quantileOfSorted(sorted, 0.5);
+  group.upperQuartile = analytics::quantileOfSorted(sorted, 0.75);
+  group.largest = sorted.back();
+}
+
+}  // namespace
+
+Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+                   const ComparisonRequest& request) {
+  Comparison result;
+  std::map<std::string, const CheckpointValue*> found;
+  std::uint32_t newest = 0;
+  for (const AttemptValue& v : values) {
+    if (v.value.name != request.figure.name || v.value.subject != request.figure.subject) continue;
+    found[v.attempt] = &v.value;
+    newest = std::max(newest, v.value.version);
+  }
+  std::map<std::string, ComparisonGroup> groups;
+  for (const AttemptRow& attempt : attempts) {
+    const auto entry = found.find(attempt.uuid);
+    const CheckpointValue* const value = entry == found.end() ? nullptr : entry->second;
+    const Verdict verdict = attempt.verification.verdict;
+    if (attempt.comparabilityKey != request.comparabilityKey) {
+      ++result.otherKey;
+    } else if (attempt.excluded) {
+      ++result.excluded;
+    } else if (verdict == Verdict::diverged || verdict == Verdict::damaged) {
+      ++result.notTrusted;
+    } else if (attempt.synthetic && !request.includeSynthetic) {
+      ++result.syntheticLeftOut;
+    } else if (value != nullptr && value->version != newest) {
+      ++result.otherVersion;
+    } else if (value == nullptr || !value->value) {
+      ++result.withoutValue;
+    } else {
+      const DisplayedValue shown = displayedValue(*value);
+      result.unit = shown.unit.toStdString();
+      result.synthetic = result.synthetic || attempt.synthetic;
+      ++result.shown;
+      const std::string name = groupName(attempt, request.groupBy);
+      ComparisonGroup& group = groups[name];
+      group.name = name;
+      group.point.push_back({attempt.uuid, shown.number, attempt.synthetic});
+    }
+  }
+  for (auto& entry : groups) {
+    summarize(entry.second);
+    result.group.push_back(std::move(entry.second));
+  }
+  return result;
+}
+
+std::string captionOf(const Comparison& comparison) {
+  std::string leftOut;
+  const auto add = [&](int count, const char* why) {
+    if (count > 0) leftOut += (leftOut.empty() ? "" : ", ") + std::to_string(count) + " " + why;
+  };
+  add(comparison.otherKey, "of another comparability key");
+  add(comparison.excluded, "excluded from studies");
+  add(comparison.notTrusted, "diverged or damaged");
+  add(comparison.syntheticLeftOut, "synthetic");
+  add(comparison.otherVersion, "with another version of the checkpoint");
+  add(comparison.withoutValue, "without a value");
+  std::string text = std::to_string(comparison.shown) + (comparison.shown == 1 ? " attempt." : " attempts.");
+  if (!leftOut.empty()) text += " Left out: " + leftOut + ".";
+  return text;
+}
+
+}  // namespace calot::gui

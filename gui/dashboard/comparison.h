@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One checkpoint over attempts, by group: the numbers behind the chart. Knows no window.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analytics/cohort/cohort_database.h"
+
+namespace calot::gui {
+
+enum class GroupBy { group, profile, participant };
+
+/// A figure that a cohort holds: checkpoint and, for figures per hand or organ, whose.
+struct Figure {
+  std::string name;
+  std::string subject;
+  bool operator==(const Figure&) const = default;
+};
+/// All figures with at least one value, in the order of first appearance.
+[[nodiscard]] std::vector<Figure> figuresOf(const std::vector<analytics::AttemptValue>& values);
+/// Comparability keys of the attempts, the one with most attempts first, then by name.
+[[nodiscard]] std::vector<std::string> comparabilityKeysOf(const std::vector<analytics::AttemptRow>& attempts);
+
+struct ComparisonRequest {
+  Figure figure;
+  GroupBy groupBy = GroupBy::group;
+  std::string comparabilityKey;  ///< attempts of other keys are left out: they cannot be compared
+  bool includeSynthetic = true;
+};
+
+struct ComparisonPoint {
+  std::string attempt;
+  double value = 0.0;  ///< in Comparison::unit
+  bool synthetic = false;
+};
+
+struct ComparisonGroup {
+  std::string name;                    ///< "(none)" for attempts without one
+  std::vector<ComparisonPoint> point;  ///< ascending by value, then attempt
+  /// Smallest, lower quartile, median, upper quartile, largest; quartiles of type 7 (Hyndman and Fan, 1996).
+  double smallest = 0.0, lowerQuartile = 0.0, median = 0.0, upperQuartile = 0.0, largest = 0.0;
+};
+
+struct Comparison {
+  std::vector<ComparisonGroup> group;  ///< by name
+  std::string unit;                    ///< displayed one
+  bool synthetic = false;              ///< at least one point was made by a performer
+  int shown = 0;                       ///< attempts with a point
+  int otherKey = 0, excluded = 0, notTrusted = 0, withoutValue = 0, otherVersion = 0, syntheticLeftOut = 0;  ///< left out
+};
+
+/// Left out, in this order: another comparability key, excluded from studies, diverged or damaged, synthetic (unless
+/// included), another version of the checkpoint than the newest present, no value.
+[[nodiscard]] Comparison compare(const std::vector<analytics::AttemptRow>& attempts,
+                                 const std::vector<analytics::AttemptValue>& values, const ComparisonRequest& request);
+
+/// "12 attempts. Left out: 2 of another comparability key, 1 excluded."
+[[nodiscard]] std::string captionOf(const Comparison& comparison);
+
+}  // namespace calot::gui

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <QWidget>
+
+class QLabel;
+
+namespace calot::gui {
+
+/// What is seen when there is nothing to see: no database open, or an empty one. Greets and says what to do.
+class GreetingPage : public QWidget {
+  Q_OBJECT
+ public:
+  explicit GreetingPage(QWidget* parent = nullptr);
+  void explainNoDatabase();
+  void explainEmptyDatabase(const QString& fileName);
+
+ signals:
+  void openRequested();
+
+ private:
+  QLabel* title_;
+  QLabel* text_;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/words.h"
+
+#include <QDateTime>
+#include <QLocale>
+#include <QTimeZone>
+#include <algorithm>
+#include <cmath>
+
+#include "analytics/checkpoints/registry.h"
+
+namespace calot::gui {
+
+using analytics::Verdict;
+
+QString badgeText(Verdict verdict) {
+  const char* sign = "–";
+  switch (verdict) {
+    case Verdict::verified: sign = "✓"; break;
+    case Verdict::diverged: sign = "≠"; break;
+    case Verdict::damaged: sign = "✕"; break;
+    case Verdict::notCheckableHere: sign = "?"; break;
+    case Verdict::notChecked: break;
+  }
+  return QString::fromUtf8(sign) + ' ' + QString::fromStdString(analytics::nameOf(verdict));
+}
+
+Badge badgeOf(const analytics::AttemptRow& attempt) {
+  Badge badge;
+  badge.text = badgeText(attempt.verification.verdict);
+  switch (attempt.verification.verdict) {
+    case Verdict::verified:
+      badge.colour = QColor(0x00, 0x5a, 0x8e);
+      badge.explanation = "The recording was simulated again and every digest and force was equal, bit for bit.";
+      break;
+    case Verdict::diverged:
+      badge.colour = QColor(0xa6, 0x49, 0x00);
+      badge.explanation = "The recording and its re-simulation differ. This says what was found, not who caused it.";
+      break;
+    case Verdict::damaged:
+      badge.colour = QColor(0x8b, 0x2a, 0x5e);
+      badge.explanation = "The recording cannot be read in full.";
+      break;
+    case Verdict::notCheckableHere:
+      badge.colour = QColor(0x50, 0x50, 0x50);
+      badge.explanation = "The recording was made by another simulation version, which this version cannot repeat.";
+      break;
+    case Verdict::notChecked:
+      badge.colour = QColor(0x50, 0x50, 0x50);
+      badge.explanation = "Nobody has simulated this recording again yet.";
+      break;
+  }
+  if (!attempt.verification.text.empty())
+    badge.explanation += "\nFound: " + QString::fromStdString(attempt.verification.text);
+  if (!attempt.verification.software.empty())
+    badge.explanation += "\nJudged by " + QString::fromStdString(attempt.verification.software) +
+                         (attempt.verifiedUtc.empty() ? QString() : ", " + startText(attempt.verifiedUtc)) + '.';
+  return badge;
+}
+
+QString modeText(recorder::Mode mode) { return mode == recorder::Mode::assessment ? "assessment" : "practice"; }
+
+QString outcomeText(recorder::Outcome outcome) {
+  switch (outcome) {
+    case recorder::Outcome::running: return "incomplete";
+    case recorder::Outcome::completed: return "completed";
+    case recorder::Outcome::timeLimit: return "time limit";
+    case recorder::Outcome::abandoned: return "abandoned";
+    case recorder::Outcome::stopped: return "stopped";
+    case recorder::Outcome::technicalFailure: return "technical failure";
+  }
+  return "unknown";
+}
+
+QString operatorText(const analytics::AttemptRow& attempt) {
+  if (!attempt.participant.empty()) return QString::fromStdString(attempt.participant);
+  if (!attempt.profile.empty()) return QString::fromStdString(attempt.profile);
+  switch (attempt.operatorKind) {
+    case recorder::OperatorKind::human: return "(no pseudonym)";
+    case recorder::OperatorKind::kinematics: return "(kinematics file)";
+    case recorder::OperatorKind::performer: return "(performer)";
+  }
+  return {};
+}
+
+QString startText(const std::string& startUtc) {
+  const QString stored = QString::fromStdString(startUtc);
+  const QDateTime time = QDateTime::fromString(stored, Qt::ISODate);
+  return time.isValid() ? time.toUTC().toString("yyyy-MM-dd hh:mm") + " UTC" : stored;
+}
+
+QString numberText(double value) {
+  if (value == 0.0) return QLocale().toString(0);
+  const double magnitude = std::abs(value);
+  if (magnitude < 1e-6 || magnitude >= 1e15) return QLocale().toString(value, 'e', 3);
+  const int decimals = std::clamp(3 - static_cast<int>(std::floor(std::log10(magnitude))), 0, 9);
+  return QLocale().toString(value, 'f', decimals);
+}
+
+DisplayedValue displayedValue(const analytics::CheckpointValue& value) {
+  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
+  if (definition == nullptr || definition->version != value.version || definition->unit != value.unit)
+    return {value.value.value_or(0.0), value.unit == "1" ? QString() : QString::fromStdString(value.unit)};
+  return {value.value.value_or(0.0) * definition->displayFactor,
+          definition->displayUnit == "1" ? QString() : QString::fromStdString(definition->displayUnit)};
+}
+
+QString valueText(const analytics::CheckpointValue& value) {
+  if (!value.value) return "none: " + QString::fromStdString(value.reason);
+  const DisplayedValue shown = displayedValue(value);
+  return shown.unit.isEmpty() ? numberText(shown.number) : numberText(shown.number) + ' ' + shown.unit;
+}
+
+QString directionText(const analytics::CheckpointValue& value) {
+  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
+  if (definition == nullptr) return "unknown to this version";
+  switch (definition->direction) {
+    case analytics::Direction::none: return "describes only";
+    case analytics::Direction::lower: return "↓ lower is better";
+    case analytics::Direction::higher: return "↑ higher is better";
+  }
+  return {};
+}
+
+QString originText(analytics::Origin origin) { return QString::fromStdString(analytics::nameOf(origin)); }
+
+QString figureTitle(const std::string& name, const std::string& subject) {
+  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(name);
+  const QString title = QString::fromStdString(definition != nullptr ? definition->title : name);
+  return subject.empty() ? title : title + ", " + QString::fromStdString(subject);
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/render/draw_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/render/cavity_mesh.h"
+#include "gui/render/instrument_mesh.h"
+
+namespace calot::gui {
+namespace {
+
+class Builder {
+ public:
+  explicit Builder(const CameraSample& camera)
+      : origin_(camera.position), toCamera_(camera.orientation.normalized().conjugate().toRotationMatrix()) {}
+
+  [[nodiscard]] Vec3 point(const Vec3& p_W) const { return toCamera_ * (p_W - origin_); }
+  [[nodiscard]] Vec3 direction(const Vec3& d_W) const { return toCamera_ * d_W; }
+
+  void begin() { base_ = static_cast<std::uint32_t>(list.vertex.size()); }
+  void add(const Vec3& p_C, const Vec3& n_C, const Vec3& rest, const Vec3& restNormal) {
+    DrawVertex v{};
+    for (int a = 0; a < 3; ++a) {
+      v.position[a] = static_cast<float>(p_C[a]);
+      v.normal[a] = static_cast<float>(n_C[a]);
+      v.rest[a] = static_cast<float>(rest[a]);
+      v.restNormal[a] = static_cast<float>(restNormal[a]);
+    }
+    list.vertex.push_back(v);
+  }
+  void end(Appearance appearance, const std::vector<Index3>& triangles) {
+    DrawPart part;
+    part.appearance = appearance;
+    part.firstIndex = static_cast<std::uint32_t>(list.index.size());
+    for (const Index3& t : triangles)
+      for (int a = 0; a < 3; ++a) list.index.push_back(base_ + static_cast<std::uint32_t>(t[a]));
+    part.indexCount = static_cast<std::uint32_t>(list.index.size()) - part.firstIndex;
+    list.part.push_back(part);
+  }
+
+  DrawList list;
+
+ private:
+  Vec3 origin_;
+  Mat3 toCamera_;
+  std::uint32_t base_ = 0;
+};
+
+// The endoscope's automatic exposure: the distance whose inverse square is the mean over what lies ahead and faces the
+// lens, weighted towards the middle of the picture.
+float referenceDistance(const std::vector<DrawVertex>& vertices) {
+  double weights = 0.0, light = 0.0;
+  for (const DrawVertex& v : vertices) {
+    const Vec3 p(v.position[0], v.position[1], v.position[2]);
+    const double distance = p.norm();
+    if (p.z() < 0.01 || distance < 0.01) continue;
+    const Vec3 n(v.normal[0], v.normal[1], v.normal[2]);
+    const double towards = -n.dot(p) / distance;
+    if (towards <= 0.0) continue;
+    const double cosine = p.z() / distance;
+    const double c4 = cosine * cosine * cosine * cosine;
+    const double weight = towards * c4 * c4 * c4;
+    weights += weight;
+    light += weight / (distance * distance);
+  }
+  if (weights <= 0.0) return 0.1F;
+  return static_cast<float>(std::clamp(std::sqrt(weights / light), 0.02, 0.6));
+}
+
+}  // namespace
+
+Appearance appearanceOf(const std::string& word) {
+  if (word == "liver") return Appearance::liver;
+  if (word == "gallbladder") return Appearance::gallbladder;
+  return Appearance::tissue;
+}
+
+std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::vector<Index3>& triangle) {
+  std::vector<Vec3> normal(position.size(), Vec3::Zero());
+  const auto at = [](auto& list, int i) -> auto& { return list[static_cast<std::size_t>(i)]; };
+  for (const Index3& t : triangle) {
+    const Vec3 area = (at(position, t[1]) - at(position, t[0])).cross(at(position, t[2]) - at(position, t[0]));
+    for (int a = 0; a < 3; ++a) at(normal, t[a]) += area;
+  }
+  for (Vec3& n : normal) {
+    const double length = n.norm();
+    n = length > 1e-30 ? Vec3(n / length) : Vec3::UnitZ();
+  }
+  return normal;
+}
+
+DrawList makeDrawList(const SceneView& view, bool cavity) {
+  Builder builder(view.camera);
+  for (const SurfaceView& surface : view.surface) {
+    const std::vector<Vec3> normal = vertexNormals(surface.position, surface.triangle);
+    const std::vector<Vec3> restNormal = vertexNormals(surface.rest, surface.triangle);
+    builder.begin();
+    for (std::size_t v = 0; v < surface.position.size(); ++v)
+      builder.add(builder.point(surface.position[v]), builder.direction(normal[v]), surface.rest[v], restNormal[v]);
+    builder.end(appearanceOf(surface.appearance), surface.triangle);
+  }
+  builder.list.referenceDistance = referenceDistance(builder.list.vertex);
+
+  for (const InstrumentView& instrument : view.instrument) {
+    if (instrument.kind == InstrumentKind::none) continue;
+    const Quat q = instrument.pose.orientation.normalized();
+    for (const InstrumentPart& part : makeInstrument(instrument)) {
+      builder.begin();
+      for (std::size_t v = 0; v < part.mesh.position.size(); ++v)
+        builder.add(builder.point(instrument.pose.position + q * part.mesh.position[v]),
+                    builder.direction(q * part.mesh.normal[v]), part.mesh.position[v], part.mesh.normal[v]);
+      builder.end(part.appearance, part.mesh.triangle);
+    }
+  }
+
+  if (cavity) {
+    const Mesh wall = makeCavity(view);
+    builder.begin();
+    for (std::size_t v = 0; v < wall.position.size(); ++v)
+      builder.add(builder.point(wall.position[v]), builder.direction(wall.normal[v]), wall.position[v], wall.normal[v]);
+    builder.end(Appearance::cavity, wall.triangle);
+  }
+  return std::move(builder.list);
+}
+
+}  // namespace calot::gui

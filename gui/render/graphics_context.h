@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+namespace calot::gui {
+
+/// An OpenGL 4.5 core context without a window. Narrow, so that a hardware context can stand beside the software one.
+/// All members are called on the thread that called makeCurrent().
+class GraphicsContext {
+ public:
+  virtual ~GraphicsContext() = default;
+  /// @throws calot::Error (failure)
+  virtual void makeCurrent() = 0;
+  /// Address of an OpenGL function, or null.
+  using Function = void (*)();
+  [[nodiscard]] virtual Function function(const char* name) const = 0;
+};
+
+/// Mesa's software rasterizer. @throws calot::Error (failure) if it gives no context of this version.
+[[nodiscard]] std::unique_ptr<GraphicsContext> createSoftwareContext();
+
+}  // namespace calot::gui

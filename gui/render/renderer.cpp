@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/render/renderer.h"
+
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "gui/render/graphics_context.h"
+#include "gui/render/scene_painter.h"
+#include "gui/render/view_check.h"
+
+namespace calot::gui {
+
+/// A thread that owns context and painter and draws what is asked, one request after the other.
+class Renderer::Worker {
+ public:
+  Worker() {
+    std::promise<std::string> started;
+    std::future<std::string> description = started.get_future();
+    thread_ = std::thread([this, &started] { run(started); });
+    try {
+      description_ = description.get();
+    } catch (...) {
+      thread_.join();
+      throw;
+    }
+  }
+  ~Worker() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  Image render(const SceneView& view, int width, int height, const RenderSettings& settings) {
+    std::packaged_task<Image(ScenePainter&)> task([&](ScenePainter& painter) {
+      return painter.paint(makeDrawList(view, settings.cavity), view.verticalFieldOfView, width, height, settings);
+    });
+    std::future<Image> image = task.get_future();
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      tasks_.push_back(std::move(task));
+    }
+    wake_.notify_one();
+    return image.get();
+  }
+
+  [[nodiscard]] const std::string& description() const { return description_; }
+
+ private:
+  void run(std::promise<std::string>& started) {
+    std::unique_ptr<GraphicsContext> context;
+    std::unique_ptr<ScenePainter> painter;
+    try {
+      context = createSoftwareContext();
+      context->makeCurrent();
+      painter = std::make_unique<ScenePainter>(*context);
+      started.set_value(painter->description());
+    } catch (...) {
+      painter.reset();
+      started.set_exception(std::current_exception());
+      return;
+    }
+    while (true) {
+      std::packaged_task<Image(ScenePainter&)> task;
+      {
+        std::unique_lock<std::mutex> lock(mutex_);
+        wake_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
+        if (tasks_.empty()) return;
+        task = std::move(tasks_.front());
+        tasks_.pop_front();
+      }
+      task(*painter);
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::packaged_task<Image(ScenePainter&)>> tasks_;
+  bool stopping_ = false;
+  std::string description_;
+  std::thread thread_;
+};
+
+Renderer::Renderer() : worker_(std::make_unique<Worker>()) {}
+Renderer::~Renderer() = default;
+
+Image Renderer::render(const SceneView& view, int width, int height, const RenderSettings& settings) {
+  checkPictureSize(width, height);
+  checkView(view);
+  return worker_->render(view, width, height, settings);
+}
+
+std::string Renderer::description() const { return worker_->description(); }
+
+}  // namespace calot::gui

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scene view to pixels, off screen. The renderer knows SceneView and nothing behind it, so that film, trainer and
+// dashboard share one way of drawing, and a picture can never change a simulation.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "gui/render/image.h"
+#include "sim/scene/scene_view.h"
+
+namespace calot::gui {
+
+/// interactive: one sample a pixel, coarse occlusion; film: four samples a pixel, fine occlusion, soft shadow.
+enum class Quality { interactive, film };
+
+/// What is drawn around the scene.
+struct RenderSettings {
+  Quality quality = Quality::film;
+  bool endoscopeMask = true;  ///< the round field of an endoscope with its vignetting, black outside
+  bool cavity = true;         ///< the abdominal wall behind everything; without it, alpha is 0 where nothing was drawn
+};
+
+inline constexpr int smallestSide = 16;                 ///< of a picture (pixels)
+inline constexpr int largestSide = 4096;                ///< of a picture (pixels)
+inline constexpr long long mostPixels = 3840LL * 2160;  ///< width times height
+
+/// Draws scene views. Owns a thread with an OpenGL context of its own: a software context on the thread of a window
+/// system corrupts that window system's. One picture at a time; calls from several threads wait for each other.
+/// The same view gives the same bytes, in every run and with any number of threads of the machine; other CPUs may
+/// differ by one level in a few channels.
+class Renderer {
+ public:
+  /// @throws calot::Error (failure) if this machine has no OpenGL 4.5 off screen.
+  Renderer();
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Pinhole camera of view.camera: a point p_C = (x, y, z) of the camera's frame with z > 0 falls on the pixel
+  ///   (width / 2 + f x / z, height / 2 + f y / z),  f = (height / 2) / tan(verticalFieldOfView / 2).
+  /// @throws calot::Error: usage if the size is outside the limits above; damaged if the view has a number that is not
+  /// finite, a triangle that names no vertex, or a field of view outside (0.05, 3.0) rad; failure if there is no memory.
+  [[nodiscard]] Image render(const SceneView& view, int width, int height, const RenderSettings& settings = {});
+  [[nodiscard]] Image render(const SceneView& view, int width, int height, Quality quality) {
+    RenderSettings settings;
+    settings.quality = quality;
+    return render(view, width, height, settings);
+  }
+
+  /// What draws, for a log: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
+  [[nodiscard]] std::string description() const;
+
+ private:
+  class Worker;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace calot::gui

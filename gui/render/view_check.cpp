@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/render/view_check.h"
+
+#include <fmt/format.h>
+
+#include "gui/render/renderer.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ExitCode::damaged, "scene view: " + what); }
+
+// A kilometre is far outside every scene; beyond it single precision on the graphics side has no millimetres left.
+constexpr double farthest = 1e3;
+
+bool drawable(const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= farthest; }
+bool drawable(const Quat& q) { return q.coeffs().allFinite() && q.norm() > 0.5 && q.norm() < 2.0; }
+
+void checkSurface(const SurfaceView& surface) {
+  if (surface.rest.size() != surface.position.size())
+    refuse(fmt::format("surface '{}' has {} vertices but {} at rest; give both", surface.organ, surface.position.size(),
+                       surface.rest.size()));
+  for (std::size_t v = 0; v < surface.position.size(); ++v)
+    if (!drawable(surface.position[v]) || !drawable(surface.rest[v]))
+      refuse(fmt::format("surface '{}', vertex {}: a coordinate is not finite or over 1 km; the step behind it is not valid",
+                         surface.organ, v));
+  const int count = static_cast<int>(surface.position.size());
+  for (std::size_t t = 0; t < surface.triangle.size(); ++t)
+    if (surface.triangle[t].minCoeff() < 0 || surface.triangle[t].maxCoeff() >= count)
+      refuse(fmt::format("surface '{}', triangle {}: names a vertex outside 0 to {}", surface.organ, t, count - 1));
+}
+
+}  // namespace
+
+void checkView(const SceneView& view) {
+  if (!drawable(view.camera.position) || !drawable(view.camera.orientation))
+    refuse("camera pose: not finite, over 1 km away, or the quaternion is far from unit length");
+  if (!(view.verticalFieldOfView > 0.05 && view.verticalFieldOfView < 3.0))
+    refuse(fmt::format("vertical field of view {} rad: give one between 0.05 and 3.0 rad", view.verticalFieldOfView));
+  for (int h = 0; h < handCount; ++h) {
+    const InstrumentView& instrument = view.instrument[static_cast<std::size_t>(h)];
+    if (instrument.kind == InstrumentKind::none) continue;
+    if (!drawable(instrument.pose.position) || !drawable(instrument.pose.orientation) || !drawable(instrument.port) ||
+        !(instrument.radius > 0.0 && instrument.radius < 0.1) || !(instrument.jaw >= -4.0 && instrument.jaw <= 4.0))
+      refuse(fmt::format("{} instrument: pose, port, radius or jaw is not finite or out of range",
+                         handNames[static_cast<std::size_t>(h)]));
+  }
+  for (const SurfaceView& surface : view.surface) checkSurface(surface);
+}
+
+void checkPictureSize(long long width, long long height) {
+  if (width < smallestSide || height < smallestSide || width > largestSide || height > largestSide ||
+      width * height > mostPixels)
+    throw Error(ExitCode::usage, fmt::format("picture size {}x{}: give {} to {} pixels a side and at most {} in all", width,
+                                             height, smallestSide, largestSide, mostPixels));
+}
+
+}  // namespace calot::gui

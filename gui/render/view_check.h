@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "sim/scene/scene_view.h"
+
+namespace calot::gui {
+
+/// Refuses what cannot be drawn. @throws calot::Error as Renderer::render documents, naming surface and vertex.
+void checkView(const SceneView& view);
+/// @throws calot::Error (usage)
+void checkPictureSize(long long width, long long height);
+
+}  // namespace calot::gui

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/file_bytes.h"
+
+#include <fmt/format.h>
+#include <sodium.h>
+
+#include <array>
+#include <fstream>
+
+#include "recorder/errors.h"
+
+namespace calot::recorder {
+
+std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const std::string& name, std::size_t most) {
+  std::error_code fault;
+  const std::filesystem::file_status status = std::filesystem::status(path, fault);
+  if (!std::filesystem::exists(status)) throw Error(ExitCode::damaged, name + ": there is no such file");
+  if (std::filesystem::is_directory(status)) throw Error(ExitCode::damaged, name + ": a folder; a file is wanted");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(ExitCode::damaged, name + ": cannot be opened for reading");
+  // Read piece by piece: a size that was asked for before would be wrong for a pipe or a growing file.
+  std::vector<std::byte> bytes;
+  std::array<char, 65536> piece{};
+  while (in.read(piece.data(), piece.size()), in.gcount() > 0) {
+    const auto* begin = reinterpret_cast<const std::byte*>(piece.data());
+    bytes.insert(bytes.end(), begin, begin + in.gcount());
+    if (bytes.size() > most) {
+      throw Error(ExitCode::damaged, fmt::format("{}: larger than {} bytes, which no such file is", name, most));
+    }
+  }
+  if (in.bad()) throw Error(ExitCode::damaged, name + ": reading failed");
+  return bytes;
+}
+
+std::string sha256Hex(std::span<const std::byte> bytes) {
+  std::array<unsigned char, crypto_hash_sha256_BYTES> hash{};
+  crypto_hash_sha256(hash.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  std::array<char, 2 * crypto_hash_sha256_BYTES + 1> hex{};
+  sodium_bin2hex(hex.data(), hex.size(), hash.data(), hash.size());
+  return {hex.data()};
+}
+
+}  // namespace calot::recorder

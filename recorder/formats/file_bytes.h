@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace calot::recorder {
+
+/// A whole file.
+/// @param name what messages call it.
+/// @param most bytes that such a file may have.
+/// @throws Error (damaged), naming the file, where it is missing, a folder, unreadable, or larger.
+std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const std::string& name, std::size_t most);
+
+/// SHA-256 of bytes (FIPS 180-4) in lower-case hexadecimal, 64 characters.
+std::string sha256Hex(std::span<const std::byte> bytes);
+
+}  // namespace calot::recorder

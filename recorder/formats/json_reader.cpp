@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/json_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "recorder/errors.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr std::size_t largestFile = std::size_t{4} << 20U;
+constexpr int deepest = 32;
+
+// Quoted text from a file, cut and with control characters masked: a message stays one short line.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text.substr(0, 60)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return out + (text.size() > 60 ? "...\"" : "\"");
+}
+
+std::string lineAndColumn(std::span<const std::byte> bytes, std::size_t at) {
+  std::size_t line = 1, column = 1;
+  for (std::size_t i = 0; i + 1 < at && i < bytes.size(); ++i) {
+    if (bytes[i] == std::byte{'\n'}) {
+      ++line;
+      column = 1;
+    } else {
+      ++column;
+    }
+  }
+  return fmt::format("line {}, column {}", line, column);
+}
+
+std::string escaped(const std::string& key) {
+  std::string out;
+  for (const char c : key) {
+    if (c == '~') out += "~0";
+    else if (c == '/') out += "~1";
+    else if (static_cast<unsigned char>(c) < 0x20) out += '?';
+    else out += c;
+  }
+  return out.substr(0, 80);
+}
+
+std::string rangeOf(const KeyRule& rule) {
+  return fmt::format("{}{}, {}{}", rule.lowerOpen ? '(' : '[', rule.lower, rule.upper, rule.upperOpen ? ')' : ']');
+}
+
+bool inside(double value, const KeyRule& rule) {
+  return std::isfinite(value) && (rule.lowerOpen ? value > rule.lower : value >= rule.lower) &&
+         (rule.upperOpen ? value < rule.upper : value <= rule.upper);
+}
+
+}  // namespace
+
+nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::string& file) {
+  if (bytes.empty()) throw Error(ExitCode::damaged, file + ": the file is empty");
+  if (bytes.size() > largestFile) {
+    throw Error(ExitCode::damaged, fmt::format("{}: {} bytes; such a file has at most {}", file, bytes.size(), largestFile));
+  }
+  std::vector<std::set<std::string>> keys;
+  std::string fault;
+  const auto watch = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    using Event = nlohmann::json::parse_event_t;
+    if (depth > deepest) throw Error(ExitCode::damaged, fmt::format("{}: nested deeper than {} levels", file, deepest));
+    if (event == Event::object_start) {
+      keys.emplace_back();
+    } else if (event == Event::object_end) {
+      keys.pop_back();
+    } else if (event == Event::key) {
+      const std::string key = parsed.get<std::string>();
+      if (!keys.back().insert(key).second && fault.empty()) fault = fmt::format("the key {} is given twice", quoted(key));
+    }
+    return true;
+  };
+  const auto* begin = reinterpret_cast<const char*>(bytes.data());
+  nlohmann::json value;
+  try {
+    value = nlohmann::json::parse(begin, begin + bytes.size(), watch);
+  } catch (const nlohmann::json::parse_error& e) {
+    throw Error(ExitCode::damaged, fmt::format("{}: not JSON at {}", file, lineAndColumn(bytes, e.byte)));
+  } catch (const nlohmann::json::exception&) {
+    throw Error(ExitCode::damaged, file + ": a number is larger than a double holds");
+  }
+  if (!fault.empty()) throw Error(ExitCode::damaged, file + ": " + fault);
+  return value;
+}
+
+void JsonPlace::fail(const std::string& fault) const {
+  throw Error(ExitCode::damaged, fmt::format("{}: {}: {}", file_, pointer_.empty() ? "/" : pointer_, fault));
+}
+
+JsonObject JsonPlace::object(const ObjectRule& rule) const { return {*this, rule}; }
+
+std::vector<JsonPlace> JsonPlace::list(std::size_t least, std::size_t most) const {
+  if (!value_->is_array()) fail(fmt::format("a list is wanted, not {}", value_->type_name()));
+  if (value_->size() < least || value_->size() > most) {
+    fail(fmt::format("{} entries; from {} to {} are allowed", value_->size(), least, most));
+  }
+  std::vector<JsonPlace> places;
+  for (std::size_t i = 0; i < value_->size(); ++i) places.emplace_back((*value_)[i], file_, fmt::format("{}/{}", pointer_, i));
+  return places;
+}
+
+std::string JsonPlace::text(std::size_t longest) const {
+  if (!value_->is_string()) fail(fmt::format("text is wanted, not {}", value_->type_name()));
+  auto text = value_->get<std::string>();
+  if (text.empty()) fail("the text is empty");
+  if (text.size() > longest) fail(fmt::format("the text has {} bytes; at most {} are allowed", text.size(), longest));
+  if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; })) {
+    fail("the text holds control characters");
+  }
+  return text;
+}
+
+bool JsonPlace::boolean() const {
+  if (!value_->is_boolean()) fail(fmt::format("true or false is wanted, not {}", value_->type_name()));
+  return value_->get<bool>();
+}
+
+double JsonPlace::number(const KeyRule& rule) const {
+  if (!value_->is_number()) fail(fmt::format("a number is wanted, not {}", value_->type_name()));
+  const auto value = value_->get<double>();
+  if (!inside(value, rule)) fail(fmt::format("{} is not in {}", value, rangeOf(rule)));
+  return value;
+}
+
+std::uint32_t JsonPlace::integer(const KeyRule& rule) const {
+  if (!value_->is_number_integer()) fail("a whole number is wanted");
+  const double value = number(rule);
+  return static_cast<std::uint32_t>(value);
+}
+
+Vec3 JsonPlace::vector(const KeyRule& rule) const {
+  const std::vector<JsonPlace> parts = list(3, 3);
+  return {parts[0].number(rule), parts[1].number(rule), parts[2].number(rule)};
+}
+
+JsonObject::JsonObject(const JsonPlace& place, const ObjectRule& rule) : place_(place), rule_(&rule) {
+  const nlohmann::json& value = *place_.value_;
+  if (!value.is_object()) place_.fail(fmt::format("an object is wanted, not {}", value.type_name()));
+  for (const auto& entry : value.items()) {
+    const bool known = std::any_of(rule.keys.begin(), rule.keys.end(), [&](const KeyRule& k) { return k.key == entry.key(); });
+    if (!known) {
+      std::string names;
+      for (const KeyRule& k : rule.keys) names += (names.empty() ? "" : ", ") + k.key;
+      JsonPlace(value, place_.file_, place_.pointer_ + "/" + escaped(entry.key())).fail("unknown key; known are " + names);
+    }
+  }
+  for (const KeyRule& k : rule.keys) {
+    if (k.required && !value.contains(k.key)) place_.fail(fmt::format("the key \"{}\" is missing", k.key));
+  }
+}
+
+const KeyRule& JsonObject::ruleOf(const std::string& key) const {
+  const auto found = std::find_if(rule_->keys.begin(), rule_->keys.end(), [&](const KeyRule& k) { return k.key == key; });
+  if (found == rule_->keys.end()) throw std::logic_error("no rule for the key " + key);
+  return *found;
+}
+
+bool JsonObject::has(const std::string& key) const {
+  static_cast<void>(ruleOf(key));
+  return place_.value_->contains(key);
+}
+
+JsonPlace JsonObject::at(const std::string& key) const {
+  static_cast<void>(ruleOf(key));
+  return {place_.value_->at(key), place_.file_, place_.pointer_ + "/" + key};
+}
+
+void JsonObject::read(const std::string& key, double& out) const {
+  if (has(key)) out = at(key).number(ruleOf(key));
+}
+void JsonObject::read(const std::string& key, std::uint32_t& out) const {
+  if (has(key)) out = at(key).integer(ruleOf(key));
+}
+void JsonObject::read(const std::string& key, bool& out) const {
+  if (has(key)) out = at(key).boolean();
+}
+void JsonObject::read(const std::string& key, Vec3& out) const {
+  if (has(key)) out = at(key).vector(ruleOf(key));
+}
+void JsonObject::read(const std::string& key, std::string& out, std::size_t longest) const {
+  if (has(key)) out = at(key).text(longest);
+}
+
+}  // namespace calot::recorder

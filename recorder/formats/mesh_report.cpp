@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/mesh_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace calot::recorder {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
+
+nlohmann::ordered_json list(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+nlohmann::ordered_json inputJson(const MeshReport& report) {
+  const SurfaceReport& found = report.found;
+  nlohmann::ordered_json json;
+  json["file"] = report.input;
+  json["unit"] = report.unit;
+  json["vertices"] = found.vertices;
+  json["triangles"] = found.triangles;
+  json["components"] = found.components;
+  json["closed"] = found.closedManifold();
+  json["open_edges"] = found.openEdges;
+  json["holes"] = found.holes;
+  json["non_manifold_edges"] = found.nonManifoldEdges;
+  json["flipped_edges"] = found.flippedEdges;
+  json["inward_components"] = found.inwardComponents;
+  json["cavities"] = found.cavities;
+  json["duplicate_triangles"] = found.duplicateTriangles;
+  json["degenerate_triangles"] = found.degenerateTriangles;
+  json["coincident_vertices"] = found.coincidentVertices;
+  json["unused_vertices"] = found.unusedVertices;
+  json["area_m2"] = found.area;
+  json["volume_m3"] = found.volume;
+  json["lower_m"] = list(found.box.lower);
+  json["upper_m"] = list(found.box.upper);
+  json["repaired"] = {{"welded_vertices", report.repair.weldedVertices},
+                      {"dropped_degenerate", report.repair.droppedDegenerate},
+                      {"dropped_duplicates", report.repair.droppedDuplicates},
+                      {"dropped_vertices", report.repair.droppedVertices},
+                      {"flipped_triangles", report.repair.flippedTriangles}};
+  return json;
+}
+
+}  // namespace
+
+std::string meshReportJson(const MeshReport& report) {
+  const StuffedMesh& stuffed = report.stuffed;
+  const StuffingReport& r = stuffed.report;
+  nlohmann::ordered_json json;
+  json["ok"] = stuffed.ok();
+  if (!stuffed.ok()) json["error"] = stuffed.error;
+  json["requested"] = r.requested;
+  json["tetrahedra"] = r.tetrahedra;
+  json["vertices"] = stuffed.mesh.vertex.size();
+  json["count_error"] = r.countError;
+  json["volume_m3"] = r.meshVolume;
+  json["surface_volume_m3"] = r.surfaceVolume;
+  json["volume_error"] = r.volumeError;
+  json["cell_size_m"] = stuffed.cellSize;
+  json["level_offset_m"] = stuffed.levelOffset;
+  json["surface_distance_m"] = std::max(r.surfaceToMesh, r.meshToSurface);
+  json["surface_to_mesh_m"] = r.surfaceToMesh;
+  json["mesh_to_surface_m"] = r.meshToSurface;
+  json["dihedral_min_deg"] = r.dihedralMin / degree;
+  json["dihedral_max_deg"] = r.dihedralMax / degree;
+  json["lost_area"] = r.lostArea;
+  json["lost_distance_m"] = r.lostDistance;
+  json["lost_parts"] = r.lostParts;
+  json["lost_where_m"] = list(r.lostWhere);
+  json["lost_components"] = r.lostComponents;
+  json["dropped_pieces"] = r.droppedPieces;
+  json["dropped_volume_m3"] = r.droppedVolume;
+  if (!report.output.empty()) json["output"] = report.output;
+  json["input"] = inputJson(report);
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string repairSummary(const SurfaceRepair& repair) {
+  std::string text;
+  const auto add = [&text](int count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  };
+  add(repair.weldedVertices, "vertices welded");
+  add(repair.droppedDegenerate, "triangles without area dropped");
+  add(repair.droppedDuplicates, "duplicate triangles dropped");
+  add(repair.droppedVertices, "unused vertices dropped");
+  add(repair.flippedTriangles, "triangles turned");
+  return text;
+}
+
+std::string meshReportText(const MeshReport& report) {
+  const SurfaceReport& in = report.found;
+  const StuffedMesh& stuffed = report.stuffed;
+  const StuffingReport& r = stuffed.report;
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const Vec3 size = 1000.0 * (in.box.upper - in.box.lower);
+  fmt::format_to(out, "surface            {}: {} vertices, {} triangles, {} component{}, {:.1f} x {:.1f} x {:.1f} mm\n",
+                 report.input, in.vertices, in.triangles, in.components, in.components == 1 ? "" : "s", size[0], size[1],
+                 size[2]);
+  if (in.closedManifold()) {
+    fmt::format_to(out, "                   closed and consistently outward\n");
+  } else {
+    fmt::format_to(out,
+                   "                   {} open edges in {} holes, {} non-manifold edges, {} flipped edges, {} components "
+                   "turned inward\n",
+                   in.openEdges, in.holes, in.nonManifoldEdges, in.flippedEdges, in.inwardComponents);
+  }
+  if (in.degenerateTriangles + in.duplicateTriangles + in.coincidentVertices + in.unusedVertices > 0) {
+    fmt::format_to(out, "                   {} triangles without area, {} duplicate, {} coincident and {} unused vertices\n",
+                   in.degenerateTriangles, in.duplicateTriangles, in.coincidentVertices, in.unusedVertices);
+  }
+  if (report.repair.changed()) fmt::format_to(out, "put right          {}\n", repairSummary(report.repair));
+  if (stuffed.mesh.tetrahedron.empty()) return text;
+  fmt::format_to(out, "tetrahedra         {} of {} requested ({:+.1f} %)\n", r.tetrahedra, r.requested,
+                 100.0 * (static_cast<double>(r.tetrahedra) / static_cast<double>(r.requested) - 1.0));
+  fmt::format_to(out, "volume             {:.3f} mL, surface {:.3f} mL ({:+.2f} %)\n", 1e6 * r.meshVolume,
+                 1e6 * r.surfaceVolume, 100.0 * (r.meshVolume / r.surfaceVolume - 1.0));
+  fmt::format_to(out, "cell size          {:.3f} mm\n", 1000.0 * stuffed.cellSize);
+  fmt::format_to(out, "level-set offset   {:+.3f} mm\n", 1000.0 * stuffed.levelOffset);
+  fmt::format_to(out, "largest distance   {:.2f} mm from surface to mesh, {:.2f} mm from mesh to surface\n",
+                 1000.0 * r.surfaceToMesh, 1000.0 * r.meshToSurface);
+  fmt::format_to(out, "dihedral angles    {:.2f} to {:.2f} degrees\n", r.dihedralMin / degree, r.dihedralMax / degree);
+  if (r.lostParts + r.lostComponents + r.droppedPieces == 0) {
+    fmt::format_to(out, "thin parts         none lost (none farther than {:.2f} mm)\n", 1000.0 * r.lostDistance);
+  } else {
+    fmt::format_to(out,
+                   "thin parts         {:.2f} % of the surface, in {} parts, lies farther than {:.2f} mm from the mesh; "
+                   "worst at ({:.4f}, {:.4f}, {:.4f}) m; {} components lost; {} loose pieces left out ({:.3f} mL)\n",
+                   100.0 * r.lostArea, r.lostParts, 1000.0 * r.lostDistance, r.lostWhere[0], r.lostWhere[1],
+                   r.lostWhere[2], r.lostComponents, r.droppedPieces, 1e6 * r.droppedVolume);
+  }
+  if (!report.output.empty()) fmt::format_to(out, "written            {}\n", report.output);
+  return text;
+}
+
+}  // namespace calot::recorder

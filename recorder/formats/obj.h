@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wavefront OBJ surfaces. Read: `v` (3 coordinates; more numbers are ignored), `f` (v, v/vt, v//vn, v/vt/vn; negative
+// indices count back; polygons are cut into fans). Everything that only draws (`vt`, `vn`, groups, materials, lines,
+// points) is passed over; anything else is refused.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "sim/geometry/triangle_mesh.h"
+
+namespace calot::recorder {
+
+/// An OBJ file says no unit: whoever names the file must.
+enum class LengthUnit { metre, centimetre, millimetre };
+
+/// Metres in one unit.
+double metres(LengthUnit unit);
+
+/// "m", "cm" or "mm". @throws Error (usage)
+LengthUnit parseLengthUnit(const std::string& word);
+
+/// What a file may hold. Beyond it is refused, at the line where it happens.
+struct ObjLimits {
+  std::size_t bytes = std::size_t{256} << 20U;
+  std::size_t vertices = 5'000'000;
+  std::size_t triangles = 10'000'000;
+};
+
+/// A surface from an OBJ file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised
+/// (surface_report.h says what is wrong with it).
+/// @param name what messages call it
+/// @throws Error (damaged): "name:line: what is wrong"
+TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
+                      const ObjLimits& limits = {});
+
+/// The same from a file. @throws Error (damaged)
+TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const ObjLimits& limits = {});
+
+/// The text of an OBJ file in metres. Coordinates are written so that they are read back bit for bit.
+/// @param comment lines for the head, each without "#"
+std::string formatObj(const TriangleMesh& mesh, const std::string& comment);
+
+/// Writes it under a temporary name, then renames.
+/// @throws Error (usage) where the file exists and `force` is not set, or its folder does not exist; (failure) where
+/// writing fails. Nothing half-written stays.
+void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment, bool force);
+
+}  // namespace calot::recorder

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/json_reader.h"
+#include "recorder/formats/obj.h"
+#include "recorder/formats/scene_rules.h"
+#include "sim/geometry/surface_report.h"
+
+namespace calot::recorder {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t longestName = 64;
+constexpr std::size_t mostOrgans = 32;  // an organ is a bit of HandResult::touching
+constexpr std::size_t mostAnchors = 64;
+constexpr std::size_t largestMesh = std::size_t{256} << 20U;
+
+using FetchAsset = std::function<const Asset&(const std::string& name, const JsonPlace& place)>;
+
+// Names go into field names, columns and file names.
+std::string readName(const JsonObject& object, const std::string& key) {
+  std::string name;
+  object.read(key, name, longestName);
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
+  });
+  if (!plain || name.front() == '-') object.at(key).fail("small letters, digits and hyphens are allowed, the first no hyphen");
+  return name;
+}
+
+// A path inside the assets root, with '/' and without '.' or '..', the same on every system.
+std::string readAssetName(const JsonObject& object, const std::string& key) {
+  std::string name;
+  object.read(key, name, 200);
+  bool inside = name.front() != '/' && name.find('\\') == std::string::npos && name.find(':') == std::string::npos;
+  for (std::size_t begin = 0; begin <= name.size();) {
+    const std::size_t end = std::min(name.find('/', begin), name.size());
+    const std::string part = name.substr(begin, end - begin);
+    inside = inside && !part.empty() && part != "." && part != "..";
+    begin = end + 1;
+  }
+  if (!inside) object.at(key).fail("a path relative to the assets folder is wanted, with / and without . or ..");
+  return name;
+}
+
+template <class Value>
+Value readWord(const JsonObject& object, const std::string& key, const std::map<std::string, Value>& words) {
+  const std::string word = object.at(key).text(longestName);
+  if (const auto found = words.find(word); found != words.end()) return found->second;
+  std::string known;
+  for (const auto& entry : words) known += (known.empty() ? "" : ", ") + entry.first;
+  object.at(key).fail("unknown word; known are " + known);
+}
+
+// A surface that has an inside, of a size that an organ of this scene can have.
+SurfaceDescription readSurface(const Asset& asset, LengthUnit unit) {
+  TriangleMesh mesh = parseObj(asset.bytes, asset.name, unit);
+  const SurfaceReport report = inspectSurface(mesh);
+  if (!report.closedManifold()) {
+    throw Error(ExitCode::damaged,
+                fmt::format("{}: {} triangles with {} open edges, {} edges of more than two triangles, {} flipped edges and "
+                            "{} parts turned inside out; an organ is a closed outward surface",
+                            asset.name, report.triangles, report.openEdges, report.nonManifoldEdges, report.flippedEdges,
+                            report.inwardComponents));
+  }
+  const double size = (report.box.upper - report.box.lower).maxCoeff();
+  const double farthest = std::max(report.box.lower.cwiseAbs().maxCoeff(), report.box.upper.cwiseAbs().maxCoeff());
+  if (!(size >= 0.001) || !(farthest <= 1.0)) {
+    throw Error(ExitCode::damaged, fmt::format("{}: {:.4g} m long and up to {:.4g} m from the origin; an organ is at least 0.001 m "
+                                               "long and within 1 m: is the scene's unit right?",
+                                               asset.name, size, farthest));
+  }
+  return {std::move(mesh.vertex), std::move(mesh.triangle)};
+}
+
+// Camera frame C: x right, y down, z along the view.
+CameraSample readCamera(const JsonPlace& place, double& verticalFieldOfView) {
+  const JsonObject object = place.object(sceneRule("camera"));
+  CameraSample camera;
+  Vec3 target = Vec3::Zero();
+  Vec3 up = Vec3::UnitY();
+  object.read("position", camera.position);
+  object.read("target", target);
+  object.read("up", up);
+  object.read("verticalFieldOfView", verticalFieldOfView);
+  const Vec3 view = target - camera.position;
+  if (!(view.norm() > 0.001)) object.at("target").fail("the target is the camera's own position");
+  const Vec3 forward = view / view.norm();
+  const Vec3 across = forward.cross(up);
+  if (!(across.norm() > 0.01 * up.norm()) || !(up.norm() > 0.01)) place.fail("\"up\" is zero or along the view");
+  Mat3 axes;
+  axes.col(0) = across / across.norm();
+  axes.col(1) = forward.cross(axes.col(0));
+  axes.col(2) = forward;
+  camera.orientation = Quat(axes).normalized();
+  return camera;
+}
+
+HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& workspace) {
+  const JsonObject object = place.object(sceneRule("hand"));
+  HandDescription hand;
+  object.read("port", hand.port);
+  object.read("home", hand.home);
+  hand.instrument = readWord<InstrumentKind>(object, "instrument",
+                                             {{"grasper", InstrumentKind::grasper},
+                                              {"hook", InstrumentKind::hook},
+                                              {"clip-applier", InstrumentKind::clipApplier},
+                                              {"scissors", InstrumentKind::scissors}});
+  object.read("shaftRadius", hand.shaftRadius);
+  object.read("couplingStiffness", hand.couplingStiffness);
+  object.read("largestForce", hand.largestForce);
+  if ((hand.home.array() < workspace[0].array()).any() || (hand.home.array() > workspace[1].array()).any()) {
+    object.at("home").fail("outside the workspace");
+  }
+  if (!((hand.home - hand.port).norm() >= 0.01)) object.at("home").fail("nearer than 0.01 m to the port");
+  const Vec3 nearest = hand.port.cwiseMax(workspace[0]).cwiseMin(workspace[1]);
+  if (!((hand.port - nearest).norm() <= 0.3)) object.at("port").fail("farther than 0.3 m from the workspace");
+  return hand;
+}
+
+AnchorDescription readAnchor(const JsonPlace& place) {
+  const JsonObject object = place.object(sceneRule("anchor"));
+  AnchorDescription anchor;
+  if (object.has("sphere") == object.has("nearOrgan")) place.fail("one of \"sphere\" and \"nearOrgan\" is wanted");
+  if (object.has("sphere")) {
+    const JsonObject sphere = object.at("sphere").object(sceneRule("sphere"));
+    sphere.read("centre", anchor.centre);
+    sphere.read("radius", anchor.radius);
+  } else {
+    const JsonObject near = object.at("nearOrgan").object(sceneRule("nearOrgan"));
+    anchor.nearOrgan = readName(near, "organ");
+    near.read("distance", anchor.distance);
+  }
+  return anchor;
+}
+
+OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
+  const JsonObject object = place.object(sceneRule("organ"));
+  OrganDescription organ;
+  organ.name = readName(object, "name");
+  organ.appearance = readName(object, "appearance");
+  object.read("tetrahedra", organ.tetrahedra);
+  const JsonObject material = object.at("material").object(sceneRule("material"));
+  material.read("youngModulus", organ.material.youngModulus);
+  material.read("poissonRatio", organ.material.poissonRatio);
+  material.read("density", organ.material.density);
+  material.read("massDamping", organ.material.massDamping);
+  material.read("stiffnessDamping", organ.material.stiffnessDamping);
+  for (const JsonPlace& anchor : object.at("anchors").list(0, mostAnchors)) organ.anchors.push_back(readAnchor(anchor));
+
+  const JsonObject mesh = object.at("mesh").object(sceneRule("mesh"));
+  const LengthUnit unit =
+      readWord<LengthUnit>(mesh, "unit", {{"m", LengthUnit::metre}, {"cm", LengthUnit::centimetre}, {"mm", LengthUnit::millimetre}});
+  const Asset& asset = fetch(readAssetName(mesh, "file"), mesh.at("file"));
+  organ.surface = readSurface(asset, unit);
+  return organ;
+}
+
+void checkOrgans(const JsonPlace& place, const std::vector<OrganDescription>& organs) {
+  const auto index = [&](const std::string& name) {
+    const auto found = std::find_if(organs.begin(), organs.end(), [&](const OrganDescription& o) { return o.name == name; });
+    return static_cast<std::size_t>(found - organs.begin());
+  };
+  const std::vector<JsonPlace> places = place.list(1, mostOrgans);
+  for (std::size_t i = 0; i < organs.size(); ++i) {
+    const JsonObject object = places[i].object(sceneRule("organ"));
+    if (index(organs[i].name) != i) object.at("name").fail("another organ has this name");
+    const std::vector<JsonPlace> anchors = object.at("anchors").list(0, mostAnchors);
+    for (std::size_t a = 0; a < anchors.size(); ++a) {
+      const std::string& near = organs[i].anchors[a].nearOrgan;
+      if (near.empty()) continue;
+      const JsonPlace name = anchors[a].object(sceneRule("anchor")).at("nearOrgan").object(sceneRule("nearOrgan")).at("organ");
+      if (index(near) == organs.size()) name.fail("the scene has no organ \"" + near + "\"");
+      if (index(near) == i) name.fail("an organ cannot be anchored to itself");
+    }
+  }
+}
+
+LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
+  const nlohmann::json json = parseStrictJson(file.bytes, file.name);
+  const JsonPlace root(json, file.name);
+  const JsonObject object = root.object(sceneRule(""));
+  if (object.at("format").text(longestName) != "calot-scene") object.at("format").fail("\"calot-scene\" is wanted");
+  std::uint32_t formatVersion = 0;
+  object.read("formatVersion", formatVersion);
+
+  LoadedScene loaded;
+  SceneDescription& scene = loaded.description;
+  scene.name = readName(object, "name");
+  const JsonObject version = object.at("version").object(sceneRule("version"));
+  version.read("major", scene.majorVersion);
+  version.read("minor", scene.minorVersion);
+  object.read("summary", loaded.summary, 500);
+  object.read("ticksPerStep", scene.ticksPerStep);
+  object.read("timeLimit", scene.timeLimit);
+  object.read("gravity", scene.gravity);
+
+  const JsonObject workspace = object.at("workspace").object(sceneRule("workspace"));
+  workspace.read("lower", scene.workspace[0]);
+  workspace.read("upper", scene.workspace[1]);
+  if (!((scene.workspace[1] - scene.workspace[0]).array() >= 0.01).all()) {
+    workspace.at("upper").fail("every side of the workspace must be at least 0.01 m long");
+  }
+  scene.camera = readCamera(object.at("camera"), scene.verticalFieldOfView);
+  const JsonObject hands = object.at("hands").object(sceneRule("hands"));
+  for (std::size_t h = 0; h < handCount; ++h) scene.hands[h] = readHand(hands.at(handNames[h]), scene.workspace);
+
+  for (const JsonPlace& organ : object.at("organs").list(1, mostOrgans)) scene.organs.push_back(readOrgan(organ, fetch));
+  checkOrgans(object.at("organs"), scene.organs);
+
+  if (object.has("solver")) {
+    const JsonObject solver = object.at("solver").object(sceneRule("solver"));
+    solver.read("tolerance", scene.solver.tolerance);
+    solver.read("iterations", scene.solver.iterations);
+    solver.read("contactTolerance", scene.solver.contactTolerance);
+    solver.read("contactIterations", scene.solver.contactIterations);
+    solver.read("sleeping", scene.solver.sleeping);
+  }
+  return loaded;
+}
+
+}  // namespace
+
+LoadedScene loadScene(const fs::path& sceneFile) {
+  const fs::path folder = sceneFile.has_parent_path() ? sceneFile.parent_path() : fs::path(".");
+  const bool inScenes = folder.filename() == "scenes";
+  const fs::path root = inScenes ? folder / ".." : folder;
+  const std::string base = sceneFile.filename().string();
+  std::vector<Asset> assets;
+  assets.reserve(mostOrgans + 1);  // references to the elements stay good
+  assets.push_back({inScenes ? "scenes/" + base : base, {}});
+  assets[0].bytes = readFileBytes(sceneFile, assets[0].name, largestMesh);
+
+  const FetchAsset fetch = [&](const std::string& name, const JsonPlace& place) -> const Asset& {
+    const auto known = std::find_if(assets.begin() + 1, assets.end(), [&](const Asset& a) { return a.name == name; });
+    if (known != assets.end()) return *known;
+    std::error_code ignored;
+    const fs::path path = root / name;
+    if (!fs::is_regular_file(path, ignored)) place.fail("there is no file \"" + name + "\" in the assets folder");
+    // A link may lead out of the folder, whatever its name says.
+    const fs::path home = fs::weakly_canonical(root, ignored);
+    const fs::path real = fs::weakly_canonical(path, ignored);
+    if (std::mismatch(home.begin(), home.end(), real.begin(), real.end()).first != home.end()) {
+      place.fail("\"" + name + "\" leads out of the assets folder");
+    }
+    assets.push_back({name, readFileBytes(path, name, largestMesh)});
+    return assets.back();
+  };
+  LoadedScene loaded = parseScene(assets[0], fetch);
+  loaded.assets = std::move(assets);
+  return loaded;
+}
+
+LoadedScene sceneFromAssets(std::vector<Asset> assets) {
+  if (assets.empty()) throw Error(ExitCode::damaged, "scene: there is no scene file among the assets");
+  std::vector<bool> used(assets.size(), false);
+  used[0] = true;
+  for (std::size_t i = 0; i < assets.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (assets[i].name == assets[j].name) throw Error(ExitCode::damaged, "scene: two assets are called " + assets[i].name);
+    }
+  }
+  const FetchAsset fetch = [&](const std::string& name, const JsonPlace& place) -> const Asset& {
+    for (std::size_t i = 1; i < assets.size(); ++i) {
+      if (assets[i].name != name) continue;
+      used[i] = true;
+      return assets[i];
+    }
+    place.fail("there is no asset \"" + name + "\"");
+  };
+  LoadedScene loaded = parseScene(assets[0], fetch);
+  for (std::size_t i = 0; i < assets.size(); ++i) {
+    if (!used[i]) throw Error(ExitCode::damaged, fmt::format("{}: the asset {} is named nowhere in it", assets[0].name, assets[i].name));
+  }
+  loaded.assets = std::move(assets);
+  return loaded;
+}
+
+std::vector<fs::path> assetRoots(const fs::path& programFolder, const fs::path& compiledIn) {
+  if (const char* named = std::getenv("CALOT_ASSETS"); named != nullptr && *named != '\0') return {fs::path(named)};
+  return {programFolder / ".." / "share" / "calot", compiledIn};
+}
+
+std::vector<fs::path> listScenes(const std::vector<fs::path>& roots) {
+  std::map<std::string, fs::path> byName;
+  for (const fs::path& root : roots) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / "scenes", fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+    }
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : byName) files.push_back(entry.second);
+  return files;
+}
+
+fs::path findScene(const std::string& name, const std::vector<fs::path>& roots) {
+  std::error_code ignored;
+  if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
+    if (fs::is_regular_file(name, ignored)) return name;
+    throw Error(ExitCode::usage, name + ": there is no such scene file");
+  }
+  std::string known;
+  for (const fs::path& file : listScenes(roots)) {
+    if (file.stem() == name) return file;
+    known += (known.empty() ? "" : ", ") + file.stem().string();
+  }
+  throw Error(ExitCode::usage, fmt::format("there is no scene \"{}\"; {}", name,
+                                           known.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)")
+                                                         : "there are " + known));
+}
+
+}  // namespace calot::recorder

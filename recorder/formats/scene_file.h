@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scene files: strict JSON, published as schemas/scene.schema.json and explained in docs/scenes.md. Lengths in metres,
+// everything in SI, in the frame W of docs/organs.md.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "recorder/identity.h"
+#include "sim/scene/description.h"
+
+namespace calot::recorder {
+
+/// A scene with everything that it names.
+struct LoadedScene {
+  SceneDescription description;  ///< what a Model is built from
+  std::string summary;           ///< one sentence for people
+  std::vector<Asset> assets;     ///< the scene file first, then each mesh in the order of the organs; bytes as read
+};
+
+/// Reads a scene file and the meshes that it names.
+///
+/// Names in the file are relative to the assets root: the folder above when the file lies in a folder `scenes`, else the
+/// file's own folder. Nothing outside the root is read.
+///
+/// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
+LoadedScene loadScene(const std::filesystem::path& sceneFile);
+
+/// The same reading from bytes, such as a recording's: the first asset is the scene file, the others are looked up by
+/// name. Touches no file.
+/// @throws Error (damaged) as loadScene, and where a named asset is missing, double, or named by nobody.
+LoadedScene sceneFromAssets(std::vector<Asset> assets);
+
+/// Folders that may hold `scenes/`, `organs/` and `performers/`, best first: the environment's CALOT_ASSETS; or, where
+/// that is not set, `<programFolder>/../share/calot` and the folder compiled in by the program.
+std::vector<std::filesystem::path> assetRoots(const std::filesystem::path& programFolder,
+                                              const std::filesystem::path& compiledIn);
+
+/// The file of a scene: a name such as "touch-liver", looked for as `scenes/<name>.json` under the roots in turn; or,
+/// where it ends in ".json", the path of a scene file itself.
+/// @throws Error (usage) where there is none, with the names that there are.
+std::filesystem::path findScene(const std::string& name, const std::vector<std::filesystem::path>& roots);
+
+/// Every scene file under the roots, by name, the first root winning.
+std::vector<std::filesystem::path> listScenes(const std::vector<std::filesystem::path>& roots);
+
+}  // namespace calot::recorder

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/scene_rules.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace calot::recorder {
+namespace {
+
+KeyRule required(const char* key) { return {key, true}; }
+KeyRule optional(const char* key) { return {key, false}; }
+KeyRule required(const char* key, double lower, double upper) { return {key, true, lower, upper}; }
+KeyRule optional(const char* key, double lower, double upper) { return {key, false, lower, upper}; }
+
+KeyRule openBelow(KeyRule rule) {
+  rule.lowerOpen = true;
+  return rule;
+}
+KeyRule openAbove(KeyRule rule) {
+  rule.upperOpen = true;
+  return rule;
+}
+
+// A scene is a part of one abdomen: nothing lies farther than this from the origin (m).
+constexpr double reach = 1.0;
+
+std::vector<ObjectRule> makeRules() {
+  return {
+      {"",
+       {required("format"), required("formatVersion", 1, sceneFormatVersion), required("name"), required("version"),
+        required("summary"), required("workspace"), required("camera"), required("hands"), required("organs"),
+        optional("ticksPerStep", 1, 100), optional("timeLimit", 0, 86400), optional("gravity", -20, 20), optional("solver")}},
+      {"version", {required("major", 1, 1000000), required("minor", 0, 1000000)}},
+      {"workspace", {required("lower", -reach, reach), required("upper", -reach, reach)}},
+      {"camera",
+       {required("position", -reach, reach), required("target", -reach, reach), optional("up", -1, 1),
+        required("verticalFieldOfView", 0.1, 2.6)}},
+      {"hands", {required("left"), required("right")}},
+      {"hand",
+       {required("port", -reach, reach), required("home", -reach, reach), required("instrument"),
+        optional("shaftRadius", 0.0005, 0.01), openBelow(optional("couplingStiffness", 0, 100000)),
+        openBelow(optional("largestForce", 0, 100))}},
+      {"organ",
+       {required("name"), required("appearance"), required("mesh"), required("tetrahedra", 10, 1000000),
+        required("material"), required("anchors")}},
+      {"mesh", {required("file"), required("unit")}},
+      {"material",
+       {required("youngModulus", 10, 1e9), openAbove(required("poissonRatio", 0, 0.5)), required("density", 100, 20000),
+        optional("massDamping", 0, 1000), optional("stiffnessDamping", 0, 10)}},
+      {"anchor", {optional("sphere"), optional("nearOrgan")}},
+      {"sphere", {required("centre", -reach, reach), openBelow(required("radius", 0, reach))}},
+      {"nearOrgan", {required("organ"), openBelow(required("distance", 0, 0.1))}},
+      {"solver",
+       {openBelow(optional("tolerance", 0, 0.1)), optional("iterations", 1, 100000),
+        openBelow(optional("contactTolerance", 0, 0.001)), optional("contactIterations", 1, 100000), optional("sleeping")}},
+  };
+}
+
+}  // namespace
+
+const std::vector<ObjectRule>& sceneRules() {
+  static const std::vector<ObjectRule> rules = makeRules();
+  return rules;
+}
+
+const ObjectRule& sceneRule(const std::string& definition) {
+  const std::vector<ObjectRule>& rules = sceneRules();
+  const auto found =
+      std::find_if(rules.begin(), rules.end(), [&](const ObjectRule& r) { return r.definition == definition; });
+  if (found == rules.end()) throw std::logic_error("no scene rule " + definition);
+  return *found;
+}
+
+}  // namespace calot::recorder

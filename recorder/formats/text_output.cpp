@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/text_output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "recorder/errors.h"
+
+namespace calot::recorder {
+namespace fs = std::filesystem;
+
+void refuseOutput(const fs::path& path, bool force) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    throw Error(ExitCode::usage, fmt::format("{}: is a folder; name a file", path.string()));
+  }
+  if (!force && fs::exists(fs::symlink_status(path, ignored))) {
+    throw Error(ExitCode::usage, fmt::format("{}: already exists; --force replaces it", path.string()));
+  }
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error(ExitCode::usage, fmt::format("{}: folder {} does not exist", path.string(), folder.string()));
+  }
+}
+
+void writeText(const fs::path& path, std::string_view text, bool force) {
+  refuseOutput(path, force);
+  fs::path temporary = path;
+  temporary += ".part";
+  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  if (file == nullptr) {
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be created: {}", temporary.string(), std::strerror(errno)));
+  }
+  int fault = 0;
+  if (std::fwrite(text.data(), 1, text.size(), file) != text.size()) fault = errno;
+  if (fault == 0 && (std::fflush(file) != 0 || ::fsync(::fileno(file)) != 0)) fault = errno;
+  if (std::fclose(file) != 0 && fault == 0) fault = errno;
+  if (fault == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) fault = errno;
+  if (fault == 0) return;
+  std::remove(temporary.c_str());
+  throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", path.string(), std::strerror(fault)));
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "recorder/replay.h"
+
+namespace calot::recorder {
+
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void writeJunit(const std::filesystem::path& file, const std::vector<ReplayReport>& reports) {
+  const auto count = [&](ReplayVerdict v) {
+    return std::count_if(reports.begin(), reports.end(), [v](const ReplayReport& r) { return r.verdict == v; });
+  };
+  double time = 0.0;
+  for (const ReplayReport& r : reports) time += r.wallSeconds;
+  std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  xml += fmt::format("<testsuite name=\"calot replay\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\">\n",
+                     reports.size(), count(ReplayVerdict::diverged), count(ReplayVerdict::damaged),
+                     count(ReplayVerdict::undecided), time);
+  for (const ReplayReport& r : reports) {
+    xml += fmt::format("  <testcase classname=\"replay\" name=\"{}\" time=\"{:.3f}\"", escaped(r.path.filename().string()),
+                       r.wallSeconds);
+    const std::string body = escaped(r.message);
+    switch (r.verdict) {
+      case ReplayVerdict::exact: xml += "/>\n"; continue;
+      case ReplayVerdict::diverged: xml += fmt::format(">\n    <failure message=\"diverged\">{}</failure>\n", body); break;
+      case ReplayVerdict::damaged: xml += fmt::format(">\n    <error message=\"damaged\">{}</error>\n", body); break;
+      case ReplayVerdict::undecided: xml += fmt::format(">\n    <skipped message=\"{}\"/>\n", body); break;
+    }
+    xml += "  </testcase>\n";
+  }
+  xml += "</testsuite>\n";
+  const std::filesystem::path part = file.string() + ".part";
+  {
+    std::ofstream out(part, std::ios::binary);
+    out << xml;
+    out.flush();
+    if (!out) throw Error(ExitCode::failure, fmt::format("{}: cannot be written; is the folder there and the disk not full?", file.string()));
+  }
+  std::filesystem::rename(part, file);
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What watches the loop: the recording's writer, the divergence check, checkpoints, a view. Live, scripted and replayed
+// runs feed the same observers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/scene/description.h"
+#include "sim/scene/digests.h"
+#include "sim/scene/samples.h"
+#include "sim/scene/scene_view.h"
+#include "sim/scene/step_result.h"
+
+namespace calot::recorder {
+
+/// What the haptic tick did for one hand.
+struct HandTick {
+  Vec3 force = Vec3::Zero();     ///< f_W on the operator's hand (N)
+  Vec3 torque = Vec3::Zero();    ///< about the instrument's tip, in W (N m)
+  std::int64_t contactSet = -1;  ///< step whose contact set the tick used; -1 before the first
+};
+
+/// One tick: both hands, and how late it ran.
+struct TickOutcome {
+  std::array<HandTick, handCount> hand;
+  float lateness = 0.0F;  ///< s after its deadline; 0 when the run is not paced
+};
+
+/// Full state after a step, as bytes: enough to go on from the next step.
+struct Keyframe {
+  std::uint64_t step = 0;
+  std::vector<std::byte> state;    ///< State, by its field list
+  std::vector<std::byte> haptics;  ///< HapticState of each hand, and every contact set that later ticks still name
+};
+
+/// One step of the loop. References live for the call only.
+struct StepRecord {
+  std::uint64_t step = 0;
+  std::span<const TickSamples> samples;  ///< ticksPerStep of them
+  std::span<const TickOutcome> ticks;    ///< as many
+  const StepResult& result;
+  const StateDigest& digest;
+  float lateness = 0.0F;  ///< s after the step's deadline; 0 when not paced
+  /// Makes the keyframe of this step; costs a copy of the State, so it is called only where one is kept.
+  std::function<Keyframe()> keyframe;
+  /// Makes the scene view of this step; costs surfaces, so it is called only by what draws.
+  std::function<SceneView()> view;
+};
+
+/// How an attempt ended. Numbers are stored and never reused.
+enum class Outcome : std::uint8_t { running = 0, completed = 1, timeLimit = 2, abandoned = 3, stopped = 4, technicalFailure = 5 };
+
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void onStep(const StepRecord& record) = 0;
+  virtual void onEnd(Outcome outcome) = 0;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/block.h"
+
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+namespace calot::recorder {
+
+namespace {
+
+void append(std::vector<std::byte>& out, const void* data, std::size_t size) {
+  const auto* bytes = static_cast<const std::byte*>(data);
+  out.insert(out.end(), bytes, bytes + size);
+}
+
+template <class T>
+void appendValue(std::vector<std::byte>& out, const T& value) {
+  append(out, &value, sizeof value);
+}
+
+template <class T>
+T takeValue(std::span<const std::byte>& bytes) {
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  bytes = bytes.subspan(sizeof value);
+  return value;
+}
+
+/// Appends every visited value to its column.
+struct AppendVisitor {
+  const Layout& layout;
+  Block& block;
+  std::size_t index = 0;
+
+  template <class T>
+  void operator()(const char*, const char*, const char*, const T& value) {
+    appendValue(block.column[index++], value);
+  }
+  void operator()(const char*, const char*, const char*, const Vec3& v) {
+    append(block.column[index++], v.data(), 3 * sizeof(double));
+  }
+  void operator()(const char*, const char*, const char*, const Quat& q) {
+    const std::array<double, 4> wxyz{q.w(), q.x(), q.y(), q.z()};
+    appendValue(block.column[index++], wxyz);
+  }
+  template <class T>
+  void outside(const char*, const char*, const char*, const T& value) {
+    appendValue(block.column[index++], value);
+  }
+  template <class T>
+  void list(const char*, const char*, const char*, const std::vector<T>& values, std::size_t width) {
+    assert(values.size() == width);
+    for (std::size_t i = 0; i < width; ++i) appendValue(block.column[index], i < values.size() ? values[i] : T{});
+    ++index;
+  }
+  template <class T>
+  void organs(const char*, const char*, const char*, const std::vector<OrganResult>& organ, T OrganResult::*member) {
+    assert(organ.size() == layout.organs);
+    for (std::size_t i = 0; i < layout.organs; ++i) {
+      appendValue(block.column[index], i < organ.size() ? organ[i].*member : T{});
+    }
+    ++index;
+  }
+};
+
+/// Reads every visited value from one row of its column, and finds the first that no writer makes.
+struct ExtractVisitor {
+  const Layout& layout;
+  const Block& block;
+  std::uint64_t row = 0;
+  std::size_t index = 0;
+  bool input = false;  ///< samples must be finite; results are what the simulation made of them, and the chain's concern
+  std::string fault;
+
+  template <class T>
+  void operator()(const char*, const char*, const char*, T& value) {
+    std::memcpy(&value, at(), sizeof value);
+    check(value);
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, bool& value) {
+    const auto byte = std::to_integer<unsigned>(*at());
+    if (byte > 1) fail("is neither 0 nor 1");
+    value = byte != 0;
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, InstrumentKind& value) {
+    const auto code = std::to_integer<unsigned>(*at());
+    if (code > static_cast<unsigned>(InstrumentKind::scissors)) fail("is no known instrument");
+    value = static_cast<InstrumentKind>(code);
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, Vec3& v) {
+    std::memcpy(v.data(), at(), 3 * sizeof(double));
+    if (input && !v.allFinite()) fail("is not finite");
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, Quat& q) {
+    std::array<double, 4> wxyz{};
+    std::memcpy(wxyz.data(), at(), sizeof wxyz);
+    q = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    const double norm = std::sqrt(wxyz[0] * wxyz[0] + wxyz[1] * wxyz[1] + wxyz[2] * wxyz[2] + wxyz[3] * wxyz[3]);
+    if (input && !(std::abs(norm - 1.0) <= 1e-3)) fail("is not a unit quaternion within 1e-3");
+    ++index;
+  }
+  template <class T>
+  void outside(const char*, const char*, const char*, T& value) {
+    std::memcpy(&value, at(), sizeof value);
+    check(value);
+    ++index;
+  }
+  template <class T>
+  void list(const char*, const char*, const char*, std::vector<T>& values, std::size_t width) {
+    values.resize(width);
+    if (width > 0) std::memcpy(values.data(), at(), width * sizeof(T));
+    for (const T& v : values) check(v);
+    ++index;
+  }
+  template <class T>
+  void organs(const char*, const char*, const char*, std::vector<OrganResult>& organ, T OrganResult::*member) {
+    organ.resize(layout.organs);
+    for (std::size_t i = 0; i < organ.size(); ++i) {
+      const std::byte* place = at() + i * sizeof(T);
+      if constexpr (std::is_same_v<T, bool>) {
+        const auto byte = std::to_integer<unsigned>(*place);
+        if (byte > 1) fail("is neither 0 nor 1");
+        organ[i].*member = byte != 0;
+      } else {
+        std::memcpy(&(organ[i].*member), place, sizeof(T));
+        check(organ[i].*member);
+      }
+    }
+    ++index;
+  }
+
+ private:
+  [[nodiscard]] const std::byte* at() const {
+    return block.column[index].data() + static_cast<std::size_t>(row) * layout.columns[index].rowBytes();
+  }
+  template <class T>
+  void check(const T& value) {
+    if constexpr (std::is_floating_point_v<T>) {
+      if (input && !std::isfinite(value)) fail("is not finite");
+    }
+  }
+  void fail(const char* why) {
+    if (fault.empty()) fault = fmt::format("{}[{{row}}] {}", layout.columns[index].path, why);
+  }
+};
+
+/// Puts the row's number in the file into a fault.
+std::string named(const std::string& fault, std::uint64_t row) {
+  std::string text = fault;
+  if (const auto at = text.find("{row}"); at != std::string::npos) text.replace(at, 5, std::to_string(row));
+  return text;
+}
+
+}  // namespace
+
+Block::Block(const Layout& layout) : column(layout.columns.size()) {
+  for (std::size_t c = 0; c < column.size(); ++c) {
+    const Column& spec = layout.columns[c];
+    if (spec.stream == Stream::ticks || spec.stream == Stream::steps) {
+      column[c].reserve(spec.rowBytes() * static_cast<std::size_t>(spec.chunkRows));
+    }
+  }
+  column[layout.events].reserve(eventBytes * 64);
+}
+
+void Block::clear() {
+  for (std::vector<std::byte>& c : column) c.clear();
+  rows.fill(0);
+  last = false;
+  completed = false;
+  outcome = Outcome::running;
+}
+
+void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* keyframe, std::uint64_t& keyframeBase,
+                Block& block) {
+  assert(record.samples.size() == layout.ticksPerStep && record.ticks.size() == layout.ticksPerStep);
+  for (std::size_t t = 0; t < layout.ticksPerStep; ++t) {
+    AppendVisitor visit{layout, block};
+    visitTick(record.samples[t], record.ticks[t], visit);
+  }
+  AppendVisitor visit{layout, block, layout.tickColumns};
+  visitStep(record.digest, record.lateness, record.result, visit);
+  for (const Event& event : record.result.events) {
+    assert(event.step == record.step);
+    appendEvent(event, block.column[layout.events]);
+  }
+  block.rows[static_cast<std::size_t>(Stream::ticks)] += layout.ticksPerStep;
+  block.rows[static_cast<std::size_t>(Stream::steps)] += 1;
+  block.rows[static_cast<std::size_t>(Stream::events)] += record.result.events.size();
+  if (keyframe == nullptr) return;
+  appendKeyframeRow({keyframe->step, keyframeBase * 8, keyframe->state.size(), keyframe->haptics.size()},
+                    block.column[layout.keyframeIndex]);
+  std::vector<std::byte>& bytes = block.column[layout.keyframeWords];
+  const std::size_t before = bytes.size();
+  bytes.insert(bytes.end(), keyframe->state.begin(), keyframe->state.end());
+  bytes.insert(bytes.end(), keyframe->haptics.begin(), keyframe->haptics.end());
+  constexpr std::size_t chunk = static_cast<std::size_t>(keyframeChunkWords) * 8;
+  const std::size_t padded = (bytes.size() - before + chunk - 1) / chunk * chunk;
+  bytes.resize(before + padded);
+  keyframeBase += padded / 8;
+  block.rows[static_cast<std::size_t>(Stream::keyframes)] += 1;
+  block.rows[static_cast<std::size_t>(Stream::keyframeWords)] += padded / 8;
+}
+
+std::string extractStep(const Layout& layout, const Block& block, std::uint64_t at, RecordedStep& out) {
+  out.samples.resize(layout.ticksPerStep);
+  out.ticks.resize(layout.ticksPerStep);
+  for (std::size_t t = 0; t < layout.ticksPerStep; ++t) {
+    const std::uint64_t row = at * layout.ticksPerStep + t;
+    ExtractVisitor visit{layout, block, row, 0, true, {}};
+    visitTick(out.samples[t], out.ticks[t], visit);
+    if (!visit.fault.empty()) return named(visit.fault, out.step * layout.ticksPerStep + t);
+    for (const HandTick& hand : out.ticks[t].hand) {
+      if (hand.contactSet < -1 || hand.contactSet > static_cast<std::int64_t>(out.step)) {
+        return fmt::format("/ticks: contact_set[{}] names a step that is not there", out.step * layout.ticksPerStep + t);
+      }
+    }
+  }
+  ExtractVisitor visit{layout, block, at, layout.tickColumns, false, {}};
+  visitStep(out.digest, out.lateness, out.result, visit);
+  out.result.step = out.step;
+  return named(visit.fault, out.step);
+}
+
+void appendEvent(const Event& event, std::vector<std::byte>& out) {
+  appendValue(out, event.step);
+  appendValue(out, event.kind);
+  appendValue(out, event.hand);
+  appendValue(out, event.subject);
+  append(out, event.position.data(), 3 * sizeof(double));
+  appendValue(out, event.value);
+}
+
+Event parseEvent(std::span<const std::byte> row) {
+  Event e;
+  e.step = takeValue<std::uint64_t>(row);
+  e.kind = static_cast<EventKind>(takeValue<std::uint16_t>(row));
+  e.hand = takeValue<std::uint8_t>(row);
+  e.subject = takeValue<std::uint16_t>(row);
+  for (int i = 0; i < 3; ++i) e.position[i] = takeValue<double>(row);
+  e.value = takeValue<double>(row);
+  return e;
+}
+
+void appendKeyframeRow(const KeyframeRow& row, std::vector<std::byte>& out) {
+  appendValue(out, row.step);
+  appendValue(out, row.offset);
+  appendValue(out, row.stateBytes);
+  appendValue(out, row.hapticsBytes);
+}
+
+KeyframeRow parseKeyframeRow(std::span<const std::byte> row) {
+  KeyframeRow k;
+  k.step = takeValue<std::uint64_t>(row);
+  k.offset = takeValue<std::uint64_t>(row);
+  k.stateBytes = takeValue<std::uint64_t>(row);
+  k.hapticsBytes = takeValue<std::uint64_t>(row);
+  return k;
+}
+
+void appendStatus(const StatusRow& row, std::vector<std::byte>& out) {
+  appendValue(out, row.ticks);
+  appendValue(out, row.steps);
+  appendValue(out, row.events);
+  appendValue(out, row.keyframes);
+  appendValue(out, row.keyframeWords);
+  appendValue(out, static_cast<std::uint8_t>(row.completed ? 1 : 0));
+  appendValue(out, row.outcome);
+  appendValue(out, row.wallNanoseconds);
+  append(out, row.chain.data(), row.chain.size());
+}
+
+bool parseStatus(std::span<const std::byte> bytes, StatusRow& row) {
+  row.ticks = takeValue<std::uint64_t>(bytes);
+  row.steps = takeValue<std::uint64_t>(bytes);
+  row.events = takeValue<std::uint64_t>(bytes);
+  row.keyframes = takeValue<std::uint64_t>(bytes);
+  row.keyframeWords = takeValue<std::uint64_t>(bytes);
+  const auto completed = takeValue<std::uint8_t>(bytes);
+  const auto outcome = takeValue<std::uint8_t>(bytes);
+  row.wallNanoseconds = takeValue<std::int64_t>(bytes);
+  std::memcpy(row.chain.data(), bytes.data(), row.chain.size());
+  row.completed = completed == 1;
+  row.outcome = static_cast<Outcome>(outcome);
+  return completed <= 1 && outcome <= static_cast<std::uint8_t>(Outcome::technicalFailure) &&
+         (completed == 1) == (row.outcome != Outcome::running);
+}
+
+}  // namespace calot::recorder

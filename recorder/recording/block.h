@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What one flush writes: rows of every column, as bytes. Internal to this folder.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "recorder/recording/layout.h"
+#include "recorder/recording/reader.h"
+
+namespace calot::recorder {
+
+struct Block {
+  std::vector<std::vector<std::byte>> column;       ///< as Layout::columns
+  std::array<std::uint64_t, streamCount> rows{};    ///< of each stream in this block
+  bool last = false;                                ///< nothing comes after it
+  bool completed = false;                           ///< the attempt ended with it
+  Outcome outcome = Outcome::running;
+
+  /// Room for a whole block, so that filling it does not allocate (but for events and keyframes).
+  explicit Block(const Layout& layout);
+  void clear();
+};
+
+/// Appends a step to a block. The keyframe is appended where one is given; `keyframeBase` counts the words of
+/// /keyframes/bytes before it and moves on.
+void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* keyframe, std::uint64_t& keyframeBase,
+                Block& block);
+
+/// Reads step `at` (of this block) back, but for its events. @return an empty string, or which value is out of range.
+std::string extractStep(const Layout& layout, const Block& block, std::uint64_t at, RecordedStep& out);
+
+/// Packed rows.
+void appendEvent(const Event& event, std::vector<std::byte>& out);
+Event parseEvent(std::span<const std::byte> row);
+
+struct KeyframeRow {
+  std::uint64_t step = 0;
+  std::uint64_t offset = 0;  ///< of its first byte in /keyframes/bytes
+  std::uint64_t stateBytes = 0;
+  std::uint64_t hapticsBytes = 0;
+};
+void appendKeyframeRow(const KeyframeRow& row, std::vector<std::byte>& out);
+KeyframeRow parseKeyframeRow(std::span<const std::byte> row);
+
+void appendStatus(const StatusRow& row, std::vector<std::byte>& out);
+/// @return false if a field is out of range.
+bool parseStatus(std::span<const std::byte> bytes, StatusRow& row);
+
+}  // namespace calot::recorder

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <system_error>
+
+#include "recorder/recording/chain.h"
+#include "recorder/recording/file_writer.h"
+#include "recorder/recording/header.h"
+#include "recorder/recording/types.h"
+
+namespace calot::recorder {
+
+namespace {
+
+using hdf5::Id;
+
+/// Creates objects; every failure is an exception.
+class Builder {
+ public:
+  explicit Builder(const std::filesystem::path& path) : path_(path) {
+    const Id create = hdf5::properties(H5Pcreate(H5P_FILE_CREATE));
+    // Attributes and links stay in the object headers, at the front of the file.
+    H5Pset_attr_phase_change(create.get(), 64, 32);
+    H5Pset_link_phase_change(create.get(), 64, 32);
+    const Id access = hdf5::fileAccess(0);
+    file_ = hdf5::file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create.get(), access.get()));
+    need(file_.valid(), "the file");
+  }
+
+  [[nodiscard]] hid_t root() const { return file_.get(); }
+
+  void group(const std::string& name) const {
+    const Id create = hdf5::properties(H5Pcreate(H5P_GROUP_CREATE));
+    H5Pset_link_phase_change(create.get(), 64, 32);
+    H5Pset_obj_track_times(create.get(), false);
+    const Id g = hdf5::group(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, create.get(), H5P_DEFAULT));
+    need(g.valid(), name);
+  }
+
+  void text(hid_t object, const char* name, const std::string& value) const {
+    const Id type = hdf5::stringType(value.size());
+    std::string padded = value;
+    if (padded.empty()) padded.push_back('\0');
+    attribute(object, name, type.get(), padded.data());
+  }
+
+  void attribute(hid_t object, const char* name, hid_t type, const void* value) const {
+    const Id scalar = hdf5::space(H5Screate(H5S_SCALAR));
+    const Id a = hdf5::attribute(H5Acreate2(object, name, type, scalar.get(), H5P_DEFAULT, H5P_DEFAULT));
+    need(a.valid() && H5Awrite(a.get(), type, value) >= 0, name);
+  }
+
+  /// A data set of fixed size (`growing` false) or that starts empty and grows.
+  [[nodiscard]] Id dataset(const std::string& path, hid_t type, std::vector<hsize_t> shape, hsize_t chunkRows, bool deflate,
+                           bool growing) const {
+    std::vector<hsize_t> most = shape;
+    if (growing) most[0] = H5S_UNLIMITED;
+    std::vector<hsize_t> chunk = shape;
+    chunk[0] = std::max<hsize_t>(1, chunkRows);
+    const Id space = hdf5::space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), most.data()));
+    const Id create = hdf5::properties(H5Pcreate(H5P_DATASET_CREATE));
+    H5Pset_chunk(create.get(), static_cast<int>(chunk.size()), chunk.data());
+    H5Pset_obj_track_times(create.get(), false);
+    if (deflate) {
+      H5Pset_shuffle(create.get());
+      H5Pset_deflate(create.get(), 1);
+    }
+    H5Pset_fletcher32(create.get());
+    Id d = hdf5::dataset(H5Dcreate2(file_.get(), path.c_str(), type, space.get(), H5P_DEFAULT, create.get(), H5P_DEFAULT));
+    need(d.valid(), path);
+    return d;
+  }
+
+  void bytes(const std::string& path, const Asset& asset) const {
+    const Id type = hdf5::elementType(Element::u1);
+    const Id d = dataset(path, type.get(), {asset.bytes.size()}, std::min<hsize_t>(asset.bytes.size(), 65536), true, false);
+    need(asset.bytes.empty() || H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, asset.bytes.data()) >= 0, path);
+    text(d.get(), "name", asset.name);
+    text(d.get(), "sha256", sha256Hex(asset.bytes));
+  }
+
+  void names(const std::string& path, const std::vector<std::string>& names) const {
+    if (names.empty()) return;
+    std::size_t longest = 1;
+    for (const std::string& n : names) longest = std::max(longest, n.size());
+    std::string padded(longest * names.size(), '\0');
+    for (std::size_t i = 0; i < names.size(); ++i) std::memcpy(&padded[i * longest], names[i].data(), names[i].size());
+    const Id type = hdf5::stringType(longest);
+    const Id d = dataset(path, type.get(), {names.size()}, names.size(), false, false);
+    need(H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()) >= 0, path);
+  }
+
+  void need(bool ok, const std::string& what) const {
+    if (ok) return;
+    throw Error(ExitCode::failure, fmt::format("{}: cannot create {}: {}", path_.string(), what, hdf5::reason()));
+  }
+
+  void close() { need(file_.reset(), "the file"); }
+
+ private:
+  std::filesystem::path path_;
+  Id file_;
+};
+
+struct WriteAttributes {
+  const Builder& builder;
+  void operator()(const char* name, const std::string& v) { builder.text(builder.root(), name, v); }
+  void operator()(const char* name, const std::uint32_t& v) { builder.attribute(builder.root(), name, H5T_STD_U32LE, &v); }
+  void operator()(const char* name, const std::uint64_t& v) { builder.attribute(builder.root(), name, H5T_STD_U64LE, &v); }
+  void operator()(const char* name, const std::int64_t& v) { builder.attribute(builder.root(), name, H5T_STD_I64LE, &v); }
+  void operator()(const char* name, const double& v) { builder.attribute(builder.root(), name, H5T_IEEE_F64LE, &v); }
+  template <class T>
+  void constant(const char* name, const T& v) {
+    (*this)(name, v);
+  }
+  template <class T, std::size_t N>
+  void choice(const char* name, const T& v, const std::array<const char*, N>& names) {
+    (*this)(name, std::string(names[static_cast<std::size_t>(v)]));
+  }
+};
+
+StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout) {
+  WriteAttributes attributes{builder};
+  visitAttributes(header, attributes);
+  for (const char* name : {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps",
+                           "/observables", "/observables/left", "/observables/right", "/observables/contact", "/keyframes"}) {
+    builder.group(name);
+  }
+  if (layout.organs > 0) builder.group("/observables/organs");
+  {
+    const Id g = hdf5::group(H5Gopen2(builder.root(), "/observables", H5P_DEFAULT));
+    builder.attribute(g.get(), "version", H5T_STD_U32LE, &header.stepResultVersion);
+  }
+  for (const Column& column : layout.columns) {
+    if (column.width == 0) continue;
+    const Id type = hdf5::elementType(column.element);
+    std::vector<hsize_t> shape{0};
+    if (column.vector) shape.push_back(column.width);
+    const Id d = builder.dataset(column.path, type.get(), shape, column.chunkRows, column.deflate, true);
+  }
+  builder.names("/scene/organs", header.organs);
+  builder.names("/steps/component_names", header.layout.components);
+  std::vector<std::string> fieldNames;
+  std::vector<std::uint32_t> fieldComponents;
+  for (const DigestLayout::Field& f : header.layout.fields) {
+    fieldNames.push_back(f.name);
+    fieldComponents.push_back(f.component);
+  }
+  builder.names("/steps/field_names", fieldNames);
+  if (!fieldComponents.empty()) {
+    const Id d = builder.dataset("/steps/field_component", H5T_STD_U32LE, {fieldComponents.size()}, fieldComponents.size(),
+                                 false, false);
+    builder.need(H5Dwrite(d.get(), H5T_STD_U32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, fieldComponents.data()) >= 0,
+                 "/steps/field_component");
+  }
+
+  StatusRow first;
+  first.chain = chainStart(header);
+  std::vector<std::byte> packed;
+  appendStatus(first, packed);
+  const Id statusType = hdf5::elementType(Element::status);
+  const Id status = builder.dataset("/status", statusType.get(), {1}, 1, false, true);
+  builder.need(H5Dwrite(status.get(), statusType.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) >= 0, "/status");
+
+  builder.bytes("/scene/description", header.assets.front());
+  for (std::size_t i = 1; i < header.assets.size(); ++i) {
+    builder.bytes(fmt::format("/scene/assets/{:03}", i), header.assets[i]);
+  }
+  return first;
+}
+
+}  // namespace
+
+void checkHeader(const AttemptHeader& header) {
+  const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, "recording: " + what); };
+  if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
+  if (header.ticksPerStep < 1 || header.ticksPerStep > largestTicksPerStep) refuse("ticks a step must lie in 1..1000");
+  if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");
+  if (header.organs.size() > largestOrganCount) refuse("more than 32 organs");
+  if (header.layout.components.size() > 4096 || header.layout.fields.size() > 65536) refuse("too many digests");
+  for (const DigestLayout::Field& f : header.layout.fields) {
+    if (f.component >= header.layout.components.size()) refuse("field " + f.name + " names a component that is not there");
+  }
+  if (header.assets.empty()) refuse("no scene");
+  if (header.assets.size() > 1000) refuse("more than 999 assets beside the scene");
+}
+
+StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout) {
+  checkHeader(header);
+  const hdf5::Session session;
+  Builder builder(path);
+  try {
+    const StatusRow first = build(builder, header, layout);
+    builder.close();
+    return first;
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    throw;
+  }
+}
+
+}  // namespace calot::recorder

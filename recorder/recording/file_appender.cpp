@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "recorder/recording/chain.h"
+#include "recorder/recording/file_writer.h"
+#include "recorder/recording/types.h"
+
+namespace calot::recorder {
+
+FileAppender::FileAppender(const std::filesystem::path& path, const Layout& layout, const StatusRow& first, bool swmr)
+    : path_(path), layout_(layout), swmr_(swmr), last_(first) {
+  const hdf5::Session session;
+  const hdf5::Id access = hdf5::fileAccess(0);
+  file_ = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDWR | (swmr ? H5F_ACC_SWMR_WRITE : 0U), access.get()));
+  if (!file_.valid()) fail("cannot be opened for writing");
+  for (const Column& column : layout.columns) {
+    type_.push_back(hdf5::elementType(column.element));
+    if (column.width == 0) {
+      dataset_.emplace_back();
+      continue;
+    }
+    const hdf5::Id how = hdf5::datasetAccess(column.rowBytes() * static_cast<std::size_t>(column.chunkRows));
+    dataset_.push_back(hdf5::dataset(H5Dopen2(file_.get(), column.path.c_str(), how.get())));
+    if (!dataset_.back().valid()) fail("cannot open " + column.path);
+  }
+  statusType_ = hdf5::elementType(Element::status);
+  const hdf5::Id how = hdf5::datasetAccess(statusBytes);
+  status_ = hdf5::dataset(H5Dopen2(file_.get(), "/status", how.get()));
+  if (!status_.valid()) fail("cannot open /status");
+}
+
+FileAppender::~FileAppender() {
+  const hdf5::Session session;
+  dataset_.clear();
+  status_.reset();
+  type_.clear();
+  statusType_.reset();
+  file_.reset();
+}
+
+void FileAppender::fail(const std::string& what) {
+  const std::string why = hdf5::reason();
+  freeze();
+  throw Error(ExitCode::failure, fmt::format("{}: {}: {}", path_.string(), what, why));
+}
+
+void FileAppender::freeze() {
+  // HDF5 goes on trying to write what it holds, until the file is closed, in an order that no longer protects what was
+  // flushed. Its descriptor is pointed elsewhere, so that the file keeps the state in which every flushed row is whole.
+  void* handle = nullptr;
+  if (!file_.valid() || H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &handle) < 0 || handle == nullptr) return;
+  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (nowhere < 0) return;
+  ::dup2(nowhere, *static_cast<int*>(handle));
+  ::close(nowhere);
+}
+
+void FileAppender::writeRows(const hdf5::Id& dataset, const hdf5::Id& type, std::uint64_t first, std::uint64_t rows,
+                             std::uint64_t width, bool vector, const void* data, const std::string& path) {
+  const int rank = vector ? 2 : 1;
+  const std::array<hsize_t, 2> extent{first + rows, width};
+  const std::array<hsize_t, 2> start{first, 0};
+  const std::array<hsize_t, 2> count{rows, width};
+  if (H5Dset_extent(dataset.get(), extent.data()) < 0) fail("cannot extend " + path);
+  const hdf5::Id fileSpace = hdf5::space(H5Dget_space(dataset.get()));
+  const hdf5::Id memorySpace = hdf5::space(H5Screate_simple(rank, count.data(), nullptr));
+  if (H5Sselect_hyperslab(fileSpace.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
+      H5Dwrite(dataset.get(), type.get(), memorySpace.get(), fileSpace.get(), H5P_DEFAULT, data) < 0) {
+    fail("cannot write " + path);
+  }
+}
+
+void FileAppender::append(const Block& block, std::int64_t wallNanoseconds) {
+  StatusRow row;
+  row.ticks = last_.ticks + block.rows[static_cast<std::size_t>(Stream::ticks)];
+  row.steps = last_.steps + block.rows[static_cast<std::size_t>(Stream::steps)];
+  row.events = last_.events + block.rows[static_cast<std::size_t>(Stream::events)];
+  row.keyframes = last_.keyframes + block.rows[static_cast<std::size_t>(Stream::keyframes)];
+  row.keyframeWords = last_.keyframeWords + block.rows[static_cast<std::size_t>(Stream::keyframeWords)];
+  row.completed = block.completed;
+  row.outcome = block.outcome;
+  row.wallNanoseconds = wallNanoseconds;
+  row.chain = chainNext(layout_, last_, block, row);
+  const std::array<std::uint64_t, streamCount> before{last_.ticks, last_.steps, last_.events, last_.keyframes,
+                                                      last_.keyframeWords};
+  const hdf5::Session session;
+  for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
+    const Column& column = layout_.columns[c];
+    const auto stream = static_cast<std::size_t>(column.stream);
+    if (column.width == 0 || block.rows[stream] == 0) continue;
+    writeRows(dataset_[c], type_[c], before[stream], block.rows[stream], column.width, column.vector,
+              block.column[c].data(), column.path);
+  }
+  // The rows must be in the file before the row that vouches for them.
+  if (swmr_ && H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
+  statusBytes_.clear();
+  appendStatus(row, statusBytes_);
+  writeRows(status_, statusType_, statusRows_, 1, 1, false, statusBytes_.data(), "/status");
+  if (swmr_ && H5Dflush(status_.get()) < 0) fail("cannot flush /status");
+  ++statusRows_;
+  last_ = row;
+}
+
+void FileAppender::close() {
+  const hdf5::Session session;
+  for (hdf5::Id& d : dataset_) {
+    if (!d.reset()) fail("cannot close");
+  }
+  if (!status_.reset()) fail("cannot close /status");
+  if (H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
+  if (!file_.reset()) throw Error(ExitCode::failure, fmt::format("{}: cannot be closed: {}", path_.string(), hdf5::reason()));
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The two halves of writing a recording's file: first everything is created, then rows are appended. What appends has
+// no way to create. Internal to this folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "recorder/recording/block.h"
+#include "recorder/recording/hdf5.h"
+#include "recorder/recording/layout.h"
+
+namespace calot::recorder {
+
+/// Creates (or truncates) a file with root attributes, scene, every data set, and the first row of /status; closes it.
+/// @return that first row. @throws Error failure; the file is removed then. Takes the HDF5 session itself.
+StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout);
+
+/// Checks what createRecordingFile asks of a header. @throws Error usage naming the field.
+void checkHeader(const AttemptHeader& header);
+
+/// Appends blocks to a file that createRecordingFile made.
+class FileAppender {
+ public:
+  /// @param first the row that createRecordingFile returned. @param swmr keep the file readable at every moment.
+  /// @throws Error failure.
+  FileAppender(const std::filesystem::path& path, const Layout& layout, const StatusRow& first, bool swmr);
+  ~FileAppender();
+  FileAppender(const FileAppender&) = delete;
+  FileAppender& operator=(const FileAppender&) = delete;
+
+  /// Writes a block's rows and flushes them, then the row of /status that vouches for them. `wallNanoseconds` is the
+  /// row's time. @throws Error failure; from then on nothing changes the file any more.
+  void append(const Block& block, std::int64_t wallNanoseconds);
+
+  /// Closes the file. @throws Error failure.
+  void close();
+
+  [[nodiscard]] const StatusRow& last() const { return last_; }
+
+ private:
+  void writeRows(const hdf5::Id& dataset, const hdf5::Id& type, std::uint64_t first, std::uint64_t rows,
+                 std::uint64_t width, bool vector, const void* data, const std::string& path);
+  void freeze();
+  [[noreturn]] void fail(const std::string& what);
+
+  std::filesystem::path path_;
+  const Layout& layout_;
+  bool swmr_ = false;
+  StatusRow last_;
+  std::uint64_t statusRows_ = 1;
+  hdf5::Id file_;
+  std::vector<hdf5::Id> type_, dataset_;
+  hdf5::Id statusType_, status_;
+  std::vector<std::byte> statusBytes_;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Thin layer over the HDF5 C API: handles that close themselves, one lock for the process, errors as text. Internal to
+// this folder.
+#pragma once
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "recorder/errors.h"
+
+namespace calot::recorder::hdf5 {
+
+/// One HDF5 identifier, closed by the function that fits its kind.
+class Id {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Id() = default;
+  Id(hid_t id, Close close) : id_(id), close_(close) {}
+  Id(Id&& o) noexcept : id_(std::exchange(o.id_, -1)), close_(o.close_) {}
+  Id& operator=(Id&& o) noexcept {
+    if (this != &o) {
+      reset();
+      id_ = std::exchange(o.id_, -1);
+      close_ = o.close_;
+    }
+    return *this;
+  }
+  Id(const Id&) = delete;
+  Id& operator=(const Id&) = delete;
+  ~Id() { reset(); }
+
+  [[nodiscard]] hid_t get() const { return id_; }
+  [[nodiscard]] bool valid() const { return id_ >= 0; }
+  /// Closes now. @return false if closing failed (for a file: what was not yet written could not be).
+  bool reset() {
+    const hid_t id = std::exchange(id_, -1);
+    return id < 0 || close_(id) >= 0;
+  }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+inline Id file(hid_t id) { return {id, H5Fclose}; }
+inline Id group(hid_t id) { return {id, H5Gclose}; }
+inline Id dataset(hid_t id) { return {id, H5Dclose}; }
+inline Id space(hid_t id) { return {id, H5Sclose}; }
+inline Id type(hid_t id) { return {id, H5Tclose}; }
+inline Id attribute(hid_t id) { return {id, H5Aclose}; }
+inline Id properties(hid_t id) { return {id, H5Pclose}; }
+
+/// Held while this folder calls HDF5: it keeps HDF5's own error printing off, and a fork never finds the library in
+/// the middle of something. Not recursive.
+class Session {
+ public:
+  Session();
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
+/// The process-wide lock under Session.
+std::mutex& processLock();
+
+/// Why the last HDF5 call of this thread failed: "bad checksum", the system's message ("No space left on device"), or
+/// the innermost description.
+std::string reason();
+
+/// Message of a damaged file: FILE: PLACE: WHAT.
+Error damaged(const std::filesystem::path& file, const std::string& place, const std::string& what);
+
+}  // namespace calot::recorder::hdf5

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace calot::recorder {
+
+std::size_t elementBytes(Element element) {
+  switch (element) {
+    case Element::u1: return 1;
+    case Element::u2: return 2;
+    case Element::u4:
+    case Element::f4: return 4;
+    case Element::u8:
+    case Element::i8:
+    case Element::f8: return 8;
+    case Element::event: return eventBytes;
+    case Element::keyframe: return keyframeBytes;
+    case Element::status: return statusBytes;
+  }
+  return 0;
+}
+
+namespace {
+
+template <class T>
+struct Stored;
+template <>
+struct Stored<bool> { static constexpr Element element = Element::u1; };
+template <>
+struct Stored<std::uint8_t> { static constexpr Element element = Element::u1; };
+template <>
+struct Stored<InstrumentKind> { static constexpr Element element = Element::u1; };
+template <>
+struct Stored<std::uint32_t> { static constexpr Element element = Element::u4; };
+template <>
+struct Stored<std::uint64_t> { static constexpr Element element = Element::u8; };
+template <>
+struct Stored<std::int64_t> { static constexpr Element element = Element::i8; };
+template <>
+struct Stored<float> { static constexpr Element element = Element::f4; };
+template <>
+struct Stored<double> { static constexpr Element element = Element::f8; };
+
+/// Makes a column of every visited value.
+struct Collect {
+  Layout& layout;
+  Stream stream = Stream::ticks;
+
+  template <class T>
+  void operator()(const char* folder, const char* name, const char* unit, const T&) { add<T>(folder, name, unit, false, 1); }
+  void operator()(const char* folder, const char* name, const char* unit, const Vec3&) { add<double>(folder, name, unit, true, 3); }
+  void operator()(const char* folder, const char* name, const char* unit, const Quat&) { add<double>(folder, name, unit, true, 4); }
+  template <class T>
+  void outside(const char* folder, const char* name, const char* unit, const T&) {
+    add<T>(folder, name, unit, false, 1);
+    layout.columns.back().chained = false;
+  }
+  template <class T>
+  void list(const char* folder, const char* name, const char* unit, const std::vector<T>&, std::size_t width) {
+    add<T>(folder, name, unit, true, width);
+  }
+  template <class T>
+  void organs(const char* folder, const char* name, const char* unit, const std::vector<OrganResult>&, T OrganResult::*) {
+    add<T>(folder, name, unit, true, layout.organs);
+  }
+
+ private:
+  template <class T>
+  void add(const char* folder, const char* name, const char* unit, bool vector, std::size_t width) {
+    Column c;
+    c.path = fmt::format("{}/{}", folder, name);
+    c.element = Stored<T>::element;
+    c.stream = stream;
+    c.vector = vector;
+    c.width = width;
+    c.chunkRows = stream == Stream::ticks ? layout.ticksPerBlock : layout.stepsPerBlock;
+    c.unit = std::string(unit);
+    layout.columns.push_back(std::move(c));
+  }
+};
+
+}  // namespace
+
+Layout::Layout(const AttemptHeader& header)
+    : ticksPerStep(header.ticksPerStep),
+      organs(header.organs.size()),
+      components(header.layout.components.size()),
+      fields(header.layout.fields.size()) {
+  stepsPerBlock = std::max<std::uint64_t>(1, 250 / ticksPerStep);
+  ticksPerBlock = stepsPerBlock * ticksPerStep;
+  // About a second, and at the end of a block.
+  const double blockSeconds = static_cast<double>(ticksPerBlock) * header.tickSeconds;
+  keyframeInterval = stepsPerBlock * static_cast<std::uint64_t>(std::clamp(std::floor(1.0 / blockSeconds + 0.5), 1.0, 1e6));
+
+  Collect collect{*this};
+  TickSamples samples;
+  TickOutcome outcome;
+  visitTick(samples, outcome, collect);
+  tickColumns = columns.size();
+  collect.stream = Stream::steps;
+  StateDigest digest;
+  float lateness = 0.0F;
+  StepResult result;
+  visitStep(digest, lateness, result, collect);
+  stepColumns = columns.size() - tickColumns;
+
+  const auto irregular = [this](const char* path, Element element, Stream stream, std::uint64_t chunkRows, bool deflate) {
+    Column c;
+    c.path = std::string(path);
+    c.element = element;
+    c.stream = stream;
+    c.chunkRows = chunkRows;
+    c.deflate = deflate;
+    columns.push_back(std::move(c));
+    return columns.size() - 1;
+  };
+  events = irregular("/events", Element::event, Stream::events, 32, false);
+  keyframeIndex = irregular("/keyframes/index", Element::keyframe, Stream::keyframes, 16, false);
+  keyframeWords = irregular("/keyframes/bytes", Element::u8, Stream::keyframeWords, keyframeChunkWords, true);
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The columns of a recording, listed once (schemas/recording.md): data sets, writer, reader, recovery, export and chain
+// all run over this list. Internal to this folder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "recorder/identity.h"
+#include "recorder/observer.h"
+
+namespace calot::recorder {
+
+inline constexpr std::uint32_t formatVersion = 1;
+inline constexpr const char* formatName = "calot-recording";
+inline constexpr std::uint32_t largestTicksPerStep = 1000;
+inline constexpr std::size_t largestOrganCount = 32;  // HandResult::touching has a bit for each
+inline constexpr std::uint64_t keyframeChunkWords = 8192;
+
+/// Stored types, all little-endian. The last three are packed compounds.
+enum class Element : std::uint8_t { u1, u2, u4, u8, i8, f4, f8, event, keyframe, status };
+
+/// Which count of /status a data set's rows follow.
+enum class Stream : std::uint8_t { ticks, steps, events, keyframes, keyframeWords };
+inline constexpr std::size_t streamCount = 5;
+
+std::size_t elementBytes(Element element);
+
+struct Column {
+  std::string path;
+  Element element = Element::f8;
+  Stream stream = Stream::ticks;
+  bool vector = false;          ///< shape (N, width) rather than (N)
+  std::uint64_t width = 1;      ///< elements a row; 0: the data set is absent
+  std::uint64_t chunkRows = 1;
+  bool deflate = true;          ///< shuffle and deflate below the checksum
+  bool chained = true;          ///< part of the content chain
+  std::string unit;             ///< of the exported values; empty: none
+
+  [[nodiscard]] std::size_t rowBytes() const { return elementBytes(element) * static_cast<std::size_t>(width); }
+};
+
+/// Packed rows of the compound data sets.
+inline constexpr std::size_t eventBytes = 45;
+inline constexpr std::size_t keyframeBytes = 32;
+inline constexpr std::size_t statusBytes = 82;
+
+struct Layout {
+  std::vector<Column> columns;  ///< in the order of the chain: ticks, steps, events, keyframe index, keyframe bytes
+  std::size_t tickColumns = 0;  ///< the first ones
+  std::size_t stepColumns = 0;  ///< the next ones
+  std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
+  std::uint32_t ticksPerStep = 10;
+  std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
+  std::uint64_t ticksPerBlock = 250;
+  std::uint64_t keyframeInterval = 100;  ///< steps
+  std::size_t organs = 0, components = 0, fields = 0;
+
+  explicit Layout(const AttemptHeader& header);
+};
+
+/// Lists what one tick stores. A visitor is called with (folder, name, unit, value); `outside` is for what the chain
+/// leaves out.
+template <class Samples, class Outcome, class Visitor>
+void visitTick(Samples& s, Outcome& o, Visitor& visit) {
+  static constexpr std::array<const char*, handCount> folder{"/ticks/left", "/ticks/right"};
+  for (std::size_t h = 0; h < folder.size(); ++h) {
+    visit(folder[h], "position", "m", s.hand[h].position);
+    visit(folder[h], "orientation", "", s.hand[h].orientation);
+    visit(folder[h], "instrument", "", s.hand[h].instrument);
+    visit(folder[h], "jaw", "rad", s.hand[h].jaw);
+    visit(folder[h], "buttons", "", s.hand[h].buttons);
+    visit(folder[h], "valid", "", s.hand[h].valid);
+    visit(folder[h], "contact_set", "", o.hand[h].contactSet);
+    visit(folder[h], "force", "N", o.hand[h].force);
+    visit(folder[h], "torque", "N m", o.hand[h].torque);
+  }
+  visit("/camera", "position", "m", s.camera.position);
+  visit("/camera", "orientation", "", s.camera.orientation);
+  visit.outside("/ticks", "lateness", "s", o.lateness);
+}
+
+/// Lists what one step stores, but for its events.
+template <class Digest, class Lateness, class Result, class Visitor>
+void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
+  visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
+  visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);
+  visit.outside("/steps", "lateness", "s", lateness);
+  static constexpr std::array<const char*, handCount> folder{"/observables/left", "/observables/right"};
+  for (std::size_t h = 0; h < folder.size(); ++h) {
+    visit(folder[h], "instrument", "", r.hand[h].instrument);
+    visit(folder[h], "tip_real", "m", r.hand[h].tipReal);
+    visit(folder[h], "tip_simulated", "m", r.hand[h].tipSimulated);
+    visit(folder[h], "orientation", "", r.hand[h].orientation);
+    visit(folder[h], "jaw", "rad", r.hand[h].jaw);
+    visit(folder[h], "insertion", "m", r.hand[h].insertion);
+    visit(folder[h], "contact_force", "N", r.hand[h].contactForce);
+    visit(folder[h], "touching", "", r.hand[h].touching);
+    visit.list(folder[h], "organ_force", "N", r.hand[h].organForce, visit.layout.organs);
+  }
+  static constexpr const char* organs = "/observables/organs";
+  visit.organs(organs, "volume", "m^3", r.organ, &OrganResult::volume);
+  visit.organs(organs, "largest_displacement", "m", r.organ, &OrganResult::largestDisplacement);
+  visit.organs(organs, "largest_speed", "m/s", r.organ, &OrganResult::largestSpeed);
+  visit.organs(organs, "residual", "", r.organ, &OrganResult::residual);
+  visit.organs(organs, "iterations", "", r.organ, &OrganResult::iterations);
+  visit.organs(organs, "asleep", "", r.organ, &OrganResult::asleep);
+  static constexpr const char* contact = "/observables/contact";
+  visit(contact, "rows", "", r.contact.rows);
+  visit(contact, "iterations", "", r.contact.iterations);
+  visit(contact, "residual", "m", r.contact.residual);
+  visit(contact, "largest_depth", "m", r.contact.largestDepth);
+  visit("/observables", "misses", "", r.misses);
+}
+
+}  // namespace calot::recorder

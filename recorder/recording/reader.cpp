@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "recorder/recording/chain.h"
+#include "recorder/recording/guarded.h"
+#include "recorder/recording/header_reader.h"
+
+namespace calot::recorder {
+
+namespace {
+
+std::uint64_t sizeOf(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
+}
+
+}  // namespace
+
+struct Recording::Impl {
+  std::filesystem::path path;
+  std::uint64_t fileBytes = 0;
+  hdf5::Id file;
+  AttemptHeader header;
+  std::unique_ptr<Layout> layout;
+  std::unique_ptr<ColumnReader> columns;
+  std::vector<StatusRow> status;
+  std::vector<KeyframeRow> keyframes;
+  std::vector<std::uint64_t> keyframeSteps;
+
+  std::unique_ptr<Block> block;
+  std::size_t blockRow = 0;  ///< row of /status whose block is held; 0: none
+  std::vector<std::vector<Event>> events;  ///< of each step of the block
+  RecordedStep current;
+
+  Impl(const std::filesystem::path& from, Access access) : path(from) {
+    const hdf5::Session session;
+    file = openForReading(path, access);
+    fileBytes = sizeOf(path);
+    header = readHeader(path, file, fileBytes);
+    layout = std::make_unique<Layout>(header);
+    columns = std::make_unique<ColumnReader>(path, file, *layout, fileBytes);
+    for (std::uint64_t row = 0; row < columns->statusRows(); ++row) {
+      status.push_back(columns->readStatus(row));
+      if (row > 0) columns->checkFollows(status[status.size() - 2], status.back(), row);
+    }
+    readKeyframeIndex();
+    block = std::make_unique<Block>(*layout);
+  }
+
+  ~Impl() {
+    const hdf5::Session session;
+    columns.reset();
+    file.reset();
+  }
+
+  void readKeyframeIndex() {
+    const StatusRow& last = status.back();
+    std::vector<std::byte> bytes;
+    columns->readRows(layout->keyframeIndex, 0, last.keyframes, bytes);
+    const std::uint64_t total = last.keyframeWords * 8;
+    for (std::size_t i = 0; i < last.keyframes; ++i) {
+      const KeyframeRow k = parseKeyframeRow(std::span(bytes).subspan(i * keyframeBytes));
+      if (k.step >= last.steps || (i > 0 && k.step <= keyframes.back().step)) {
+        throw hdf5::damaged(path, "/keyframes/index", fmt::format("row {} is out of order", i));
+      }
+      if (k.offset > total || k.stateBytes > total - k.offset || k.hapticsBytes > total - k.offset - k.stateBytes) {
+        throw hdf5::damaged(path, "/keyframes/index", fmt::format("row {} points outside /keyframes/bytes", i));
+      }
+      keyframes.push_back(k);
+      keyframeSteps.push_back(k.step);
+    }
+  }
+
+  void load(std::size_t row) {
+    blockRow = 0;
+    const StatusRow& before = status[row - 1];
+    columns->readBlock(before, status[row], false, *block);
+    events.assign(static_cast<std::size_t>(status[row].steps - before.steps), {});
+    const std::vector<std::byte>& packed = block->column[layout->events];
+    for (std::uint64_t i = 0; i < status[row].events - before.events; ++i) {
+      const Event e = parseEvent(std::span(packed).subspan(static_cast<std::size_t>(i) * eventBytes));
+      if (e.step < before.steps || e.step >= status[row].steps) {
+        throw hdf5::damaged(path, "/events", fmt::format("row {} is of a step outside its flush", before.events + i));
+      }
+      events[static_cast<std::size_t>(e.step - before.steps)].push_back(e);
+    }
+    blockRow = row;
+  }
+};
+
+Recording::Recording(const std::filesystem::path& path, Access access) : impl_(std::make_unique<Impl>(path, access)) {}
+Recording::~Recording() = default;
+Recording::Recording(Recording&&) noexcept = default;
+Recording& Recording::operator=(Recording&&) noexcept = default;
+
+const std::filesystem::path& Recording::path() const { return impl_->path; }
+const AttemptHeader& Recording::header() const { return impl_->header; }
+const std::vector<StatusRow>& Recording::status() const { return impl_->status; }
+bool Recording::complete() const { return impl_->status.back().completed; }
+Outcome Recording::outcome() const { return impl_->status.back().outcome; }
+std::uint64_t Recording::stepCount() const { return impl_->status.back().steps; }
+std::uint64_t Recording::tickCount() const { return impl_->status.back().ticks; }
+std::uint64_t Recording::eventCount() const { return impl_->status.back().events; }
+double Recording::seconds() const { return static_cast<double>(tickCount()) * impl_->header.tickSeconds; }
+const std::vector<std::uint64_t>& Recording::keyframeSteps() const { return impl_->keyframeSteps; }
+
+const RecordedStep& Recording::step(std::uint64_t n) {
+  Impl& impl = *impl_;
+  assert(n < stepCount());
+  const auto after = std::upper_bound(impl.status.begin(), impl.status.end(), n,
+                                      [](std::uint64_t step, const StatusRow& row) { return step < row.steps; });
+  const auto row = static_cast<std::size_t>(after - impl.status.begin());
+  if (row != impl.blockRow) {
+    const hdf5::Session session;
+    impl.load(row);
+  }
+  const std::uint64_t first = impl.status[row - 1].steps;
+  impl.current.step = n;
+  const std::string fault = extractStep(*impl.layout, *impl.block, n - first, impl.current);
+  if (!fault.empty()) throw Error(ExitCode::damaged, fmt::format("{}: {}", impl.path.string(), fault));
+  impl.current.result.events = impl.events[static_cast<std::size_t>(n - first)];
+  return impl.current;
+}
+
+std::optional<std::size_t> Recording::keyframeAtOrBefore(std::uint64_t step) const {
+  const std::vector<std::uint64_t>& steps = impl_->keyframeSteps;
+  const auto after = std::upper_bound(steps.begin(), steps.end(), step);
+  if (after == steps.begin()) return std::nullopt;
+  return static_cast<std::size_t>(after - steps.begin()) - 1;
+}
+
+Keyframe Recording::keyframe(std::size_t index) {
+  const Impl& impl = *impl_;
+  const KeyframeRow& k = impl.keyframes.at(index);
+  const std::uint64_t firstWord = k.offset / 8;
+  const std::uint64_t endWord = (k.offset + k.stateBytes + k.hapticsBytes + 7) / 8;
+  std::vector<std::byte> words;
+  {
+    const hdf5::Session session;
+    impl.columns->readRows(impl.layout->keyframeWords, firstWord, endWord - firstWord, words);
+  }
+  const auto state = std::span(words).subspan(static_cast<std::size_t>(k.offset % 8), static_cast<std::size_t>(k.stateBytes));
+  const auto haptics = std::span(words).subspan(static_cast<std::size_t>(k.offset % 8 + k.stateBytes),
+                                                static_cast<std::size_t>(k.hapticsBytes));
+  return {k.step, {state.begin(), state.end()}, {haptics.begin(), haptics.end()}};
+}
+
+ChainVerdict Recording::verifyChain() {
+  Impl& impl = *impl_;
+  ChainVerdict verdict;
+  if (chainStart(impl.header) != impl.status.front().chain) {
+    return {false, 0, 0, 0, "the content chain is broken at its start: root attributes, scene or names were changed"};
+  }
+  Block block(*impl.layout);
+  for (std::size_t row = 1; row < impl.status.size(); ++row) {
+    const StatusRow& before = impl.status[row - 1];
+    const StatusRow& after = impl.status[row];
+    {
+      const hdf5::Session session;
+      impl.columns->readBlock(before, after, true, block);
+    }
+    if (chainNext(*impl.layout, before, block, after) != after.chain) {
+      return {false, row, before.steps, after.steps,
+              fmt::format("the content chain is broken at flush {} (steps {} to {}, from {:.3f} s on): what was recorded there "
+                          "was changed",
+                          row, before.steps, after.steps - 1, static_cast<double>(before.ticks) * impl.header.tickSeconds)};
+    }
+  }
+  return verdict;
+}
+
+ChainVerdict probe(const std::filesystem::path& path) {
+  const std::string answer = runGuarded(path.string(), [&path] {
+    Recording recording(path);
+    for (std::uint64_t n = 0; n < recording.stepCount(); ++n) recording.step(n);
+    const ChainVerdict v = recording.verifyChain();
+    return fmt::format("{} {} {} {} {}", v.intact ? 1 : 0, v.flush, v.firstStep, v.endStep, v.what);
+  });
+  ChainVerdict verdict;
+  std::size_t at = 0;
+  const auto number = [&] {
+    std::uint64_t value = 0;
+    for (; at < answer.size() && answer[at] != ' '; ++at) value = value * 10 + static_cast<std::uint64_t>(answer[at] - '0');
+    ++at;
+    return value;
+  };
+  verdict.intact = number() == 1;
+  verdict.flush = number();
+  verdict.firstStep = number();
+  verdict.endStep = number();
+  verdict.what = at < answer.size() ? answer.substr(at) : "";
+  return verdict;
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recorder/identity.h"
+#include "recorder/observer.h"
+
+namespace calot::recorder {
+
+/// One row of /status: what a flush vouches for.
+struct StatusRow {
+  std::uint64_t ticks = 0, steps = 0, events = 0, keyframes = 0;
+  std::uint64_t keyframeWords = 0;  ///< 8-byte words of /keyframes/bytes
+  bool completed = false;
+  Outcome outcome = Outcome::running;
+  std::int64_t wallNanoseconds = 0;  ///< since 1970-01-01 UTC, when the row was written; outside the chain
+  std::array<std::uint8_t, 32> chain{};
+};
+
+/// One step as recorded.
+struct RecordedStep {
+  std::uint64_t step = 0;
+  std::vector<TickSamples> samples;  ///< ticksPerStep of them
+  std::vector<TickOutcome> ticks;    ///< as many
+  StepResult result;                 ///< with its events
+  StateDigest digest;
+  float lateness = 0.0F;
+};
+
+/// Does the content chain, computed anew from what the file holds, agree with its /status?
+struct ChainVerdict {
+  bool intact = true;
+  std::uint64_t flush = 0;     ///< first row of /status that disagrees; 0: header or scene
+  std::uint64_t firstStep = 0; ///< steps [firstStep, endStep) belong to that flush
+  std::uint64_t endStep = 0;
+  std::string what;            ///< one phrase for a message; empty if intact
+};
+
+enum class Access {
+  settled,  ///< nobody writes the file any more: closed, or left behind by a killed writer
+  live,     ///< a writer may be at work: metadata that is being written is tried again
+};
+
+/// A recording, opened for reading. Nothing in the file is believed before it was checked; only rows that the last row
+/// of /status vouches for are read. Everything throws Error: damaged (4) naming file and data set for what cannot be
+/// read, has the wrong type or shape, a bad checksum, or a value that no source makes (NaN, no unit quaternion within
+/// 1e-3, an unknown instrument).
+///
+/// One thread at a time uses one object. Objects and writers of one process take turns inside (HDF5 is one lock).
+class Recording {
+ public:
+  /// Reads and checks the header, scene (SHA-256 of each asset), shape of every data set and /status.
+  explicit Recording(const std::filesystem::path& path, Access access = Access::settled);
+  ~Recording();
+  Recording(Recording&&) noexcept;
+  Recording& operator=(Recording&&) noexcept;
+
+  [[nodiscard]] const std::filesystem::path& path() const;
+  [[nodiscard]] const AttemptHeader& header() const;
+  [[nodiscard]] const std::vector<StatusRow>& status() const;  ///< at least one row
+
+  /// True if the attempt ended and all of it is here.
+  [[nodiscard]] bool complete() const;
+  [[nodiscard]] Outcome outcome() const;  ///< running if not complete
+  [[nodiscard]] std::uint64_t stepCount() const;
+  [[nodiscard]] std::uint64_t tickCount() const;
+  [[nodiscard]] std::uint64_t eventCount() const;
+  [[nodiscard]] double seconds() const;  ///< of simulated time
+
+  /// Step n. Cheap going forward: rows are read and checked a flush at a time. The reference holds until the next call.
+  /// @pre n < stepCount()
+  const RecordedStep& step(std::uint64_t n);
+
+  /// Steps after which there is a keyframe, rising.
+  [[nodiscard]] const std::vector<std::uint64_t>& keyframeSteps() const;
+  /// Index into keyframeSteps of the last keyframe at or before a step, if there is one.
+  [[nodiscard]] std::optional<std::size_t> keyframeAtOrBefore(std::uint64_t step) const;
+  [[nodiscard]] Keyframe keyframe(std::size_t index);
+
+  /// Computes the chain anew over the whole file. Throws where data cannot be read; a disagreement is a verdict.
+  ChainVerdict verifyChain();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Opens a file from strangers in a child process, reads every row of it and computes its chain there: a crash or a
+/// hang of the reading library ends the child only. @return the chain's verdict. @throws Error as Recording does, and
+/// damaged when the child crashed or took too long. After it returned, opening the file in this process is safe.
+ChainVerdict probe(const std::filesystem::path& path);
+
+}  // namespace calot::recorder

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/recover.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <system_error>
+
+#include "recorder/recording/chain.h"
+#include "recorder/recording/file_writer.h"
+#include "recorder/recording/guarded.h"
+#include "recorder/recording/header_reader.h"
+#include "recorder/recording/publish.h"
+
+namespace calot::recorder {
+
+namespace {
+
+/// A closed file whose end is missing is not opened by HDF5, though all that lies before the cut is as it was: object
+/// headers stand at the front, and chunks and their index follow in the order of time. So a copy is made as long as the
+/// file once was, with nothing (a hole) in place of what is lost. What is read from there fails its checksum or the
+/// chain. @return the copy, or the file itself where it is not cut off or was never closed.
+std::filesystem::path padded(const std::filesystem::path& path, std::uint64_t fileBytes, const std::filesystem::path& scratch) {
+  constexpr std::uint64_t longest = std::uint64_t{1} << 40U;
+  const Superblock superblock = readSuperblock(path);
+  if (superblock.writing || superblock.endOfFile <= fileBytes || superblock.endOfFile > longest) return path;
+  std::error_code error;
+  std::filesystem::copy_file(path, scratch, std::filesystem::copy_options::overwrite_existing, error);
+  if (!error) std::filesystem::resize_file(scratch, superblock.endOfFile, error);
+  if (error) throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", scratch.string(), error.message()));
+  return scratch;
+}
+
+/// What can still be read of a file, front to back.
+class Salvage {
+ public:
+  /// @param scratch a file to work on where the input itself cannot be opened.
+  Salvage(const std::filesystem::path& path, const std::filesystem::path& scratch) : path_(path) {
+    const hdf5::Session session;
+    const std::uint64_t fileBytes = std::filesystem::file_size(path);
+    const std::filesystem::path readable = padded(path, fileBytes, scratch);
+    if (readable != path) cut_ = fmt::format(" (cut off: {} of {} bytes are there)", fileBytes, std::filesystem::file_size(readable));
+    file_ = openForReading(readable, Access::settled);
+    header_ = readHeader(path, file_, fileBytes);
+    layout_ = std::make_unique<Layout>(header_);
+    columns_ = std::make_unique<ColumnReader>(path, file_, *layout_, fileBytes);
+    before_ = columns_->readStatus(0);
+    if (chainStart(header_) != before_.chain) {
+      throw hdf5::damaged(path, "/status", "the content chain does not fit header and scene");
+    }
+  }
+  ~Salvage() {
+    const hdf5::Session session;
+    columns_.reset();
+    file_.reset();
+  }
+  Salvage(const Salvage&) = delete;
+  Salvage& operator=(const Salvage&) = delete;
+
+  [[nodiscard]] const AttemptHeader& header() const { return header_; }
+  [[nodiscard]] const Layout& layout() const { return *layout_; }
+
+  /// Reads the next flush. @return false at the end; `lost` then says why it is the end, if it came too early.
+  bool next(Block& block, StatusRow& after, std::string& lost) {
+    if (row_ >= columns_->statusRows()) return false;
+    const hdf5::Session session;
+    try {
+      after = columns_->readStatus(row_);
+      columns_->checkFollows(before_, after, row_);
+      columns_->readBlock(before_, after, true, block);
+      if (chainNext(*layout_, before_, block, after) != after.chain) {
+        lost = fmt::format("{}: the content chain is broken at flush {}{}", path_.string(), row_, cut_);
+        return false;
+      }
+    } catch (const Error& e) {
+      lost = e.what() + cut_;
+      return false;
+    }
+    before_ = after;
+    ++row_;
+    return true;
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::string cut_;
+  hdf5::Id file_;
+  AttemptHeader header_;
+  std::unique_ptr<Layout> layout_;
+  std::unique_ptr<ColumnReader> columns_;
+  StatusRow before_;
+  std::uint64_t row_ = 1;
+};
+
+Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& temporary,
+                  const std::filesystem::path& scratch) {
+  readSuperblock(in);  // no file, or none of ours: there is nothing to speak of saving
+  std::unique_ptr<Salvage> source;
+  try {
+    source = std::make_unique<Salvage>(in, scratch);
+  } catch (const Error& e) {
+    throw Error(e.code(), fmt::format("nothing can be saved: {}", e.what()));
+  }
+  const StatusRow first = createRecordingFile(temporary, source->header(), source->layout());
+  FileAppender out(temporary, source->layout(), first, false);
+  Block block(source->layout());
+  StatusRow row;
+  Recovered result;
+  while (source->next(block, row, result.lost)) out.append(block, row.wallNanoseconds);
+  out.close();
+  result.steps = out.last().steps;
+  result.ticks = out.last().ticks;
+  result.complete = out.last().completed;
+  if (result.steps == 0 && !result.lost.empty()) {
+    throw Error(ExitCode::damaged, fmt::format("nothing can be saved: {}", result.lost));
+  }
+  return result;
+}
+
+}  // namespace
+
+Recovered recover(const std::filesystem::path& in, const std::filesystem::path& out, bool force) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(in, out, ignored)) {
+    throw Error(ExitCode::usage, fmt::format("{}: is the input; name another output", out.string()));
+  }
+  refuseExisting(out, force);
+  const std::filesystem::path temporary = temporaryName(out);
+  std::filesystem::path scratch = out;
+  scratch += ".cut.part";
+  try {
+    const std::string answer = runGuarded(in.string(), [&] {
+      const Recovered r = rewrite(in, temporary, scratch);
+      return fmt::format("{} {} {} {}", r.steps, r.ticks, r.complete ? 1 : 0, r.lost);
+    });
+    Recovered result;
+    std::size_t at = 0;
+    const auto number = [&] {
+      std::size_t used = 0;
+      const std::uint64_t value = std::stoull(answer.substr(at), &used);
+      at += used + 1;
+      return value;
+    };
+    result.steps = number();
+    result.ticks = number();
+    result.complete = number() == 1;
+    result.lost = at < answer.size() ? answer.substr(at) : "";
+    std::filesystem::remove(scratch, ignored);
+    publish(temporary, out, force);
+    return result;
+  } catch (...) {
+    std::filesystem::remove(temporary, ignored);
+    std::filesystem::remove(scratch, ignored);
+    throw;
+  }
+}
+
+}  // namespace calot::recorder

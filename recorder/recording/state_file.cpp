@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/state_file.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "recorder/recording/guarded.h"
+#include "recorder/recording/hdf5.h"
+#include "sim/math/fields.h"
+
+namespace calot::recorder {
+
+namespace {
+
+constexpr const char* formatName = "calot-state";
+
+void writeAttribute(hid_t at, const char* name, std::uint64_t value) {
+  const hdf5::Id space = hdf5::space(H5Screate(H5S_SCALAR));
+  const hdf5::Id attribute = hdf5::attribute(H5Acreate2(at, name, H5T_STD_U64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT));
+  H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &value);
+}
+
+template <class T>
+bool writeArray(hid_t at, const char* name, const std::vector<T>& values, hid_t fileType, hid_t memoryType) {
+  const hsize_t size = values.size();
+  const hdf5::Id space = hdf5::space(H5Screate_simple(1, &size, nullptr));
+  const hdf5::Id properties = hdf5::properties(H5Pcreate(H5P_DATASET_CREATE));
+  if (size > 0) {
+    const hsize_t chunk = std::min<hsize_t>(size, 65536);
+    H5Pset_chunk(properties.get(), 1, &chunk);
+    H5Pset_fletcher32(properties.get());
+  }
+  const hdf5::Id set = hdf5::dataset(H5Dcreate2(at, name, fileType, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
+  return set.valid() && (size == 0 || H5Dwrite(set.get(), memoryType, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+}
+
+template <class T>
+void readArray(const std::filesystem::path& file, const std::string& place, hid_t set, hid_t memoryType, std::vector<T>& out) {
+  const hdf5::Id space = hdf5::space(H5Dget_space(set));
+  hsize_t size = 0;
+  if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &size, nullptr) < 0 ||
+      size > (std::uint64_t{1} << 28U)) {
+    throw hdf5::damaged(file, place, "is no list of numbers");
+  }
+  out.resize(size);
+  if (size > 0 && H5Dread(set, memoryType, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
+    throw hdf5::damaged(file, place, hdf5::reason());
+  }
+}
+
+std::uint64_t readAttribute(const std::filesystem::path& file, hid_t at, const char* name) {
+  const hdf5::Id attribute = hdf5::attribute(H5Aopen(at, name, H5P_DEFAULT));
+  std::uint64_t value = 0;
+  const hdf5::Id space = hdf5::space(attribute.valid() ? H5Aget_space(attribute.get()) : -1);
+  if (!attribute.valid() || H5Sget_simple_extent_npoints(space.get()) != 1 ||
+      H5Aread(attribute.get(), H5T_NATIVE_UINT64, &value) < 0) {
+    throw hdf5::damaged(file, name, "this attribute is missing: is this a state that `calot state` wrote?");
+  }
+  return value;
+}
+
+/// Reads everything; runs in the child.
+StateFile readHere(const std::filesystem::path& path) {
+  const hdf5::Session session;
+  const hdf5::Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (!file.valid()) throw hdf5::damaged(path, "/", "is no state file that can be opened (" + hdf5::reason() + ")");
+  StateFile state;
+  readAttribute(path, file.get(), formatName);
+  state.step = readAttribute(path, file.get(), "step");
+  state.simulationVersion = static_cast<std::uint32_t>(readAttribute(path, file.get(), "simulation_version"));
+  const std::uint64_t count = readAttribute(path, file.get(), "fields");
+  if (count > 100000) throw hdf5::damaged(path, "fields", "counts more than there can be");
+  for (std::uint64_t f = 0; f < count; ++f) {
+    const std::string group = fmt::format("/{:05}", f);
+    const hdf5::Id open = hdf5::group(H5Gopen2(file.get(), group.c_str(), H5P_DEFAULT));
+    char name[256] = {};
+    if (!open.valid() || H5Lget_name_by_idx(open.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, name, sizeof name, H5P_DEFAULT) < 0) {
+      throw hdf5::damaged(path, group, "is missing");
+    }
+    const hdf5::Id component = hdf5::group(H5Gopen2(open.get(), name, H5P_DEFAULT));
+    char field[256] = {};
+    if (!component.valid() ||
+        H5Lget_name_by_idx(component.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, field, sizeof field, H5P_DEFAULT) < 0) {
+      throw hdf5::damaged(path, group, "holds no field");
+    }
+    const std::string place = group + "/" + name + "/" + field;
+    const hdf5::Id set = hdf5::dataset(H5Dopen2(component.get(), field, H5P_DEFAULT));
+    if (!set.valid()) throw hdf5::damaged(path, place, hdf5::reason());
+    const hdf5::Id type = hdf5::type(H5Dget_type(set.get()));
+    NamedNumbers numbers{std::string(name) + "/" + field, {}};
+    if (H5Tget_class(type.get()) == H5T_FLOAT) {
+      readArray(path, place, set.get(), H5T_NATIVE_DOUBLE, numbers.second.emplace<0>());
+    } else if (H5Tget_class(type.get()) == H5T_INTEGER) {
+      readArray(path, place, set.get(), H5T_NATIVE_UINT64, numbers.second.emplace<1>());
+    } else {
+      throw hdf5::damaged(path, place, "holds no numbers");
+    }
+    state.fields.push_back(std::move(numbers));
+  }
+  return state;
+}
+
+}  // namespace
+
+void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::uint32_t simulationVersion,
+                    const std::vector<NamedNumbers>& fields, bool force) {
+  if (!force && std::filesystem::exists(file)) {
+    throw Error(ExitCode::usage, fmt::format("{}: is there already; --force replaces it", file.string()));
+  }
+  const std::filesystem::path part = file.string() + ".part";
+  bool good = true;
+  std::string why;
+  {
+    const hdf5::Session session;
+    const hdf5::Id access = hdf5::properties(H5Pcreate(H5P_FILE_ACCESS));
+    H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
+    hdf5::Id out = hdf5::file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
+    good = out.valid();
+    if (good) {
+      writeAttribute(out.get(), formatName, 1);
+      writeAttribute(out.get(), "simulation_version", simulationVersion);
+      writeAttribute(out.get(), "step", step);
+      writeAttribute(out.get(), "fields", fields.size());
+      const hdf5::Id links = hdf5::properties(H5Pcreate(H5P_LINK_CREATE));
+      H5Pset_create_intermediate_group(links.get(), 1);
+      for (std::size_t f = 0; f < fields.size() && good; ++f) {
+        const std::string& name = fields[f].first;
+        const std::size_t slash = name.find('/');
+        const std::string group = fmt::format("/{:05}/{}", f, name.substr(0, slash));
+        const hdf5::Id at = hdf5::group(H5Gcreate2(out.get(), group.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT));
+        const std::string field = name.substr(slash + 1);
+        good = at.valid() && (fields[f].second.index() == 0
+                                  ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second), H5T_IEEE_F64LE,
+                                               H5T_NATIVE_DOUBLE)
+                                  : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second), H5T_STD_U64LE,
+                                               H5T_NATIVE_UINT64));
+      }
+      good = out.reset() && good;
+    }
+    if (!good) why = hdf5::reason();
+  }
+  std::error_code ignored;
+  if (!good) {
+    std::filesystem::remove(part, ignored);
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be written ({})", file.string(), why));
+  }
+  std::filesystem::rename(part, file);
+}
+
+StateFile readStateFile(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) throw Error(ExitCode::damaged, file.string() + ": no such file");
+  // The library reads it once in a child: what makes it crash ends the child only.
+  runGuarded(file.string(), [&] {
+    readHere(file);
+    return std::string();
+  });
+  return readHere(file);
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/writer.h"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <atomic>
+#include <cassert>
+#include <chrono>
+#include <deque>
+#include <exception>
+#include <system_error>
+#include <thread>
+
+#include "recorder/recording/file_writer.h"
+#include "recorder/recording/publish.h"
+#include "recorder/recording/spsc_queue.h"
+
+namespace calot::recorder {
+
+namespace {
+
+constexpr std::size_t firstBlocks = 16;  // four seconds
+
+double threadSeconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+std::int64_t wallNow() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+struct RecordingWriter::Impl {
+  Impl(std::filesystem::path to, const AttemptHeader& header) : target(std::move(to)), layout(header) {}
+
+  std::filesystem::path target;
+  Layout layout;
+  std::unique_ptr<FileAppender> file;
+
+  // The loop's side.
+  std::deque<Block> pool;  // grows at its end only: blocks keep their place
+  Block* filling = nullptr;
+  std::uint64_t nextStep = 0;
+  std::uint64_t keyframeWords = 0;
+  bool ended = false;
+
+  // Between the two threads.
+  SpscQueue<Block*> full, empty;
+  std::atomic<std::uint32_t> handedOver{0};
+  std::atomic<std::uint64_t> flushes{0}, steps{0}, blocksGrown{0};
+  std::atomic<double> writerSeconds{0.0}, largestFlush{0.0};
+
+  // The writing thread's side; read by others after join.
+  std::exception_ptr error;
+  std::thread thread;
+
+  Block* freshBlock() {
+    Block* block = nullptr;
+    if (!empty.pop(block)) {
+      pool.emplace_back(layout);
+      block = &pool.back();
+      blocksGrown.fetch_add(1, std::memory_order_relaxed);
+    }
+    return block;
+  }
+
+  void handOver(bool last) {
+    filling->last = last;
+    full.push(filling);
+    filling = nullptr;
+    handedOver.fetch_add(1, std::memory_order_release);
+    handedOver.notify_one();
+  }
+
+  void write() {
+    std::uint32_t seen = 0;
+    for (;;) {
+      Block* block = nullptr;
+      while (!full.pop(block)) {
+        handedOver.wait(seen, std::memory_order_acquire);
+        seen = handedOver.load(std::memory_order_acquire);
+      }
+      const bool last = block->last;
+      if (error == nullptr) flush(*block, last);
+      block->clear();
+      empty.push(block);
+      if (last) return;
+    }
+  }
+
+  void flush(const Block& block, bool last) {
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+      // A block without rows is written only where it carries the outcome.
+      if (block.rows[static_cast<std::size_t>(Stream::steps)] > 0 || block.completed) {
+        file->append(block, wallNow());
+        flushes.fetch_add(1, std::memory_order_relaxed);
+        steps.store(file->last().steps, std::memory_order_relaxed);
+      }
+      if (last) file->close();
+    } catch (...) {
+      error = std::current_exception();
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (seconds > largestFlush.load(std::memory_order_relaxed)) largestFlush.store(seconds, std::memory_order_relaxed);
+    writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
+  }
+
+  void end(bool completed, Outcome outcome) {
+    if (ended) return;
+    ended = true;
+    filling->completed = completed;
+    filling->outcome = outcome;
+    handOver(true);
+  }
+};
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& target, const AttemptHeader& header, WriterOptions options) {
+  checkHeader(header);
+  refuseExisting(target, options.force);
+  impl_ = std::make_unique<Impl>(target, header);
+  Impl& impl = *impl_;
+  const std::filesystem::path temporary = temporaryName(target);
+  const StatusRow first = createRecordingFile(temporary, header, impl.layout);
+  try {
+    impl.file = std::make_unique<FileAppender>(temporary, impl.layout, first, true);
+    publish(temporary, target, options.force);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+  for (std::size_t i = 0; i < firstBlocks; ++i) {
+    impl.pool.emplace_back(impl.layout);
+    if (i > 0) impl.empty.push(&impl.pool.back());
+  }
+  impl.filling = &impl.pool.front();
+  impl.thread = std::thread([&impl] { impl.write(); });
+}
+
+RecordingWriter::~RecordingWriter() {
+  if (!impl_ || !impl_->thread.joinable()) return;
+  impl_->end(false, Outcome::running);
+  impl_->thread.join();
+}
+
+void RecordingWriter::onStep(const StepRecord& record) {
+  Impl& impl = *impl_;
+  assert(!impl.ended && record.step == impl.nextStep);
+  ++impl.nextStep;
+  if (record.keyframe && impl.nextStep % impl.layout.keyframeInterval == 0) {
+    const Keyframe keyframe = record.keyframe();
+    appendStep(impl.layout, record, &keyframe, impl.keyframeWords, *impl.filling);
+  } else {
+    appendStep(impl.layout, record, nullptr, impl.keyframeWords, *impl.filling);
+  }
+  if (impl.filling->rows[static_cast<std::size_t>(Stream::steps)] == impl.layout.stepsPerBlock) {
+    impl.handOver(false);
+    impl.filling = impl.freshBlock();
+  }
+}
+
+void RecordingWriter::onEnd(Outcome outcome) { impl_->end(outcome != Outcome::running, outcome); }
+
+void RecordingWriter::finish() {
+  Impl& impl = *impl_;
+  assert(impl.ended);
+  if (impl.thread.joinable()) impl.thread.join();
+  impl.file.reset();
+  if (impl.error != nullptr) std::rethrow_exception(impl.error);
+}
+
+WriterStatistics RecordingWriter::statistics() const {
+  WriterStatistics s;
+  s.flushes = impl_->flushes.load(std::memory_order_relaxed);
+  s.steps = impl_->steps.load(std::memory_order_relaxed);
+  s.blocksGrown = impl_->blocksGrown.load(std::memory_order_relaxed);
+  s.writerSeconds = impl_->writerSeconds.load(std::memory_order_relaxed);
+  s.largestFlushSeconds = impl_->largestFlush.load(std::memory_order_relaxed);
+  return s;
+}
+
+std::uint64_t RecordingWriter::keyframeInterval() const { return impl_->layout.keyframeInterval; }
+
+}  // namespace calot::recorder

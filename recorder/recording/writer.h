@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "recorder/identity.h"
+#include "recorder/observer.h"
+
+namespace calot::recorder {
+
+struct WriterOptions {
+  bool force = false;  ///< replace a file that is already there
+};
+
+/// What the writer did; may be read from any thread while it records.
+struct WriterStatistics {
+  std::uint64_t flushes = 0;        ///< rows of /status after the first
+  std::uint64_t steps = 0;          ///< steps that are on disk and vouched for
+  std::uint64_t blocksGrown = 0;    ///< blocks allocated beyond the first ones: the disk was slower than the loop
+  double writerSeconds = 0.0;       ///< CPU time of the writing thread (s)
+  double largestFlushSeconds = 0.0; ///< longest wall time of one flush (s)
+};
+
+/// Writes one attempt to one HDF5 file as schemas/recording.md says, on a thread of its own.
+///
+/// The loop's thread copies a step into a block of 250 ticks and hands full blocks over through a lock-free queue; it
+/// never waits for the disk, and where the disk falls behind the queue grows (counted). Every full block is one flush
+/// in SWMR mode: killed at any moment, a run paced at real time loses at most two blocks.
+///
+/// The file has the name TARGET.part until all its data sets exist and SWMR writing has started; then it is renamed.
+/// If writing fails later (disk full), the writer keeps what was flushed, stops writing and lets the loop go on;
+/// finish() reports the error.
+class RecordingWriter final : public Observer {
+ public:
+  /// Creates the file, with header, scene and every data set.
+  /// @pre header.ticksPerStep in [1, 1000]; at most 32 organs; at most 1,000 assets, the scene file first.
+  /// @throws Error usage: the target exists and force is not set. failure: it cannot be created.
+  RecordingWriter(const std::filesystem::path& target, const AttemptHeader& header, WriterOptions options = {});
+
+  /// Without onEnd before it, the file stays as an incomplete one: all steps so far, outcome `running`.
+  ~RecordingWriter() override;
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  /// Appends a step. Does not throw for the disk's sake. @pre record.step counts 0, 1, 2, ...
+  void onStep(const StepRecord& record) override;
+
+  /// Hands over the last block with the outcome; no onStep after it.
+  void onEnd(Outcome outcome) override;
+
+  /// Waits until all is written and the file is closed. @throws Error failure: naming the file and what went wrong;
+  /// what had been flushed before can be read. @pre onEnd was called.
+  void finish();
+
+  [[nodiscard]] WriterStatistics statistics() const;
+
+  /// Keyframes are kept after steps n with (n + 1) % keyframeInterval() == 0: about every second.
+  [[nodiscard]] std::uint64_t keyframeInterval() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/replay.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <stdexcept>
+
+#include "recorder/compare.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/live/worker_pool.h"
+#include "sim/scene/version.h"
+
+namespace calot::recorder {
+
+namespace {
+
+/// Keeps the newest record's parts that the comparison needs.
+class Comparer final : public Observer {
+ public:
+  Comparer(Recording& recording, const Model& model) : recording_(recording), model_(model) {}
+
+  void onStep(const StepRecord& record) override {
+    if (first_) {
+      if (!resolved_) resolveAtKeyframe(record);
+      return;
+    }
+    const RecordedStep& recorded = recording_.step(record.step);
+    for (std::size_t i = 0; i < record.ticks.size() && !first_; ++i) {
+      first_ = compareTick(record.step, record.step * record.ticks.size() + i, recorded.ticks[i], record.ticks[i]);
+    }
+    if (!first_) first_ = compareDigest(record.step, recording_.header().layout, recorded.digest, record.digest);
+    if (!first_) first_ = compareResult(recorded.result, record.result);
+    if (first_) {
+      resolved_ = !first_->detail.empty();
+      if (!resolved_) resolveAtKeyframe(record);
+      return;
+    }
+    if (const auto index = keyframeAt(record.step)) {
+      first_ = compareKeyframe(model_, recording_.keyframe(*index), record.keyframe());
+      resolved_ = true;
+    }
+  }
+  void onEnd(Outcome /*outcome*/) override {}
+
+  [[nodiscard]] const std::optional<Divergence>& first() const { return first_; }
+  /// Nothing more can be learned by going on.
+  [[nodiscard]] bool done() const { return first_ && resolved_; }
+  /// The recording itself cannot be followed any further.
+  void fail(Divergence divergence) {
+    if (!first_) first_ = std::move(divergence);
+    resolved_ = true;
+  }
+
+ private:
+  std::optional<std::size_t> keyframeAt(std::uint64_t step) {
+    const auto index = recording_.keyframeAtOrBefore(step);
+    return index && recording_.keyframeSteps()[*index] == step ? index : std::nullopt;
+  }
+
+  /// Digests say which field differs, not where: the next keyframe holds the values.
+  void resolveAtKeyframe(const StepRecord& record) {
+    const auto index = keyframeAt(record.step);
+    if (!index) return;
+    resolved_ = true;
+    if (const auto d = compareKeyframe(model_, recording_.keyframe(*index), record.keyframe())) {
+      first_->detail = record.step == first_->step
+                           ? fmt::format("{} {}", d->field, d->detail)
+                           : fmt::format("at the next keyframe, step {}: {} {}", record.step, d->field, d->detail);
+    }
+  }
+
+  Recording& recording_;
+  const Model& model_;
+  std::optional<Divergence> first_;
+  bool resolved_ = false;
+};
+
+SetNumbers setsOf(const RecordedStep& recorded) {
+  SetNumbers sets;
+  for (const TickOutcome& tick : recorded.ticks) sets.push_back({tick.hand[0].contactSet, tick.hand[1].contactSet});
+  return sets;
+}
+
+std::optional<Divergence> runOnce(Recording& recording, const Model& model, const ReplaySettings& settings,
+                                  const std::vector<Observer*>& observers) {
+  WorkerPool pool(settings.threads);
+  Session session(model, recording.header().seed, pool);
+  Comparer comparer(recording, model);
+  session.join(comparer);
+  for (Observer* observer : observers) session.join(*observer);
+  std::vector<TickSamples> samples;
+  std::vector<TickOutcome> ticks;
+  for (std::uint64_t n = 0; n < recording.stepCount() && !comparer.done(); ++n) {
+    const RecordedStep& recorded = recording.step(n);
+    samples = recorded.samples;
+    const SetNumbers sets = setsOf(recorded);
+    const float lateness = recorded.lateness;
+    ticks = recorded.ticks;
+    try {
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const float late = ticks[i].lateness;
+        ticks[i] = session.tick(samples[i], sets[i]);
+        ticks[i].lateness = late;
+      }
+    } catch (const std::out_of_range& e) {
+      comparer.fail({n, n * samples.size(), "force", "contact set", e.what()});
+      break;
+    }
+    session.step(samples, ticks, lateness);
+    if (settings.progress) settings.progress(n + 1, recording.stepCount());
+  }
+  session.end(recording.outcome());
+  return comparer.first();
+}
+
+std::string describe(const Divergence& d) {
+  std::string text = fmt::format("diverged at step {}", d.step);
+  if (d.tick) text += fmt::format(", tick {}", *d.tick);
+  text += fmt::format(": {} {}", d.component, d.field);
+  if (!d.detail.empty()) text += fmt::format(" ({})", d.detail);
+  return text;
+}
+
+void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings& settings, ReplayReport& report) {
+  const AttemptHeader& header = recording.header();
+  report.attempt = header.attempt;
+  report.complete = recording.complete();
+  report.outcome = recording.outcome();
+  report.steps = recording.stepCount();
+  report.seconds = recording.seconds();
+  report.simulationVersion = header.simulationVersion;
+  for (std::size_t i = 0; i < 32; ++i) report.chainHead[i] = static_cast<std::byte>(recording.status().back().chain[i]);
+  report.chainIntact = chain.intact;
+  report.chainFault = chain.what;
+  const bool otherVersion = header.simulationVersion != simulationVersion;
+  if (otherVersion && !settings.anyway && chain.intact) {
+    report.verdict = ReplayVerdict::undecided;
+    report.message = fmt::format("recorded with simulation version {}, this build has {}: cannot decide (--anyway replays and reports)",
+                                 header.simulationVersion, simulationVersion);
+    return;
+  }
+  const std::unique_ptr<const Model> model = modelOf(recording);
+  // Another version may have other components; digests of different layouts say nothing field by field.
+  const bool comparable = header.layout.components == model->layout().components &&
+                          header.layout.fields.size() == model->layout().fields.size();
+  if (!comparable) {
+    report.verdict = otherVersion && chain.intact ? ReplayVerdict::undecided : ReplayVerdict::diverged;
+    report.message = "the recorded digests have other components than this build's State: nothing to compare";
+    return;
+  }
+  const std::vector<Observer*> observers =
+      settings.observers ? settings.observers(header, *model) : std::vector<Observer*>{};
+  report.divergence = runOnce(recording, *model, settings, observers);
+  if (report.divergence) {
+    ReplaySettings again = settings;
+    again.progress = nullptr;
+    report.reproducible = runOnce(recording, *model, again, {}) == report.divergence;
+  }
+  if (report.divergence) {
+    report.message = describe(*report.divergence) +
+                     (*report.reproducible ? "; reproducible: a second run differs in the same way"
+                                           : "; not deterministic here: a second run behaves differently");
+    if (!chain.intact) report.message += fmt::format("; content chain broken: {}", chain.what);
+  } else if (!chain.intact) {
+    report.message = fmt::format("content chain broken: {} (the re-simulation agrees)", chain.what);
+  } else {
+    report.message = "bit-exact";
+  }
+  const bool differs = report.divergence || !chain.intact;
+  report.verdict = differs ? ReplayVerdict::diverged : ReplayVerdict::exact;
+  if (otherVersion && chain.intact) {
+    report.verdict = ReplayVerdict::undecided;
+    report.message += fmt::format("; recorded with simulation version {}, this build has {}", header.simulationVersion,
+                                  simulationVersion);
+  }
+}
+
+}  // namespace
+
+ExitCode ReplayReport::code() const {
+  switch (verdict) {
+    case ReplayVerdict::exact: return ExitCode::yes;
+    case ReplayVerdict::diverged: return ExitCode::no;
+    case ReplayVerdict::damaged: return ExitCode::damaged;
+    case ReplayVerdict::undecided: return ExitCode::undecided;
+  }
+  return ExitCode::failure;
+}
+
+std::unique_ptr<const Model> modelOf(const Recording& recording) {
+  LoadedScene scene = sceneFromAssets(recording.header().assets);
+  Model::Built built = Model::build(std::move(scene.description));
+  if (!built.model) {
+    throw Error(ExitCode::damaged, fmt::format("{}: /scene: {}", recording.path().string(), built.error));
+  }
+  return std::move(built.model);
+}
+
+ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySettings& settings) {
+  const auto begin = std::chrono::steady_clock::now();
+  ReplayReport report;
+  report.path = path;
+  try {
+    const ChainVerdict chain = probe(path);
+    Recording recording(path);
+    judge(recording, chain, settings, report);
+  } catch (const Error& e) {
+    if (e.code() != ExitCode::damaged && e.code() != ExitCode::undecided) throw;
+    report.verdict = e.code() == ExitCode::damaged ? ReplayVerdict::damaged : ReplayVerdict::undecided;
+    report.message = e.what();
+  }
+  report.wallSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+Seeker::Seeker(Recording& recording, Executor& executor)
+    : recording_(recording), model_(modelOf(recording)), executor_(executor) {}
+
+void Seeker::seek(std::uint64_t step) {
+  const auto nearest = recording_.keyframeAtOrBefore(step);
+  const std::uint64_t done = session_ ? session_->steps() : 0;
+  // Going on from here is as good as a keyframe that lies behind.
+  const bool goOn = session_ && done <= step + 1 && (!nearest || recording_.keyframeSteps()[*nearest] < done);
+  if (!goOn) {
+    session_ = std::make_unique<Session>(*model_, recording_.header().seed, executor_);
+    if (nearest) {
+      const Keyframe keyframe = recording_.keyframe(*nearest);
+      if (!session_->restore(keyframe)) {
+        throw Error(ExitCode::damaged, fmt::format("{}: /keyframes: the one of step {} is no State of the scene's model",
+                                                   recording_.path().string(), keyframe.step));
+      }
+    }
+  }
+  while (session_->steps() <= step) advance();
+}
+
+void Seeker::advance() {
+  const RecordedStep& recorded = recording_.step(session_->steps());
+  const SetNumbers sets = setsOf(recorded);
+  std::vector<TickOutcome> ticks;
+  try {
+    for (std::size_t i = 0; i < recorded.samples.size(); ++i) ticks.push_back(session_->tick(recorded.samples[i], sets[i]));
+  } catch (const std::out_of_range& e) {
+    throw Error(ExitCode::damaged, fmt::format("{}: /ticks: {}", recording_.path().string(), e.what()));
+  }
+  session_->step(recorded.samples, ticks, recorded.lateness);
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Re-simulates a recording and compares every digest, force, observable, event and keyframe.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recorder/errors.h"
+#include "recorder/observer.h"
+#include "recorder/recording/reader.h"
+#include "recorder/session.h"
+
+namespace calot::recorder {
+
+/// Where a replay first differs from its recording.
+struct Divergence {
+  std::uint64_t step = 0;
+  std::optional<std::uint64_t> tick;   ///< of the attempt, where it is a tick's value
+  std::string component;               ///< "hand.left", "organ.liver", "force", "observables", "events", "keyframe"
+  std::string field;                   ///< "realPosition"; what of the component
+  std::string detail;                  ///< index and both values where the recording holds them; or empty
+  bool operator==(const Divergence&) const = default;
+};
+
+enum class ReplayVerdict : std::uint8_t { exact, diverged, damaged, undecided };
+
+struct ReplayReport {
+  std::filesystem::path path;
+  ReplayVerdict verdict = ReplayVerdict::damaged;
+  std::string attempt;               ///< uuid, as far as it could be read
+  bool complete = false;
+  Outcome outcome = Outcome::running;
+  std::uint64_t steps = 0;           ///< recorded
+  double seconds = 0.0;              ///< of simulated time
+  double wallSeconds = 0.0;          ///< of the whole check
+  std::uint32_t simulationVersion = 0;  ///< of the recording
+  std::array<std::byte, 32> chainHead{};
+  bool chainIntact = false;
+  std::string chainFault;            ///< where the chain breaks, or empty
+  std::optional<Divergence> divergence;
+  std::optional<bool> reproducible;  ///< a second run differed at the same place in the same way
+  std::string message;               ///< one line for people
+
+  [[nodiscard]] ExitCode code() const;
+};
+
+struct ReplaySettings {
+  unsigned threads = 1;
+  bool anyway = false;               ///< re-simulate a recording of another simulation version too
+  /// Makes observers of the re-simulation once header and model are known; they see every step that was computed.
+  std::function<std::vector<Observer*>(const AttemptHeader&, const Model&)> observers;
+  std::function<void(std::uint64_t step, std::uint64_t of)> progress;
+};
+
+/// Judges one recording. Does not throw for the recording's faults: they are in the report.
+ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySettings& settings);
+
+/// Model and scene of a recording. @throws Error (damaged) where the scene in it cannot be built.
+std::unique_ptr<const Model> modelOf(const Recording& recording);
+
+/// Goes anywhere in a recording: the nearest keyframe at or before, then re-simulation. The State is the one that
+/// running there gives, bit for bit.
+class Seeker {
+ public:
+  /// @param recording, executor outlive the seeker.
+  Seeker(Recording& recording, Executor& executor);
+
+  /// Makes step n the last one done. @pre n < recording.stepCount() @throws Error (damaged) where a keyframe is no
+  /// State of the scene's model, or a tick names a contact set that is not there.
+  void seek(std::uint64_t step);
+
+  [[nodiscard]] const Session& session() const { return *session_; }
+  [[nodiscard]] const Model& model() const { return *model_; }
+
+ private:
+  void advance();
+  Recording& recording_;
+  std::unique_ptr<const Model> model_;
+  Executor& executor_;
+  std::unique_ptr<Session> session_;
+};
+
+/// JUnit XML: one case a recording; diverged is a failure, damaged an error, undecided skipped, the divergence in the
+/// body. @throws Error (failure) where the file cannot be written.
+void writeJunit(const std::filesystem::path& file, const std::vector<ReplayReport>& reports);
+
+}  // namespace calot::recorder

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/performer_source.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recorder/errors.h"
+#include "recorder/sources/pointing.h"
+#include "sim/math/elementary.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr double hover = 0.004;           // where a hand looks again before it presses: this far off the surface (m)
+constexpr double travelClearance = 0.003; // m
+constexpr double openJaw = 0.5;           // rad
+constexpr double settle = 0.5;            // at home before the start and after the end (s)
+constexpr double bimanualLag = 0.3;       // the second hand starts this much later (s)
+constexpr double fadeIn = 0.5;            // unsteadiness grows from nothing: the tip starts at home (s)
+constexpr double wanderLower = 0.1;       // Hz
+constexpr double wanderUpper = 0.8;
+constexpr int mostDraws = 400;
+constexpr double twoPi = 6.283185307179586;
+
+}  // namespace
+
+StrokePlan::StrokePlan(const PerformerProfile& profile, const SceneDescription& scene, const SceneSurfaces& surfaces,
+                       std::size_t hand, std::uint64_t seed)
+    : profile_(profile), scene_(scene), surfaces_(surfaces), hand_(hand), random_(seed, 1 + hand),
+      targets_(touchTargets(scene, surfaces, hand, profile.decision.pullBack)), time_(settle), tip_(scene.hands[hand].home) {}
+
+void StrokePlan::waitUntil(double time) { time_ = std::max(time_, time); }
+
+double StrokePlan::normal(double mean, double spread) { return mean + spread * random_.normal(); }
+
+Vec3 StrokePlan::seenError() {
+  const double across = profile_.perception.lateralError * random_.normal();
+  const double down = profile_.perception.lateralError * random_.normal();
+  const double along = profile_.perception.depthError * random_.normal();
+  return scene_.camera.orientation * Vec3(across, down, along);
+}
+
+void StrokePlan::strokeTo(const Vec3& goal, double speed, double jaw, double roll) {
+  Stroke stroke;
+  const double length = (goal - tip_).norm();
+  const double noise = profile_.motor.endpointNoise * length;
+  stroke.start = time_;
+  stroke.duration = std::max(length / speed, profile_.motor.shortestStroke);
+  stroke.from = tip_;
+  stroke.to.x() = normal(goal.x(), noise);
+  stroke.to.y() = normal(goal.y(), noise);
+  stroke.to.z() = normal(goal.z(), noise);
+  stroke.jawFrom = jaw_;
+  stroke.jawTo = jaw;
+  stroke.rollFrom = roll_;
+  stroke.rollTo = roll;
+  strokes_.push_back(stroke);
+  time_ += stroke.duration;
+  tip_ = stroke.to;
+  jaw_ = jaw;
+  roll_ = roll;
+}
+
+void StrokePlan::travelTo(const Vec3& goal, double roll) {
+  const Vec3& home = scene_.hands[hand_].home;
+  if (!isFree(surfaces_, tip_, goal, travelClearance)) strokeTo(home, profile_.motor.strokeSpeed, 0.0, roll);
+  strokeTo(goal, profile_.motor.strokeSpeed, openJaw, roll);
+}
+
+TouchTarget StrokePlan::draw(std::size_t preferredOrgan) {
+  std::vector<std::size_t> preferred, all;
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    all.push_back(i);
+    if (targets_[i].organ == preferredOrgan) preferred.push_back(i);
+  }
+  for (const std::vector<std::size_t>* choice : {&preferred, &all}) {
+    for (int n = 0; n < mostDraws && !choice->empty(); ++n) {
+      const auto index = static_cast<std::size_t>(random_.uniform() * static_cast<double>(choice->size()));
+      const TouchTarget& target = targets_[(*choice)[std::min(index, choice->size() - 1)]];
+      if (isFree(surfaces_, scene_.hands[hand_].home, target.approach, travelClearance)) return target;
+    }
+  }
+  throw Error(ExitCode::usage, "scene " + scene_.name + ": the " + handNames[hand_] +
+                                   " hand can reach no organ's surface that the camera shows; move its port or home");
+}
+
+void StrokePlan::touch(const TouchTarget& target) {
+  const PerformerProfile::Motor& motor = profile_.motor;
+  const PerformerProfile::Perception& perception = profile_.perception;
+  const PerformerProfile::Decision& decision = profile_.decision;
+  const double roll = normal(0.0, motor.rollSpread);
+  wait(std::max(0.0, normal(decision.pause, decision.pauseSpread)));
+  travelTo(target.approach, roll);
+
+  // Each look halves what the eye got wrong.
+  Vec3 error = seenError();
+  for (std::uint32_t i = 0; i <= decision.corrections; ++i) {
+    wait(std::max(0.0, normal(perception.reactionTime, perception.reactionSpread)));
+    strokeTo(target.point + hover * target.normal + error, motor.contactSpeed, openJaw, roll);
+    error *= 0.5;
+  }
+  const double depth = std::max(0.0, normal(decision.pressDepth, decision.pressSpread));
+  strokeTo(target.point - depth * target.normal + error, motor.contactSpeed, 0.0, roll);
+  wait(decision.dwell);
+  strokeTo(target.approach, motor.contactSpeed, 0.0, roll);
+}
+
+void StrokePlan::goHome() {
+  strokeTo(scene_.hands[hand_].home, profile_.motor.strokeSpeed, 0.0, 0.0);
+}
+
+Unsteadiness::Unsteadiness(double amplitude, double lower, double upper, Random& random)
+    : amplitude_(amplitude * std::sqrt(2.0 / static_cast<double>(sines))) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < sines; ++i) {
+      omega_[axis][i] = twoPi * random.uniform(lower, upper);
+      phase_[axis][i] = twoPi * random.uniform();
+    }
+  }
+}
+
+Vec3 Unsteadiness::at(double time) const {
+  Vec3 sum = Vec3::Zero();
+  if (amplitude_ == 0.0) return sum;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double total = 0.0;
+    for (std::size_t i = 0; i < sines; ++i) total += sine(omega_[axis][i] * time + phase_[axis][i]);
+    sum[static_cast<Eigen::Index>(axis)] = amplitude_ * total;
+  }
+  return sum;
+}
+
+PerformerSource::PerformerSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed)
+    : hands_(scene.hands), camera_(scene.camera) {
+  provenance_.kind = OperatorKind::performer;
+  provenance_.profile = profile.name;
+  provenance_.profileVersion = profile.version;
+  const SceneSurfaces surfaces(scene);
+  std::vector<StrokePlan> plans;
+  plans.reserve(handCount);
+  for (std::size_t h = 0; h < handCount; ++h) plans.emplace_back(profile, scene, surfaces, h, seed);
+  if (profile.decision.bimanual) plans[1].wait(bimanualLag);
+  for (std::uint32_t i = 0; i < profile.decision.touches; ++i) {
+    for (std::size_t h = 0; h < handCount; ++h) {
+      if (!profile.decision.bimanual) plans[h].waitUntil(plans[1 - h].time());
+      targets_[h].push_back(plans[h].draw((i + h) % scene.organs.size()));
+      plans[h].touch(targets_[h].back());
+    }
+  }
+  double end = 0.0;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    plans[h].goHome();
+    end = std::max(end, plans[h].time());
+    strokes_[h] = plans[h].strokes();
+    Random random(seed, 101 + h);
+    tremor_.emplace_back(profile.motor.tremorAmplitude, profile.motor.tremorLower, profile.motor.tremorUpper, random);
+    wander_.emplace_back(profile.motor.wanderAmplitude, wanderLower, wanderUpper, random);
+  }
+  ticks_ = static_cast<std::uint64_t>(std::ceil(std::min(end + settle, 1e6) / tickLength));
+}
+
+InstrumentSample PerformerSource::sampleOf(std::size_t hand, double time) const {
+  const std::vector<Stroke>& strokes = strokes_[hand];
+  // The last stroke that has begun; before the first one, its start.
+  const auto after = std::upper_bound(strokes.begin(), strokes.end(), time,
+                                      [](double t, const Stroke& stroke) { return t < stroke.start; });
+  const Stroke& stroke = after == strokes.begin() ? strokes.front() : *(after - 1);
+  const double s = minimumJerk((time - stroke.start) / stroke.duration);
+  const double fade = minimumJerk(time / fadeIn);
+
+  InstrumentSample sample;
+  sample.instrument = hands_[hand].instrument;
+  sample.position = stroke.from + s * (stroke.to - stroke.from) + fade * (tremor_[hand].at(time) + wander_[hand].at(time));
+  const double roll = stroke.rollFrom + s * (stroke.rollTo - stroke.rollFrom);
+  sample.orientation = pointing(hands_[hand].port, sample.position, roll);
+  sample.jaw = stroke.jawFrom + s * (stroke.jawTo - stroke.jawFrom);
+  return sample;
+}
+
+bool PerformerSource::next(std::uint64_t tick, TickSamples& out) {
+  if (tick >= ticks_) return false;
+  const double time = static_cast<double>(tick) * tickLength;
+  TickSamples samples;
+  for (std::size_t h = 0; h < handCount; ++h) samples.hand[h] = sampleOf(h, time);
+  samples.camera = camera_;
+  out = roundedToGrid(samples);
+  return true;
+}
+
+}  // namespace calot::recorder

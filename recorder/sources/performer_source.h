@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "recorder/sources/performer_profile.h"
+#include "recorder/sources/source.h"
+#include "recorder/sources/touch_targets.h"
+#include "sim/math/random.h"
+#include "sim/scene/description.h"
+
+namespace calot::recorder {
+
+/// One stroke of a hand: a straight line with minimum-jerk progress.
+struct Stroke {
+  double start = 0.0, duration = 0.0;  ///< s
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< p_WI (m)
+  double jawFrom = 0.0, jawTo = 0.0;   ///< rad
+  double rollFrom = 0.0, rollTo = 0.0; ///< rad
+};
+
+/// Plans what one hand does, stroke after stroke; draws from its own generator.
+class StrokePlan {
+ public:
+  StrokePlan(const PerformerProfile& profile, const SceneDescription& scene, const SceneSurfaces& surfaces,
+             std::size_t hand, std::uint64_t seed);
+
+  /// Reaches for a target, presses, dwells, and pulls back.
+  void touch(const TouchTarget& target);
+  void goHome();
+  /// A target of the organ, one that can be reached from home in free space; draws until one fits.
+  /// @throws Error (usage) where the scene offers this hand none on any organ.
+  TouchTarget draw(std::size_t preferredOrgan);
+
+  [[nodiscard]] double time() const { return time_; }
+  void waitUntil(double time);
+  void wait(double seconds) { time_ += seconds; }
+  [[nodiscard]] const std::vector<Stroke>& strokes() const { return strokes_; }
+
+ private:
+  /// A stroke from where the tip is; it ends near `goal`, by the noise of its length.
+  void strokeTo(const Vec3& goal, double speed, double jaw, double roll);
+  void travelTo(const Vec3& goal, double roll);
+  double normal(double mean, double spread);
+  [[nodiscard]] Vec3 seenError();
+
+  const PerformerProfile& profile_;
+  const SceneDescription& scene_;
+  const SceneSurfaces& surfaces_;
+  std::size_t hand_;
+  Random random_;
+  std::vector<TouchTarget> targets_;
+  std::vector<Stroke> strokes_;
+  double time_ = 0.0, jaw_ = 0.0, roll_ = 0.0;
+  Vec3 tip_;
+};
+
+/// Movement about the planned tip: a sum of sines with frequencies and phases drawn once.
+class Unsteadiness {
+ public:
+  /// @param amplitude root mean square of each axis (m). @param lower, upper band (Hz).
+  Unsteadiness(double amplitude, double lower, double upper, Random& random);
+  [[nodiscard]] Vec3 at(double time) const;
+
+ private:
+  static constexpr std::size_t sines = 4;
+  double amplitude_;
+  std::array<std::array<double, sines>, 3> omega_{}, phase_{};
+};
+
+/// A synthetic operator, open loop: touches targets on the organs with each hand and returns home; then it ends.
+///
+/// Strokes are minimum-jerk (Flash and Hogan 1985) with noise that grows with their length (Harris and Wolpert 1998);
+/// between targets the instrument is pulled back towards its port (Chmarra et al. 2008). The same profile, scene and seed
+/// give the same samples. The camera rests at the scene's pose. Parameters and their sources: docs/sources.md.
+class PerformerSource : public SampleSource {
+ public:
+  /// @throws Error (usage) where the scene offers a hand nothing to touch.
+  PerformerSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed);
+
+  [[nodiscard]] const Provenance& provenance() const override { return provenance_; }
+  bool next(std::uint64_t tick, TickSamples& out) override;
+
+  [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
+  /// What the hand means to do, without unsteadiness.
+  [[nodiscard]] const std::vector<Stroke>& strokes(Hand hand) const { return strokes_[static_cast<std::size_t>(hand)]; }
+  [[nodiscard]] const std::vector<TouchTarget>& targets(Hand hand) const { return targets_[static_cast<std::size_t>(hand)]; }
+
+ private:
+  [[nodiscard]] InstrumentSample sampleOf(std::size_t hand, double time) const;
+
+  Provenance provenance_;
+  std::array<HandDescription, handCount> hands_;
+  CameraSample camera_;
+  std::array<std::vector<Stroke>, handCount> strokes_;
+  std::array<std::vector<TouchTarget>, handCount> targets_;
+  std::vector<Unsteadiness> tremor_, wander_;  ///< by hand
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Orientation of an instrument through a port. Frame I of the instrument: z along the shaft towards the tip, x across
+// the jaw's hinge. Only + - * / sqrt and the elementary functions of sim/: the same bits everywhere.
+#pragma once
+
+#include "sim/math/linear.h"
+
+namespace calot::recorder {
+
+/// Unit vector along the shaft; W's -y (straight into the abdomen) where port and tip are less than a micrometre apart.
+Vec3 shaftDirection(const Vec3& port, const Vec3& tip);
+
+/// q_WI of an instrument that passes the port and ends at the tip.
+/// At roll 0 the hinge's axis x lies level: x is along e x z, with e W's +y axis (or, where the shaft is within about a
+/// degree of e, W's +z axis).
+/// @param roll turn about the shaft, right-handed about z (rad).
+Quat pointing(const Vec3& port, const Vec3& tip, double roll = 0.0);
+
+/// The orientation nearest to `orientation` whose z axis is along `shaft`: the shortest turn that brings the one onto the
+/// other comes after it, so that the roll about the shaft is what is left of `orientation`. A half turn, which has no
+/// shortest way, is made about the orientation's own x axis.
+/// @pre `shaft` is a unit vector
+Quat alignedToShaft(const Quat& orientation, const Vec3& shaft);
+
+/// Quaternion of a rotation matrix, from the largest of its four components (Shepperd 1978); normalised, w >= 0.
+/// @pre the matrix is a rotation within about 1e-3
+Quat quaternionOf(const Mat3& rotation);
+
+/// Normalised linear interpolation on the shorter arc. @param s in [0, 1]
+Quat interpolated(const Quat& from, const Quat& to, double s);
+
+/// Minimum-jerk progress of a stroke, 10 s^3 - 15 s^4 + 6 s^5, clamped outside [0, 1] (Flash and Hogan 1985, "The
+/// coordination of arm movements", J. Neuroscience 5:1688). Speed and acceleration are zero at both ends; the greatest
+/// speed is 1.875 times the mean.
+double minimumJerk(double s);
+
+}  // namespace calot::recorder

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the release tests do not see: format, lints, clang's warnings, sanitizers on the fast tests, clang-tidy, and the
+# short determinism matrix. `checks.sh STAGE...` runs only these stages.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+stages=(format lint clang asan-ubsan tsan tidy matrix)
+if [[ $# -gt 0 ]]; then stages=("$@"); fi
+
+# Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
+fastTests=(test_math test_geometry test_sim test_formats test_recording test_recorder test_sources test_statistics
+  test_analytics test_checkpoints)
+threadTests=(test_recording test_recorder)
+
+# fast PRESET TARGET...: builds these test programs and runs them, heavy ones left out.
+fast() {
+  local preset=$1
+  shift
+  configure "$preset"
+  build "$preset" "$@"
+  say "test $preset"
+  ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording' --label-exclude heavy --parallel "$jobs" \
+    --output-on-failure --no-tests=error --quiet
+}
+
+for stage in "${stages[@]}"; do
+  case $stage in
+    format)
+      say "format"
+      "$root/scripts/format.sh" --check
+      ;;
+    lint)
+      say "lint"
+      "$root/scripts/lint-determinism.sh"
+      shellcheck --external-sources --source-path="$root/scripts" "$root"/scripts/*.sh "$root/.ci/run"
+      ;;
+    clang) fast clang all ;;
+    asan-ubsan)
+      export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1
+      fast asan-ubsan "${fastTests[@]}"
+      ;;
+    tsan)
+      export TSAN_OPTIONS=second_deadlock_stack=1:halt_on_error=1
+      fast tsan "${threadTests[@]}"
+      ;;
+    tidy)
+      configure clang
+      say "clang-tidy"
+      "$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs"
+      ;;
+    matrix)
+      configure release
+      build release calot calot-matrix
+      "$root/scripts/matrix.sh" --short
+      ;;
+    *)
+      echo "checks: no stage $stage; there are: format lint clang asan-ubsan tsan tidy matrix" >&2
+      exit 2
+      ;;
+  esac
+done
+say "passed: ${stages[*]}"

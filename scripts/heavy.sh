@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The long tests: everything labelled `heavy` (the whole determinism matrix among them). Arguments go to ctest.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+"$root/scripts/setup.sh"
+configure release
+build release
+say "heavy tests"
+ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure --no-tests=error "$@"
+say "passed"

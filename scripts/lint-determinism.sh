@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Refuses what the determinism contract forbids (docs/determinism.md), the wrong includes, and unkept files.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+"$python" -B "$root/tests/structure/determinism_lint.py" --self-test
+"$python" -B "$root/tests/structure/determinism_lint.py" "$root"
+"$python" -B "$root/tests/structure/includes_test.py" --self-test
+"$python" -B "$root/tests/structure/includes_test.py" "$root"
+"$python" -B "$root/tests/structure/house_test.py" --self-test
+"$python" -B "$root/tests/structure/house_test.py" "$root"

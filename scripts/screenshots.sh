@@ -1,0 +1,30 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Pictures of the dashboard's pages from a cohort database, under a virtual X server.
+#   scripts/screenshots.sh COHORT.db [FOLDER]        FOLDER defaults to docs/pictures
+# The program is taken from build/release/bin, or from CALOT_BIN.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+if [ $# -lt 1 ] || [ $# -gt 2 ]; then
+  echo "usage: scripts/screenshots.sh COHORT.db [FOLDER]" >&2
+  exit 2
+fi
+database=$1
+folder=${2:-$root/docs/pictures}
+program=${CALOT_BIN:-$root/build/release/bin}/calot-dashboard
+if [ ! -x "$program" ]; then
+  echo "screenshots.sh: $program is not built; build it or set CALOT_BIN" >&2
+  exit 1
+fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$folder" "$work/runtime"
+chmod 700 "$work/runtime"
+XDG_RUNTIME_DIR=$work/runtime QT_QPA_PLATFORM=xcb LC_ALL=C.UTF-8 \
+  xvfb-run --auto-servernum --server-args="-screen 0 1600x1000x24" "$program" "$database" --pictures "$work"
+for page in attempts compare greeting; do
+  if [ -f "$work/$page.png" ]; then
+    mv "$work/$page.png" "$folder/dashboard-$page.png"
+    echo "$folder/dashboard-$page.png"
+  fi
+done

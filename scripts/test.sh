@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Builds the release preset and runs every test that is not labelled `heavy`. Arguments go to ctest (-R NAME, -L LABEL).
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+"$root/scripts/setup.sh"
+configure release
+build release
+say "test release"
+ctest --test-dir "$root/build/release" --label-exclude heavy --parallel "$jobs" --output-on-failure --no-tests=error "$@"
+say "passed"

@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""clang-tidy over the project's sources, several at a time, by the checks of .clang-tidy.
+
+A source is looked at again only when it, a header or .clang-tidy changed since it was last found clean.
+"""
+import argparse
+import concurrent.futures
+import hashlib
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOMS = ("sim", "recorder", "analytics", "gui", "apps", "assets")
+
+
+def headers_digest():
+    digest = hashlib.sha256((ROOT / ".clang-tidy").read_bytes())
+    for room in ROOMS:
+        for header in sorted((ROOT / room).rglob("*.h")):
+            digest.update(header.read_bytes())
+    return digest
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build", type=pathlib.Path, help="a configured build tree (compile_commands.json)")
+    parser.add_argument("--jobs", type=int, default=2)
+    arguments = parser.parse_args()
+
+    commands = json.loads((arguments.build / "compile_commands.json").read_text())
+    files = sorted({pathlib.Path(c["file"]) for c in commands})
+    files = [f for f in files if f.is_relative_to(ROOT) and f.relative_to(ROOT).parts[0] in ROOMS]
+    cache = arguments.build / "tidy"
+    cache.mkdir(exist_ok=True)
+    common = headers_digest()
+
+    def check(file):
+        digest = common.copy()
+        digest.update(file.read_bytes())
+        mark = cache / (re.sub(r"\W", "_", str(file.relative_to(ROOT))) + ".clean")
+        if mark.exists() and mark.read_text() == digest.hexdigest():
+            return file, ""
+        run = subprocess.run(["clang-tidy", "--quiet", f"-p={arguments.build}", str(file)], capture_output=True, text=True)
+        if run.returncode == 0 and "warning:" not in run.stdout:
+            mark.write_text(digest.hexdigest())
+            return file, ""
+        return file, run.stdout or run.stderr
+
+    bad = 0
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        for file, complaint in pool.map(check, files):
+            if complaint:
+                bad += 1
+                print(f"--- {file.relative_to(ROOT)}\n{complaint}", flush=True)
+    print(f"clang-tidy: {len(files)} sources, {bad} with complaints")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/math/linear.h"
+
+namespace calot {
+
+/// Answers one question, "which pairs may touch?", with a superset of the pairs whose boxes overlap; the narrow phase
+/// decides. Any implementation gives the same State, since pairs are sorted and decided again.
+class BroadPhase {
+ public:
+  struct Pair {
+    std::uint32_t query = 0;  ///< index into the queries
+    std::uint32_t leaf = 0;   ///< index into the leaves
+    auto operator<=>(const Pair&) const = default;
+  };
+
+  virtual ~BroadPhase() = default;
+
+  /// Takes new bounds of all leaves.
+  virtual void update(std::span<const Box> leaves) = 0;
+
+  /// Pairs (query, leaf), sorted, each once. @pre boxes are finite
+  virtual void pairs(std::span<const Box> queries, std::vector<Pair>& out) const = 0;
+};
+
+/// Cells of a fixed size; each leaf enters the cells that it covers, entries are sorted by cell. A leaf that covers too
+/// many cells is kept in a list of its own and offered to every query.
+class SortedGrid final : public BroadPhase {
+ public:
+  /// @param cell edge of a cell (m)
+  explicit SortedGrid(double cell) : cell_(cell) {}
+  void update(std::span<const Box> leaves) override;
+  void pairs(std::span<const Box> queries, std::vector<Pair>& out) const override;
+
+ private:
+  struct Entry {
+    std::uint64_t cell = 0;
+    std::uint32_t leaf = 0;
+    auto operator<=>(const Entry&) const = default;
+  };
+  double cell_;
+  std::vector<Entry> entry_;
+  std::vector<std::uint32_t> large_;
+  std::vector<Box> leaf_;
+};
+
+}  // namespace calot

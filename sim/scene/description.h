@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene as plain data: what a scene file says once its assets are read. Everything a Model is built from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/math/fields.h"
+#include "sim/math/linear.h"
+#include "sim/scene/samples.h"
+
+namespace calot {
+
+/// Closed triangle surface of an organ in W at rest (m).
+struct SurfaceDescription {
+  std::vector<Vec3> vertex;
+  std::vector<Index3> triangle;  ///< outward
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("vertex", self.vertex);
+    visit("triangle", self.triangle);
+  }
+};
+
+/// Isotropic material of a co-rotational solid.
+struct MaterialDescription {
+  double youngModulus = 5000.0;     ///< Pa
+  double poissonRatio = 0.45;       ///< in [0, 0.5)
+  double density = 1060.0;          ///< kg/m^3
+  double massDamping = 0.0;         ///< Rayleigh alpha (1/s)
+  double stiffnessDamping = 0.01;   ///< Rayleigh beta (s)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("youngModulus", self.youngModulus);
+    visit("poissonRatio", self.poissonRatio);
+    visit("density", self.density);
+    visit("massDamping", self.massDamping);
+    visit("stiffnessDamping", self.stiffnessDamping);
+  }
+};
+
+/// Region of an organ whose nodes are held at their rest position: all nodes inside the sphere, or (when `nearOrgan` is
+/// not empty) all nodes within `distance` of that organ's rest surface.
+struct AnchorDescription {
+  Vec3 centre = Vec3::Zero();  ///< m
+  double radius = 0.0;         ///< m
+  std::string nearOrgan;
+  double distance = 0.0;       ///< m
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("centre", self.centre);
+    visit("radius", self.radius);
+    visit("nearOrgan", self.nearOrgan);
+    visit("distance", self.distance);
+  }
+};
+
+struct OrganDescription {
+  std::string name;
+  std::string appearance;
+  SurfaceDescription surface;
+  std::uint32_t tetrahedra = 0;  ///< requested number
+  MaterialDescription material;
+  std::vector<AnchorDescription> anchors;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name);
+    visit("appearance", self.appearance);
+    visit("surface", self.surface);
+    visit("tetrahedra", self.tetrahedra);
+    visit("material", self.material);
+    visit("anchors", self.anchors);
+  }
+};
+
+/// Where a hand's instrument enters, and how it is coupled.
+struct HandDescription {
+  Vec3 port = Vec3::Zero();          ///< p_WP, the trocar's pivot (m)
+  Vec3 home = Vec3::Zero();          ///< p_WI at the start (m)
+  InstrumentKind instrument = InstrumentKind::grasper;
+  double shaftRadius = 0.0025;       ///< m
+  double couplingStiffness = 1000.0; ///< of the virtual coupling at the tip (N/m)
+  double largestForce = 8.0;         ///< what the device can do (N)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("port", self.port);
+    visit("home", self.home);
+    visit("instrument", self.instrument);
+    visit("shaftRadius", self.shaftRadius);
+    visit("couplingStiffness", self.couplingStiffness);
+    visit("largestForce", self.largestForce);
+  }
+};
+
+struct SolverDescription {
+  double tolerance = 1e-4;              ///< relative residual of the linear solve
+  std::uint32_t iterations = 200;       ///< cap of the linear solve
+  double contactTolerance = 1e-7;       ///< residual of the contact problem (m)
+  std::uint32_t contactIterations = 200;
+  bool sleeping = true;                 ///< untouched organs at rest are not solved
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("tolerance", self.tolerance);
+    visit("iterations", self.iterations);
+    visit("contactTolerance", self.contactTolerance);
+    visit("contactIterations", self.contactIterations);
+    visit("sleeping", self.sleeping);
+  }
+};
+
+struct SceneDescription {
+  std::string name;
+  std::uint32_t majorVersion = 1;       ///< changes when attempts before and after must not be compared
+  std::uint32_t minorVersion = 0;
+  std::uint32_t ticksPerStep = 10;      ///< a tick is 1 ms
+  Vec3 gravity = Vec3::Zero();          ///< m/s^2; zero: the organs' rest shape is their shape in the body, under gravity
+  double timeLimit = 0.0;               ///< s; 0: none
+  std::array<Vec3, 2> workspace{Vec3::Constant(-0.5), Vec3::Constant(0.5)};  ///< lower and upper corner for tips (m)
+  std::vector<OrganDescription> organs;
+  std::array<HandDescription, handCount> hands;
+  CameraSample camera;                  ///< at the start
+  double verticalFieldOfView = 1.0;     ///< rad
+  SolverDescription solver;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name);
+    visit("majorVersion", self.majorVersion);
+    visit("minorVersion", self.minorVersion);
+    visit("ticksPerStep", self.ticksPerStep);
+    visit("gravity", self.gravity);
+    visit("timeLimit", self.timeLimit);
+    visit("workspace", self.workspace);
+    visit("organs", self.organs);
+    visit("hands", self.hands);
+    visit("cameraPosition", self.camera.position);
+    visit("cameraOrientation", self.camera.orientation);
+    visit("verticalFieldOfView", self.verticalFieldOfView);
+    visit("solver", self.solver);
+  }
+};
+
+inline constexpr double tickLength = 0.001;  ///< s
+
+}  // namespace calot

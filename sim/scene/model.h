@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/contact/surface_patches.h"
+#include "sim/geometry/mesh_to_count.h"
+#include "sim/scene/description.h"
+#include "sim/scene/digests.h"
+#include "sim/solid/solid.h"
+
+namespace calot {
+
+/// One organ's fixed data.
+struct OrganModel {
+  std::string name;
+  std::string appearance;
+  SolidModel solid;
+  ContactSurface surface;
+  double cellSize = 0.0;     ///< of the tetrahedral lattice (m)
+  StuffingReport meshing;
+};
+
+/// Everything that is built from the scene and never changes afterwards: a pure function of the description.
+class Model {
+ public:
+  /// A Model, or one sentence that says what is wrong with the description.
+  struct Built {
+    std::unique_ptr<const Model> model;
+    std::string error;
+  };
+  static Built build(SceneDescription scene);
+
+  [[nodiscard]] const SceneDescription& scene() const { return scene_; }
+  [[nodiscard]] const std::vector<OrganModel>& organs() const { return organs_; }
+  [[nodiscard]] const DigestLayout& layout() const { return layout_; }
+  [[nodiscard]] double stepSeconds() const { return tickLength * scene_.ticksPerStep; }
+
+ private:
+  Model() = default;
+  SceneDescription scene_;
+  std::vector<OrganModel> organs_;
+  DigestLayout layout_;
+};
+
+}  // namespace calot

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "sim/math/linear.h"
+
+namespace calot {
+
+enum class Hand : std::uint8_t { left = 0, right = 1 };
+inline constexpr int handCount = 2;
+inline constexpr std::array<const char*, handCount> handNames{"left", "right"};
+
+/// What is mounted on a hand's shaft. Numbers are stored in recordings and never reused.
+enum class InstrumentKind : std::uint8_t { none = 0, grasper = 1, hook = 2, clipApplier = 3, scissors = 4 };
+
+/// Bits of InstrumentSample::buttons.
+namespace button {
+inline constexpr std::uint8_t cutPedal = 1U << 0U;         ///< yellow pedal: cut
+inline constexpr std::uint8_t coagulatePedal = 1U << 1U;   ///< blue pedal: coagulation
+inline constexpr std::uint8_t fire = 1U << 2U;             ///< closes a clip
+inline constexpr std::uint8_t lock = 1U << 3U;             ///< ratchet of a grasper
+}  // namespace button
+
+/// One hand during one tick (1 ms): the device's real pose, in W, before any constraint.
+struct InstrumentSample {
+  Vec3 position = Vec3::Zero();               ///< p_WI, instrument tip (m)
+  Quat orientation = Quat::Identity();        ///< q_WI; I: z along the shaft towards the tip, x across the jaw's hinge
+  double jaw = 0.0;                           ///< opening angle of the jaws (rad), 0 closed
+  InstrumentKind instrument = InstrumentKind::grasper;
+  std::uint8_t buttons = 0;
+  bool valid = true;                          ///< false: the source had no measurement; the pose of the last valid tick is held
+};
+
+/// Endoscope pose in W: x right, y down, z forward (along the view). What the operator saw is an input too.
+struct CameraSample {
+  Vec3 position = Vec3::Zero();               ///< p_WC (m)
+  Quat orientation = Quat::Identity();        ///< q_WC
+};
+
+/// All inputs of one tick.
+struct TickSamples {
+  std::array<InstrumentSample, handCount> hand;
+  CameraSample camera;
+};
+
+/// Rounds to the grid on which samples are recorded, so that what is logged is what was simulated: positions to
+/// 2^-20 m, quaternion components to 2^-16, jaw angles to 2^-16 rad. Not normalised: the core normalises.
+TickSamples roundedToGrid(const TickSamples& samples);
+
+}  // namespace calot

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/scene/state.h"
+
+#include <cmath>
+
+#include "sim/instruments/port.h"
+#include "sim/math/fields.h"
+
+namespace calot {
+
+namespace {
+
+/// Collects the names of a part's fields.
+struct NameVisitor {
+  DigestLayout& layout;
+  std::uint32_t component;
+  template <class T>
+  void operator()(const char* name, const T& /*value*/) {
+    layout.fields.push_back({component, layout.components[component] + "/" + name});
+  }
+};
+
+/// Serialises a part and remembers where each field ends.
+struct PieceVisitor {
+  ByteWriter writer;
+  const std::vector<std::byte>& bytes;
+  std::vector<std::size_t>& ends;
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    writer(name, value);
+    ends.push_back(bytes.size());
+  }
+};
+
+struct FiniteVisitor {
+  bool finite = true;
+  template <class T>
+  void operator()(const char* /*name*/, const T& value) {
+    check(value);
+  }
+  void check(double v) { finite = finite && std::isfinite(v); }
+  template <class T>
+    requires(std::is_integral_v<T> || std::is_enum_v<T>)
+  void check(T /*value*/) {}
+  void check(const Vec3& v) { finite = finite && v.allFinite(); }
+  void check(const Quat& q) { finite = finite && q.coeffs().allFinite(); }
+  template <class T, std::size_t N>
+  void check(const std::array<T, N>& values) {
+    for (const T& v : values) check(v);
+  }
+  template <class T>
+  void check(const std::vector<T>& values) {
+    for (const T& v : values) check(v);
+  }
+};
+
+template <class Part>
+void digestPart(const Part& part, std::uint64_t& component, std::uint32_t* field, std::vector<std::byte>& bytes,
+                std::vector<std::size_t>& ends) {
+  bytes.clear();
+  ends.clear();
+  PieceVisitor visitor{ByteWriter(bytes), bytes, ends};
+  Part::fields(part, visitor);
+  component = digest64(bytes);
+  std::size_t start = 0;
+  const std::span<const std::byte> all(bytes);
+  for (const std::size_t end : ends) {
+    *field++ = static_cast<std::uint32_t>(digest64(all.subspan(start, end - start)));
+    start = end;
+  }
+}
+
+template <class Part>
+std::size_t fieldCount() {
+  DigestLayout layout;
+  layout.components.emplace_back();
+  NameVisitor visitor{layout, 0};
+  const Part part{};
+  Part::fields(part, visitor);
+  return layout.fields.size();
+}
+
+}  // namespace
+
+State initialState(const Model& model, std::uint64_t seed) {
+  State state;
+  const SceneDescription& scene = model.scene();
+  state.clock.random = Random(seed, 1);
+  state.camera.position = scene.camera.position;
+  state.camera.orientation = scene.camera.orientation;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const HandDescription& hand = scene.hands[h];
+    HandState& s = state.hand[h];
+    s.instrument = hand.instrument;
+    const Pose pose = throughPort(hand.port, hand.home, Quat::Identity(), Vec3(0.0, 0.0, -1.0));
+    s.realPosition = s.simulatedPosition = pose.position;
+    s.realOrientation = s.simulatedOrientation = pose.orientation;
+    s.touchingSince.assign(model.organs().size(), 0);
+  }
+  for (const OrganModel& organ : model.organs()) {
+    state.organ.push_back(restState(organ.solid));
+    if (!scene.gravity.isZero(0.0)) state.organ.back().quietSteps = 0;
+  }
+  return state;
+}
+
+DigestLayout digestLayout(const std::vector<std::string>& organNames) {
+  DigestLayout layout;
+  layout.components = {"clock", "camera", "hand.left", "hand.right"};
+  for (const std::string& name : organNames) layout.components.push_back("organ." + name);
+  State state;
+  state.organ.resize(organNames.size());
+  std::uint32_t component = 0;
+  State::components(state, [&](const auto& part) {
+    NameVisitor visitor{layout, component++};
+    std::remove_cvref_t<decltype(part)>::fields(part, visitor);
+  });
+  return layout;
+}
+
+StateDigest digestOf(const State& state) {
+  IncrementalDigest digest;
+  return digest.update(state, {});
+}
+
+const StateDigest& IncrementalDigest::update(const State& state, const std::vector<bool>& written) {
+  std::vector<std::byte> bytes;
+  std::vector<std::size_t> ends;
+  std::size_t component = 0;
+  std::size_t field = 0;
+  State::components(state, [&](const auto& part) {
+    using Part = std::remove_cvref_t<decltype(part)>;
+    static const std::size_t count = fieldCount<Part>();
+    if (digest_.component.size() <= component) digest_.component.resize(component + 1);
+    if (digest_.field.size() < field + count) digest_.field.resize(field + count);
+    if (!valid_ || written[component]) {
+      digestPart(part, digest_.component[component], digest_.field.data() + field, bytes, ends);
+    }
+    ++component;
+    field += count;
+  });
+  valid_ = true;
+  return digest_;
+}
+
+std::vector<std::byte> saveState(const State& state) {
+  std::vector<std::byte> bytes;
+  ByteWriter writer(bytes);
+  State::components(state, [&](const auto& part) { writer.write(part); });
+  return bytes;
+}
+
+bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state) {
+  State read;
+  read.organ.resize(model.organs().size());
+  ByteReader reader(bytes);
+  State::components(read, [&](auto& part) { reader.read(part); });
+  if (!reader.complete()) return false;
+  FiniteVisitor finite;
+  State::components(read, [&](const auto& part) { std::remove_cvref_t<decltype(part)>::fields(part, finite); });
+  if (!finite.finite) return false;
+  for (const HandState& hand : read.hand) {
+    if (hand.touchingSince.size() != model.organs().size()) return false;
+    if (hand.contactKey.size() != hand.contactForce.size()) return false;
+  }
+  for (std::size_t o = 0; o < read.organ.size(); ++o) {
+    const SolidModel& solid = model.organs()[o].solid;
+    if (read.organ[o].position.size() != solid.nodes() || read.organ[o].velocity.size() != solid.nodes()) return false;
+    if (read.organ[o].rotation.size() != solid.elements().groups().size()) return false;
+  }
+  state = std::move(read);
+  return true;
+}
+
+}  // namespace calot

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that changes. Each part lists its fields once (sim/math/fields.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/math/random.h"
+#include "sim/scene/digests.h"
+#include "sim/scene/model.h"
+#include "sim/scene/samples.h"
+#include "sim/solid/solid.h"
+
+namespace calot {
+
+struct ClockState {
+  std::uint64_t step = 0;  ///< the next step to compute
+  Random random;           ///< seeded by the attempt's seed
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("step", self.step);
+    visit("random.state", self.random.state);
+    visit("random.increment", self.random.increment);
+  }
+};
+
+struct CameraState {
+  Vec3 position = Vec3::Zero();         ///< p_WC (m)
+  Quat orientation = Quat::Identity();  ///< q_WC, unit
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("position", self.position);
+    visit("orientation", self.orientation);
+  }
+};
+
+struct HandState {
+  InstrumentKind instrument = InstrumentKind::none;
+  Vec3 realPosition = Vec3::Zero();              ///< tip after port and workspace (m)
+  Quat realOrientation = Quat::Identity();       ///< unit
+  Vec3 simulatedPosition = Vec3::Zero();         ///< tip where contact lets it be (m)
+  Quat simulatedOrientation = Quat::Identity();  ///< unit
+  double jaw = 0.0;                              ///< rad
+  std::uint8_t buttons = 0;
+  bool valid = true;                             ///< the newest sample was a measurement
+  bool outside = false;                          ///< the newest sample lay outside the workspace
+  std::uint64_t invalidSince = 0;                ///< step in which measurements stopped
+  std::uint32_t touching = 0;                    ///< bit o: organ o
+  std::vector<std::uint64_t> touchingSince;      ///< per organ: step in which the touch began
+  std::vector<std::uint64_t> contactKey;         ///< the last step's contacts: where,
+  std::vector<double> contactForce;              ///< and how strong (N); warm start of the next problem
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("instrument", self.instrument);
+    visit("realPosition", self.realPosition);
+    visit("realOrientation", self.realOrientation);
+    visit("simulatedPosition", self.simulatedPosition);
+    visit("simulatedOrientation", self.simulatedOrientation);
+    visit("jaw", self.jaw);
+    visit("buttons", self.buttons);
+    visit("valid", self.valid);
+    visit("outside", self.outside);
+    visit("invalidSince", self.invalidSince);
+    visit("touching", self.touching);
+    visit("touchingSince", self.touchingSince);
+    visit("contactKey", self.contactKey);
+    visit("contactForce", self.contactForce);
+  }
+};
+
+struct State {
+  ClockState clock;
+  CameraState camera;
+  std::array<HandState, handCount> hand;
+  std::vector<SolidState> organ;
+
+  /// Calls visit(part) for each component, in the order of DigestLayout::components.
+  template <class Self, class Visit>
+  static void components(Self& self, Visit&& visit) {
+    visit(self.clock);
+    visit(self.camera);
+    for (auto& h : self.hand) visit(h);
+    for (auto& o : self.organ) visit(o);
+  }
+};
+
+/// The state before the first step: organs at rest, instruments at home, camera in place.
+State initialState(const Model& model, std::uint64_t seed);
+
+/// Names of components and fields of a model's State.
+DigestLayout digestLayout(const std::vector<std::string>& organNames);
+
+/// Hashes every field of every component.
+StateDigest digestOf(const State& state);
+
+/// The same, component by component: a component that is not marked as written keeps its digest.
+class IncrementalDigest {
+ public:
+  /// Forgets everything: the next update hashes all (after a restore).
+  void reset() { valid_ = false; }
+  /// @param written per component, in the order of DigestLayout::components
+  const StateDigest& update(const State& state, const std::vector<bool>& written);
+
+ private:
+  StateDigest digest_;
+  bool valid_ = false;
+};
+
+/// State as bytes, by its field lists.
+std::vector<std::byte> saveState(const State& state);
+
+/// Takes bytes of saveState(). @returns false, leaving `state` as it was, when they are not a State of this model
+/// (missing or surplus bytes, other numbers of organs, nodes or elements, values that are not finite).
+bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state);
+
+}  // namespace calot

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a step tells the world: the versioned contract (stepResultVersion) on which analytics and pictures stand.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sim/math/linear.h"
+#include "sim/scene/samples.h"
+
+namespace calot {
+
+/// Numbers are stored in recordings and never reused.
+enum class EventKind : std::uint16_t {
+  contactBegin = 1,        ///< subject: organ index; value: first normal force (N)
+  contactEnd = 2,          ///< subject: organ index; value: how long it lasted (s)
+  instrumentExchange = 3,  ///< subject: new InstrumentKind; value: old InstrumentKind
+  outOfWorkspace = 4,      ///< the sample left the scene's workspace and was clamped; value: distance outside (m)
+  sampleInvalid = 5,       ///< the source had no measurement from here; the last pose is held
+  sampleValid = 6,         ///< measurements are back; value: how long they were missing (s)
+  solverMiss = 7,          ///< subject: organ index; value: relative residual above the scene's tolerance
+  contactMiss = 8,         ///< value: residual of the contact problem above the scene's tolerance
+};
+
+/// A fixed-size event. `hand` is 0, 1 or 255 (none).
+struct Event {
+  std::uint64_t step = 0;
+  EventKind kind = EventKind::contactBegin;
+  std::uint8_t hand = 255;
+  std::uint16_t subject = 0;
+  Vec3 position = Vec3::Zero();  ///< p_W (m)
+  double value = 0.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("step", self.step);
+    visit("kind", self.kind);
+    visit("hand", self.hand);
+    visit("subject", self.subject);
+    visit("position", self.position);
+    visit("value", self.value);
+  }
+};
+
+/// One instrument at the end of a step.
+struct HandResult {
+  InstrumentKind instrument = InstrumentKind::none;
+  Vec3 tipReal = Vec3::Zero();                ///< p_WI where the operator holds it, after port and workspace (m)
+  Vec3 tipSimulated = Vec3::Zero();           ///< p_WI where contact lets it be (m)
+  Quat orientation = Quat::Identity();        ///< q_WI of the simulated instrument
+  double jaw = 0.0;                           ///< rad
+  double insertion = 0.0;                     ///< distance from port to simulated tip (m)
+  Vec3 contactForce = Vec3::Zero();           ///< f_W, force of the organs on the instrument, reduced to its tip (N)
+  std::uint32_t touching = 0;                 ///< bit o: a force acts between this instrument and organ o
+  std::vector<double> organForce;             ///< per organ: sum of normal force magnitudes (N)
+};
+
+/// One organ at the end of a step.
+struct OrganResult {
+  double volume = 0.0;              ///< of the deformed tetrahedra (m^3)
+  double largestDisplacement = 0.0; ///< over its nodes, from rest (m)
+  double largestSpeed = 0.0;        ///< over its nodes (m/s)
+  double residual = 0.0;            ///< relative residual of the linear solve; 0 when asleep
+  std::uint32_t iterations = 0;     ///< of the linear solve; 0 when asleep
+  bool asleep = false;              ///< untouched and at rest: not solved in this step
+};
+
+/// The contact problem of a step.
+struct ContactResult {
+  std::uint32_t rows = 0;        ///< unilateral constraints
+  std::uint32_t iterations = 0;  ///< sweeps used
+  double residual = 0.0;         ///< natural residual |min(lambda W_ii, gap)|, largest row (m)
+  double largestDepth = 0.0;     ///< deepest point of an instrument inside an organ after the step (m), 0 if outside
+};
+
+/// Bits of StepResult::misses: a step that misses a tolerance says so.
+namespace miss {
+inline constexpr std::uint32_t solver = 1U << 0U;
+inline constexpr std::uint32_t contact = 1U << 1U;
+}  // namespace miss
+
+struct StepResult {
+  std::uint64_t step = 0;  ///< n; the state after ticks [n T, (n + 1) T) with T ticks a step
+  std::array<HandResult, handCount> hand;
+  std::vector<OrganResult> organ;
+  ContactResult contact;
+  std::uint32_t misses = 0;
+  std::vector<Event> events;
+};
+
+}  // namespace calot

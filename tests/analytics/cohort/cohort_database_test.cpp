@@ -1,0 +1,510 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/cohort/cohort_database.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "analytics/assess.h"
+#include "analytics/cohort/embedded.h"
+#include "analytics/cohort/sqlite_errors.h"
+#include "recorder/errors.h"
+#include "tests/analytics/cohort/support/cohort_support.h"
+
+namespace calot::analytics {
+namespace {
+
+using Access = CohortDatabase::Access;
+using support::attemptOf;
+using support::Folder;
+using support::humanAttempt;
+using support::uuidOf;
+using support::valuesOf;
+
+/// Runs `call`, which must throw calot::Error with this code and these words in one line.
+template <class Call>
+void expectError(ExitCode code, const std::string& words, Call call) {
+  try {
+    call();
+    ADD_FAILURE() << "no error; expected: " << words;
+  } catch (const Error& error) {
+    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+/// Every row of every table, to compare two states of a database.
+std::string dump(const std::string& path) {
+  SQLite::Database db(path, SQLite::OPEN_READONLY);
+  std::string text;
+  SQLite::Statement tables(db, "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
+  while (tables.executeStep()) {
+    const std::string name = tables.getColumn(0).getString();
+    text += name + "\n";
+    SQLite::Statement rows(db, "SELECT * FROM " + name);
+    while (rows.executeStep()) {
+      for (int c = 0; c < rows.getColumnCount(); ++c) text += rows.getColumn(c).getString() + "|";
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+std::string integrity(const std::string& path) {
+  SQLite::Database db(path, SQLite::OPEN_READONLY);
+  return db.execAndGet("PRAGMA integrity_check").getString();
+}
+
+TEST(CohortDatabase, isMadeWithItsSchema) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  {
+    const CohortDatabase database(path, Access::create);
+    EXPECT_EQ(database.schemaVersion(), static_cast<int>(cohortMigrations().size()));
+    EXPECT_TRUE(database.listAttempts().empty());
+  }
+  SQLite::Database raw(path, SQLite::OPEN_READONLY);
+  EXPECT_EQ(raw.execAndGet("PRAGMA application_id").getInt(), 0x43616C6F);
+  EXPECT_EQ(raw.execAndGet("PRAGMA journal_mode").getString(), "wal");
+  SQLite::Statement tables(raw, "SELECT name, strict FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND name NOT LIKE 'sqlite_%'");
+  int count = 0;
+  while (tables.executeStep()) {
+    ++count;
+    EXPECT_EQ(tables.getColumn(1).getInt(), 1) << tables.getColumn(0).getString() << " is not STRICT";
+  }
+  EXPECT_EQ(count, 9);
+}
+
+TEST(CohortDatabase, migrationsAreNumberedWithoutGaps) {
+  const auto& migrations = cohortMigrations();
+  ASSERT_FALSE(migrations.empty());
+  for (std::size_t i = 0; i < migrations.size(); ++i) {
+    EXPECT_EQ(std::string(migrations[i].name).substr(0, 5), fmt::format("{:04}_", i + 1));
+    std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/schemas/cohort/" + migrations[i].name, std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    EXPECT_EQ(text, migrations[i].sql);
+  }
+}
+
+TEST(CohortDatabase, olderSchemaIsBroughtUpToDate) {
+  const Folder folder;
+  const std::string path = folder.file("old.db");
+  {
+    SQLite::Database raw(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    raw.exec(cohortMigrations()[0].sql);
+    raw.exec("PRAGMA user_version = 1; PRAGMA application_id = 1130458223");
+    raw.exec("INSERT INTO participant (pseudonym, study_group, created_utc) VALUES ('P01', 'expert', '2026-01-01T00:00:00Z')");
+  }
+  expectError(ExitCode::failure, "must be brought to", [&] { CohortDatabase(path, Access::read); });
+  CohortDatabase database(path, Access::write);
+  EXPECT_EQ(database.schemaVersion(), static_cast<int>(cohortMigrations().size()));
+  EXPECT_EQ(database.participant("P01")->group, "expert");
+  EXPECT_EQ(database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1.0, 2.0)), Imported::added);
+}
+
+TEST(CohortDatabase, refusesWhatIsNotItsOwn) {
+  const Folder folder;
+  const auto write = [&](const char* name, const std::string& bytes) {
+    std::ofstream(folder.file(name), std::ios::binary) << bytes;
+    return folder.file(name);
+  };
+  expectError(ExitCode::damaged, "no such cohort database", [&] { CohortDatabase(folder.file("none.db"), Access::read); });
+  expectError(ExitCode::damaged, "no such cohort database", [&] { CohortDatabase(folder.file("none.db"), Access::write); });
+  EXPECT_FALSE(std::filesystem::exists(folder.file("none.db")));
+  expectError(ExitCode::failure, "can't be opened", [&] { CohortDatabase(folder.file("nowhere/c.db"), Access::create); });
+  expectError(ExitCode::damaged, "not a file", [&] { CohortDatabase(folder.file("."), Access::create); });
+  const std::string empty = write("empty.db", "");
+  expectError(ExitCode::damaged, "empty file", [&] { CohortDatabase(empty, Access::read); });
+  const std::string words = write("words.db", std::string(5000, 'x'));
+  for (const Access access : {Access::read, Access::write, Access::create}) {
+    expectError(ExitCode::damaged, "not an SQLite file", [&] { CohortDatabase(words, access); });
+  }
+  EXPECT_EQ(std::filesystem::file_size(words), 5000U);
+  const std::string other = folder.file("other.db");
+  { SQLite::Database(other, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE t (x)"); }
+  for (const Access access : {Access::read, Access::write, Access::create}) {
+    expectError(ExitCode::damaged, "another program's", [&] { CohortDatabase(other, access); });
+  }
+  const std::string newer = folder.file("newer.db");
+  { const CohortDatabase database(newer, Access::create); }
+  { SQLite::Database(newer, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
+  expectError(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::read); });
+  expectError(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::create); });
+}
+
+TEST(CohortDatabase, truncatedOrOverwrittenFilesAreReportedNotCrashedOn) {
+  const Folder folder;
+  const std::string good = folder.file("good.db");
+  {
+    CohortDatabase database(good, Access::create);
+    for (unsigned n = 0; n < 40; ++n) database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
+  }
+  const auto size = std::filesystem::file_size(good);
+  const unsigned seed = 31;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  int errors = 0;
+  for (int round = 0; round < 80; ++round) {
+    const std::string path = folder.file("bad.db");
+    std::filesystem::copy_file(good, path, std::filesystem::copy_options::overwrite_existing);
+    if (round % 2 == 0) {
+      std::filesystem::resize_file(path, random() % size);
+    } else {
+      std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+      for (int i = 0; i < 200; ++i) {
+        file.seekp(static_cast<std::streamoff>(random() % size));
+        file.put(static_cast<char>(random()));
+      }
+    }
+    try {
+      const CohortDatabase database(path, Access::read);
+      (void)database.allValues();
+      (void)database.listAttempts();
+    } catch (const Error& error) {
+      ++errors;
+      EXPECT_NE(std::string(error.what()).find("bad.db"), std::string::npos) << error.what();
+      EXPECT_TRUE(error.code() == ExitCode::damaged || error.code() == ExitCode::undecided || error.code() == ExitCode::failure) << error.what();
+    }
+    for (const char* suffix : {"-wal", "-shm"}) std::filesystem::remove(path + suffix);
+  }
+  EXPECT_GE(errors, 40);
+}
+
+TEST(CohortDatabase, keepsEverythingOfAnAttempt) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  AttemptRecord a = humanAttempt(7, "P07");
+  a.parent = uuidOf(6);
+  a.calibration = "2026-01-01";
+  a.verification.text = "";
+  const auto values = valuesOf(38.86, 0.06736);
+  EXPECT_EQ(database.storeAttempt(a, values), Imported::added);
+  const auto row = database.attempt(a.uuid);
+  ASSERT_TRUE(row);
+  EXPECT_EQ(row->uuid, a.uuid);
+  EXPECT_EQ(row->parent, a.parent);
+  EXPECT_EQ(row->participant, "P07");
+  EXPECT_EQ(row->scene, a.scene);
+  EXPECT_EQ(row->sceneMajor, a.sceneMajor);
+  EXPECT_EQ(row->operatorKind, a.operatorKind);
+  EXPECT_EQ(row->mode, a.mode);
+  EXPECT_EQ(row->purpose, a.purpose);
+  EXPECT_EQ(row->outcome, a.outcome);
+  EXPECT_EQ(row->startUtc, a.startUtc);
+  EXPECT_EQ(row->seed, a.seed);  // beyond SQLite's signed integers
+  EXPECT_EQ(row->device, a.device);
+  EXPECT_EQ(row->calibration, a.calibration);
+  EXPECT_EQ(row->simulationVersion, a.simulationVersion);
+  EXPECT_EQ(row->comparabilityKey, a.comparabilityKey);
+  EXPECT_FALSE(row->synthetic);
+  EXPECT_EQ(row->fileName, a.fileName);
+  EXPECT_TRUE(row->complete);
+  EXPECT_EQ(row->steps, a.steps);
+  EXPECT_DOUBLE_EQ(row->stepSeconds, a.stepSeconds);
+  EXPECT_EQ(row->chainHead, a.chainHead);
+  EXPECT_EQ(row->verification.verdict, Verdict::verified);
+  EXPECT_EQ(row->verification.software, "calot 0.1.0");
+  EXPECT_FALSE(row->verifiedUtc.empty());
+  EXPECT_EQ(database.values(a.uuid), values);
+  EXPECT_FALSE(database.attempt(uuidOf(8)));
+  EXPECT_TRUE(database.values(uuidOf(8)).empty());
+  EXPECT_TRUE(database.participant("P07")) << "a participant named by an attempt is added";
+}
+
+TEST(CohortDatabase, storingTwiceChangesNothing) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create);
+  database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1, 2));
+  const std::string once = dump(path);
+  EXPECT_EQ(database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1, 2)), Imported::unchanged);
+  EXPECT_EQ(database.upsertAttempt(attemptOf(1, "skilled")), Imported::unchanged);
+  database.storeValues(uuidOf(1), valuesOf(1, 2));
+  EXPECT_EQ(dump(path), once);
+}
+
+TEST(CohortDatabase, anotherContentOfTheSameUuidIsAConflict) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create);
+  database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1, 2));
+  const std::string before = dump(path);
+  const auto conflicts = [&](const char* what, auto change) {
+    AttemptRecord other = attemptOf(1, "skilled");
+    change(other);
+    expectError(ExitCode::no, "conflict", [&] { database.storeAttempt(other, valuesOf(3, 4)); });
+    expectError(ExitCode::no, what, [&] { database.storeAttempt(other, valuesOf(3, 4)); });
+  };
+  conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; });
+  conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; a.steps += 10; });
+  conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; a.steps += 10; a.complete = false; });
+  conflicts("another scene", [](AttemptRecord& a) { a.scene = "elsewhere"; });
+  conflicts("another seed", [](AttemptRecord& a) { a.seed = 5; });
+  conflicts("another operator", [](AttemptRecord& a) { a.profile = "unskilled"; });
+  conflicts("another participant", [](AttemptRecord& a) { a.participant = "P01"; });
+  conflicts("another simulation version", [](AttemptRecord& a) { a.simulationVersion = 2; });
+  conflicts("this file is diverged", [](AttemptRecord& a) { a.verification.verdict = Verdict::diverged; });
+  conflicts("this file is damaged", [](AttemptRecord& a) { a.verification.verdict = Verdict::damaged; });
+  EXPECT_EQ(dump(path), before);
+}
+
+TEST(CohortDatabase, aLongerCopyOfAnIncompleteRecordingReplacesIt) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  AttemptRecord part = attemptOf(1, "skilled"), whole = part;
+  part.complete = false;
+  part.outcome = recorder::Outcome::running;
+  part.steps = 400;
+  part.chainHead[1] = std::byte{9};
+  EXPECT_EQ(database.storeAttempt(part, valuesOf(4, 1)), Imported::added);
+  EXPECT_EQ(database.storeAttempt(whole, valuesOf(10, 2)), Imported::extended);
+  EXPECT_TRUE(database.attempt(whole.uuid)->complete);
+  EXPECT_EQ(database.attempt(whole.uuid)->outcome, recorder::Outcome::completed);
+  EXPECT_DOUBLE_EQ(*database.values(whole.uuid)[0].value, 10.0);
+  // The earlier copy, coming late, takes nothing away.
+  EXPECT_EQ(database.storeAttempt(part, valuesOf(4, 1)), Imported::unchanged);
+  EXPECT_DOUBLE_EQ(*database.values(whole.uuid)[0].value, 10.0);
+}
+
+TEST(CohortDatabase, aBuildThatCannotJudgeTakesNothingAway) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  const AttemptRecord a = attemptOf(1, "skilled");
+  database.storeAttempt(a, valuesOf(1, 2));
+  AttemptRecord blind = a;
+  blind.verification = {Verdict::notCheckableHere, "simulation version 1, this build has 2", "calot 0.2.0"};
+  EXPECT_EQ(database.storeAttempt(blind, {}), Imported::unchanged);
+  EXPECT_EQ(database.attempt(a.uuid)->verification.verdict, Verdict::verified);
+  EXPECT_EQ(database.values(a.uuid).size(), 3U);
+}
+
+TEST(CohortDatabase, refusesRecordsThatNoRecordingHas) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  AttemptRecord a = attemptOf(1, "skilled");
+  a.uuid = "not-a-uuid";
+  expectError(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
+  a = attemptOf(1, "skilled");
+  a.uuid[0] = '\'';
+  expectError(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
+  a = attemptOf(1, "skilled");
+  a.steps = ~0ULL;
+  expectError(ExitCode::damaged, "out of range", [&] { database.upsertAttempt(a); });
+  EXPECT_TRUE(database.listAttempts().empty());
+}
+
+TEST(CohortDatabase, participantsAreAddedAndChanged) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  database.addParticipant({"P01", "expert", "A", "north", {{"laparoscopies", "240"}}, {{"research", "2026-02-28"}}});
+  expectError(ExitCode::no, "is there already", [&] { database.addParticipant({"P01", "", "", "", {}, {}}); });
+  database.setParticipant("P01", {.group = std::nullopt, .arm = "B", .site = std::nullopt, .experience = {{"level", "attending"}, {"laparoscopies", "241"}}, .consent = {}});
+  const auto p = database.participant("P01");
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->group, "expert");
+  EXPECT_EQ(p->arm, "B");
+  EXPECT_EQ(p->experience, (std::map<std::string, std::string>{{"laparoscopies", "241"}, {"level", "attending"}}));
+  EXPECT_EQ(p->consent.at("research"), "2026-02-28");
+  expectError(ExitCode::no, "no participant", [&] { database.setParticipant("P02", {}); });
+  for (const char* bad : {"", " P", "P\n1"}) {
+    expectError(ExitCode::usage, "pseudonym", [&] { database.addParticipant({bad, "", "", "", {}, {}}); });
+  }
+  for (const char* bad : {"", "2026-02-29", "2026-13-01", "26-01-01", "2026/01/01", "2026-01-01x", "2026-0a-01"}) {
+    expectError(ExitCode::usage, "not a date", [&] { database.addParticipant({"P03", "", "", "", {}, {{"research", bad}}}); });
+  }
+  EXPECT_EQ(database.participants().size(), 1U);
+}
+
+TEST(CohortDatabase, groupsCountParticipantsAndAttempts) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  database.addParticipant({"E1", "expert", "", "", {}, {}});
+  database.addParticipant({"E2", "expert", "", "", {}, {}});
+  database.upsertAttempt(humanAttempt(1, "E1"));
+  database.upsertAttempt(humanAttempt(2, "E1"));
+  database.upsertAttempt(attemptOf(3, "skilled"));
+  const auto groups = database.groups();
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_EQ(groups[0].group, "");
+  EXPECT_EQ(groups[0].participants, 0U);
+  EXPECT_EQ(groups[0].attempts, 1U);
+  EXPECT_EQ(groups[1].group, "expert");
+  EXPECT_EQ(groups[1].participants, 2U);
+  EXPECT_EQ(groups[1].attempts, 2U);
+}
+
+TEST(CohortDatabase, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create);
+  database.upsertAttempt(attemptOf(1, "skilled"));
+  database.excludeAttempt(uuidOf(1), "fire alarm", "instructor 2");
+  EXPECT_TRUE(database.attempt(uuidOf(1))->excluded);
+  EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
+  database.excludeAttempt(uuidOf(1), "", "instructor 2");
+  EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
+  expectError(ExitCode::no, "no attempt", [&] { database.excludeAttempt(uuidOf(9), "x", "y"); });
+  SQLite::Database raw(path, SQLite::OPEN_READWRITE);
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
+  EXPECT_THROW(raw.exec("DELETE FROM audit"), SQLite::Exception);
+  EXPECT_THROW(raw.exec("UPDATE audit SET subject = ''"), SQLite::Exception);
+}
+
+TEST(CohortDatabase, twoWritersBothGetThrough) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  constexpr unsigned each = 60;
+  std::vector<pid_t> children;
+  for (unsigned writer = 0; writer < 2; ++writer) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      int status = 0;
+      try {
+        CohortDatabase database(path, Access::create);  // both make it
+        for (unsigned n = 0; n < each; ++n) database.storeAttempt(attemptOf(writer * 1000 + n, "skilled"), valuesOf(n, n));
+        database.storeAttempt(attemptOf(5000, "skilled"), valuesOf(1, 1));  // the same one
+      } catch (const std::exception& error) {
+        std::cerr << error.what() << '\n';
+        status = 1;
+      }
+      ::_exit(status);
+    }
+    children.push_back(child);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(CohortDatabase(path, Access::read).listAttempts().size(), 2 * each + 1);
+  EXPECT_EQ(integrity(path), "ok");
+}
+
+TEST(CohortDatabase, aWriterThatNeverEndsIsReported) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create, std::chrono::milliseconds(50));
+  SQLite::Database other(path, SQLite::OPEN_READWRITE);
+  other.exec("BEGIN IMMEDIATE");
+  expectError(ExitCode::failure, "in use by another program", [&] { database.upsertAttempt(attemptOf(1, "skilled")); });
+  EXPECT_TRUE(database.listAttempts().empty()) << "readers go on";
+  other.exec("ROLLBACK");
+  EXPECT_EQ(database.upsertAttempt(attemptOf(1, "skilled")), Imported::added);
+}
+
+TEST(CohortDatabase, killedAtAnyMomentItHoldsWholeAttemptsOnly) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  const unsigned seed = 9;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  unsigned before = 0;
+  for (int round = 0; round < 25; ++round) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      try {
+        CohortDatabase database(path, Access::create);
+        for (unsigned n = 0;; ++n) database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
+      } catch (...) {
+      }
+      ::_exit(1);
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(1000 + random() % 30000));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    const CohortDatabase database(path, Access::create);
+    const auto attempts = database.listAttempts();
+    EXPECT_GE(attempts.size(), before);
+    before = static_cast<unsigned>(attempts.size());
+    for (const AttemptRow& a : attempts) EXPECT_EQ(database.values(a.uuid).size(), 3U) << a.uuid;
+    EXPECT_EQ(integrity(path), "ok");
+  }
+  EXPECT_GT(before, 0U);
+}
+
+TEST(CohortDatabase, aFullDiskLosesNothingThatWasThere) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  {
+    CohortDatabase database(path, Access::create);
+    for (unsigned n = 0; n < 20; ++n) database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
+  }
+  const auto size = std::filesystem::file_size(path);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    // Stands for the full disk: no file may grow beyond the database's present size and a bit.
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{size + 20000, size + 20000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int status = 1;
+    try {
+      CohortDatabase database(path, Access::write);
+      for (unsigned n = 20; n < 3000; ++n) database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
+    } catch (const Error& error) {
+      const std::string words = error.what();
+      status = error.code() == ExitCode::failure && words.find("nothing was changed") != std::string::npos ? 0 : 2;
+      if (status != 0) std::cerr << words << '\n';
+    }
+    ::_exit(status);
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(integrity(path), "ok");
+  const CohortDatabase database(path, Access::write);
+  const auto attempts = database.listAttempts();
+  EXPECT_GE(attempts.size(), 20U);
+  for (const AttemptRow& a : attempts) EXPECT_EQ(database.values(a.uuid).size(), 3U);
+}
+
+TEST(CohortDatabase, saysInWordsWhatSqliteSaysInNumbers) {
+  EXPECT_NE(std::string(databaseError(SQLITE_FULL, "", "c.db").what()).find("c.db: disk full"), std::string::npos);
+  EXPECT_NE(std::string(databaseError(SQLITE_READONLY, "", "c.db").what()).find("permissions"), std::string::npos);
+  EXPECT_EQ(databaseError(SQLITE_CORRUPT, "", "c.db").code(), ExitCode::damaged);
+  EXPECT_EQ(databaseError(SQLITE_IOERR_READ, "x", "c.db").code(), ExitCode::failure);  // extended codes too
+}
+
+TEST(Assess, storesWhatAReplayGave) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  AssessedAttempt assessed;
+  assessed.header.attempt = uuidOf(3);
+  assessed.header.startUtc = "2026-01-01T00:00:00Z";
+  assessed.header.sceneName = "touch-liver";
+  assessed.header.sceneMajor = 1;
+  assessed.header.simulationVersion = 1;
+  assessed.header.stepResultVersion = 1;
+  assessed.header.provenance.profile = "skilled";
+  assessed.header.mode = recorder::Mode::assessment;
+  assessed.outcome = recorder::Outcome::completed;
+  assessed.complete = true;
+  assessed.steps = 100;
+  assessed.verification = {Verdict::verified, "", "calot 0.1.0"};
+  assessed.values = valuesOf(1.0, 0.5);
+  assessed.fileName = "some/folder/r.h5";
+  EXPECT_EQ(store(database, assessed), Imported::added);
+  EXPECT_EQ(store(database, assessed), Imported::unchanged);
+  const auto row = database.attempt(uuidOf(3));
+  ASSERT_TRUE(row);
+  EXPECT_EQ(row->fileName, "r.h5");
+  EXPECT_TRUE(row->synthetic);
+  EXPECT_EQ(row->comparabilityKey, "touch-liver/1 device=performer calibration=- simulation=1 results=1 mode=assessment");
+  std::ostringstream table;
+  printAttempts(database, table);
+  EXPECT_NE(table.str().find("SYNTHETIC"), std::string::npos);
+  EXPECT_NE(table.str().find("verified"), std::string::npos);
+  EXPECT_NE(table.str().find("500.0"), std::string::npos) << "left path in mm\n" << table.str();
+}
+
+}  // namespace
+}  // namespace calot::analytics

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/study.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <fstream>
+#include <locale>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "analytics/cohort/embedded.h"
+#include "analytics/report/study_output.h"
+#include "analytics/report/text_table.h"
+#include "recorder/errors.h"
+#include "tests/analytics/cohort/support/cohort_support.h"
+
+namespace calot::analytics {
+namespace {
+
+using Access = CohortDatabase::Access;
+using support::attemptOf;
+using support::Folder;
+using support::humanAttempt;
+using support::uuidOf;
+using support::valuesOf;
+
+std::string textOf(const Study& study) {
+  std::ostringstream out;
+  printStudy(study, out);
+  return out.str();
+}
+
+template <class Call>
+void expectRefusal(ExitCode code, const std::string& words, Call call) {
+  try {
+    call();
+    ADD_FAILURE() << "no error; expected: " << words;
+  } catch (const Error& error) {
+    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+const StudyRow& rowOf(const Study& study, const std::string& name, const std::string& subject) {
+  for (const StudyRow& row : study.rows) {
+    if (row.checkpoint == name && row.subject == subject) return row;
+  }
+  throw std::out_of_range(name);
+}
+
+/// Five skilled and four unskilled performers, with the exact example of two_groups_test as their times.
+void addPerformers(CohortDatabase& database) {
+  const double skilled[] = {19, 22, 16, 29, 24}, unskilled[] = {20, 11, 17, 12};
+  unsigned n = 0;
+  for (const double t : skilled) database.storeAttempt(attemptOf(n++, "skilled"), valuesOf(t, t / 1000));
+  for (const double t : unskilled) database.storeAttempt(attemptOf(n++, "unskilled"), valuesOf(t, t / 1000));
+}
+
+const StudyOptions performers{.grouping = Grouping::performer, .groups = {}, .includeSynthetic = true};
+
+TEST(Study, comparesPerformersAndWatermarksThem) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  const Study study = makeStudy(database, performers);
+  EXPECT_EQ(study.heading, "exploratory");
+  EXPECT_TRUE(study.synthetic);
+  EXPECT_EQ(study.groups[0], "skilled");
+  EXPECT_EQ(study.groups[1], "unskilled");
+  EXPECT_EQ(study.analysed, 9U);
+  const StudyRow& time = rowOf(study, "elapsed-time", "");
+  EXPECT_EQ(time.group[0].n, 5U);
+  EXPECT_DOUBLE_EQ(*time.group[0].mean, 22.0);
+  EXPECT_DOUBLE_EQ(*time.group[0].median, 22.0);
+  EXPECT_DOUBLE_EQ(*time.group[1].mean, 15.0);
+  EXPECT_DOUBLE_EQ(*time.group[1].median, 14.5);
+  EXPECT_DOUBLE_EQ(*time.group[1].lowerQuartile, 11.75);
+  EXPECT_DOUBLE_EQ(time.test->u, 17.0);
+  EXPECT_TRUE(time.test->exact);
+  EXPECT_NEAR(time.test->p, 1.0 / 9.0, 1e-15);
+  EXPECT_DOUBLE_EQ(time.effect->delta, 0.7);
+  EXPECT_DOUBLE_EQ(*time.publishedExpert, 38.86);
+  EXPECT_DOUBLE_EQ(*time.publishedNovice, 113.31);
+  const StudyRow& left = rowOf(study, "path-length", "left");
+  EXPECT_EQ(left.unit, "mm");
+  EXPECT_DOUBLE_EQ(*left.group[0].median, 22.0) << "stored in m, shown in mm";
+  EXPECT_DOUBLE_EQ(*left.publishedExpert, 67.36);
+  const StudyRow& right = rowOf(study, "path-length", "right");
+  EXPECT_FALSE(right.test);
+  EXPECT_EQ(right.test.reason(), "both groups are empty");
+  EXPECT_EQ(right.group[0].missing, 5U);
+  const std::string text = textOf(study);
+  EXPECT_EQ(text.rfind("SYNTHETIC", 0), 0U) << "the watermark comes first";
+  EXPECT_NE(text.find("exploratory"), std::string::npos);
+  EXPECT_NE(text.find("0.1111"), std::string::npos);
+  EXPECT_NE(text.find("+0.700"), std::string::npos);
+  EXPECT_NE(text.find("no instrument in this hand"), std::string::npos);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+}
+
+TEST(Study, syntheticAttemptsStayOutUnlessAskedFor) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  StudyOptions options = performers;
+  options.includeSynthetic = false;
+  expectRefusal(ExitCode::no, "9 synthetic (performer)", [&] { (void)makeStudy(database, options); });
+}
+
+TEST(Study, countsWhyAttemptsStayOut) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  const auto add = [&](unsigned n, auto change) {
+    AttemptRecord a = attemptOf(n, "skilled");
+    change(a);
+    database.storeAttempt(a, valuesOf(1000, 1000));
+  };
+  add(20, [](AttemptRecord& a) { a.mode = recorder::Mode::practice; });
+  add(21, [](AttemptRecord& a) { a.mode = recorder::Mode::practice; });
+  add(22, [](AttemptRecord& a) { a.parent = uuidOf(0); });
+  add(23, [](AttemptRecord& a) { a.complete = false; });
+  add(24, [](AttemptRecord& a) { a.outcome = recorder::Outcome::technicalFailure; });
+  add(25, [](AttemptRecord& a) { a.verification.verdict = Verdict::diverged; });
+  add(26, [](AttemptRecord& a) { a.verification.verdict = Verdict::notChecked; });
+  add(27, [](AttemptRecord& a) { a.purpose = "golden"; });
+  add(28, [](AttemptRecord& a) { a.profile.clear(); });
+  add(29, [](AttemptRecord&) {});
+  database.excludeAttempt(uuidOf(29), "fire alarm", "instructor");
+  const Study study = makeStudy(database, performers);
+  EXPECT_EQ(study.recruited, 19U);
+  EXPECT_EQ(study.analysed, 9U);
+  std::uint64_t out = 0;
+  std::string reasons;
+  for (const FlowRow& row : study.flow) {
+    out += row.attempts;
+    reasons += fmt::format("{}:{};", row.reason, row.attempts);
+  }
+  EXPECT_EQ(out + study.analysed, study.recruited);
+  EXPECT_EQ(reasons,
+            "excluded by hand:1;recording diverged or damaged:1;not verified yet:1;recording incomplete:1;technical failure:1;"
+            "practice:2;branch of another attempt:1;golden recording:1;no group:1;");
+  EXPECT_DOUBLE_EQ(*rowOf(study, "elapsed-time", "").group[0].mean, 22.0);
+  StudyOptions withPractice = performers;
+  withPractice.includePractice = true;
+  EXPECT_EQ(makeStudy(database, withPractice).analysed, 11U);
+}
+
+TEST(Study, takesOneValueAParticipant) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  for (const char* p : {"E1", "E2"}) database.addParticipant({p, "expert", "", "", {}, {}});
+  for (const char* p : {"N1", "N2"}) database.addParticipant({p, "novice", "", "", {}, {}});
+  database.storeAttempt(humanAttempt(1, "E1"), valuesOf(30, 0.06));
+  database.storeAttempt(humanAttempt(2, "E1"), valuesOf(40, 0.08));
+  AttemptRecord gaveUp = humanAttempt(3, "E1");
+  gaveUp.outcome = recorder::Outcome::abandoned;
+  auto values = valuesOf(0, 0.07);
+  values[0] = makeMissing(*findCheckpoint("elapsed-time"), "", Origin::resimulated, Availability::notApplicable, "not completed: abandoned");
+  database.storeAttempt(gaveUp, values);
+  database.storeAttempt(humanAttempt(4, "E2"), valuesOf(50, 0.05));
+  database.storeAttempt(humanAttempt(5, "N1"), valuesOf(100, 0.1));
+  database.storeAttempt(humanAttempt(6, "N2"), valuesOf(120, 0.2));
+  const Study study = makeStudy(database, {});
+  EXPECT_FALSE(study.synthetic);
+  EXPECT_EQ(textOf(study).find("SYNTHETIC"), std::string::npos);
+  EXPECT_EQ(study.groups[0], "expert");
+  EXPECT_EQ(study.participants, (std::array<std::uint64_t, 2>{2, 2}));
+  EXPECT_EQ(study.attempts, (std::array<std::uint64_t, 2>{4, 2}));
+  const StudyRow& time = rowOf(study, "elapsed-time", "");
+  EXPECT_EQ(time.values[0], (std::vector<double>{35.0, 50.0})) << "an abandoned attempt is not a fast one";
+  EXPECT_EQ(time.participants[0], (std::vector<std::string>{"E1", "E2"}));
+  EXPECT_EQ(time.group[0].missing, 0U);
+  EXPECT_NEAR(time.test->p, 1.0 / 3.0, 1e-15);
+}
+
+TEST(Study, refusesToMixComparabilityKeys) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  AttemptRecord other = attemptOf(50, "skilled");
+  other.comparabilityKey = "touch-liver/2 device=performer calibration=- simulation=1 results=1 mode=assessment";
+  database.storeAttempt(other, valuesOf(22, 0.022));
+  expectRefusal(ExitCode::no, "2 comparability keys", [&] { (void)makeStudy(database, performers); });
+  StudyOptions mixed = performers;
+  mixed.mixKeys = true;
+  const Study study = makeStudy(database, mixed);
+  EXPECT_EQ(study.keys.size(), 2U);
+  EXPECT_NE(textOf(study).find("are mixed, as asked"), std::string::npos);
+}
+
+TEST(Study, refusesToMixCheckpointVersions) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  auto values = valuesOf(22, 0.022);
+  values[1].version = 2;
+  database.storeAttempt(attemptOf(50, "skilled"), values);
+  expectRefusal(ExitCode::no, "path-length has values of 2 versions", [&] { (void)makeStudy(database, performers); });
+  StudyOptions mixed = performers;
+  mixed.mixKeys = true;
+  EXPECT_EQ(rowOf(makeStudy(database, mixed), "path-length", "left").versions, (std::vector<std::uint32_t>{1, 2}));
+}
+
+TEST(Study, needsTwoIndependentGroups) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  expectRefusal(ExitCode::no, "two groups", [&] { (void)makeStudy(database, performers); });
+  database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1, 1));
+  expectRefusal(ExitCode::no, "only skilled", [&] { (void)makeStudy(database, performers); });
+  database.storeAttempt(attemptOf(2, "unskilled"), valuesOf(1, 1));
+  database.storeAttempt(attemptOf(3, "intermediate"), valuesOf(1, 1));
+  expectRefusal(ExitCode::no, "name two with --groups", [&] { (void)makeStudy(database, performers); });
+  StudyOptions named = performers;
+  named.groups = {"unskilled", "intermediate"};
+  EXPECT_EQ(makeStudy(database, named).groups[0], "unskilled");
+  named.groups = {"skilled", "absent"};
+  expectRefusal(ExitCode::no, "\"absent\"", [&] { (void)makeStudy(database, named); });
+  named.groups = {"skilled", "skilled"};
+  expectRefusal(ExitCode::usage, "two different names", [&] { (void)makeStudy(database, named); });
+  AttemptRecord a = attemptOf(4, "skilled"), b = attemptOf(5, "unskilled");
+  a.participant = b.participant = "P1";
+  database.storeAttempt(a, valuesOf(1, 1));
+  database.storeAttempt(b, valuesOf(1, 1));
+  named.groups = {"skilled", "unskilled"};
+  expectRefusal(ExitCode::no, "in both groups", [&] { (void)makeStudy(database, named); });
+}
+
+TEST(Study, allTiedAnswersWithAReason) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  database.storeAttempt(attemptOf(1, "skilled"), valuesOf(5, 1));
+  database.storeAttempt(attemptOf(2, "unskilled"), valuesOf(5, 1));
+  const Study study = makeStudy(database, performers);
+  EXPECT_EQ(rowOf(study, "elapsed-time", "").test.reason(), "all values are equal");
+  EXPECT_NE(textOf(study).find("elapsed-time: no test, all values are equal"), std::string::npos);
+  EXPECT_TRUE(nlohmann::json::parse(studyJson(study)).at("rows").at(0).at("mann_whitney").at("value").is_null());
+}
+
+TEST(Study, jsonAndCsvHoldTheTable) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  const Study study = makeStudy(database, performers);
+  const auto json = nlohmann::json::parse(studyJson(study));
+  EXPECT_EQ(json.at("watermark"), "SYNTHETIC");
+  EXPECT_EQ(json.at("rows").at(0).at("mann_whitney").at("method"), "exact");
+  EXPECT_DOUBLE_EQ(json.at("rows").at(0).at("groups").at(1).at("upper_quartile").get<double>(), 17.75);
+  const std::string out = folder.file("csv");
+  writeStudyCsv(study, out, false);
+  std::ifstream file(out + "/values.csv");
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "checkpoint,subject,unit,group,participant,value,watermark");
+  std::getline(file, line);
+  EXPECT_EQ(line, "elapsed-time,,s,skilled,attempt " + uuidOf(0) + ",19,SYNTHETIC");
+  std::ifstream summary(out + "/study.csv");
+  std::getline(summary, line);
+  const auto columns = std::count(line.begin(), line.end(), ',');
+  while (std::getline(summary, line)) EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
+  expectRefusal(ExitCode::usage, "--force", [&] { writeStudyCsv(study, out, false); });
+  EXPECT_NO_THROW(writeStudyCsv(study, out, true));
+  expectRefusal(ExitCode::failure, "can't be made", [&] { writeStudyCsv(study, folder.file("c.db"), false); });
+}
+
+TEST(Study, numbersDontFollowTheLocale) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  const Study study = makeStudy(database, performers);
+  const std::string text = textOf(study), json = studyJson(study);
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
+  const char* german = std::setlocale(LC_ALL, "de_DE.UTF-8");
+  const std::string textThen = textOf(makeStudy(database, performers)), jsonThen = studyJson(study);
+  std::setlocale(LC_ALL, "C");
+  std::locale::global(before);
+  EXPECT_EQ(textThen, text) << (german != nullptr ? "with de_DE" : "with a locale of commas");
+  EXPECT_EQ(jsonThen, json);
+}
+
+TEST(Reference, publishedTableIsThatOfThePaper) {
+  const auto table = nlohmann::json::parse(publishedTable2());
+  const auto& rows = table.at("rows");
+  ASSERT_EQ(rows.size(), 8U);
+  for (const auto& row : rows) {
+    const std::string name = row.at("matches").get<std::string>();
+    if (!name.empty()) {
+      EXPECT_NE(findCheckpoint(name), nullptr) << name;
+    }
+  }
+  EXPECT_NE(table.at("source").get<std::string>().find("10.1007/s00371-014-0944-3"), std::string::npos);
+  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/assets/reference/cholecystectomy-2014-table3.json");
+  const auto questionnaire = nlohmann::json::parse(file);
+  int items = 0;
+  for (const auto& section : questionnaire.at("sections")) {
+    for (const auto& item : section.at("items")) {
+      ++items;
+      for (const char* group : {"expert", "novice"}) {
+        EXPECT_GE(item.at(group).get<double>(), 1.0);
+        EXPECT_LE(item.at(group).get<double>(), 5.0);
+      }
+    }
+  }
+  EXPECT_EQ(items, 13);
+}
+
+TEST(TextTable, writesSignificantDigits) {
+  EXPECT_EQ(significant(0.0), "0");
+  EXPECT_EQ(significant(113.31), "113.3");
+  EXPECT_EQ(significant(-0.012345), "-0.01235");
+  EXPECT_EQ(significant(123456.7), "123457");
+  EXPECT_EQ(significant(1.5e-6), "1.500e-06");
+  EXPECT_EQ(significant(std::nan("")), "-");
+  EXPECT_EQ(pText(1.082508822e-5), "<0.0001");
+  EXPECT_EQ(pText(0.0524259023), "0.0524");
+}
+
+}  // namespace
+}  // namespace calot::analytics

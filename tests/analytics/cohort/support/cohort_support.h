@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Attempts to fill a cohort with, and a folder that goes away.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fmt/format.h>
+#include <string>
+#include <vector>
+
+#include "analytics/checkpoints/registry.h"
+#include "analytics/cohort/cohort_database.h"
+
+namespace calot::analytics::support {
+
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "calot-cohort-XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string uuidOf(unsigned n) { return fmt::format("00000000-0000-4000-8000-{:012x}", n); }
+
+/// A finished, verified performer's attempt in assessment mode.
+inline AttemptRecord attemptOf(unsigned n, const std::string& profile) {
+  AttemptRecord a;
+  a.uuid = uuidOf(n);
+  a.scene = "touch-liver";
+  a.sceneMajor = 1;
+  a.operatorKind = recorder::OperatorKind::performer;
+  a.profile = profile;
+  a.profileVersion = "1";
+  a.mode = recorder::Mode::assessment;
+  a.purpose = "study";
+  a.outcome = recorder::Outcome::completed;
+  a.startUtc = fmt::format("2026-01-01T00:{:02}:{:02}Z", n / 60 % 60, n % 60);
+  a.seed = 18446744073709551615ULL - n;
+  a.simulationVersion = 1;
+  a.comparabilityKey = "touch-liver/1 device=performer calibration=- simulation=1 results=1 mode=assessment";
+  a.synthetic = true;
+  a.fileName = fmt::format("{}.h5", n);
+  a.complete = true;
+  a.steps = 1000 + n;
+  a.chainHead[0] = std::byte{0xC0};
+  a.chainHead[31] = static_cast<std::byte>(n);
+  a.verification = {Verdict::verified, "", "calot 0.1.0"};
+  return a;
+}
+
+/// The same by a person.
+inline AttemptRecord humanAttempt(unsigned n, const std::string& participant) {
+  AttemptRecord a = attemptOf(n, "");
+  a.operatorKind = recorder::OperatorKind::human;
+  a.profileVersion.clear();
+  a.participant = participant;
+  a.device = "falcon";
+  a.comparabilityKey = "touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment";
+  a.synthetic = false;
+  return a;
+}
+
+inline std::vector<CheckpointValue> valuesOf(double seconds, double left) {
+  return {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, seconds),
+          makeValue(*findCheckpoint("path-length"), "left", Origin::samples, left),
+          makeMissing(*findCheckpoint("path-length"), "right", Origin::samples, Availability::notApplicable, "no instrument in this hand")};
+}
+
+}  // namespace calot::analytics::support

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Published examples (values of R 4.2.2), brute force over all assignments, and the laws that the statistics obey.
+#include "analytics/statistics/two_groups.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "analytics/statistics/rank_sum_distribution.h"
+
+namespace calot::analytics {
+namespace {
+
+using Values = std::vector<double>;
+
+// R, ?wilcox.test: permeability constants of the human chorioamnion (Hollander and Wolfe 1973, p. 69).
+const Values term{0.80, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46};
+const Values early{1.15, 0.88, 0.90, 0.74, 1.21};
+
+// R, ?sleep: extra hours under two drugs (Student 1908), here as independent groups.
+const Values sleep1{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0};
+const Values sleep2{1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+
+/// Two-sided p by going through every subset of the pooled mid-ranks.
+double bruteForceP(const Values& x, const Values& y) {
+  Values pooled = x;
+  pooled.insert(pooled.end(), y.begin(), y.end());
+  const Values ranks = midRanks(pooled);
+  double observed = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) observed += ranks[i];
+  const double expected = static_cast<double>(x.size() * (pooled.size() + 1)) / 2.0;
+  long hits = 0, all = 0;
+  for (unsigned subset = 0; subset < (1U << pooled.size()); ++subset) {
+    if (static_cast<std::size_t>(std::popcount(subset)) != x.size()) continue;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < pooled.size(); ++i) sum += (subset >> i & 1U) != 0 ? ranks[i] : 0.0;
+    ++all;
+    hits += std::abs(sum - expected) >= std::abs(observed - expected) ? 1 : 0;
+  }
+  return static_cast<double>(hits) / static_cast<double>(all);
+}
+
+TEST(MannWhitney, permeabilityExample) {
+  const auto test = mannWhitney(term, early);
+  ASSERT_TRUE(test) << test.reason();
+  EXPECT_DOUBLE_EQ(test->u, 35.0);
+  EXPECT_TRUE(test->exact);
+  EXPECT_FALSE(test->ties);
+  EXPECT_NEAR(test->p, 0.254412254412, 5e-13);
+  EXPECT_NEAR(*hodgesLehmann(term, early), 0.305, 1e-12);
+  const auto interval = hodgesLehmannInterval(term, early);
+  ASSERT_TRUE(interval) << interval.reason();
+  EXPECT_NEAR(interval->lower, -0.15, 1e-12);
+  EXPECT_NEAR(interval->upper, 0.76, 1e-12);
+  EXPECT_GE(interval->attained, 0.95);
+  EXPECT_LT(interval->attained, 0.98);
+}
+
+TEST(MannWhitney, smallExampleExactAndAsymptotic) {
+  const Values x{19, 22, 16, 29, 24}, y{20, 11, 17, 12};
+  const auto exact = mannWhitney(x, y);
+  EXPECT_DOUBLE_EQ(exact->u, 17.0);
+  EXPECT_NEAR(exact->p, 0.111111, 5e-7);
+  EXPECT_NEAR(exact->p, 1.0 / 9.0, 1e-15);
+  const auto asymptotic = mannWhitney(x, y, RankTest::asymptotic);
+  EXPECT_FALSE(asymptotic->exact);
+  EXPECT_NEAR(asymptotic->p, 0.111346886533, 5e-13);
+}
+
+TEST(MannWhitney, completeSeparationOfTenAndTen) {
+  Values x, y;
+  for (int i = 0; i < 10; ++i) {
+    x.push_back(i);
+    y.push_back(100 + i);
+  }
+  EXPECT_DOUBLE_EQ(mannWhitney(x, y)->u, 0.0);
+  EXPECT_NEAR(mannWhitney(x, y)->p, 1.082508822e-5, 5e-15);
+  EXPECT_DOUBLE_EQ(mannWhitney(y, x)->u, 100.0);
+  EXPECT_DOUBLE_EQ(superiority(x, y)->delta, -1.0);
+  EXPECT_DOUBLE_EQ(superiority(y, x)->a, 1.0);
+}
+
+TEST(MannWhitney, tenAndTenAroundFivePercent) {
+  // Moves y's lowest values below x's: each step of one rank adds one to U.
+  const auto withU = [](int u) {
+    Values x, y;
+    for (int i = 0; i < 10; ++i) x.push_back(i), y.push_back(100 + i);
+    const int full = u / 10, rest = u % 10;
+    for (int i = 0; i < full; ++i) y[static_cast<std::size_t>(i)] = -10.0 + i;
+    if (rest > 0) y[static_cast<std::size_t>(full)] = 9.5 - rest;
+    return mannWhitney(x, y);
+  };
+  EXPECT_DOUBLE_EQ(withU(23)->u, 23.0);
+  EXPECT_NEAR(withU(23)->p, 0.0432570525, 5e-11);
+  EXPECT_DOUBLE_EQ(withU(24)->u, 24.0);
+  EXPECT_NEAR(withU(24)->p, 0.0524259023, 5e-11);
+}
+
+TEST(MannWhitney, sleepHasTies) {
+  const auto exact = mannWhitney(sleep1, sleep2);
+  EXPECT_DOUBLE_EQ(exact->u, 25.5);
+  EXPECT_TRUE(exact->ties);
+  EXPECT_TRUE(exact->exact);
+  EXPECT_NEAR(exact->p, 0.0658165364, 5e-11);
+  EXPECT_NEAR(mannWhitney(sleep1, sleep2, RankTest::asymptotic)->p, 0.0693275754, 5e-11);
+  const auto effect = superiority(sleep1, sleep2);
+  EXPECT_NEAR(effect->delta, -0.49, 1e-15);
+  EXPECT_NEAR(effect->a, 0.255, 1e-15);
+  EXPECT_FALSE(hodgesLehmannInterval(sleep1, sleep2));
+  EXPECT_NE(hodgesLehmannInterval(sleep1, sleep2).reason().find("tied"), std::string::npos);
+}
+
+TEST(MannWhitney, exactEqualsEnumerationWithAndWithoutTies) {
+  const unsigned seed = 20140517;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (int round = 0; round < 60; ++round) {
+    const std::size_t nx = 1 + random() % 7, ny = 1 + random() % 7;
+    const unsigned levels = round % 2 == 0 ? 4 : 1000000;
+    Values x, y;
+    for (std::size_t i = 0; i < nx; ++i) x.push_back(static_cast<double>(random() % levels));
+    for (std::size_t i = 0; i < ny; ++i) y.push_back(static_cast<double>(random() % levels));
+    const auto test = mannWhitney(x, y, RankTest::exact);
+    if (!test) {
+      EXPECT_EQ(test.reason(), "all values are equal");
+      continue;
+    }
+    EXPECT_NEAR(test->p, bruteForceP(x, y), 1e-13);
+  }
+}
+
+TEST(MannWhitney, obeysItsSymmetries) {
+  const unsigned seed = 944;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (int round = 0; round < 40; ++round) {
+    Values x(2 + random() % 20), y(2 + random() % 20);
+    for (double& v : x) v = static_cast<double>(random() % 50);
+    for (double& v : y) v = static_cast<double>(random() % 50 + 5);
+    const auto xy = mannWhitney(x, y), yx = mannWhitney(y, x);
+    ASSERT_TRUE(xy && yx);
+    EXPECT_DOUBLE_EQ(xy->u + yx->u, static_cast<double>(x.size() * y.size()));
+    EXPECT_NEAR(xy->p, yx->p, 1e-12);
+    EXPECT_NEAR(superiority(x, y)->delta, -superiority(y, x)->delta, 1e-15);
+    EXPECT_DOUBLE_EQ(*hodgesLehmann(x, y), -*hodgesLehmann(y, x));
+    // A rank test sees ranks only: any increasing map leaves it alone.
+    Values cubedX = x, cubedY = y;
+    for (double& v : cubedX) v = v * v * v + 1.0;
+    for (double& v : cubedY) v = v * v * v + 1.0;
+    EXPECT_EQ(mannWhitney(cubedX, cubedY)->p, xy->p);
+    // The shift follows a shift.
+    Values moved = x;
+    for (double& v : moved) v += 8.0;
+    EXPECT_DOUBLE_EQ(*hodgesLehmann(moved, y), *hodgesLehmann(x, y) + 8.0);
+  }
+}
+
+TEST(MannWhitney, asymptoticMeetsExactWhereTheMethodChanges) {
+  std::mt19937 random(7);
+  Values x(40), y(40);
+  for (double& v : x) v = static_cast<double>(random() % 100000);
+  for (double& v : y) v = static_cast<double>(random() % 100000) + 15000.0;
+  const auto automatic = mannWhitney(x, y);
+  EXPECT_TRUE(automatic->exact);
+  EXPECT_NEAR(automatic->p, mannWhitney(x, y, RankTest::asymptotic)->p, 0.003);
+  x.push_back(50.5);
+  EXPECT_FALSE(mannWhitney(x, y)->exact);
+}
+
+TEST(MannWhitney, degenerateInputAnswersWithAReason) {
+  const Values none, one{1.0}, same{2.0, 2.0, 2.0}, bad{1.0, std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_EQ(mannWhitney(none, same).reason(), "the first group is empty");
+  EXPECT_EQ(mannWhitney(same, none).reason(), "the second group is empty");
+  EXPECT_EQ(mannWhitney(none, none).reason(), "both groups are empty");
+  EXPECT_EQ(mannWhitney(same, same).reason(), "all values are equal");
+  EXPECT_EQ(mannWhitney(bad, same).reason(), "a value is not finite");
+  EXPECT_EQ(superiority(none, same).reason(), "the first group is empty");
+  EXPECT_EQ(hodgesLehmann(same, none).reason(), "the second group is empty");
+  EXPECT_NE(hodgesLehmannInterval(one, Values{2.0, 3.0}).reason().find("too small"), std::string::npos);
+  // One against one is a legal, uninformative test.
+  EXPECT_DOUBLE_EQ(mannWhitney(one, Values{2.0})->p, 1.0);
+  EXPECT_DOUBLE_EQ(superiority(same, same)->delta, 0.0);
+}
+
+TEST(HodgesLehmannInterval, attainedLevelIsThatOfTheEnumeration) {
+  // 5 v 4: U's quantile at 2.5 % is 2 (P(U <= 1) = 2/126), so the attained level is 1 - 4/126.
+  const Values x{19, 22, 16, 29, 24}, y{20, 11, 17, 12};
+  const auto interval = hodgesLehmannInterval(x, y);
+  ASSERT_TRUE(interval);
+  EXPECT_NEAR(interval->attained, 1.0 - 4.0 / 126.0, 1e-14);
+}
+
+}  // namespace
+}  // namespace calot::analytics

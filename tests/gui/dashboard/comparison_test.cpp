@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include "analytics/checkpoints/registry.h"
+
+namespace calot::gui {
+namespace {
+
+using analytics::AttemptRow;
+using analytics::AttemptValue;
+using analytics::Verdict;
+
+AttemptRow attempt(const std::string& uuid, const std::string& group, const std::string& key = "k1") {
+  AttemptRow row;
+  row.uuid = uuid;
+  row.group = group;
+  row.comparabilityKey = key;
+  row.verification.verdict = Verdict::verified;
+  return row;
+}
+
+AttemptValue seconds(const std::string& uuid, double value, std::uint32_t version = 1) {
+  AttemptValue v;
+  v.attempt = uuid;
+  v.value.name = "a-checkpoint-of-the-test";  // no definition: shown as stored
+  v.value.unit = "s";
+  v.value.version = version;
+  v.value.value = value;
+  return v;
+}
+
+const ComparisonRequest request{{"a-checkpoint-of-the-test", ""}, GroupBy::group, "k1", true};
+
+TEST(Comparison, QuartilesOfKnownNumbers) {
+  std::vector<AttemptRow> attempts;
+  std::vector<AttemptValue> values;
+  for (int i = 0; i < 9; ++i) {
+    const std::string uuid(1, static_cast<char>('a' + i));
+    attempts.push_back(attempt(uuid, "expert"));
+    values.push_back(seconds(uuid, (i * 4 % 9) + 1.0));  // 1 to 9 in some order
+  }
+  const Comparison result = compare(attempts, values, request);
+  ASSERT_EQ(result.group.size(), 1U);
+  EXPECT_EQ(result.group[0].smallest, 1.0);
+  EXPECT_EQ(result.group[0].lowerQuartile, 3.0);
+  EXPECT_EQ(result.group[0].median, 5.0);
+  EXPECT_EQ(result.group[0].upperQuartile, 7.0);
+  EXPECT_EQ(result.group[0].largest, 9.0);
+  EXPECT_EQ(result.unit, "s");
+  EXPECT_FALSE(result.synthetic);
+}
+
+TEST(Comparison, EveryAttemptIsShownOrCountedOnce) {
+  std::vector<AttemptRow> attempts{attempt("a", "expert"),       attempt("b", "novice"), attempt("c", "novice", "k2"), attempt("d", ""),
+                                   attempt("e", "expert"),       attempt("f", "expert"), attempt("g", "expert"),       attempt("h", "expert"),
+                                   attempt("i", "expert")};
+  attempts[4].excluded = true;
+  attempts[5].verification.verdict = Verdict::diverged;
+  attempts[6].verification.verdict = Verdict::damaged;
+  attempts[7].synthetic = true;
+  std::vector<AttemptValue> values;
+  for (const AttemptRow& a : attempts)
+    if (a.uuid != "i") values.push_back(seconds(a.uuid, 1.0, a.uuid == "b" ? 1 : 2));
+  Comparison result = compare(attempts, values, request);
+  EXPECT_EQ(result.shown, 3);
+  EXPECT_EQ(result.otherKey, 1);
+  EXPECT_EQ(result.excluded, 1);
+  EXPECT_EQ(result.notTrusted, 2);
+  EXPECT_EQ(result.otherVersion, 1);
+  EXPECT_EQ(result.withoutValue, 1);
+  EXPECT_TRUE(result.synthetic);
+  ASSERT_EQ(result.group.size(), 2U);
+  EXPECT_EQ(result.group[0].name, "(none)");
+  EXPECT_EQ(result.group[1].name, "expert");
+  EXPECT_EQ(captionOf(result),
+            "3 attempts. Left out: 1 of another comparability key, 1 excluded from studies, 2 diverged or damaged, 1 with another "
+            "version of the checkpoint, 1 without a value.");
+
+  ComparisonRequest people = request;
+  people.includeSynthetic = false;
+  result = compare(attempts, values, people);
+  EXPECT_EQ(result.shown, 2);
+  EXPECT_EQ(result.syntheticLeftOut, 1);
+  EXPECT_FALSE(result.synthetic);
+}
+
+TEST(Comparison, ShowsValuesInTheUnitThatTheDefinitionDisplays) {
+  const analytics::CheckpointDefinition& definition = *analytics::findCheckpoint("path-length");
+  const AttemptValue value{"a", analytics::makeValue(definition, "left", analytics::Origin::samples, 0.25)};
+  ComparisonRequest path = request;
+  path.figure = {"path-length", "left"};
+  const Comparison result = compare({attempt("a", "g")}, {value}, path);
+  ASSERT_EQ(result.group.size(), 1U);
+  EXPECT_DOUBLE_EQ(result.group[0].median, 0.25 * definition.displayFactor);
+  EXPECT_EQ(result.unit, definition.displayUnit);
+}
+
+TEST(Comparison, MostUsedKeyComesFirst) {
+  EXPECT_EQ(comparabilityKeysOf({attempt("a", "", "z"), attempt("b", "", "y"), attempt("c", "", "z"), attempt("d", "", "x")}),
+            (std::vector<std::string>{"z", "x", "y"}));
+}
+
+TEST(Comparison, FiguresNeedAValue) {
+  AttemptValue missing = seconds("a", 0.0);
+  missing.value.value.reset();
+  EXPECT_TRUE(figuresOf({missing}).empty());
+  EXPECT_EQ(figuresOf({seconds("a", 1.0), seconds("b", 2.0)}).size(), 1U);
+}
+
+}  // namespace
+}  // namespace calot::gui

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drives the dashboard as a user would, on Qt's offscreen platform.
+#include "gui/dashboard/dashboard_window.h"
+
+#include <gtest/gtest.h>
+
+#include <QAbstractItemModel>
+#include <QApplication>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QElapsedTimer>
+#include <QHeaderView>
+#include <QLabel>
+#include <QLineEdit>
+#include <QLocale>
+#include <QTabWidget>
+#include <QTableView>
+#include <QTest>
+#include <filesystem>
+#include <fstream>
+
+#include "analytics/checkpoints/registry.h"
+#include "gui/dashboard/attempt_filter.h"
+#include "gui/dashboard/attempt_table_model.h"
+#include "gui/dashboard/checkpoint_table_model.h"
+#include "gui/dashboard/words.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+using analytics::AttemptRecord;
+using analytics::CheckpointValue;
+using analytics::CohortDatabase;
+using analytics::Verdict;
+
+AttemptRecord attemptNumber(int i) {
+  AttemptRecord attempt;
+  char uuid[40];
+  std::snprintf(uuid, sizeof uuid, "%08x-0000-4000-8000-%012x", static_cast<unsigned>(0x1000 + i), static_cast<unsigned>(i));
+  attempt.uuid = uuid;
+  attempt.scene = "touch-liver";
+  attempt.sceneMajor = 1;
+  attempt.operatorKind = recorder::OperatorKind::performer;
+  attempt.profile = i % 2 == 0 ? "skilled" : "unskilled";
+  attempt.profileVersion = "1";
+  attempt.synthetic = true;
+  attempt.purpose = "demo";
+  attempt.outcome = recorder::Outcome::completed;
+  char start[32];
+  std::snprintf(start, sizeof start, "2026-03-%02dT10:%02d:00Z", 1 + i % 28, i % 60);
+  attempt.startUtc = start;
+  attempt.simulationVersion = 1;
+  attempt.comparabilityKey = "touch-liver/1 device=- calibration=- simulation=1 results=1 mode=practice";
+  attempt.fileName = "recording.h5";
+  attempt.complete = true;
+  attempt.steps = 1000;
+  attempt.verification = {Verdict::verified, "", "calot 0.1.0"};
+  return attempt;
+}
+
+CheckpointValue pathLength(const std::string& hand, double metres) {
+  return analytics::makeValue(*analytics::findCheckpoint("path-length"), hand, analytics::Origin::samples, metres);
+}
+
+class Dashboard : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    qputenv("QT_QPA_PLATFORM", "offscreen");
+    static int count = 1;
+    static char name[] = "test";
+    static char* arguments[] = {name, nullptr};
+    if (QApplication::instance() == nullptr) application_ = new QApplication(count, arguments);
+  }
+
+  void SetUp() override {
+    QLocale::setDefault(QLocale::c());
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("calot_dashboard_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] QString file(const char* name) const { return QString::fromStdString((folder_ / name).string()); }
+
+  // Eight performers and one person whose attempt diverged.
+  QString cohort() {
+    CohortDatabase database(file("cohort.db").toStdString(), CohortDatabase::Access::create);
+    for (int i = 0; i < 8; ++i)
+      database.storeAttempt(attemptNumber(i), {pathLength("left", 0.1 + 0.01 * i), pathLength("right", 0.2 + 0.01 * i)});
+    AttemptRecord person = attemptNumber(100);
+    person.operatorKind = recorder::OperatorKind::human;
+    person.profile.clear();
+    person.profileVersion.clear();
+    person.synthetic = false;
+    person.participant = "P07";
+    person.verification = {Verdict::diverged, "step 412, component solid, field velocity", "calot 0.1.0"};
+    person.startUtc = "2026-04-02T08:30:00Z";
+    database.storeAttempt(person, {pathLength("left", 0.5),
+                                   analytics::makeMissing(*analytics::findCheckpoint("path-length"), "right", analytics::Origin::samples,
+                                                          analytics::Availability::notApplicable, "no instrument in the right hand")});
+    return file("cohort.db");
+  }
+
+  template <class T>
+  static T* child(const QWidget& window, const char* name) {
+    T* const found = window.findChild<T*>(name);
+    EXPECT_NE(found, nullptr) << name;
+    return found;
+  }
+  static QString cell(const QTableView& table, int row, int column) {
+    return table.model()->index(row, column).data(Qt::DisplayRole).toString();
+  }
+  static bool shows(const DashboardWindow& window, const QWidget& widget) { return widget.isVisibleTo(&window); }
+
+  std::filesystem::path folder_;
+  static inline QApplication* application_ = nullptr;
+};
+
+TEST_F(Dashboard, OpensACohortAndListsItsAttempts) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort())) << child<QLabel>(window, "problem")->text().toStdString();
+  const QTableView& table = *child<QTableView>(window, "attempts");
+  ASSERT_EQ(table.model()->rowCount(), 9);
+  // Newest first.
+  EXPECT_EQ(cell(table, 0, AttemptTableModel::operatorColumn), "P07");
+  EXPECT_EQ(cell(table, 0, AttemptTableModel::startColumn), "2026-04-02 08:30 UTC");
+  EXPECT_EQ(cell(table, 0, AttemptTableModel::verificationColumn), QString::fromUtf8("≠ diverged"));
+  EXPECT_EQ(cell(table, 0, AttemptTableModel::syntheticColumn), "");
+  EXPECT_EQ(cell(table, 1, AttemptTableModel::syntheticColumn), "synthetic");
+  EXPECT_EQ(cell(table, 1, AttemptTableModel::verificationColumn), QString::fromUtf8("✓ verified"));
+  EXPECT_EQ(cell(table, 1, AttemptTableModel::sceneColumn), "touch-liver");
+  EXPECT_EQ(cell(table, 1, AttemptTableModel::modeColumn), "practice");
+  EXPECT_EQ(cell(table, 1, AttemptTableModel::outcomeColumn), "completed");
+}
+
+TEST_F(Dashboard, SearchNarrowsTheTable) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  const QTableView& table = *child<QTableView>(window, "attempts");
+  QLineEdit* const search = child<QLineEdit>(window, "search");
+  QTest::keyClicks(search, "UNSKILLED synth");
+  EXPECT_EQ(table.model()->rowCount(), 4);
+  EXPECT_EQ(child<QLabel>(window, "count")->text(), "4 of 9 attempts");
+  QTest::keyClicks(search, " nowhere");
+  EXPECT_EQ(table.model()->rowCount(), 0);
+  search->clear();
+  EXPECT_EQ(table.model()->rowCount(), 9);
+}
+
+TEST_F(Dashboard, FiltersByVerdictAndOrigin) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  const QAbstractItemModel& rows = *child<QTableView>(window, "attempts")->model();
+  QComboBox* const verdict = child<QComboBox>(window, "verdict");
+  QTest::keyClick(verdict, Qt::Key_Down);
+  EXPECT_EQ(rows.rowCount(), 8) << "verified";
+  QTest::keyClick(verdict, Qt::Key_Down);
+  EXPECT_EQ(rows.rowCount(), 1) << "diverged";
+  child<QComboBox>(window, "operators")->setCurrentIndex(2);
+  EXPECT_EQ(rows.rowCount(), 0) << "the diverged one is not synthetic";
+  verdict->setCurrentIndex(0);
+  EXPECT_EQ(rows.rowCount(), 8);
+}
+
+TEST_F(Dashboard, SortsByAColumn) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  QTableView* const table = child<QTableView>(window, "attempts");
+  table->sortByColumn(AttemptTableModel::operatorColumn, Qt::AscendingOrder);
+  EXPECT_EQ(cell(*table, 0, AttemptTableModel::operatorColumn), "P07");
+  EXPECT_EQ(cell(*table, 1, AttemptTableModel::operatorColumn), "skilled");
+  EXPECT_EQ(cell(*table, 8, AttemptTableModel::operatorColumn), "unskilled");
+}
+
+TEST_F(Dashboard, SelectingAnAttemptShowsItsCheckpoints) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  QTableView* const table = child<QTableView>(window, "attempts");
+  const QTableView& details = *child<QTableView>(window, "checkpoints");
+  // The newest attempt is the person's.
+  ASSERT_EQ(details.model()->rowCount(), 2);
+  EXPECT_EQ(cell(details, 0, CheckpointTableModel::subjectColumn), "left");
+  EXPECT_NE(cell(details, 1, CheckpointTableModel::valueColumn).indexOf("no instrument in the right hand"), -1);
+  EXPECT_FALSE(shows(window, *child<QLabel>(window, "watermark")));
+  EXPECT_TRUE(child<QLabel>(window, "badge")->text().contains("step 412, component solid, field velocity"));
+
+  table->setFocus();
+  QTest::keyClick(table, Qt::Key_Down);
+  ASSERT_EQ(details.model()->rowCount(), 2);
+  EXPECT_TRUE(shows(window, *child<QLabel>(window, "watermark")));
+  const analytics::CheckpointDefinition& definition = *analytics::findCheckpoint("path-length");
+  const double stored = 0.1 + 0.01 * 7;  // attempt 7 started last of the performers
+  EXPECT_EQ(cell(details, 0, CheckpointTableModel::valueColumn),
+            numberText(stored * definition.displayFactor) + ' ' + QString::fromStdString(definition.displayUnit));
+  EXPECT_EQ(cell(details, 0, CheckpointTableModel::nameColumn), QString::fromStdString(definition.title));
+  EXPECT_EQ(cell(details, 0, CheckpointTableModel::windowColumn), QString::fromStdString(definition.window));
+  EXPECT_EQ(cell(details, 0, CheckpointTableModel::originColumn), "samples");
+  EXPECT_EQ(cell(details, 0, CheckpointTableModel::versionColumn), QString::number(definition.version));
+}
+
+TEST_F(Dashboard, AnEmptyDatabaseGreetsAndExplains) {
+  { const CohortDatabase made(file("empty.db").toStdString(), CohortDatabase::Access::create); }
+  DashboardWindow window;
+  window.show();
+  QLabel* const greeting = child<QLabel>(window, "greeting");
+  EXPECT_TRUE(shows(window, *greeting));
+  EXPECT_TRUE(greeting->text().contains("calot assess"));
+  ASSERT_TRUE(window.openDatabase(file("empty.db")));
+  EXPECT_TRUE(shows(window, *greeting));
+  EXPECT_TRUE(greeting->text().contains("empty.db is a cohort database without attempts"));
+  EXPECT_FALSE(shows(window, *child<QLabel>(window, "problem")));
+}
+
+TEST_F(Dashboard, ADamagedFileIsOneLineAndKeepsWhatWasOpen) {
+  std::ofstream(folder_ / "broken.db") << "This is not a database at all, however long one reads on in it.";
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  for (const char* name : {"broken.db", "missing.db"}) {
+    EXPECT_FALSE(window.openDatabase(file(name)));
+    QLabel* const problem = child<QLabel>(window, "problem");
+    EXPECT_TRUE(shows(window, *problem));
+    EXPECT_TRUE(problem->text().contains(name)) << problem->text().toStdString();
+    EXPECT_FALSE(problem->text().contains('\n'));
+    EXPECT_EQ(child<QTableView>(window, "attempts")->model()->rowCount(), 9);
+    try {
+      const CohortDocument document(file(name).toStdString());
+      FAIL() << name << " opened";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::damaged) << name;
+    }
+  }
+  ASSERT_TRUE(window.openDatabase(file("cohort.db")));
+  EXPECT_FALSE(shows(window, *child<QLabel>(window, "problem"))) << "gone with the next success";
+}
+
+TEST_F(Dashboard, ReloadShowsWhatCameInSince) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  CohortDatabase(file("cohort.db").toStdString(), CohortDatabase::Access::write).upsertAttempt(attemptNumber(50));
+  window.reload();
+  EXPECT_EQ(child<QTableView>(window, "attempts")->model()->rowCount(), 10);
+}
+
+TEST_F(Dashboard, CompareShowsGroupsAndMarksSyntheticOnes) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  QTest::keyClick(&window, Qt::Key_2, Qt::ControlModifier);
+  window.findChild<QTabWidget*>()->setCurrentIndex(1);
+  QComboBox* const figure = child<QComboBox>(window, "figure");
+  ASSERT_EQ(figure->count(), 2) << "path length, left and right";
+  const QLabel& caption = *child<QLabel>(window, "caption");
+  EXPECT_EQ(caption.text(), "8 attempts. Left out: 1 diverged or damaged.");
+  const QWidget& chart = *child<QWidget>(window, "comparison-chart");
+  EXPECT_TRUE(chart.property("watermark").toBool());
+  child<QCheckBox>(window, "synthetic")->click();
+  EXPECT_EQ(caption.text(), "0 attempts. Left out: 1 diverged or damaged, 8 synthetic.");
+  EXPECT_FALSE(chart.property("watermark").toBool());
+}
+
+TEST_F(Dashboard, PicturesOfThePagesAreWritten) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  window.savePictures(QString::fromStdString(folder_.string()));
+  for (const char* name : {"attempts.png", "compare.png"}) {
+    const QImage picture(file(name));
+    EXPECT_GT(picture.width(), 600) << name;
+  }
+  EXPECT_THROW(window.savePictures(file("missing")), Error);
+}
+
+TEST_F(Dashboard, TenThousandAttemptsAreSortedAndSearchedWithinASecond) {
+  std::vector<analytics::AttemptRow> rows(10000);
+  for (int i = 0; i < 10000; ++i) static_cast<AttemptRecord&>(rows[static_cast<std::size_t>(i)]) = attemptNumber(i);
+  QElapsedTimer clock;
+  clock.start();
+  AttemptTableModel model;
+  AttemptFilter filter;
+  filter.setSourceModel(&model);
+  model.setAttempts(rows);
+  filter.sort(AttemptTableModel::startColumn, Qt::DescendingOrder);
+  filter.setSearch("unskilled 2026-03-05");
+  EXPECT_EQ(filter.rowCount(), 0) << "the fifth of the month is an even number";
+  filter.setSearch("skilled 2026-03-05");
+  EXPECT_EQ(filter.rowCount(), 357);
+  EXPECT_LT(clock.elapsed(), 1000);
+}
+
+TEST_F(Dashboard, NumbersFollowTheLocaleButAreNeverReadBack) {
+  EXPECT_EQ(numberText(1234.5), "1234");
+  EXPECT_EQ(numberText(0.0123456), "0.01235");
+  EXPECT_EQ(numberText(0.0), "0");
+  QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
+  EXPECT_EQ(numberText(12.5), "12,50");
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  EXPECT_TRUE(cell(*child<QTableView>(window, "checkpoints"), 0, CheckpointTableModel::valueColumn).contains(','));
+}
+
+}  // namespace
+}  // namespace calot::gui

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/obj.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "recorder/errors.h"
+#include "sim/math/random.h"
+
+namespace calot::recorder {
+namespace {
+
+namespace fs = std::filesystem;
+
+TriangleMesh parse(const std::string& text, LengthUnit unit = LengthUnit::metre, const ObjLimits& limits = {}) {
+  return parseObj(std::as_bytes(std::span(text.data(), text.size())), "t.obj", unit, limits);
+}
+
+/// The message of the refusal, or empty.
+std::string refusal(const std::string& text, const ObjLimits& limits = {}) {
+  try {
+    parse(text, LengthUnit::metre, limits);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::damaged);
+    const std::string message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    return message;
+  }
+  return {};
+}
+
+const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(Obj, ReadsTheFormsOfAFace) {
+  for (const char* face : {"f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//9 2//9 3//9 4//9", "f 1/1/9 2/1/9 3/1/9 4/1/9",
+                           "f -4 -3 -2 -1", "f -4//-1 2 -2/7 4 # and a comment", "  f\t1  2\t3 4  \r"}) {
+    const TriangleMesh mesh = parse(square + face + "\n");
+    ASSERT_EQ(mesh.triangles(), 2) << face;
+    EXPECT_EQ(mesh.triangle[0], Index3(0, 1, 2)) << face;
+    EXPECT_EQ(mesh.triangle[1], Index3(0, 2, 3)) << face;
+  }
+}
+
+TEST(Obj, ScalesToMetresAndPassesOverDrawing) {
+  const std::string text =
+      "# comment\nmtllib x.mtl\no liver\ng a b\ns off\nusemtl red\nvt 0 0\nvn 0 0 1\nv 1 2 3 1.0\nv 4e0 +5 6 0.1 0.2 0.3\nv 7 "
+      "8 -9.5\n\nl 1 2\nf 1 2 3";
+  const TriangleMesh mesh = parse(text, LengthUnit::millimetre);
+  EXPECT_EQ(mesh.vertex[1], Vec3(4.0 * 0.001, 5.0 * 0.001, 6.0 * 0.001));
+  EXPECT_EQ(parse(text, LengthUnit::centimetre).vertex[2][2], -9.5 * 0.01);
+  EXPECT_EQ(parseLengthUnit("cm"), LengthUnit::centimetre);
+  EXPECT_THROW(parseLengthUnit("inch"), Error);
+}
+
+TEST(Obj, FacesMayComeBeforeTheirVertices) { EXPECT_EQ(parse("f 1 2 3\n" + square).triangles(), 1); }
+
+TEST(Obj, RefusesWithTheLine) {
+  const std::string ok = square + "f 1 2 3\n";
+  EXPECT_TRUE(refusal(ok).empty());
+  const std::pair<const char*, const char*> bad[] = {
+      {"v 1 2", "t.obj:6: a vertex with 2 of 3 coordinates"},
+      {"v 1 2 nan", "t.obj:6: \"nan\" is not a finite number"},
+      {"v 1 inf 2", "t.obj:6: \"inf\" is not a finite number"},
+      {"v 1 2 1e999", "t.obj:6: \"1e999\" is not a number"},
+      {"v 1 2 3x", "t.obj:6: \"3x\" is not a number"},
+      {"v 1,5 2 3", "t.obj:6: \"1,5\" is not a number"},
+      {"v 1 2 5000", "t.obj:6: a coordinate of 5000 m: is the unit right?"},
+      {"v 0x10 2 3", "t.obj:6: \"0x10\" is not a number"},
+      {"f 1 2 5", "t.obj:6: vertex 5 is wanted, but the file has 4"},
+      {"f 1 2 0", "t.obj:6: index 0: OBJ counts from 1"},
+      {"f 1 2 -5", "t.obj:6: index -5 reaches before the first of 4 vertices"},
+      {"f 1 2", "t.obj:6: a face with 2 corners"},
+      {"f", "t.obj:6: a face with 0 corners"},
+      {"f 1 2 3/", "t.obj:6: \"\" is not an index"},
+      {"f 1 2 3/x", "t.obj:6: \"x\" is not an index"},
+      {"f 1 2 3//", "t.obj:6: \"\" is not an index"},
+      {"f 1 2 3/1/1/1", "t.obj:6: \"1/1\" is not an index"},
+      {"f 1 2 99999999999", "t.obj:6: \"99999999999\" is not an index"},
+      {"f 1 2 1.5", "t.obj:6: \"1.5\" is not an index"},
+      {"curv 0 1 1 2", "t.obj:6: \"curv\" is no keyword of a polygonal OBJ file"},
+      {"f 1 2 \\", "t.obj:6: a line continued with \\ is not understood; join the lines"},
+      {"\x89PNG", "t.obj:6: \"?PNG\" is no keyword of a polygonal OBJ file"},
+  };
+  for (const auto& [line, message] : bad) EXPECT_EQ(refusal(ok + line + "\n"), message);
+  EXPECT_EQ(refusal(ok + std::string(1, '\0')), "t.obj:6: a zero byte; this is not a text file");
+  EXPECT_NE(refusal("").find("no vertex"), std::string::npos);
+  EXPECT_NE(refusal(square).find("no face"), std::string::npos);
+}
+
+TEST(Obj, RefusesTooMuch) {
+  ObjLimits limits;
+  limits.vertices = 3;
+  EXPECT_EQ(refusal(square, limits), "t.obj:4: more than 3 vertices");
+  limits = {};
+  limits.triangles = 1;
+  EXPECT_EQ(refusal(square + "f 1 2 3 4", limits), "t.obj:5: more than 1 triangles");
+  limits = {};
+  limits.bytes = 10;
+  EXPECT_NE(refusal(square, limits).find("larger than 10 bytes"), std::string::npos);
+}
+
+TEST(Obj, DamagedBytesAreReadOrRefusedButNeverMore) {
+  const std::string ok = square + "vn 0 0 1\nf 1//1 2//1 3//1 4//1\n# end\n";
+  const std::uint64_t seed = 31337;
+  SCOPED_TRACE(seed);
+  Random random(seed);
+  int refused = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::string text = ok.substr(0, trial % 3 == 0 ? random.next() % ok.size() : ok.size());
+    for (auto flips = random.next() % 4; flips > 0 && !text.empty(); --flips) {
+      char& c = text[random.next() % text.size()];
+      c = static_cast<char>(static_cast<unsigned char>(c) ^ (1U << (random.next() % 8)));
+    }
+    try {
+      const TriangleMesh mesh = parse(text);
+      for (const Index3& v : mesh.triangle) ASSERT_TRUE(v.minCoeff() >= 0 && v.maxCoeff() < mesh.vertices());
+      for (const Vec3& p : mesh.vertex) ASSERT_TRUE(p.allFinite());
+    } catch (const Error& error) {
+      ASSERT_EQ(error.code(), ExitCode::damaged);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 5000);
+}
+
+class ObjFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("calot-obj-") + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+TEST_F(ObjFile, RoundTripIsExact) {
+  Random random(1);
+  TriangleMesh mesh;
+  for (int i = 0; i < 300; ++i) {
+    mesh.vertex.emplace_back(random.uniform(-1.0, 1.0), random.uniform(-1e-9, 1e-9), 1.0 / 3.0 * i);
+  }
+  for (int i = 0; i + 2 < 300; ++i) mesh.triangle.emplace_back(i, i + 1, i + 2);
+  writeObj(folder_ / "a.obj", mesh, "first\nsecond", false);
+  const TriangleMesh back = readObj(folder_ / "a.obj", LengthUnit::metre);
+  ASSERT_EQ(back.vertex.size(), mesh.vertex.size());
+  for (std::size_t i = 0; i < mesh.vertex.size(); ++i) EXPECT_EQ(back.vertex[i], mesh.vertex[i]);
+  for (std::size_t i = 0; i < mesh.triangle.size(); ++i) EXPECT_EQ(back.triangle[i], mesh.triangle[i]);
+}
+
+TEST_F(ObjFile, OverwritesOnlyWhenTold) {
+  const TriangleMesh mesh = parse(square + "f 1 2 3\n");
+  const fs::path file = folder_ / "a.obj";
+  std::ofstream(file) << "mine";
+  try {
+    writeObj(file, mesh, "", false);
+    FAIL() << "must refuse";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+  }
+  EXPECT_EQ(fs::file_size(file), 4U);
+  writeObj(file, mesh, "", true);
+  EXPECT_EQ(readObj(file, LengthUnit::metre).triangles(), 1);
+  EXPECT_FALSE(fs::exists(folder_ / "a.obj.part"));
+  EXPECT_THROW(writeObj(folder_ / "no" / "a.obj", mesh, "", true), Error);
+  EXPECT_THROW(writeObj(folder_, mesh, "", true), Error);
+}
+
+TEST_F(ObjFile, MissingAndFolderAreRefused) {
+  for (const fs::path& path : {folder_ / "none.obj", folder_}) {
+    try {
+      readObj(path, LengthUnit::metre);
+      FAIL() << path;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::damaged);
+      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace calot::recorder

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "recorder/errors.h"
+#include "recorder/formats/scene_rules.h"
+
+namespace calot::recorder {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::vector<std::byte> bytesOfText(const std::string& text) {
+  std::vector<std::byte> bytes(text.size());
+  if (!text.empty()) std::memcpy(bytes.data(), text.data(), text.size());
+  return bytes;
+}
+
+// A tetrahedron with a corner at the origin, 50 mm long, outward.
+const char* const tetrahedron = "v 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+json validScene() {
+  return json::parse(R"({
+    "format": "calot-scene", "formatVersion": 1, "name": "small", "version": {"major": 3, "minor": 4}, "summary": "A test.",
+    "ticksPerStep": 5, "timeLimit": 60, "gravity": [0, -9.81, 0],
+    "workspace": {"lower": [-0.1, -0.1, -0.1], "upper": [0.1, 0.1, 0.1]},
+    "camera": {"position": [0, 0, -0.1], "target": [0, 0, 0], "verticalFieldOfView": 1.2},
+    "hands": {
+      "left": {"port": [-0.1, 0.1, 0], "home": [-0.02, 0, -0.02], "instrument": "grasper"},
+      "right": {"port": [0.1, 0.1, 0], "home": [0.02, 0, -0.02], "instrument": "hook", "shaftRadius": 0.002,
+                "couplingStiffness": 500, "largestForce": 3}
+    },
+    "organs": [
+      {"name": "liver", "appearance": "liver", "mesh": {"file": "organs/a.obj", "unit": "mm"}, "tetrahedra": 100,
+       "material": {"youngModulus": 5000, "poissonRatio": 0.45, "density": 1060, "stiffnessDamping": 0.02},
+       "anchors": [{"sphere": {"centre": [0, 0, 0.05], "radius": 0.01}}]},
+      {"name": "gallbladder", "appearance": "gallbladder", "mesh": {"file": "organs/a.obj", "unit": "mm"},
+       "tetrahedra": 50, "material": {"youngModulus": 9000, "poissonRatio": 0.3, "density": 1020},
+       "anchors": [{"nearOrgan": {"organ": "liver", "distance": 0.003}}]}
+    ],
+    "solver": {"tolerance": 1e-5, "sleeping": false}
+  })");
+}
+
+LoadedScene load(const std::string& text, const std::string& mesh = tetrahedron) {
+  return sceneFromAssets({{"scenes/small.json", bytesOfText(text)}, {"organs/a.obj", bytesOfText(mesh)}});
+}
+
+// The message of the Error that loading throws; checks its exit code and that it is one line.
+std::string faultOf(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::damaged) << e.what();
+    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+    return e.what();
+  }
+  return "(no fault)";
+}
+
+std::string faultOf(const json& scene) {
+  return faultOf([&] { load(scene.dump()); });
+}
+
+TEST(SceneFile, everyValueArrives) {
+  const LoadedScene loaded = load(validScene().dump());
+  const SceneDescription& s = loaded.description;
+  EXPECT_EQ(s.name, "small");
+  EXPECT_EQ(loaded.summary, "A test.");
+  EXPECT_EQ(s.majorVersion, 3U);
+  EXPECT_EQ(s.minorVersion, 4U);
+  EXPECT_EQ(s.ticksPerStep, 5U);
+  EXPECT_EQ(s.timeLimit, 60.0);
+  EXPECT_EQ(s.gravity, Vec3(0, -9.81, 0));
+  EXPECT_EQ(s.workspace[0], Vec3(-0.1, -0.1, -0.1));
+  EXPECT_EQ(s.workspace[1], Vec3(0.1, 0.1, 0.1));
+  EXPECT_EQ(s.hands[0].port, Vec3(-0.1, 0.1, 0));
+  EXPECT_EQ(s.hands[0].instrument, InstrumentKind::grasper);
+  EXPECT_EQ(s.hands[0].shaftRadius, HandDescription().shaftRadius);
+  EXPECT_EQ(s.hands[1].home, Vec3(0.02, 0, -0.02));
+  EXPECT_EQ(s.hands[1].instrument, InstrumentKind::hook);
+  EXPECT_EQ(s.hands[1].shaftRadius, 0.002);
+  EXPECT_EQ(s.hands[1].couplingStiffness, 500.0);
+  EXPECT_EQ(s.hands[1].largestForce, 3.0);
+  ASSERT_EQ(s.organs.size(), 2U);
+  EXPECT_EQ(s.organs[0].tetrahedra, 100U);
+  EXPECT_EQ(s.organs[0].material.youngModulus, 5000.0);
+  EXPECT_EQ(s.organs[0].material.stiffnessDamping, 0.02);
+  EXPECT_EQ(s.organs[1].material.stiffnessDamping, MaterialDescription().stiffnessDamping);
+  ASSERT_EQ(s.organs[0].surface.vertex.size(), 4U);
+  EXPECT_NEAR(s.organs[0].surface.vertex[1].x(), 0.05, 1e-15);  // millimetres became metres
+  EXPECT_EQ(s.organs[0].anchors.at(0).radius, 0.01);
+  EXPECT_EQ(s.organs[1].anchors.at(0).nearOrgan, "liver");
+  EXPECT_EQ(s.organs[1].anchors.at(0).distance, 0.003);
+  EXPECT_EQ(s.solver.tolerance, 1e-5);
+  EXPECT_EQ(s.solver.iterations, SolverDescription().iterations);
+  EXPECT_FALSE(s.solver.sleeping);
+  EXPECT_EQ(s.verticalFieldOfView, 1.2);
+}
+
+TEST(SceneFile, cameraLooksAtItsTargetWithUpInThePicture) {
+  json scene = validScene();
+  scene["camera"]["position"] = {0.03, 0.05, -0.1};
+  const CameraSample camera = load(scene.dump()).description.camera;
+  const Vec3 x = camera.orientation * Vec3::UnitX(), y = camera.orientation * Vec3::UnitY(), z = camera.orientation * Vec3::UnitZ();
+  EXPECT_NEAR((z + Vec3(0.03, 0.05, -0.1).normalized()).norm(), 0.0, 1e-14);
+  EXPECT_NEAR(x.y(), 0.0, 1e-14);            // level
+  EXPECT_LT(y.y(), 0.0);                     // y runs down
+  EXPECT_NEAR((x.cross(y) - z).norm(), 0.0, 1e-14);
+}
+
+TEST(SceneFile, bytesOfARecordingGiveTheSameScene) {
+  const fs::path folder = fs::path(testing::TempDir()) / "calot_scene_file_test";
+  fs::create_directories(folder / "scenes");
+  fs::create_directories(folder / "organs");
+  std::ofstream(folder / "scenes" / "small.json") << validScene().dump(2);
+  std::ofstream(folder / "organs" / "a.obj") << tetrahedron;
+  const LoadedScene fromFile = loadScene(folder / "scenes" / "small.json");
+  ASSERT_EQ(fromFile.assets.size(), 2U);  // the mesh is named twice and kept once
+  EXPECT_EQ(fromFile.assets[0].name, "scenes/small.json");
+  EXPECT_EQ(fromFile.assets[1].name, "organs/a.obj");
+  EXPECT_EQ(fromFile.assets[1].bytes, bytesOfText(tetrahedron));
+  const LoadedScene fromBytes = sceneFromAssets(fromFile.assets);
+  std::vector<std::byte> a, b;
+  ByteWriter writeA(a), writeB(b);
+  writeA.write(fromFile.description);
+  writeB.write(fromBytes.description);
+  EXPECT_EQ(a, b);
+
+  fs::remove(folder / "organs" / "a.obj");
+  EXPECT_EQ(faultOf([&] { loadScene(folder / "scenes" / "small.json"); }),
+            "scenes/small.json: /organs/0/mesh/file: there is no file \"organs/a.obj\" in the assets folder");
+  std::ofstream(fs::path(testing::TempDir()) / "calot_outside.obj") << tetrahedron;
+  fs::create_symlink(fs::path(testing::TempDir()) / "calot_outside.obj", folder / "organs" / "a.obj");
+  EXPECT_NE(faultOf([&] { loadScene(folder / "scenes" / "small.json"); }).find("leads out of the assets folder"), std::string::npos);
+  EXPECT_EQ(faultOf([&] { loadScene(folder / "scenes" / "none.json"); }), "scenes/none.json: there is no such file");
+  fs::remove_all(folder);
+}
+
+struct Fault {
+  const char* pointer;
+  const char* value;  // JSON; empty: the key is taken away
+  const char* message;
+};
+
+TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
+  const std::vector<Fault> faults{
+      {"/organs/0/material/poissonRatio", "0.5", "scenes/small.json: /organs/0/material/poissonRatio: 0.5 is not in [0, 0.5)"},
+      {"/organs/0/material/youngModulus", "-5000", "scenes/small.json: /organs/0/material/youngModulus: -5000 is not in [10, 1000000000]"},
+      {"/organs/0/material/density", "\"heavy\"", "scenes/small.json: /organs/0/material/density: a number is wanted, not string"},
+      {"/organs/0/material/density", "", "scenes/small.json: /organs/0/material: the key \"density\" is missing"},
+      {"/organs/0/colour", "1",
+       "scenes/small.json: /organs/0/colour: unknown key; known are name, appearance, mesh, tetrahedra, material, anchors"},
+      {"/organs/0/tetrahedra", "9", "scenes/small.json: /organs/0/tetrahedra: 9 is not in [10, 1000000]"},
+      {"/organs/0/tetrahedra", "100.5", "scenes/small.json: /organs/0/tetrahedra: a whole number is wanted"},
+      {"/organs/0/tetrahedra", "-100", "scenes/small.json: /organs/0/tetrahedra: -100 is not in [10, 1000000]"},
+      {"/organs/0/tetrahedra", "18446744073709551615", "scenes/small.json: /organs/0/tetrahedra: 1.8446744073709552e+19 is not in [10, 1000000]"},
+      {"/organs/1/anchors/0/nearOrgan/organ", "\"spleen\"",
+       "scenes/small.json: /organs/1/anchors/0/nearOrgan/organ: the scene has no organ \"spleen\""},
+      {"/organs/1/anchors/0/nearOrgan/organ", "\"gallbladder\"",
+       "scenes/small.json: /organs/1/anchors/0/nearOrgan/organ: an organ cannot be anchored to itself"},
+      {"/organs/1/anchors/0", "{}", "scenes/small.json: /organs/1/anchors/0: one of \"sphere\" and \"nearOrgan\" is wanted"},
+      {"/organs/0/anchors/0/sphere/radius", "0", "scenes/small.json: /organs/0/anchors/0/sphere/radius: 0 is not in (0, 1]"},
+      {"/organs/1/name", "\"liver\"", "scenes/small.json: /organs/1/name: another organ has this name"},
+      {"/organs/1/name", "\"Gall bladder\"",
+       "scenes/small.json: /organs/1/name: small letters, digits and hyphens are allowed, the first no hyphen"},
+      {"/organs", "[]", "scenes/small.json: /organs: 0 entries; from 1 to 32 are allowed"},
+      {"/organs/0/mesh/unit", "\"inch\"", "scenes/small.json: /organs/0/mesh/unit: unknown word; known are cm, m, mm"},
+      {"/organs/0/mesh/file", "\"organs/b.obj\"", "scenes/small.json: /organs/0/mesh/file: there is no asset \"organs/b.obj\""},
+      {"/hands/left", "", "scenes/small.json: /hands: the key \"left\" is missing"},
+      {"/hands", "[]", "scenes/small.json: /hands: an object is wanted, not array"},
+      {"/hands/left/port", "[0, 0]", "scenes/small.json: /hands/left/port: 2 entries; from 3 to 3 are allowed"},
+      {"/hands/left/port", "[0, null, 0]", "scenes/small.json: /hands/left/port/1: a number is wanted, not null"},
+      {"/hands/left/port", "[-0.02, 0, -0.02]", "scenes/small.json: /hands/left/home: nearer than 0.01 m to the port"},
+      {"/hands/left/port", "[-0.9, 0, 0]", "scenes/small.json: /hands/left/port: farther than 0.3 m from the workspace"},
+      {"/hands/left/home", "[0.11, 0, 0]", "scenes/small.json: /hands/left/home: outside the workspace"},
+      {"/hands/left/instrument", "\"laser\"",
+       "scenes/small.json: /hands/left/instrument: unknown word; known are clip-applier, grasper, hook, scissors"},
+      {"/hands/right/couplingStiffness", "0", "scenes/small.json: /hands/right/couplingStiffness: 0 is not in (0, 100000]"},
+      {"/workspace/upper", "[0.1, -0.1, 0.1]",
+       "scenes/small.json: /workspace/upper: every side of the workspace must be at least 0.01 m long"},
+      {"/camera/target", "[0, 0, -0.1]", "scenes/small.json: /camera/target: the target is the camera's own position"},
+      {"/camera/up", "[0, 0, 1]", "scenes/small.json: /camera: \"up\" is zero or along the view"},
+      {"/formatVersion", "2", "scenes/small.json: /formatVersion: 2 is not in [1, 1]"},
+      {"/format", "\"calot-performer\"", "scenes/small.json: /format: \"calot-scene\" is wanted"},
+      {"/version/major", "0", "scenes/small.json: /version/major: 0 is not in [1, 1000000]"},
+      {"/solver/sleeping", "1", "scenes/small.json: /solver/sleeping: true or false is wanted, not number"},
+  };
+  for (const Fault& fault : faults) {
+    json scene = validScene();
+    const json::json_pointer place(fault.pointer);
+    if (*fault.value == '\0') {
+      scene[place.parent_pointer()].erase(place.back());
+    } else {
+      scene[place] = json::parse(fault.value);
+    }
+    EXPECT_EQ(faultOf(scene), fault.message);
+  }
+}
+
+TEST(SceneFile, pathsThatLeaveTheAssetsAreRefused) {
+  for (const char* path : {"../a.obj", "organs/../../a.obj", "/etc/passwd", "./a.obj", "organs//a.obj", "organs/", "..\\a.obj", "C:a.obj"}) {
+    json scene = validScene();
+    scene["organs"][0]["mesh"]["file"] = path;
+    EXPECT_EQ(faultOf(scene),
+              "scenes/small.json: /organs/0/mesh/file: a path relative to the assets folder is wanted, with / and without . or ..");
+  }
+}
+
+TEST(SceneFile, whatIsNotJsonIsNamedWithLineAndColumn) {
+  EXPECT_EQ(faultOf([] { load("{\n  \"name\": }"); }), "scenes/small.json: not JSON at line 2, column 11");
+  EXPECT_EQ(faultOf([] { load(""); }), "scenes/small.json: the file is empty");
+  EXPECT_EQ(faultOf([] { load("[]"); }), "scenes/small.json: /: an object is wanted, not array");
+  EXPECT_EQ(faultOf([] { load("{\"gravity\": [NaN, 0, 0]}"); }).substr(0, 27), "scenes/small.json: not JSON");
+  EXPECT_EQ(faultOf([] { load("{\"timeLimit\": 1e999}"); }), "scenes/small.json: a number is larger than a double holds");
+  EXPECT_EQ(faultOf([] { load("{\"name\": \"a\", \"name\": \"b\"}"); }), "scenes/small.json: the key \"name\" is given twice");
+  EXPECT_EQ(faultOf([] { load(std::string(100000, '[')); }), "scenes/small.json: nested deeper than 32 levels");
+  const std::string whole = validScene().dump();
+  for (std::size_t cut = 1; cut < whole.size(); cut += 7) {
+    EXPECT_EQ(faultOf([&] { load(whole.substr(0, cut)); }).substr(0, 27), "scenes/small.json: not JSON") << cut;
+  }
+}
+
+TEST(SceneFile, aMeshThatIsNoBodyIsRefused) {
+  const std::string text = validScene().dump();
+  const std::string open = faultOf([&] { load(text, "v 0 0 0\nv 50 0 0\nv 0 50 0\nf 1 2 3\n"); });
+  EXPECT_EQ(open.substr(0, 38), "organs/a.obj: 1 triangles with 3 open ") << open;
+  const std::string inside = faultOf([&] { load(text, "v 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n"); });
+  EXPECT_NE(inside.find("1 parts turned inside out"), std::string::npos) << inside;
+  json metres = validScene();
+  metres["organs"][0]["mesh"]["unit"] = "m";
+  EXPECT_NE(faultOf(metres).find("is the scene's unit right?"), std::string::npos);
+  EXPECT_NE(faultOf([&] { load(text, "v nan 0 0\n"); }).find("organs/a.obj"), std::string::npos);
+}
+
+TEST(SceneFile, assetsThatDoNotFitAreRefused) {
+  const std::vector<std::byte> scene = bytesOfText(validScene().dump()), mesh = bytesOfText(tetrahedron);
+  EXPECT_EQ(faultOf([] { sceneFromAssets({}); }), "scene: there is no scene file among the assets");
+  EXPECT_EQ(faultOf([&] { sceneFromAssets({{"scenes/small.json", scene}, {"organs/a.obj", mesh}, {"organs/c.obj", mesh}}); }),
+            "scenes/small.json: the asset organs/c.obj is named nowhere in it");
+  EXPECT_EQ(faultOf([&] { sceneFromAssets({{"scenes/small.json", scene}, {"organs/a.obj", mesh}, {"organs/a.obj", mesh}}); }),
+            "scene: two assets are called organs/a.obj");
+}
+
+TEST(SceneFile, flippedBitsNeverCrashAndFaultsStayOneLine) {
+  const std::string whole = validScene().dump();
+  int refused = 0;
+  for (std::size_t i = 0; i < whole.size() * 8; i += 3) {
+    std::string text = whole;
+    text[i / 8] = static_cast<char>(text[i / 8] ^ (1 << (i % 8)));
+    if (faultOf([&] { load(text); }) != "(no fault)") ++refused;
+  }
+  EXPECT_GT(refused, static_cast<int>(whole.size()));
+}
+
+// Loader and published schema: the same kinds of object, keys, required keys and bounds.
+TEST(SceneFile, loaderAndSchemaAgree) {
+  std::ifstream in(fs::path(CALOT_SOURCE_DIR) / "schemas" / "scene.schema.json");
+  ASSERT_TRUE(in);
+  const json schema = json::parse(in);
+  std::set<std::string> definitions;
+  for (const ObjectRule& rule : sceneRules()) {
+    SCOPED_TRACE(rule.definition.empty() ? "root" : rule.definition);
+    if (!rule.definition.empty()) definitions.insert(rule.definition);
+    const json& object = rule.definition.empty() ? schema : schema.at("$defs").at(rule.definition);
+    EXPECT_EQ(object.at("additionalProperties"), false);
+    std::set<std::string> keys, required, schemaKeys;
+    for (const KeyRule& key : rule.keys) {
+      SCOPED_TRACE(key.key);
+      keys.insert(key.key);
+      if (key.required) required.insert(key.key);
+      ASSERT_TRUE(object.at("properties").contains(key.key));
+      const json& property = object.at("properties").at(key.key);
+      EXPECT_TRUE(property.contains("description"));
+      const json& number = property.value("type", "") == "array" ? property.at("items") : property;
+      if (const std::string type = number.value("type", ""); type == "number" || type == "integer") {
+        EXPECT_EQ(number.at(key.lowerOpen ? "exclusiveMinimum" : "minimum").get<double>(), key.lower);
+        EXPECT_EQ(number.at(key.upperOpen ? "exclusiveMaximum" : "maximum").get<double>(), key.upper);
+      }
+    }
+    for (const auto& property : object.at("properties").items()) schemaKeys.insert(property.key());
+    EXPECT_EQ(keys, schemaKeys);
+    EXPECT_EQ(required, object.at("required").get<std::set<std::string>>());
+  }
+  std::set<std::string> schemaDefinitions;
+  for (const auto& definition : schema.at("$defs").items()) schemaDefinitions.insert(definition.key());
+  EXPECT_EQ(definitions, schemaDefinitions);
+}
+
+// What the schema calls a default is what the loader leaves.
+TEST(SceneFile, defaultsAreTheSchemas) {
+  std::ifstream in(fs::path(CALOT_SOURCE_DIR) / "schemas" / "scene.schema.json");
+  const json schema = json::parse(in);
+  json scene = validScene();
+  for (const char* key : {"ticksPerStep", "timeLimit", "gravity", "solver"}) scene.erase(key);
+  for (const char* key : {"shaftRadius", "couplingStiffness", "largestForce"}) scene["hands"]["right"].erase(key);
+  scene["organs"][0]["material"].erase("stiffnessDamping");
+  const SceneDescription s = load(scene.dump()).description;
+  const json& root = schema.at("properties");
+  const json& d = schema.at("$defs");
+  const auto of = [&](const char* definition, const char* key) { return d.at(definition).at("properties").at(key).at("default"); };
+  EXPECT_EQ(s.ticksPerStep, root.at("ticksPerStep").at("default").get<std::uint32_t>());
+  EXPECT_EQ(s.timeLimit, root.at("timeLimit").at("default").get<double>());
+  EXPECT_EQ(s.hands[1].shaftRadius, of("hand", "shaftRadius").get<double>());
+  EXPECT_EQ(s.hands[1].couplingStiffness, of("hand", "couplingStiffness").get<double>());
+  EXPECT_EQ(s.hands[1].largestForce, of("hand", "largestForce").get<double>());
+  EXPECT_EQ(s.organs[0].material.massDamping, of("material", "massDamping").get<double>());
+  EXPECT_EQ(s.organs[0].material.stiffnessDamping, of("material", "stiffnessDamping").get<double>());
+  EXPECT_EQ(s.solver.tolerance, of("solver", "tolerance").get<double>());
+  EXPECT_EQ(s.solver.iterations, of("solver", "iterations").get<std::uint32_t>());
+  EXPECT_EQ(s.solver.contactTolerance, of("solver", "contactTolerance").get<double>());
+  EXPECT_EQ(s.solver.contactIterations, of("solver", "contactIterations").get<std::uint32_t>());
+  EXPECT_EQ(s.solver.sleeping, of("solver", "sleeping").get<bool>());
+}
+
+TEST(FindScene, byNameUnderTheRootsInTurn) {
+  const fs::path base = fs::path(testing::TempDir()) / "calot_find_scene_test";
+  for (const char* root : {"one", "two"}) fs::create_directories(base / root / "scenes");
+  std::ofstream(base / "two" / "scenes" / "b.json") << "{}";
+  std::ofstream(base / "one" / "scenes" / "a.json") << "{}";
+  std::ofstream(base / "two" / "scenes" / "a.json") << "{}";
+  const std::vector<fs::path> roots{base / "one", base / "two", base / "three"};
+  EXPECT_EQ(findScene("a", roots), base / "one" / "scenes" / "a.json");
+  EXPECT_EQ(findScene("b", roots), base / "two" / "scenes" / "b.json");
+  EXPECT_EQ(findScene((base / "two" / "scenes" / "a.json").string(), {}), base / "two" / "scenes" / "a.json");
+  try {
+    findScene("c", roots);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_STREQ(e.what(), "there is no scene \"c\"; there are a, b");
+  }
+  EXPECT_EQ(listScenes(roots).size(), 2U);
+  fs::remove_all(base);
+}
+
+}  // namespace
+}  // namespace calot::recorder

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "recorder/errors.h"
+#include "recorder/recording/reader.h"
+#include "recorder/recording/recover.h"
+#include "recorder/recording/writer.h"
+#include "tests/recorder/recording/support/synthetic.h"
+
+namespace calot::recorder {
+namespace {
+
+using test::Folder;
+using test::makeHeader;
+using test::randomStep;
+using test::Step;
+
+/// Bits, so that -0 and 0 differ.
+template <class T>
+bool same(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+bool same(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), 3 * sizeof(double)) == 0; }
+bool same(const Quat& a, const Quat& b) { return std::memcmp(a.coeffs().data(), b.coeffs().data(), 4 * sizeof(double)) == 0; }
+
+void expectSame(const Step& made, const RecordedStep& read) {
+  ASSERT_EQ(made.samples.size(), read.samples.size());
+  for (std::size_t t = 0; t < made.samples.size(); ++t) {
+    for (std::size_t h = 0; h < handCount; ++h) {
+      const InstrumentSample &a = made.samples[t].hand[h], &b = read.samples[t].hand[h];
+      EXPECT_TRUE(same(a.position, b.position) && same(a.orientation, b.orientation) && same(a.jaw, b.jaw));
+      EXPECT_TRUE(a.instrument == b.instrument && a.buttons == b.buttons && a.valid == b.valid);
+      const HandTick &c = made.ticks[t].hand[h], &d = read.ticks[t].hand[h];
+      EXPECT_TRUE(same(c.force, d.force) && same(c.torque, d.torque) && c.contactSet == d.contactSet);
+    }
+    EXPECT_TRUE(same(made.samples[t].camera.position, read.samples[t].camera.position));
+    EXPECT_TRUE(same(made.samples[t].camera.orientation, read.samples[t].camera.orientation));
+    EXPECT_EQ(made.ticks[t].lateness, read.ticks[t].lateness);
+  }
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const HandResult &a = made.result.hand[h], &b = read.result.hand[h];
+    EXPECT_TRUE(a.instrument == b.instrument && same(a.tipReal, b.tipReal) && same(a.tipSimulated, b.tipSimulated));
+    EXPECT_TRUE(same(a.orientation, b.orientation) && same(a.jaw, b.jaw) && same(a.insertion, b.insertion));
+    EXPECT_TRUE(same(a.contactForce, b.contactForce) && a.touching == b.touching && a.organForce == b.organForce);
+  }
+  ASSERT_EQ(made.result.organ.size(), read.result.organ.size());
+  for (std::size_t o = 0; o < made.result.organ.size(); ++o) {
+    const OrganResult &a = made.result.organ[o], &b = read.result.organ[o];
+    EXPECT_TRUE(a.volume == b.volume && a.largestDisplacement == b.largestDisplacement && a.largestSpeed == b.largestSpeed);
+    EXPECT_TRUE(a.residual == b.residual && a.iterations == b.iterations && a.asleep == b.asleep);
+  }
+  EXPECT_EQ(made.result.step, read.result.step);
+  EXPECT_EQ(made.result.contact.rows, read.result.contact.rows);
+  EXPECT_EQ(made.result.contact.iterations, read.result.contact.iterations);
+  EXPECT_EQ(made.result.contact.residual, read.result.contact.residual);
+  EXPECT_EQ(made.result.contact.largestDepth, read.result.contact.largestDepth);
+  EXPECT_EQ(made.result.misses, read.result.misses);
+  ASSERT_EQ(made.result.events.size(), read.result.events.size());
+  for (std::size_t e = 0; e < made.result.events.size(); ++e) {
+    const Event &a = made.result.events[e], &b = read.result.events[e];
+    EXPECT_TRUE(a.step == b.step && a.kind == b.kind && a.hand == b.hand && a.subject == b.subject);
+    EXPECT_TRUE(same(a.position, b.position) && same(a.value, b.value));
+  }
+  EXPECT_EQ(made.digest, read.digest);
+  EXPECT_EQ(made.lateness, read.lateness);
+}
+
+void expectSame(const AttemptHeader& a, const AttemptHeader& b) {
+  EXPECT_EQ(a.attempt, b.attempt);
+  EXPECT_EQ(a.parent, b.parent);
+  EXPECT_EQ(a.forkStep, b.forkStep);
+  EXPECT_EQ(a.startUtc, b.startUtc);
+  EXPECT_EQ(a.software, b.software);
+  EXPECT_EQ(a.build, b.build);
+  EXPECT_EQ(a.simulationVersion, b.simulationVersion);
+  EXPECT_EQ(a.stepResultVersion, b.stepResultVersion);
+  EXPECT_EQ(a.participant, b.participant);
+  EXPECT_EQ(a.provenance.kind, b.provenance.kind);
+  EXPECT_EQ(a.provenance.profile, b.provenance.profile);
+  EXPECT_EQ(a.provenance.profileVersion, b.provenance.profileVersion);
+  EXPECT_EQ(a.provenance.sourceFile, b.provenance.sourceFile);
+  EXPECT_EQ(a.provenance.sourceSha256, b.provenance.sourceSha256);
+  EXPECT_EQ(a.provenance.device, b.provenance.device);
+  EXPECT_EQ(a.provenance.calibration, b.provenance.calibration);
+  EXPECT_EQ(a.station, b.station);
+  EXPECT_EQ(a.mode, b.mode);
+  EXPECT_EQ(a.purpose, b.purpose);
+  EXPECT_EQ(a.handedness, b.handedness);
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(a.tickSeconds, b.tickSeconds);
+  EXPECT_EQ(a.ticksPerStep, b.ticksPerStep);
+  EXPECT_EQ(a.sceneName, b.sceneName);
+  EXPECT_EQ(a.sceneMajor, b.sceneMajor);
+  EXPECT_EQ(a.sceneMinor, b.sceneMinor);
+  EXPECT_EQ(a.organs, b.organs);
+  ASSERT_EQ(a.assets.size(), b.assets.size());
+  for (std::size_t i = 0; i < a.assets.size(); ++i) {
+    EXPECT_EQ(a.assets[i].name, b.assets[i].name);
+    EXPECT_EQ(a.assets[i].bytes, b.assets[i].bytes);
+  }
+  EXPECT_EQ(a.layout.components, b.layout.components);
+  ASSERT_EQ(a.layout.fields.size(), b.layout.fields.size());
+  for (std::size_t i = 0; i < a.layout.fields.size(); ++i) {
+    EXPECT_EQ(a.layout.fields[i].component, b.layout.fields[i].component);
+    EXPECT_EQ(a.layout.fields[i].name, b.layout.fields[i].name);
+  }
+}
+
+struct Shape {
+  std::uint32_t ticksPerStep;
+  std::size_t organs;
+  std::uint64_t steps;
+};
+
+class RoundTrip : public testing::TestWithParam<Shape> {};
+
+TEST_P(RoundTrip, KeepsEveryBit) {
+  const Shape shape = GetParam();
+  const Folder folder;
+  const AttemptHeader header = makeHeader(shape.ticksPerStep, shape.organs);
+  test::writeRecording(folder / "r.h5", header, shape.steps);
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.h5.part"));
+
+  Recording r(folder / "r.h5");
+  expectSame(header, r.header());
+  EXPECT_TRUE(r.complete());
+  EXPECT_EQ(r.outcome(), Outcome::completed);
+  ASSERT_EQ(r.stepCount(), shape.steps);
+  EXPECT_EQ(r.tickCount(), shape.steps * shape.ticksPerStep);
+  std::uint64_t events = 0;
+  for (std::uint64_t n = 0; n < shape.steps; ++n) {
+    const Step made = randomStep(header, n, 1);
+    events += made.result.events.size();
+    expectSame(made, r.step(n));
+    if (HasFailure()) FAIL() << "step " << n;
+  }
+  EXPECT_EQ(r.eventCount(), events);
+  for (std::size_t k = 0; k < r.keyframeSteps().size(); ++k) {
+    const Keyframe made = test::makeKeyframe(r.keyframeSteps()[k], 3001);
+    const Keyframe read = r.keyframe(k);
+    EXPECT_EQ(made.step, read.step);
+    EXPECT_EQ(made.state, read.state);
+    EXPECT_EQ(made.haptics, read.haptics);
+  }
+  EXPECT_TRUE(r.verifyChain().intact);
+  if (shape.steps > 0) expectSame(randomStep(header, 0, 1), r.step(0));  // backwards
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, RoundTrip,
+                         testing::Values(Shape{10, 2, 533}, Shape{10, 2, 500}, Shape{10, 0, 60}, Shape{1, 1, 1100}, Shape{7, 3, 200},
+                                         Shape{300, 1, 9}, Shape{10, 2, 1}, Shape{10, 2, 0}, Shape{1000, 32, 3}));
+
+TEST(Keyframes, AreKeptAboutEverySecond) {
+  const Folder folder;
+  test::writeRecording(folder / "r.h5", makeHeader(), 450);
+  const Recording r(folder / "r.h5");
+  EXPECT_EQ(r.keyframeSteps(), (std::vector<std::uint64_t>{99, 199, 299, 399}));
+  EXPECT_FALSE(r.keyframeAtOrBefore(98).has_value());
+  EXPECT_EQ(r.keyframeAtOrBefore(99), 0U);
+  EXPECT_EQ(r.keyframeAtOrBefore(298), 1U);
+  EXPECT_EQ(r.keyframeAtOrBefore(10000), 3U);
+}
+
+TEST(Chain, SameContentSameChain) {
+  const Folder folder;
+  test::writeRecording(folder / "a.h5", makeHeader(), 77);
+  test::writeRecording(folder / "b.h5", makeHeader(), 77);
+  test::writeRecording(folder / "c.h5", makeHeader(), 77, 2);
+  const Recording a(folder / "a.h5"), b(folder / "b.h5"), c(folder / "c.h5");
+  EXPECT_EQ(a.status().back().chain, b.status().back().chain);
+  EXPECT_NE(a.status().back().chain, c.status().back().chain);
+  EXPECT_EQ(a.status().front().chain, c.status().front().chain);
+}
+
+TEST(Writer, RefusesToOverwriteWithoutForce) {
+  const Folder folder;
+  std::ofstream(folder / "r.h5") << "mine";
+  try {
+    const RecordingWriter writer(folder / "r.h5", makeHeader());
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_NE(std::string(e.what()).find("r.h5"), std::string::npos);
+  }
+  std::string text;
+  std::ifstream(folder / "r.h5") >> text;
+  EXPECT_EQ(text, "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.h5.part"));
+  test::writeRecording(folder / "r.h5", makeHeader(), 3);  // with force
+  EXPECT_EQ(Recording(folder / "r.h5").stepCount(), 3U);
+}
+
+TEST(Writer, NamesAFolderThatIsNotThere) {
+  const Folder folder;
+  try {
+    const RecordingWriter writer(folder.path() / "no" / "r.h5", makeHeader());
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::usage);
+  }
+}
+
+TEST(Writer, LeftWithoutAnEndStaysIncomplete) {
+  const Folder folder;
+  const AttemptHeader header = makeHeader();
+  {
+    RecordingWriter writer(folder / "r.h5", header);
+    test::feed(writer, header, 30, [&](std::uint64_t n) { return randomStep(header, n, 1); }, 0);
+  }
+  Recording r(folder / "r.h5");
+  EXPECT_FALSE(r.complete());
+  EXPECT_EQ(r.outcome(), Outcome::running);
+  EXPECT_EQ(r.stepCount(), 30U);
+  EXPECT_TRUE(r.verifyChain().intact);
+}
+
+TEST(Recover, OfAWholeFileIsTheSameAttempt) {
+  const Folder folder;
+  const AttemptHeader header = makeHeader();
+  test::writeRecording(folder / "r.h5", header, 333);
+  const Recovered saved = recover(folder / "r.h5", folder / "o.h5", false);
+  EXPECT_TRUE(saved.complete);
+  EXPECT_EQ(saved.steps, 333U);
+  EXPECT_TRUE(saved.lost.empty());
+  Recording r(folder / "r.h5"), o(folder / "o.h5");
+  ASSERT_EQ(r.status().size(), o.status().size());
+  for (std::size_t i = 0; i < r.status().size(); ++i) EXPECT_EQ(r.status()[i].chain, o.status()[i].chain);
+  for (std::uint64_t n = 0; n < 333; ++n) expectSame(randomStep(header, n, 1), o.step(n));
+  EXPECT_THROW(recover(folder / "r.h5", folder / "o.h5", false), Error);
+  EXPECT_THROW(recover(folder / "r.h5", folder / "r.h5", true), Error);
+}
+
+}  // namespace
+}  // namespace calot::recorder

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keeps the files in order: licence line, length, no unfinished marks, no paths of one machine, links that lead somewhere.
+
+usage: house_test.py ROOT | --self-test
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+import cpp_text
+
+LONGEST = 600
+SOURCES = {".h", ".cpp", ".py", ".sh", ".cmake", ".sql"}
+TEXTS = SOURCES | {".md", ".txt", ".json", ".yml", ".yaml"}
+# Put together from parts, or this file would find itself.
+UNFINISHED = re.compile(r"\b(?:" + "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK")) + r")\b")
+MACHINE_PATH = re.compile(r"(?<![\w.~$}<])/(?:" + "|".join(("wo" + "rk", "ho" + "me", "ro" + "ot", "tm" + "p", "Us" + "ers")) + r")/")
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+
+
+def is_source(path):
+    return path.suffix in SOURCES or path.name in ("CMakeLists.txt", "run")
+
+
+def faults_of(root, path):
+    """(line number, message) of each fault of one file."""
+    if not is_source(path) and path.suffix not in TEXTS:
+        return
+    text = (root / path).read_text(encoding="utf-8")
+    lines = text.splitlines()
+    if is_source(path):
+        if not any("SPDX-License-Identifier: GPL-3.0-or-later" in line for line in lines[:3]):
+            yield 1, "no line SPDX-License-Identifier: GPL-3.0-or-later at its head"
+        if len(lines) > LONGEST:
+            yield LONGEST, f"{len(lines)} lines: one concern a file, {LONGEST} lines at most"
+    for number, line in enumerate(lines, 1):
+        if UNFINISHED.search(line):
+            yield number, "marked unfinished"
+        if MACHINE_PATH.search(line):
+            yield number, "names a path of one machine"
+        if path.suffix == ".md":
+            for target in LINK.findall(line):
+                if re.match(r"[a-z]+:|#", target):
+                    continue
+                if not (root / path.parent / target.split("#")[0]).exists():
+                    yield number, f"link leads nowhere: {target}"
+
+
+def check(root):
+    seen = faults = 0
+    for path in cpp_text.files(root):
+        seen += 1
+        for number, message in faults_of(root, path):
+            faults += 1
+            print(f"{path}:{number}: {message}")
+    return seen, faults
+
+
+def self_test():
+    head = "// SPDX-License-Identifier: GPL-3.0-or-later\n"
+    cases = (
+        ("a.cpp", head + "int x;\n", 0), ("b.cpp", "int x;\n", 1), ("c.h", head + "\n" * LONGEST, 1),
+        ("d.cpp", head + "// TO" + "DO later\n", 1), ("e.md", "see /wo" + "rk/x\n", 1), ("f.md", "[a](missing.md) [b](a.cpp)\n", 1),
+        ("g.py", "#!/usr/bin/env python3\n# SPDX-License-Identifier: GPL-3.0-or-later\n", 0),
+        ("h.md", "[site](https://example.org) [here](#words) `build/tests/work/`\n", 0),
+    )
+    with tempfile.TemporaryDirectory() as name:
+        root = pathlib.Path(name)
+        for file, text, _ in cases:
+            (root / file).write_text(text)
+        for file, _, expected in cases:
+            found = list(faults_of(root, pathlib.Path(file)))
+            assert len(found) == expected, (file, found)
+    print(f"house: {len(cases)} cases judged as they must be")
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        self_test()
+        return 0
+    seen, faults = check(pathlib.Path(sys.argv[1]))
+    print(f"house: {seen} files, {faults} faults")
+    return 1 if faults or seen == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

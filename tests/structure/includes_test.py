@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keeps the rooms one way: who may include whom, and which foreign headers each room may see.
+
+usage: includes_test.py ROOT | --self-test
+"""
+import pathlib
+import sys
+import tempfile
+
+import cpp_text
+
+# Room -> rooms whose headers it may include, besides its own. A room is a folder; its longest matching name counts.
+SIM = ("sim/math", "sim/geometry", "sim/solid", "sim/contact", "sim/haptics", "sim/instruments", "sim/scene")
+MAY_SEE = {
+    "sim/math": (),
+    "sim/geometry": ("sim/math",),
+    # These are one library; what the step is made of may not reach up to recorder or beyond.
+    "sim/solid": SIM, "sim/contact": SIM, "sim/haptics": SIM, "sim/instruments": SIM, "sim/scene": SIM,
+    "recorder": ("sim",),  # the contracts at the top: errors, identity, observer
+    "recorder/formats": ("sim", "recorder/errors.h", "recorder/identity.h"),
+    "recorder/recording": ("sim", "recorder/errors.h", "recorder/identity.h", "recorder/observer.h"),
+    "recorder/sources": ("sim", "recorder"),
+    "recorder/live": ("sim", "recorder"),
+    "analytics": ("sim", "recorder", "analytics"),
+    "analytics/statistics": (),
+    "analytics/checkpoints": ("sim", "recorder", "analytics/statistics"),
+    "analytics/cohort": ("sim", "recorder", "analytics"),
+    "analytics/report": ("sim", "recorder", "analytics"),
+    "gui/render": ("sim", "recorder/errors.h"),
+    "gui/dashboard": ("sim", "recorder", "analytics", "gui/render"),
+    "gui/trainer": ("sim", "recorder", "analytics", "gui/render"),
+    "gui/report": ("sim", "recorder", "analytics", "gui/render"),
+    "apps": ("sim", "recorder", "analytics", "gui"),
+    "assets": ("sim", "recorder"),
+}
+# The top of recorder/ is built with sources/ and live/; its .cpp files may see all of the room.
+WHOLE_ROOM = {"recorder": ("recorder",)}
+
+# The core sees these and nothing else from outside.
+SIM_FOREIGN = set("""algorithm array bit bitset cassert cmath compare concepts cstddef cstdint cstring deque functional
+initializer_list iterator limits map memory numbers numeric optional queue set span stdexcept string string_view tuple
+type_traits utility variant vector xxhash.h xmmintrin.h""".split())
+SIM_FOREIGN_FOLDERS = ("Eigen/",)
+
+# Foreign headers that only some rooms may see: prefix -> rooms.
+ONLY = {
+    "Q": ("gui/dashboard", "gui/trainer", "gui/report", "apps"),
+    "hdf5": ("recorder/recording",),
+    "H5": ("recorder/recording",),
+    "SQLiteCpp/": ("analytics/cohort",),
+    "sqlite3.h": ("analytics/cohort",),
+    "GL/": ("gui/render",),
+    "CLI/": ("apps", "assets"),
+    "thread": ("recorder", "gui", "apps"),
+}
+
+
+def room_of(name):
+    parts = pathlib.PurePosixPath(name).parts
+    for length in (2, 1):
+        candidate = "/".join(parts[:length])
+        if len(parts) > length and candidate in MAY_SEE:
+            return candidate
+    return None
+
+
+def below(name, place):
+    return name == place or name.startswith(place + "/")
+
+
+def faults_of(path, text):
+    """(line number, message) for each wrong include of one file."""
+    room = room_of(path)
+    if room is None:
+        yield 0, "belongs to no room: name it in tests/structure/includes_test.py"
+        return
+    allowed = MAY_SEE[room] + (WHOLE_ROOM.get(room, ()) if path.endswith(".cpp") else ())
+    for number, name, quoted in cpp_text.includes(text):
+        target = room_of(name)
+        if quoted or target is not None:
+            if target is None:
+                yield number, f'"{name}": name the header from the repository\'s root'
+            elif target != room and not any(below(name, place) for place in allowed):
+                yield number, f'"{name}": {room} may not see {target}'
+        elif below(room, "sim"):
+            if name not in SIM_FOREIGN and not name.startswith(SIM_FOREIGN_FOLDERS):
+                yield number, f"<{name}>: the core may not see it"
+        else:
+            for prefix, rooms in ONLY.items():
+                hit = name.startswith(prefix) if prefix != "Q" else name[:1] == "Q" and name[1:2].isupper()
+                if prefix == "thread":
+                    hit = name == prefix
+                if hit and not any(below(room, r) for r in rooms):
+                    yield number, f"<{name}>: {room} may not see it, only {', '.join(rooms)}"
+
+
+def check(root, report=print):
+    seen = faults = 0
+    for path in cpp_text.files(root):
+        if path.suffix not in (".h", ".cpp") or path.parts[0] == "tests":
+            continue
+        seen += 1
+        for number, message in faults_of(path.as_posix(), (root / path).read_text(encoding="utf-8")):
+            faults += 1
+            report(f"{path}:{number}: {message}")
+    return seen, faults
+
+
+def self_test():
+    good = (
+        ("sim/geometry/a.h", '#include <vector>\n#include <Eigen/Core>\n#include "sim/math/linear.h"'),
+        ("recorder/sources/a.cpp", '#include <fstream>\n#include "recorder/observer.h"\n#include "sim/scene/samples.h"'),
+        ("recorder/loop.cpp", '#include "recorder/recording/writer.h"\n#include "recorder/live/worker_pool.h"'),
+        ("analytics/cohort/a.cpp", "#include <SQLiteCpp/SQLiteCpp.h>"),
+        ("gui/dashboard/a.cpp", '#include <QWidget>\n#include "analytics/cohort/cohort.h"'),
+        ("sim/math/a.cpp", '// #include <thread>\n/* #include "gui/render/a.h" */'),
+    )
+    bad = (
+        ("sim/math/a.h", '#include "sim/geometry/mesh.h"'), ("sim/geometry/a.h", '#include "sim/solid/body.h"'),
+        ("sim/scene/a.cpp", '#include "recorder/errors.h"'), ("sim/scene/a.cpp", "#include <fstream>"),
+        ("sim/solid/a.cpp", "#include <chrono>"), ("sim/solid/a.cpp", "#include <thread>"),
+        ("sim/solid/a.cpp", "#include <unordered_map>"), ("sim/solid/a.cpp", "#include <fmt/format.h>"),
+        ("sim/solid/a.cpp", '#include "body.h"'), ("recorder/observer.h", '#include "recorder/recording/writer.h"'),
+        ("recorder/recording/a.cpp", '#include "recorder/sources/source.h"'),
+        ("recorder/sources/a.cpp", '#include "analytics/cohort/cohort.h"'), ("recorder/sources/a.cpp", "#include <hdf5.h>"),
+        ("recorder/live/a.cpp", "#include <QTimer>"), ("analytics/cohort/a.cpp", '#include "gui/render/renderer.h"'),
+        ("analytics/report/a.cpp", "#include <QString>"), ("analytics/checkpoints/a.cpp", "#include <thread>"),
+        ("gui/render/a.cpp", '#include "analytics/cohort/cohort.h"'), ("gui/render/a.cpp", "#include <QImage>"),
+        ("gui/dashboard/a.cpp", '#include "apps/calot/commands.h"'), ("gui/dashboard/a.cpp", "#include <sqlite3.h>"),
+        ("misc/a.cpp", ""),
+    )
+    for path, text in good:
+        assert not list(faults_of(path, text)), (path, text, list(faults_of(path, text)))
+    for path, text in bad:
+        assert len(list(faults_of(path, text))) == 1, f"passes: {path}: {text}"
+    with tempfile.TemporaryDirectory() as name:
+        root = pathlib.Path(name)
+        (root / "sim/math").mkdir(parents=True)
+        (root / "sim/math/a.h").write_text('#include "gui/render/a.h"\n')
+        assert check(root, report=lambda line: None) == (1, 1)
+    print(f"includes: {len(bad)} wrong includes refused, {len(good)} right files passed")
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        self_test()
+        return 0
+    seen, faults = check(pathlib.Path(sys.argv[1]))
+    print(f"includes: {seen} files, {faults} faults")
+    return 1 if faults or seen == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
