@@ -21,8 +21,8 @@ struct MainFigure {
   const char* subject;
 };
 constexpr MainFigure mainFigures[] = {
-    {"duration s", "attempt-duration", ""},   {"path L mm", "path-length", "left"}, {"path R mm", "path-length", "right"},
-    {"p99 L N", "force-p99", "left"},         {"p99 R N", "force-p99", "right"},
+    {"duration s", "attempt-duration", ""}, {"path L mm", "path-length", "left"}, {"path R mm", "path-length", "right"},
+    {"p99 L N", "force-p99", "left"},       {"p99 R N", "force-p99", "right"},
 };
 
 std::string figureText(const std::vector<CheckpointValue>& values, const MainFigure& figure) {
@@ -76,9 +76,9 @@ Imported store(CohortDatabase& database, const AssessedAttempt& assessed) {
 void printAttempts(const CohortDatabase& database, std::ostream& out) {
   std::map<std::string, std::vector<CheckpointValue>> values;
   for (AttemptValue& v : database.allValues()) values[v.attempt].push_back(std::move(v.value));
-  std::vector<std::pair<std::string, Align>> columns{{"attempt", Align::left},  {"who", Align::left},     {"scene", Align::left},
-                                                     {"mode", Align::left},     {"outcome", Align::left}, {"verification", Align::left},
-                                                     {"recording", Align::left}};
+  std::vector<std::pair<std::string, Align>> columns{
+      {"attempt", Align::left}, {"who", Align::left},          {"scene", Align::left},    {"mode", Align::left},
+      {"outcome", Align::left}, {"verification", Align::left}, {"recording", Align::left}};
   for (const MainFigure& figure : mainFigures) columns.emplace_back(figure.title, Align::right);
   columns.emplace_back("", Align::left);
   TextTable table(columns);
@@ -86,8 +86,13 @@ void printAttempts(const CohortDatabase& database, std::ostream& out) {
   for (const AttemptRow& a : database.listAttempts()) {
     std::string who = a.participant;
     if (who.empty()) who = a.profile.empty() ? wordFor(a.operatorKind) : a.profile;
-    std::vector<std::string> cells{a.uuid.substr(0, 8),    who, fmt::format("{}/{}", a.scene, a.sceneMajor), wordFor(a.mode),
-                                   a.complete ? wordFor(a.outcome) : "incomplete", nameOf(a.verification.verdict), a.fileName};
+    std::vector<std::string> cells{a.uuid.substr(0, 8),
+                                   who,
+                                   fmt::format("{}/{}", a.scene, a.sceneMajor),
+                                   wordFor(a.mode),
+                                   a.complete ? wordFor(a.outcome) : "incomplete",
+                                   nameOf(a.verification.verdict),
+                                   a.fileName};
     for (const MainFigure& figure : mainFigures) cells.push_back(figureText(values[a.uuid], figure));
     cells.push_back(fmt::format("{}{}", a.synthetic ? "SYNTHETIC" : "", a.excluded ? " excluded" : ""));
     synthetic += a.synthetic ? 1 : 0;

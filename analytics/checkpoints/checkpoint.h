@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a checkpoint is: one figure of an attempt (or one per hand, or one per organ), computed from the stream of steps.
-// docs/metrics.md gives the formula, source and pitfalls of each; a test holds it against the registry.
+// What a checkpoint is: one figure of an attempt (or one per hand, or one per organ), computed from the stream of
+// steps. docs/metrics.md gives the formula, source and pitfalls of each; a test holds it against the registry.
 #pragma once
 
 #include <array>
@@ -38,16 +38,17 @@ std::string nameOf(Finality finality);        ///< "running", "final"
 
 /// What a checkpoint declares of itself.
 struct CheckpointDefinition {
-  std::string name;     ///< "path-length": key in the database, never reused for another meaning
-  std::string title;    ///< "Path length of the instrument's tip"
-  std::string unit;     ///< SI, of stored values: "s", "m", "N", "1"
-  std::string displayUnit;    ///< at the edges: "mm"
-  double displayFactor = 1.0; ///< displayed = stored * displayFactor
+  std::string name;            ///< "path-length": key in the database, never reused for another meaning
+  std::string title;           ///< "Path length of the instrument's tip"
+  std::string unit;            ///< SI, of stored values: "s", "m", "N", "1"
+  std::string displayUnit;     ///< at the edges: "mm"
+  double displayFactor = 1.0;  ///< displayed = stored * displayFactor
   Direction direction = Direction::none;
-  std::string window;   ///< part of the attempt that is covered: "whole attempt"
+  std::string window;  ///< part of the attempt that is covered: "whole attempt"
   Aggregation aggregation = Aggregation::attempt;
-  std::string instruments;    ///< how several instruments are joined: "each hand by itself", "union over instruments", ...
-  std::string filter;   ///< resampling and filter with all their constants, or "none"
+  std::string
+      instruments;     ///< how several instruments are joined: "each hand by itself", "union over instruments", ...
+  std::string filter;  ///< resampling and filter with all their constants, or "none"
   std::vector<Origin> origins;  ///< allowed ones
   Finality finality = Finality::running;
   std::uint32_t version = 1;  ///< changes whenever a value may change
@@ -64,15 +65,15 @@ enum class Availability : std::uint8_t {
 /// One figure. @invariant availability == value exactly when `value` holds a finite number; else `reason` is not empty.
 struct CheckpointValue {
   std::string name;
-  std::string subject;         ///< "" (attempt), "left" / "right" (hand), or the organ's name
-  std::uint32_t version = 1;   ///< of the checkpoint's definition
+  std::string subject;        ///< "" (attempt), "left" / "right" (hand), or the organ's name
+  std::uint32_t version = 1;  ///< of the checkpoint's definition
   Availability availability = Availability::value;
-  std::optional<double> value; ///< in `unit`
-  std::string reason;          ///< why there is no value
-  std::string note;            ///< what a reader of the value must know ("0.340 s without measurement"), or empty
-  std::string unit;            ///< SI
+  std::optional<double> value;  ///< in `unit`
+  std::string reason;           ///< why there is no value
+  std::string note;             ///< what a reader of the value must know ("0.340 s without measurement"), or empty
+  std::string unit;             ///< SI
   Origin origin = Origin::resimulated;
-  std::string filter;          ///< as declared when the value was made
+  std::string filter;  ///< as declared when the value was made
   bool operator==(const CheckpointValue&) const = default;
 };
 
@@ -90,9 +91,9 @@ class ForceTrack;
 struct AttemptEnd {
   std::uint64_t steps = 0;
   recorder::Outcome outcome = recorder::Outcome::running;
-  Origin origin = Origin::resimulated;  ///< of forces and contacts; motion is always `samples`
+  Origin origin = Origin::resimulated;            ///< of forces and contacts; motion is always `samples`
   std::array<const Motion*, handCount> motion{};  ///< both hands' motion, never null (checkpoints/motion.h)
-  const ForceTrack* force = nullptr;  ///< both hands' haptic forces, never null (checkpoints/force.h)
+  const ForceTrack* force = nullptr;              ///< both hands' haptic forces, never null (checkpoints/force.h)
 };
 
 /// One running computation of one definition over one attempt. Deterministic contract: IEEE + - * / sqrt in

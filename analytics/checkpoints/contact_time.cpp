@@ -44,8 +44,9 @@ const CheckpointDefinition& sumDefinition() {
       .finality = Finality::running,
       .version = 1,
       .definition = "C_sum(o) = step length * sum over instruments #{steps at whose end it exerts a force on organ o}",
-      .paperReading = "The reading taken for \"Time colliding cystic ducts\" (41.57 s in a task of 38.86 s), which is given "
-                      "for the cystic duct and artery alone: no organ of a scene without them answers to it",
+      .paperReading =
+          "The reading taken for \"Time colliding cystic ducts\" (41.57 s in a task of 38.86 s), which is given "
+          "for the cystic duct and artery alone: no organ of a scene without them answers to it",
   };
   return d;
 }
@@ -56,7 +57,10 @@ constexpr std::size_t largestOrgans = 32;
 class ContactTime final : public Checkpoint {
  public:
   ContactTime(const AttemptContext& context, bool sum)
-      : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep), organs_(context.organs), sum_(sum),
+      : tickSeconds_(context.tickSeconds),
+        ticksPerStep_(context.ticksPerStep),
+        organs_(context.organs),
+        sum_(sum),
         steps_(context.organs.size(), 0) {}
 
   void onStep(const recorder::StepRecord& record) override {
@@ -76,7 +80,8 @@ class ContactTime final : public Checkpoint {
                                      "contact is reported for the first 32 organs of a scene"));
         continue;
       }
-      result.push_back(makeValue(d, organs_[o], end.origin, static_cast<double>(steps_[o] * ticksPerStep_) * tickSeconds_));
+      result.push_back(
+          makeValue(d, organs_[o], end.origin, static_cast<double>(steps_[o] * ticksPerStep_) * tickSeconds_));
     }
     return result;
   }

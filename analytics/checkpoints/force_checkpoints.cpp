@@ -37,9 +37,9 @@ const CheckpointDefinition& maximumDefinition() {
 }
 
 const CheckpointDefinition& percentileDefinition() {
-  static const CheckpointDefinition d =
-      familyMember("force-p99", "99th percentile of the haptic force",
-                   "quantile of type 7 at 0.99 of |f_W| over the ticks with |f_W| >= 0.01 N", "ticks of at least 0.01 N");
+  static const CheckpointDefinition d = familyMember(
+      "force-p99", "99th percentile of the haptic force",
+      "quantile of type 7 at 0.99 of |f_W| over the ticks with |f_W| >= 0.01 N", "ticks of at least 0.01 N");
   return d;
 }
 
@@ -60,9 +60,11 @@ class Force final : public Checkpoint {
     for (int h = 0; h < handCount; ++h) {
       const char* hand = handNames[static_cast<std::size_t>(h)];
       if (!track.mounted(h)) {
-        result.push_back(makeMissing(definition(), hand, end.origin, Availability::notApplicable, "no instrument in this hand"));
+        result.push_back(
+            makeMissing(definition(), hand, end.origin, Availability::notApplicable, "no instrument in this hand"));
       } else if (needsFelt && track.felt(h).empty()) {
-        result.push_back(makeMissing(definition(), hand, end.origin, Availability::notApplicable, "no force of 0.01 N or more"));
+        result.push_back(
+            makeMissing(definition(), hand, end.origin, Availability::notApplicable, "no force of 0.01 N or more"));
       } else {
         result.push_back(makeValue(definition(), hand, end.origin, figure(track, h)));
       }

@@ -64,7 +64,7 @@ Motion MotionTrack::motion() const {
   const ZeroPhaseFilter filter(motionCutoff, motionRate);
   double covered = 0.0;
   for (const Run& run : runs_) {
-    if (run.points.size() <= ZeroPhaseFilter::edge) continue;
+    if (run.points.size() < ZeroPhaseFilter::shortest) continue;
     MotionSegment segment{run.first, run.points, run.points};
     std::vector<double> axis(run.points.size());
     for (int a = 0; a < 3; ++a) {

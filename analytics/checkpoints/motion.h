@@ -18,7 +18,7 @@ inline constexpr double longestBridge = 0.1;
 /// Text of resampling and filter, stored with every value that uses them.
 inline constexpr const char* motionFilterText =
     "valid ticks, linear to 100 Hz, gaps over 0.1 s split; Butterworth order 2 at 6 Hz forward and backward, odd "
-    "extension by 9, steady initial state, cut-off not corrected by 0.802";
+    "extension by 50, steady initial state, cut-off not corrected by 0.802";
 
 /// Uninterrupted motion of one instrument's tip, 1 / motionRate apart.
 struct MotionSegment {
@@ -29,16 +29,16 @@ struct MotionSegment {
 
 /// One hand's motion over an attempt.
 struct Motion {
-  bool mounted = false;         ///< there was an instrument at any time
+  bool mounted = false;  ///< there was an instrument at any time
   std::uint64_t mountedTicks = 0;
-  std::uint64_t validTicks = 0; ///< mounted and measured
-  double unmeasured = 0.0;      ///< time with an instrument that no segment covers (s)
+  std::uint64_t validTicks = 0;         ///< mounted and measured
+  double unmeasured = 0.0;              ///< time with an instrument that no segment covers (s)
   std::vector<MotionSegment> segments;  ///< each long enough for the filter
 };
 
-/// Collects one hand's samples tick by tick and resamples them: points of the grid t = k / motionRate are linear between
-/// the valid ticks around them (on a tick: that tick's pose). Ticks that the source marked as not measured are not
-/// points; an instrument exchange begins a new segment. Deterministic contract.
+/// Collects one hand's samples tick by tick and resamples them: points of the grid t = k / motionRate are linear
+/// between the valid ticks around them (on a tick: that tick's pose). Ticks that the source marked as not measured are
+/// not points; an instrument exchange begins a new segment. Deterministic contract.
 class MotionTrack {
  public:
   /// @param tickSeconds length of a tick (s). @pre > 0.

@@ -27,8 +27,9 @@ const CheckpointDefinition& definition() {
       .finality = Finality::final,
       .version = 1,
       .definition = "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, within segments",
-      .paperReading = "Total trajectory dist. (left), (right) (mm): path of the real tip in the world, not of the "
-                      "device's handle nor of the simulated tip",
+      .paperReading =
+          "Total trajectory dist. (left), (right) (mm): path of the real tip in the world, not of the "
+          "device's handle nor of the simulated tip",
   };
   return d;
 }
@@ -37,14 +38,16 @@ class PathLength final : public Checkpoint {
  public:
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     std::vector<CheckpointValue> result;
-    for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) result.push_back(ofHand(handNames[h], *end.motion[h]));
+    for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h)
+      result.push_back(ofHand(handNames[h], *end.motion[h]));
     return result;
   }
 
  private:
   static CheckpointValue ofHand(const char* hand, const Motion& motion) {
     if (!motion.mounted) {
-      return makeMissing(definition(), hand, Origin::samples, Availability::notApplicable, "no instrument in this hand");
+      return makeMissing(definition(), hand, Origin::samples, Availability::notApplicable,
+                         "no instrument in this hand");
     }
     if (motion.segments.empty()) {
       return makeMissing(definition(), hand, Origin::samples, Availability::notAvailable,
@@ -60,7 +63,8 @@ class PathLength final : public Checkpoint {
       }
     }
     // Less than a tenth of a second is the grid's rounding at the ends.
-    std::string note = motion.unmeasured > longestBridge ? fmt::format("{:.3f} s without measurement", motion.unmeasured) : "";
+    std::string note =
+        motion.unmeasured > longestBridge ? fmt::format("{:.3f} s without measurement", motion.unmeasured) : "";
     return makeValue(definition(), hand, Origin::samples, length, std::move(note));
   }
 };

@@ -7,7 +7,7 @@ namespace calot::analytics {
 
 const std::vector<CheckpointEntry>& checkpointRegistry() {
   static const std::vector<CheckpointEntry> registry{
-      elapsedTimeEntry(),   attemptDurationEntry(), pathLengthEntry(),      contactTimeUnionEntry(),
+      elapsedTimeEntry(),    attemptDurationEntry(), pathLengthEntry(),      contactTimeUnionEntry(),
       contactTimeSumEntry(), forceMaximumEntry(),    forcePercentileEntry(), forceMeanEntry(),
   };
   return registry;

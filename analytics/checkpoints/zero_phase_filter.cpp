@@ -37,17 +37,18 @@ void ZeroPhaseFilter::pass(std::vector<double>& signal) const {
 }
 
 std::vector<double> ZeroPhaseFilter::apply(std::span<const double> signal) const {
-  assert(signal.size() > edge);
+  assert(signal.size() >= shortest);
+  const std::size_t margin = std::min(edge, signal.size() - 1);
   std::vector<double> extended;
-  extended.reserve(signal.size() + 2 * edge);
-  for (std::size_t i = edge; i >= 1; --i) extended.push_back(2.0 * signal.front() - signal[i]);
+  extended.reserve(signal.size() + 2 * margin);
+  for (std::size_t i = margin; i >= 1; --i) extended.push_back(2.0 * signal.front() - signal[i]);
   extended.insert(extended.end(), signal.begin(), signal.end());
-  for (std::size_t i = 1; i <= edge; ++i) extended.push_back(2.0 * signal.back() - signal[signal.size() - 1 - i]);
+  for (std::size_t i = 1; i <= margin; ++i) extended.push_back(2.0 * signal.back() - signal[signal.size() - 1 - i]);
   pass(extended);
   std::reverse(extended.begin(), extended.end());
   pass(extended);
   std::reverse(extended.begin(), extended.end());
-  return {extended.begin() + static_cast<std::ptrdiff_t>(edge), extended.end() - static_cast<std::ptrdiff_t>(edge)};
+  return {extended.begin() + static_cast<std::ptrdiff_t>(margin), extended.end() - static_cast<std::ptrdiff_t>(margin)};
 }
 
 }  // namespace calot::analytics

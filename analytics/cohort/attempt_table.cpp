@@ -13,8 +13,10 @@ namespace {
 constexpr const char* attemptColumns =
     "SELECT a.uuid, a.parent_uuid, coalesce(p.pseudonym, ''), a.scene, a.scene_major, a.scene_minor, a.operator_kind, "
     "a.profile, a.profile_version, a.mode, a.purpose, a.outcome, a.start_utc, a.seed, a.device, a.calibration, "
-    "a.simulation_version, a.comparability_key, a.synthetic, r.file_name, r.complete, r.steps, r.step_seconds, r.chain_head, "
-    "v.verdict, v.detail, v.software, v.verified_utc, coalesce(p.study_group, ''), coalesce(p.arm, ''), coalesce(p.site, ''), "
+    "a.simulation_version, a.comparability_key, a.synthetic, r.file_name, r.complete, r.steps, r.step_seconds, "
+    "r.chain_head, "
+    "v.verdict, v.detail, v.software, v.verified_utc, coalesce(p.study_group, ''), coalesce(p.arm, ''), "
+    "coalesce(p.site, ''), "
     "a.imported_utc, e.reason, e.excluded_by FROM attempt a JOIN recording r ON r.attempt = a.id "
     "LEFT JOIN verification v ON v.attempt = a.id LEFT JOIN participant p ON p.id = a.participant "
     "LEFT JOIN exclusion e ON e.attempt = a.id ";
@@ -46,7 +48,8 @@ AttemptRow attemptRow(SQLite::Statement& row) {
   a.steps = static_cast<std::uint64_t>(row.getColumn(c++).getInt64());
   a.stepSeconds = row.getColumn(c++).getDouble();
   const SQLite::Column head = row.getColumn(c++);
-  std::memcpy(a.chainHead.data(), head.getBlob(), std::min<std::size_t>(a.chainHead.size(), static_cast<std::size_t>(head.getBytes())));
+  std::memcpy(a.chainHead.data(), head.getBlob(),
+              std::min<std::size_t>(a.chainHead.size(), static_cast<std::size_t>(head.getBytes())));
   const SQLite::Column verdict = row.getColumn(c++);
   a.verification.verdict = verdict.isNull() ? Verdict::notChecked : enumeration<Verdict>(verdict);
   a.verification.text = text(row.getColumn(c++));

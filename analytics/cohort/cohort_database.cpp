@@ -54,10 +54,13 @@ void CohortDatabase::addParticipant(const Participant& p) {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     if (participantId(db, p.pseudonym) >= 0) {
-      throw Error(ExitCode::no, fmt::format("{}: participant \"{}\" is there already; use `participant set` to change it", path(), p.pseudonym));
+      throw Error(ExitCode::no,
+                  fmt::format("{}: participant \"{}\" is there already; use `participant set` to change it", path(),
+                              p.pseudonym));
     }
     writeDetails(db, insertParticipant(db, p), p.experience, p.consent);
-    audit(db, "participant-add", p.pseudonym, fmt::format("group \"{}\", arm \"{}\", site \"{}\"", p.group, p.arm, p.site));
+    audit(db, "participant-add", p.pseudonym,
+          fmt::format("group \"{}\", arm \"{}\", site \"{}\"", p.group, p.arm, p.site));
     transaction.commit();
   });
 }
@@ -98,7 +101,12 @@ std::vector<Participant> CohortDatabase::participants() const {
     SQLite::Statement select(db, "SELECT id, pseudonym, study_group, arm, site FROM participant ORDER BY pseudonym");
     while (select.executeStep()) {
       index[select.getColumn(0).getInt64()] = result.size();
-      result.push_back({text(select.getColumn(1)), text(select.getColumn(2)), text(select.getColumn(3)), text(select.getColumn(4)), {}, {}});
+      result.push_back({text(select.getColumn(1)),
+                        text(select.getColumn(2)),
+                        text(select.getColumn(3)),
+                        text(select.getColumn(4)),
+                        {},
+                        {}});
     }
     SQLite::Statement experience(db, "SELECT participant, criterion, value FROM participant_experience");
     while (experience.executeStep()) {

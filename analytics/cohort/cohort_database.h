@@ -62,15 +62,15 @@ struct AttemptRecord {
   recorder::Mode mode = recorder::Mode::practice;
   std::string purpose;
   recorder::Outcome outcome = recorder::Outcome::running;
-  std::string startUtc;     ///< ISO 8601 with Z
+  std::string startUtc;  ///< ISO 8601 with Z
   std::uint64_t seed = 0;
-  std::string device;       ///< class
+  std::string device;  ///< class
   std::string calibration;
   std::uint32_t simulationVersion = 0;
   std::string comparabilityKey;
-  bool synthetic = false;   ///< made by a performer
+  bool synthetic = false;  ///< made by a performer
 
-  std::string fileName;     ///< of the recording, without folder
+  std::string fileName;  ///< of the recording, without folder
   bool complete = false;
   std::uint64_t steps = 0;
   double stepSeconds = 0.01;
@@ -80,18 +80,18 @@ struct AttemptRecord {
 
 /// A row of the list of attempts, with what the database adds.
 struct AttemptRow : AttemptRecord {
-  std::string group, arm, site;   ///< the participant's
-  std::string verifiedUtc;        ///< when the verdict was reached
-  std::string importedUtc;        ///< when the attempt first came in
+  std::string group, arm, site;  ///< the participant's
+  std::string verifiedUtc;       ///< when the verdict was reached
+  std::string importedUtc;       ///< when the attempt first came in
   bool excluded = false;
-  std::string exclusionReason;    ///< reason and by whom
+  std::string exclusionReason;  ///< reason and by whom
 };
 
 /// What upsertAttempt() did.
 enum class Imported : std::uint8_t { added, unchanged, extended };
 
 struct GroupCount {
-  std::string group;          ///< "" for attempts without participant or group
+  std::string group;  ///< "" for attempts without participant or group
   std::uint64_t participants = 0;
   std::uint64_t attempts = 0;
 };
@@ -125,7 +125,8 @@ class CohortDatabase {
   [[nodiscard]] int schemaVersion() const;
   [[nodiscard]] const std::string& path() const;
 
-  /// Adds a participant. @throws Error 3 if the pseudonym is taken; Error 2 for an empty or malformed pseudonym or date.
+  /// Adds a participant. @throws Error 3 if the pseudonym is taken; Error 2 for an empty or malformed pseudonym or
+  /// date.
   void addParticipant(const Participant& participant);
   /// Changes what is given. @throws Error 3 if there is no such participant.
   void setParticipant(const std::string& pseudonym, const ParticipantChange& change);
@@ -159,9 +160,9 @@ class CohortDatabase {
   std::unique_ptr<Storage> storage_;
 };
 
-/// "touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment": attempts are compared only within
-/// one key. Checkpoint versions belong to the key too; they stand beside each value, so that a new version of one
-/// checkpoint separates that checkpoint's values and no others.
+/// "touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment": attempts are compared only
+/// within one key. Checkpoint versions belong to the key too; they stand beside each value, so that a new version of
+/// one checkpoint separates that checkpoint's values and no others.
 std::string comparabilityKey(const recorder::AttemptHeader& header);
 
 }  // namespace calot::analytics

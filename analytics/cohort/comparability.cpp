@@ -9,10 +9,11 @@ namespace calot::analytics {
 std::string comparabilityKey(const recorder::AttemptHeader& header) {
   const auto orDash = [](const std::string& s) { return s.empty() ? std::string("-") : s; };
   // Without a device, what acts stands for it: a performer's hands are not a person's.
-  const std::string device = header.provenance.device.empty() ? wordFor(header.provenance.kind) : header.provenance.device;
-  return fmt::format("{}/{} device={} calibration={} simulation={} results={} mode={}", header.sceneName, header.sceneMajor, device,
-                     orDash(header.provenance.calibration), header.simulationVersion, header.stepResultVersion,
-                     wordFor(header.mode));
+  const std::string device =
+      header.provenance.device.empty() ? wordFor(header.provenance.kind) : header.provenance.device;
+  return fmt::format("{}/{} device={} calibration={} simulation={} results={} mode={}", header.sceneName,
+                     header.sceneMajor, device, orDash(header.provenance.calibration), header.simulationVersion,
+                     header.stepResultVersion, wordFor(header.mode));
 }
 
 }  // namespace calot::analytics

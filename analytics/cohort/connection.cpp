@@ -39,8 +39,8 @@ int pragma(SQLite::Database& db, const char* name) { return db.execAndGet(fmt::f
 std::string uriOf(const std::string& path) {
   std::string uri = "file:";
   for (const char c : path) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/' || c == '.' ||
-                       c == '_' || c == '-';
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/' ||
+                       c == '.' || c == '_' || c == '-';
     uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
   }
   return uri + "?immutable=1";
@@ -90,7 +90,9 @@ int schemaOf(SQLite::Database& db, const std::string& path) {
   }
   const int known = static_cast<int>(cohortMigrations().size());
   if (version > known) {
-    throw Error(ExitCode::undecided, fmt::format("{}: cohort schema {} is newer than this program's {}; use a newer Calot", path, version, known));
+    throw Error(
+        ExitCode::undecided,
+        fmt::format("{}: cohort schema {} is newer than this program's {}; use a newer Calot", path, version, known));
   }
   if (version < 1) throw Error(ExitCode::damaged, fmt::format("{}: cohort schema {} does not exist", path, version));
   return version;
@@ -110,7 +112,8 @@ void migrate(SQLite::Database& db, const std::string& path) {
 
 }  // namespace
 
-std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access access, std::chrono::milliseconds patience) {
+std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access access,
+                                             std::chrono::milliseconds patience) {
   return guarded(path, [&] {
     checkFile(path, access);
     auto db = connect(path, access, static_cast<int>(patience.count()));
@@ -121,7 +124,9 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
     if (access == Access::read) {
       if (version == 0) throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (no tables)", path));
       if (version < known) {
-        throw Error(ExitCode::failure, fmt::format("{}: cohort schema {} must be brought to {} first; run any command that writes to it", path, version, known));
+        throw Error(ExitCode::failure,
+                    fmt::format("{}: cohort schema {} must be brought to {} first; run any command that writes to it",
+                                path, version, known));
       }
       return db;
     }
@@ -142,8 +147,9 @@ std::string nowUtc() {
   const auto day = floor<days>(now);
   const year_month_day date(day);
   const hh_mm_ss time(now - day);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                     static_cast<unsigned>(date.day()), time.hours().count(), time.minutes().count(), time.seconds().count());
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), time.hours().count(),
+                     time.minutes().count(), time.seconds().count());
 }
 
 }  // namespace calot::analytics

@@ -16,7 +16,9 @@ void checkAttempt(const AttemptRecord& a, const std::string& path) {
     const bool hyphen = i == 8 || i == 13 || i == 18 || i == 23;
     uuid = hyphen ? c == '-' : (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
   }
-  if (!uuid) throw Error(ExitCode::damaged, fmt::format("{}: attempt \"{}\" is not a uuid", a.fileName.empty() ? path : a.fileName, a.uuid));
+  if (!uuid)
+    throw Error(ExitCode::damaged,
+                fmt::format("{}: attempt \"{}\" is not a uuid", a.fileName.empty() ? path : a.fileName, a.uuid));
   if (a.steps > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) || !(a.stepSeconds > 0.0)) {
     throw Error(ExitCode::damaged, fmt::format("{}: number or length of steps is out of range", a.fileName));
   }
@@ -35,7 +37,8 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
   if (known.simulationVersion != incoming.simulationVersion) return "simulation version";
   if (known.parent != incoming.parent) return "parent";
   if (known.chainHead == incoming.chainHead) return {};
-  // Only an incomplete recording has a continuation. That the longer one begins with the shorter is the replay's to show.
+  // Only an incomplete recording has a continuation. That the longer one begins with the shorter is the replay's to
+  // show.
   if (known.steps == incoming.steps && known.complete == incoming.complete) return "content";
   if (known.complete && (incoming.complete || incoming.steps > known.steps)) return "content";
   if (incoming.complete && incoming.steps < known.steps) return "content";
@@ -43,9 +46,10 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
 }
 
 void writeRecording(SQLite::Database& db, std::int64_t id, const AttemptRecord& a) {
-  SQLite::Statement put(db,
-                        "INSERT INTO recording VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET file_name = excluded.file_name, "
-                        "chain_head = excluded.chain_head, steps = excluded.steps, complete = excluded.complete");
+  SQLite::Statement put(
+      db,
+      "INSERT INTO recording VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET file_name = excluded.file_name, "
+      "chain_head = excluded.chain_head, steps = excluded.steps, complete = excluded.complete");
   put.bind(1, id);
   put.bind(2, a.fileName);
   put.bind(3, a.chainHead.data(), static_cast<int>(a.chainHead.size()));
@@ -59,9 +63,10 @@ void writeRecording(SQLite::Database& db, std::int64_t id, const AttemptRecord& 
 }
 
 void writeVerification(SQLite::Database& db, std::int64_t id, const Verification& v) {
-  SQLite::Statement put(db,
-                        "INSERT INTO verification VALUES (?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET verdict = excluded.verdict, "
-                        "detail = excluded.detail, software = excluded.software, verified_utc = excluded.verified_utc");
+  SQLite::Statement put(
+      db,
+      "INSERT INTO verification VALUES (?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET verdict = excluded.verdict, "
+      "detail = excluded.detail, software = excluded.software, verified_utc = excluded.verified_utc");
   SQLite::bind(put, id, number(v.verdict), v.text, v.software, nowUtc());
   put.exec();
 }
@@ -77,10 +82,12 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
       audit(db, "participant-add", a.participant, "named by attempt " + a.uuid);
     }
   }
-  SQLite::Statement put(db,
-                        "INSERT INTO attempt (uuid, parent_uuid, participant, scene, scene_major, scene_minor, operator_kind, profile, "
-                        "profile_version, mode, purpose, outcome, start_utc, seed, device, calibration, simulation_version, "
-                        "comparability_key, synthetic, imported_utc) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement put(
+      db,
+      "INSERT INTO attempt (uuid, parent_uuid, participant, scene, scene_major, scene_minor, operator_kind, profile, "
+      "profile_version, mode, purpose, outcome, start_utc, seed, device, calibration, simulation_version, "
+      "comparability_key, synthetic, imported_utc) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?)");
   int i = 1;
   put.bind(i++, a.uuid);
   put.bind(i++, a.parent);
@@ -111,24 +118,29 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
   writeRecording(db, id, a);
   writeVerification(db, id, a.verification);
   if (values != nullptr) replaceValues(db, id, *values);
-  audit(db, "attempt-import", a.uuid, fmt::format("{}, {} steps, {}", a.fileName, a.steps, nameOf(a.verification.verdict)));
+  audit(db, "attempt-import", a.uuid,
+        fmt::format("{}, {} steps, {}", a.fileName, a.steps, nameOf(a.verification.verdict)));
 }
 
 Imported updateAttempt(SQLite::Database& db, const std::string& path, const AttemptRow& known, const AttemptRecord& a,
                        const std::vector<CheckpointValue>* values) {
   const auto conflict = [&](const std::string& what) {
-    return Error(ExitCode::no, fmt::format("{}: conflict: attempt {} is in {} already, from {}, {}; nothing was changed", a.fileName, a.uuid,
-                                           path, known.fileName, what));
+    return Error(ExitCode::no,
+                 fmt::format("{}: conflict: attempt {} is in {} already, from {}, {}; nothing was changed", a.fileName,
+                             a.uuid, path, known.fileName, what));
   };
   const bool judged = a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged;
   const bool trusted = known.verification.verdict == Verdict::verified;
   if (trusted && judged) throw conflict(fmt::format("verified, and this file is {}", nameOf(a.verification.verdict)));
   if (const std::string what = contradiction(known, a); !what.empty()) throw conflict("with another " + what);
-  if (a.chainHead != known.chainHead && (a.steps < known.steps || known.complete)) return Imported::unchanged;  // an earlier copy
+  if (a.chainHead != known.chainHead && (a.steps < known.steps || known.complete))
+    return Imported::unchanged;  // an earlier copy
   // A build that can't judge takes nothing away from what one that could has found.
-  const bool blind = a.verification.verdict == Verdict::notCheckableHere || a.verification.verdict == Verdict::notChecked;
+  const bool blind =
+      a.verification.verdict == Verdict::notCheckableHere || a.verification.verdict == Verdict::notChecked;
   const std::int64_t id = attemptId(db, a.uuid);
-  const bool longer = a.chainHead != known.chainHead || a.steps != known.steps || a.complete != known.complete || a.outcome != known.outcome;
+  const bool longer = a.chainHead != known.chainHead || a.steps != known.steps || a.complete != known.complete ||
+                      a.outcome != known.outcome;
   bool changed = longer || a.fileName != known.fileName;
   if (changed) writeRecording(db, id, a);
   if (longer || !(trusted && blind)) {
@@ -140,7 +152,8 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
     if (values != nullptr && replaceValues(db, id, *values)) changed = true;
   }
   if (!changed) return Imported::unchanged;
-  audit(db, "attempt-update", a.uuid, fmt::format("{}, {} steps, {}", a.fileName, a.steps, nameOf(a.verification.verdict)));
+  audit(db, "attempt-update", a.uuid,
+        fmt::format("{}, {} steps, {}", a.fileName, a.steps, nameOf(a.verification.verdict)));
   return Imported::extended;
 }
 
@@ -148,7 +161,8 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
 
 Imported importAttempt(SQLite::Database& db, const std::string& path, const AttemptRecord& attempt,
                        const std::vector<CheckpointValue>* values) {
-  if (const std::optional<AttemptRow> known = findAttempt(db, attempt.uuid)) return updateAttempt(db, path, *known, attempt, values);
+  if (const std::optional<AttemptRow> known = findAttempt(db, attempt.uuid))
+    return updateAttempt(db, path, *known, attempt, values);
   insertAttempt(db, attempt, values);
   return Imported::added;
 }

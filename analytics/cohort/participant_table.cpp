@@ -19,7 +19,8 @@ void checkPseudonym(const std::string& pseudonym) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   if (pseudonym.empty() || pseudonym.size() > 64 || pseudonym.front() == ' ' || pseudonym.back() == ' ' ||
       std::any_of(pseudonym.begin(), pseudonym.end(), control)) {
-    throw Error(ExitCode::usage, "participant: a pseudonym has 1 to 64 characters, no control characters and no blank at its ends");
+    throw Error(ExitCode::usage,
+                "participant: a pseudonym has 1 to 64 characters, no control characters and no blank at its ends");
   }
 }
 
@@ -38,14 +39,17 @@ void checkDate(const std::string& purpose, const std::string& date) {
   if (good) {
     const int y = digits(0, 4), m = digits(5, 2), d = digits(8, 2);
     good = y > 0 && m > 0 && d > 0 &&
-           std::chrono::year_month_day(std::chrono::year(y), std::chrono::month(static_cast<unsigned>(m)), std::chrono::day(static_cast<unsigned>(d))).ok();
+           std::chrono::year_month_day(std::chrono::year(y), std::chrono::month(static_cast<unsigned>(m)),
+                                       std::chrono::day(static_cast<unsigned>(d)))
+               .ok();
   }
   if (!good) throw Error(ExitCode::usage, fmt::format("consent {}: \"{}\" is not a date (YYYY-MM-DD)", purpose, date));
 }
 
 }  // namespace
 
-void checkDetails(const std::map<std::string, std::string>& experience, const std::map<std::string, std::string>& consent) {
+void checkDetails(const std::map<std::string, std::string>& experience,
+                  const std::map<std::string, std::string>& consent) {
   for (const auto& item : experience) {
     if (item.first.empty()) throw Error(ExitCode::usage, "experience: a criterion needs a name (criterion=value)");
   }
@@ -62,7 +66,8 @@ std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym) {
 }
 
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
-  SQLite::Statement insert(db, "INSERT INTO participant (pseudonym, study_group, arm, site, created_utc) VALUES (?, ?, ?, ?, ?)");
+  SQLite::Statement insert(
+      db, "INSERT INTO participant (pseudonym, study_group, arm, site, created_utc) VALUES (?, ?, ?, ?, ?)");
   SQLite::bind(insert, p.pseudonym, p.group, p.arm, p.site, nowUtc());
   insert.exec();
   return db.getLastInsertRowid();
@@ -71,12 +76,14 @@ std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
 void writeDetails(SQLite::Database& db, std::int64_t id, const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent) {
   for (const auto& item : experience) {
-    SQLite::Statement put(db, "INSERT INTO participant_experience VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value");
+    SQLite::Statement put(
+        db, "INSERT INTO participant_experience VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value");
     SQLite::bind(put, id, item.first, item.second);
     put.exec();
   }
   for (const auto& item : consent) {
-    SQLite::Statement put(db, "INSERT INTO consent VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET given_on = excluded.given_on");
+    SQLite::Statement put(
+        db, "INSERT INTO consent VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET given_on = excluded.given_on");
     SQLite::bind(put, id, item.first, item.second);
     put.exec();
   }

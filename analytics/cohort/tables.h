@@ -33,7 +33,8 @@ void audit(SQLite::Database& db, const std::string& action, const std::string& s
 /// @throws Error 2.
 void checkPseudonym(const std::string& pseudonym);
 /// Names of criteria and purposes, dates of consent. @throws Error 2.
-void checkDetails(const std::map<std::string, std::string>& experience, const std::map<std::string, std::string>& consent);
+void checkDetails(const std::map<std::string, std::string>& experience,
+                  const std::map<std::string, std::string>& consent);
 /// -1: there is none.
 std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym);
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& participant);

@@ -28,7 +28,8 @@ CheckpointValue valueRow(SQLite::Statement& row, int c) {
 }  // namespace
 
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t id) {
-  SQLite::Statement select(db, fmt::format("SELECT {} FROM checkpoint_value c WHERE c.attempt = ? ORDER BY c.position", valueColumns));
+  SQLite::Statement select(
+      db, fmt::format("SELECT {} FROM checkpoint_value c WHERE c.attempt = ? ORDER BY c.position", valueColumns));
   select.bind(1, id);
   std::vector<CheckpointValue> values;
   while (select.executeStep()) values.push_back(valueRow(select, 0));
@@ -67,9 +68,10 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
 }
 
 std::vector<AttemptValue> readAllValues(SQLite::Database& db) {
-  SQLite::Statement select(db, fmt::format("SELECT a.uuid, {} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt "
-                                           "ORDER BY a.uuid, c.position",
-                                           valueColumns));
+  SQLite::Statement select(db,
+                           fmt::format("SELECT a.uuid, {} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt "
+                                       "ORDER BY a.uuid, c.position",
+                                       valueColumns));
   std::vector<AttemptValue> values;
   while (select.executeStep()) values.push_back({text(select.getColumn(0)), valueRow(select, 1)});
   return values;

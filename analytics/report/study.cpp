@@ -18,9 +18,11 @@ namespace {
 
 /// Why an attempt stays out, or empty. The order is the flow table's.
 const std::vector<std::string>& exclusionReasons() {
-  static const std::vector<std::string> reasons{
-      "excluded by hand", "recording diverged or damaged", "not verified yet", "recording incomplete", "technical failure",
-      "synthetic (performer)", "practice",                 "branch of another attempt", "golden recording", "no group"};
+  static const std::vector<std::string> reasons{"excluded by hand",  "recording diverged or damaged",
+                                                "not verified yet",  "recording incomplete",
+                                                "technical failure", "synthetic (performer)",
+                                                "practice",          "branch of another attempt",
+                                                "golden recording",  "no group"};
   return reasons;
 }
 
@@ -62,8 +64,8 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present, const StudyOptions& options,
-                                        const std::string& path, const Study& study) {
+std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
+                                        const StudyOptions& options, const std::string& path, const Study& study) {
   std::vector<std::string> names;
   for (const auto& item : present) names.push_back(item.first);
   std::sort(names.begin(), names.end(), before);
@@ -73,18 +75,20 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
     }
     for (const std::string& name : options.groups) {
       if (present.count(name) == 0) {
-        throw Error(ExitCode::no, fmt::format("{}: no attempts for the study in group \"{}\" (there are: {})", path, name,
-                                              names.empty() ? "none" : joined(names)));
+        throw Error(ExitCode::no, fmt::format("{}: no attempts for the study in group \"{}\" (there are: {})", path,
+                                              name, names.empty() ? "none" : joined(names)));
       }
     }
     return {options.groups[0], options.groups[1]};
   }
   if (names.size() == 2) return {names[0], names[1]};
   if (names.size() > 2) {
-    throw Error(ExitCode::no, fmt::format("{}: {} groups ({}); name two with --groups A,B", path, names.size(), joined(names)));
+    throw Error(ExitCode::no,
+                fmt::format("{}: {} groups ({}); name two with --groups A,B", path, names.size(), joined(names)));
   }
   std::string left;
-  for (const FlowRow& row : study.flow) left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
+  for (const FlowRow& row : study.flow)
+    left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
   throw Error(ExitCode::no, fmt::format("{}: a study needs two groups, {} left of {} attempts{}", path,
                                         names.empty() ? "none is" : "only " + names[0] + " is", study.recruited,
                                         left.empty() ? "" : " (left out: " + left + ")"));
@@ -159,7 +163,9 @@ void addPublished(Study& study) {
   study.publishedSource = table.at("source").get<std::string>();
   for (const auto& published : table.at("rows")) {
     for (StudyRow& row : study.rows) {
-      if (row.checkpoint != published.at("matches").get<std::string>() || row.subject != published.at("subject").get<std::string>()) continue;
+      if (row.checkpoint != published.at("matches").get<std::string>() ||
+          row.subject != published.at("subject").get<std::string>())
+        continue;
       if (row.unit != published.at("unit").get<std::string>()) continue;
       row.publishedExpert = published.at("expert").get<double>();
       row.publishedNovice = published.at("novice").get<double>();
@@ -211,20 +217,27 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
   for (std::size_t g = 0; g < 2; ++g) study.participants[g] = people[g].size();
   for (const std::string& person : people[0]) {
     if (people[1].count(person) > 0) {
-      throw Error(ExitCode::no, fmt::format("{}: participant \"{}\" is in both groups, which must be independent", database.path(), person));
+      throw Error(ExitCode::no, fmt::format("{}: participant \"{}\" is in both groups, which must be independent",
+                                            database.path(), person));
     }
   }
   study.keys.assign(keys.begin(), keys.end());
   if (study.keys.size() > 1) {
     if (!options.mixKeys) {
-      throw Error(ExitCode::no, fmt::format("{}: the attempts don't compare, they have {} comparability keys ({}); choose, or ask for --mix-keys",
-                                            database.path(), study.keys.size(), [&] {
-                                              std::string list;
-                                              for (const auto& key : study.keys) list += (list.empty() ? "" : "; ") + key;
-                                              return list;
-                                            }()));
+      throw Error(
+          ExitCode::no,
+          fmt::format(
+              "{}: the attempts don't compare, they have {} comparability keys ({}); choose, or ask for --mix-keys",
+              database.path(), study.keys.size(), [&] {
+                std::string list;
+                for (const auto& key : study.keys) list += (list.empty() ? "" : "; ") + key;
+                return list;
+              }()));
     }
-    study.remarks.push_back(fmt::format("Attempts of {} comparability keys are mixed, as asked: differences between groups may be differences of scene, device or version.", study.keys.size()));
+    study.remarks.push_back(
+        fmt::format("Attempts of {} comparability keys are mixed, as asked: differences between groups may be "
+                    "differences of scene, device or version.",
+                    study.keys.size()));
   }
 
   std::map<std::pair<std::string, std::string>, Column> columns;
@@ -251,17 +264,24 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
   }
   const auto place = [](const std::string& name) {
     const auto& registry = checkpointRegistry();
-    return std::find_if(registry.begin(), registry.end(), [&](const CheckpointEntry& e) { return e.definition.name == name; }) - registry.begin();
+    return std::find_if(registry.begin(), registry.end(),
+                        [&](const CheckpointEntry& e) { return e.definition.name == name; }) -
+           registry.begin();
   };
-  std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return place(a.first) < place(b.first); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const auto& a, const auto& b) { return place(a.first) < place(b.first); });
   for (const auto& key : order) {
     const Column& column = columns[key];
     if (column.versions.size() > 1) {
       if (!options.mixKeys) {
-        throw Error(ExitCode::no, fmt::format("{}: checkpoint {} has values of {} versions; assess the older recordings again, or ask for --mix-keys",
-                                              database.path(), key.first, column.versions.size()));
+        throw Error(
+            ExitCode::no,
+            fmt::format(
+                "{}: checkpoint {} has values of {} versions; assess the older recordings again, or ask for --mix-keys",
+                database.path(), key.first, column.versions.size()));
       }
-      study.remarks.push_back(fmt::format("Values of {} versions of {} are mixed, as asked.", column.versions.size(), key.first));
+      study.remarks.push_back(
+          fmt::format("Values of {} versions of {} are mixed, as asked.", column.versions.size(), key.first));
     }
     study.rows.push_back(makeRow(key.first, key.second, column, unit[key]));
   }

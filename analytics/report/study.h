@@ -23,7 +23,7 @@ struct StudyOptions {
   bool includeSynthetic = false;
   bool includePractice = false;
   bool includeBranches = false;
-  bool mixKeys = false;             ///< compare across comparability keys and checkpoint versions, and say so
+  bool mixKeys = false;  ///< compare across comparability keys and checkpoint versions, and say so
 };
 
 /// One reason for which attempts stay out, in the order in which they are asked.
@@ -44,7 +44,7 @@ struct StudyRow {
   std::string checkpoint;  ///< name
   std::string subject;
   std::string title;
-  std::string unit;        ///< display unit
+  std::string unit;  ///< display unit
   Direction direction = Direction::none;
   std::vector<std::uint32_t> versions;  ///< of the values in it, ascending
   std::vector<std::string> origins;
@@ -59,17 +59,17 @@ struct StudyRow {
 };
 
 struct Study {
-  std::string heading;                  ///< "exploratory": there is no protocol
-  bool synthetic = false;               ///< contains what performers made: watermarked everywhere
+  std::string heading;     ///< "exploratory": there is no protocol
+  bool synthetic = false;  ///< contains what performers made: watermarked everywhere
   std::array<std::string, 2> groups;
   std::array<std::uint64_t, 2> participants{}, attempts{};
-  std::vector<std::string> keys;        ///< comparability keys of the attempts in it
-  std::uint64_t recruited = 0;          ///< attempts in the database
+  std::vector<std::string> keys;  ///< comparability keys of the attempts in it
+  std::uint64_t recruited = 0;    ///< attempts in the database
   std::vector<FlowRow> flow;
-  std::uint64_t analysed = 0;           ///< attempts
-  std::vector<std::string> remarks;     ///< what a reader must know, whole sentences
+  std::uint64_t analysed = 0;        ///< attempts
+  std::vector<std::string> remarks;  ///< what a reader must know, whole sentences
   std::vector<StudyRow> rows;
-  std::string publishedSource;          ///< of the paper's means
+  std::string publishedSource;  ///< of the paper's means
 };
 
 /// Two groups side by side. One value per participant: the mean over that participant's attempts; a performer's attempt

@@ -29,18 +29,22 @@ Json answerJson(const Answer<T>& answer, Write write) {
 }
 
 Json rowJson(const Study& study, const StudyRow& row) {
-  Json j{{"checkpoint", row.checkpoint}, {"subject", row.subject},   {"title", row.title},    {"unit", row.unit},
+  Json j{{"checkpoint", row.checkpoint},       {"subject", row.subject},   {"title", row.title},    {"unit", row.unit},
          {"direction", nameOf(row.direction)}, {"versions", row.versions}, {"origins", row.origins}};
   j["groups"] = Json::array({groupJson(study.groups[0], row.group[0]), groupJson(study.groups[1], row.group[1])});
   j["mann_whitney"] = answerJson(row.test, [](const MannWhitney& t) {
     return Json{{"u", t.u}, {"p", t.p}, {"method", t.exact ? "exact" : "asymptotic"}, {"ties", t.ties}};
   });
-  j["effect"] = answerJson(row.effect, [](const Superiority& e) { return Json{{"cliffs_delta", e.delta}, {"a", e.a}}; });
+  j["effect"] = answerJson(row.effect, [](const Superiority& e) {
+    return Json{{"cliffs_delta", e.delta}, {"a", e.a}};
+  });
   j["shift"] = answerJson(row.shift, [](double shift) { return Json{{"hodges_lehmann", shift}}; });
   j["shift_interval"] = answerJson(row.shiftInterval, [](const ShiftInterval& i) {
     return Json{{"lower", i.lower}, {"upper", i.upper}, {"level_asked", 0.95}, {"level_attained", i.attained}};
   });
-  j["published"] = row.publishedExpert ? Json{{"expert_mean", *row.publishedExpert}, {"novice_mean", *row.publishedNovice}} : Json(nullptr);
+  j["published"] = row.publishedExpert
+                       ? Json{{"expert_mean", *row.publishedExpert}, {"novice_mean", *row.publishedNovice}}
+                       : Json(nullptr);
   return j;
 }
 

@@ -28,8 +28,9 @@ void printStudy(const Study& study, std::ostream& out) {
   out << fmt::format("Study ({}): {} against {}\n\n", study.heading, a, b);
   out << fmt::format("{} attempts in the cohort\n", study.recruited);
   for (const FlowRow& row : study.flow) out << fmt::format("  {} left out: {}\n", row.attempts, row.reason);
-  out << fmt::format("  {} analysed: {} {} ({} attempts), {} {} ({} attempts); one value each, the mean of its attempts\n\n",
-                     study.analysed, study.participants[0], a, study.attempts[0], study.participants[1], b, study.attempts[1]);
+  out << fmt::format(
+      "  {} analysed: {} {} ({} attempts), {} {} ({} attempts); one value each, the mean of its attempts\n\n",
+      study.analysed, study.participants[0], a, study.attempts[0], study.participants[1], b, study.attempts[1]);
   TextTable table({{"checkpoint", Align::left},
                    {"unit", Align::left},
                    {"better", Align::left},
@@ -46,28 +47,31 @@ void printStudy(const Study& study, std::ostream& out) {
   std::vector<std::string> reasons;
   for (const StudyRow& row : study.rows) {
     const GroupSummary &x = row.group[0], &y = row.group[1];
-    table.add({nameOfRow(row), row.unit, row.direction == Direction::none ? "" : nameOf(row.direction), fmt::format("{}", x.n),
-               number(x.mean), number(x.median), fmt::format("{}", y.n), number(y.mean), number(y.median),
-               row.shift ? significant(*row.shift) : "-",
+    table.add({nameOfRow(row), row.unit, row.direction == Direction::none ? "" : nameOf(row.direction),
+               fmt::format("{}", x.n), number(x.mean), number(x.median), fmt::format("{}", y.n), number(y.mean),
+               number(y.median), row.shift ? significant(*row.shift) : "-",
                row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-",
                row.effect ? fmt::format("{:+.3f}", row.effect->delta) : "-", published(row)});
     if (!row.test) reasons.push_back(fmt::format("{}: no test, {}", nameOfRow(row), row.test.reason()));
     for (std::size_t g = 0; g < 2; ++g) {
       if (row.group[g].missing > 0) {
         reasons.push_back(fmt::format("{}: {} of {} {} without a value ({})", nameOfRow(row), row.group[g].missing,
-                                      row.group[g].missing + row.group[g].n, study.groups[g], row.group[g].missingReason));
+                                      row.group[g].missing + row.group[g].n, study.groups[g],
+                                      row.group[g].missingReason));
       }
     }
   }
   table.print(out);
   out << fmt::format(
-      "\nshift: Hodges-Lehmann, {} - {}. p: Mann-Whitney, two-sided, exact with ties (~: normal approximation), not adjusted for\n"
+      "\nshift: Hodges-Lehmann, {} - {}. p: Mann-Whitney, two-sided, exact with ties (~: normal approximation), not "
+      "adjusted for\n"
       "the number of rows. delta: Cliff's, +1 when every {} exceeds every {}.\n",
       a, b, a, b);
   bool anyPublished = false;
   for (const StudyRow& row : study.rows) anyPublished = anyPublished || row.publishedExpert.has_value();
   if (anyPublished) {
-    out << fmt::format("paper E / N: published means of ten experts and ten novices, for reference only\n({}).\n", study.publishedSource);
+    out << fmt::format("paper E / N: published means of ten experts and ten novices, for reference only\n({}).\n",
+                       study.publishedSource);
   }
   for (const std::string& remark : study.remarks) out << remark << '\n';
   for (const std::string& reason : reasons) out << reason << '\n';

@@ -12,9 +12,8 @@ namespace calot::analytics {
 std::vector<double> midRanks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return values[a] < values[b] || (values[a] == values[b] && a < b);
-  });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] < values[b] || (values[a] == values[b] && a < b); });
   std::vector<double> ranks(values.size());
   for (std::size_t first = 0; first < order.size();) {
     std::size_t last = first;
@@ -33,7 +32,8 @@ RankSumDistribution::RankSumDistribution(std::span<const double> ranks, std::siz
                  [](double r) { return static_cast<std::size_t>(std::lround(2.0 * r)); });
   std::vector<std::size_t> largest = half;
   std::sort(largest.rbegin(), largest.rend());
-  const std::size_t top = std::accumulate(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(n), std::size_t{0});
+  const std::size_t top =
+      std::accumulate(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(n), std::size_t{0});
 
   // ways[k][s]: choices of k of the values seen so far whose half ranks sum to s.
   std::vector<std::vector<double>> ways(n + 1, std::vector<double>(top + 1, 0.0));

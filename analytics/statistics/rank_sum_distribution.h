@@ -8,8 +8,8 @@
 namespace calot::analytics {
 
 /// Permutation distribution of the sum of the mid-ranks of one group of `n`, when every choice of n of the N pooled
-/// values is equally likely: exact with ties. Counted by dynamic programming over the pooled values (one value after the
-/// other is in the group or not): O(N n S) with S the largest sum in half ranks. Counts are exact integers while
+/// values is equally likely: exact with ties. Counted by dynamic programming over the pooled values (one value after
+/// the other is in the group or not): O(N n S) with S the largest sum in half ranks. Counts are exact integers while
 /// C(N, n) < 2^53 and carry a relative error below N * 2^-53 beyond, since all terms are positive.
 class RankSumDistribution {
  public:
@@ -24,7 +24,7 @@ class RankSumDistribution {
 
  private:
   [[nodiscard]] double between(long lower, long upper) const;  ///< probability of half-rank sums in [lower, upper]
-  std::vector<double> count_;  ///< by half-rank sum
+  std::vector<double> count_;                                  ///< by half-rank sum
   double total_ = 0.0;
   double expected_ = 0.0;
 };

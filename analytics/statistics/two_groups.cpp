@@ -19,7 +19,8 @@ std::string objection(std::span<const double> x, std::span<const double> y) {
   if (x.empty()) return "the first group is empty";
   if (y.empty()) return "the second group is empty";
   for (const auto group : {x, y}) {
-    if (!std::all_of(group.begin(), group.end(), [](double v) { return std::isfinite(v); })) return "a value is not finite";
+    if (!std::all_of(group.begin(), group.end(), [](double v) { return std::isfinite(v); }))
+      return "a value is not finite";
   }
   return {};
 }
@@ -70,7 +71,8 @@ Answer<MannWhitney> mannWhitney(std::span<const double> x, std::span<const doubl
   MannWhitney result;
   result.u = r.u;
   result.ties = r.tieTerm > 0.0;
-  result.exact = method == RankTest::exact || (method == RankTest::automatic && x.size() + y.size() <= exactRankTestLimit);
+  result.exact =
+      method == RankTest::exact || (method == RankTest::automatic && x.size() + y.size() <= exactRankTestLimit);
   if (result.exact) {
     // The smaller group's sum has the shorter distribution; both sums give the same p, since they add up to a constant.
     const bool byX = x.size() <= y.size();

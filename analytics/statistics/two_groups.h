@@ -16,9 +16,9 @@ enum class RankTest { automatic, exact, asymptotic };
 inline constexpr std::size_t exactRankTestLimit = 80;
 
 struct MannWhitney {
-  double u = 0.0;     ///< of x
-  double p = 1.0;     ///< two-sided
-  bool exact = false; ///< permutation distribution of the mid-rank sum, ties included; else normal approximation
+  double u = 0.0;      ///< of x
+  double p = 1.0;      ///< two-sided
+  bool exact = false;  ///< permutation distribution of the mid-rank sum, ties included; else normal approximation
   bool ties = false;
 };
 

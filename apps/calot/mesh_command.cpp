@@ -28,7 +28,8 @@ int meshSurface(const MeshOptions& options) {
   if (!options.input.ends_with(".obj") && !options.input.ends_with(".OBJ")) {
     throw Error(ExitCode::usage, options.input + ": this build reads surfaces from .obj files only");
   }
-  if (!options.output.ends_with(".vtk")) throw Error(ExitCode::usage, options.output + ": the output's name must end in .vtk");
+  if (!options.output.ends_with(".vtk"))
+    throw Error(ExitCode::usage, options.output + ": the output's name must end in .vtk");
   recorder::refuseOutput(options.output, options.force);
 
   recorder::MeshReport report;
@@ -39,7 +40,8 @@ int meshSurface(const MeshOptions& options) {
   report.repair = repairSurface(surface);
   report.stuffed = stuffToCount(report.repair.mesh, options.tetrahedra);
   if (report.stuffed.ok()) {
-    recorder::writeVtk(options.output, report.stuffed.mesh, "calot mesh of " + options.input + ", metres", options.force);
+    recorder::writeVtk(options.output, report.stuffed.mesh, "calot mesh of " + options.input + ", metres",
+                       options.force);
     report.output = options.output;
   }
   fmt::print("{}", options.json ? recorder::meshReportJson(report) : recorder::meshReportText(report));

@@ -21,7 +21,8 @@ struct Options {
 };
 
 /// "name<mark>value" pairs. @throws Error 2.
-std::map<std::string, std::string> pairs(const std::vector<std::string>& items, char mark, const char* option, const char* form) {
+std::map<std::string, std::string> pairs(const std::vector<std::string>& items, char mark, const char* option,
+                                         const char* form) {
   std::map<std::string, std::string> result;
   for (const std::string& item : items) {
     const std::size_t at = item.find(mark);
@@ -35,8 +36,12 @@ std::map<std::string, std::string> pairs(const std::vector<std::string>& items, 
   return result;
 }
 
-std::map<std::string, std::string> experienceOf(const Options& o) { return pairs(o.experience, '=', "--experience", "CRITERION=VALUE"); }
-std::map<std::string, std::string> consentOf(const Options& o) { return pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD"); }
+std::map<std::string, std::string> experienceOf(const Options& o) {
+  return pairs(o.experience, '=', "--experience", "CRITERION=VALUE");
+}
+std::map<std::string, std::string> consentOf(const Options& o) {
+  return pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD");
+}
 
 void addOptions(CLI::App* command, const std::shared_ptr<Options>& options) {
   command->add_option("participant", options->pseudonym, "Pseudonym, never a name")->required();
@@ -59,7 +64,8 @@ void addParticipant(CLI::App& app, Run& run) {
   addOptions(add, added);
   add->callback([added, &run] {
     run = [added] {
-      const analytics::Participant participant{added->pseudonym, added->group, added->arm, added->site, experienceOf(*added), consentOf(*added)};
+      const analytics::Participant participant{added->pseudonym, added->group,         added->arm,
+                                               added->site,      experienceOf(*added), consentOf(*added)};
       analytics::CohortDatabase(added->database, analytics::CohortDatabase::Access::create).addParticipant(participant);
       std::cout << fmt::format("{}: participant {} added\n", added->database, added->pseudonym);
       return static_cast<int>(ExitCode::yes);
@@ -78,7 +84,8 @@ void addParticipant(CLI::App& app, Run& run) {
     run = [changed, change]() mutable {
       change.experience = experienceOf(*changed);
       change.consent = consentOf(*changed);
-      analytics::CohortDatabase(changed->database, analytics::CohortDatabase::Access::write).setParticipant(changed->pseudonym, change);
+      analytics::CohortDatabase(changed->database, analytics::CohortDatabase::Access::write)
+          .setParticipant(changed->pseudonym, change);
       std::cout << fmt::format("{}: participant {} changed\n", changed->database, changed->pseudonym);
       return static_cast<int>(ExitCode::yes);
     };

@@ -16,7 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string versionOf(const SceneDescription& scene) { return fmt::format("{}.{}", scene.majorVersion, scene.minorVersion); }
+std::string versionOf(const SceneDescription& scene) {
+  return fmt::format("{}.{}", scene.majorVersion, scene.minorVersion);
+}
 
 void printTable(const std::vector<recorder::LoadedScene>& scenes) {
   fmt::print("{:<16} {:<8} {:<40} {}\n", "scene", "version", "organs (tetrahedra)", "summary");
@@ -34,7 +36,8 @@ void printJson(const std::vector<recorder::LoadedScene>& scenes) {
   for (const recorder::LoadedScene& scene : scenes) {
     json organs = json::array();
     for (const OrganDescription& organ : scene.description.organs) {
-      organs.push_back({{"name", organ.name}, {"tetrahedra", organ.tetrahedra}, {"triangles", organ.surface.triangle.size()}});
+      organs.push_back(
+          {{"name", organ.name}, {"tetrahedra", organ.tetrahedra}, {"triangles", organ.surface.triangle.size()}});
     }
     list.push_back({{"name", scene.description.name},
                     {"version", versionOf(scene.description)},
@@ -54,7 +57,8 @@ void addScenes(CLI::App& app, Run& run) {
   command->callback([&run, asJson] {
     run = [asJson] {
       const std::vector<std::filesystem::path> files = recorder::listScenes(assetFolders());
-      if (files.empty()) throw Error(ExitCode::usage, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
+      if (files.empty())
+        throw Error(ExitCode::usage, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
       std::vector<recorder::LoadedScene> scenes;
       // A scene that cannot be read is named, and the others are listed all the same.
       bool damaged = false;

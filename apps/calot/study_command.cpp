@@ -21,11 +21,14 @@ void addStudy(CLI::App& app, Run& run) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("study", "Compare two groups of a cohort");
   command->add_option("cohort", options->database, "Cohort database")->required();
-  command->add_option("--group-by", options->groupBy, "What makes the groups: the participants' group or the performers' profile")
+  command
+      ->add_option("--group-by", options->groupBy,
+                   "What makes the groups: the participants' group or the performers' profile")
       ->check(CLI::IsMember({"performer", "group"}))
       ->capture_default_str();
   command->add_option("--groups", options->study.groups, "The two groups to compare, A,B")->delimiter(',');
-  command->add_flag("--include-synthetic", options->study.includeSynthetic, "Take in what performers made (watermarked)");
+  command->add_flag("--include-synthetic", options->study.includeSynthetic,
+                    "Take in what performers made (watermarked)");
   command->add_flag("--include-practice", options->study.includePractice, "Take in attempts in practice mode");
   command->add_flag("--include-branches", options->study.includeBranches, "Take in branches of other attempts");
   command->add_flag("--mix-keys", options->study.mixKeys, "Compare across scenes, devices and versions, and say so");
@@ -34,7 +37,8 @@ void addStudy(CLI::App& app, Run& run) {
   command->add_flag("--force", options->force, "Replace CSV files that are there");
   command->callback([options, &run] {
     run = [options] {
-      options->study.grouping = options->groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
+      options->study.grouping =
+          options->groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
       const analytics::CohortDatabase database(options->database, analytics::CohortDatabase::Access::read);
       const analytics::Study study = analytics::makeStudy(database, options->study);
       if (!options->csv.empty()) analytics::writeStudyCsv(study, options->csv, options->force);

@@ -2,8 +2,8 @@
 // calot-organs: writes the organ surfaces of this folder, or checks that they are what it would write.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -34,9 +34,9 @@ inline double gallbladder(const Vec3& p) {
 inline double visceralHeight(double x, double y) {
   double z = 0.004 - 0.37 * x - 0.26 * y;
   const double left = std::max(-x, 0.0);
-  z -= 1.3 * left * left;                                               // the left lobe's underside flattens
-  z += 0.020 * bump((x + 0.024) / 0.050) * bump((y + 0.038) / 0.050);   // porta hepatis
-  z += 0.010 * bump((x - 0.072) / 0.050) * bump((y - 0.004) / 0.055);   // colic and renal impressions
+  z -= 1.3 * left * left;                                              // the left lobe's underside flattens
+  z += 0.020 * bump((x + 0.024) / 0.050) * bump((y + 0.038) / 0.050);  // porta hepatis
+  z += 0.010 * bump((x - 0.072) / 0.050) * bump((y - 0.004) / 0.055);  // colic and renal impressions
   // Fissure of the round ligament: a notch in the border, shallower towards the porta.
   z += (0.004 + 0.009 * ramp((y - 0.015) / 0.04)) * bump((x + 0.036 + 0.15 * y) / 0.019) * ramp((y + 0.045) / 0.02);
   return z;

@@ -38,10 +38,14 @@ std::string lineAndColumn(std::span<const std::byte> bytes, std::size_t at) {
 std::string escaped(const std::string& key) {
   std::string out;
   for (const char c : key) {
-    if (c == '~') out += "~0";
-    else if (c == '/') out += "~1";
-    else if (static_cast<unsigned char>(c) < 0x20) out += '?';
-    else out += c;
+    if (c == '~')
+      out += "~0";
+    else if (c == '/')
+      out += "~1";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      out += '?';
+    else
+      out += c;
   }
   return out.substr(0, 80);
 }
@@ -60,7 +64,8 @@ bool inside(double value, const KeyRule& rule) {
 nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::string& file) {
   if (bytes.empty()) throw Error(ExitCode::damaged, file + ": the file is empty");
   if (bytes.size() > largestFile) {
-    throw Error(ExitCode::damaged, fmt::format("{}: {} bytes; such a file has at most {}", file, bytes.size(), largestFile));
+    throw Error(ExitCode::damaged,
+                fmt::format("{}: {} bytes; such a file has at most {}", file, bytes.size(), largestFile));
   }
   std::vector<std::set<std::string>> keys;
   std::string fault;
@@ -73,7 +78,8 @@ nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::stri
       keys.pop_back();
     } else if (event == Event::key) {
       const std::string key = parsed.get<std::string>();
-      if (!keys.back().insert(key).second && fault.empty()) fault = fmt::format("the key {} is given twice", quoted(key));
+      if (!keys.back().insert(key).second && fault.empty())
+        fault = fmt::format("the key {} is given twice", quoted(key));
     }
     return true;
   };
@@ -102,7 +108,8 @@ std::vector<JsonPlace> JsonPlace::list(std::size_t least, std::size_t most) cons
     fail(fmt::format("{} entries; from {} to {} are allowed", value_->size(), least, most));
   }
   std::vector<JsonPlace> places;
-  for (std::size_t i = 0; i < value_->size(); ++i) places.emplace_back((*value_)[i], file_, fmt::format("{}/{}", pointer_, i));
+  for (std::size_t i = 0; i < value_->size(); ++i)
+    places.emplace_back((*value_)[i], file_, fmt::format("{}/{}", pointer_, i));
   return places;
 }
 
@@ -144,11 +151,13 @@ JsonObject::JsonObject(const JsonPlace& place, const ObjectRule& rule) : place_(
   const nlohmann::json& value = *place_.value_;
   if (!value.is_object()) place_.fail(fmt::format("an object is wanted, not {}", value.type_name()));
   for (const auto& entry : value.items()) {
-    const bool known = std::any_of(rule.keys.begin(), rule.keys.end(), [&](const KeyRule& k) { return k.key == entry.key(); });
+    const bool known =
+        std::any_of(rule.keys.begin(), rule.keys.end(), [&](const KeyRule& k) { return k.key == entry.key(); });
     if (!known) {
       std::string names;
       for (const KeyRule& k : rule.keys) names += (names.empty() ? "" : ", ") + k.key;
-      JsonPlace(value, place_.file_, place_.pointer_ + "/" + escaped(entry.key())).fail("unknown key; known are " + names);
+      JsonPlace(value, place_.file_, place_.pointer_ + "/" + escaped(entry.key()))
+          .fail("unknown key; known are " + names);
     }
   }
   for (const KeyRule& k : rule.keys) {
@@ -157,7 +166,8 @@ JsonObject::JsonObject(const JsonPlace& place, const ObjectRule& rule) : place_(
 }
 
 const KeyRule& JsonObject::ruleOf(const std::string& key) const {
-  const auto found = std::find_if(rule_->keys.begin(), rule_->keys.end(), [&](const KeyRule& k) { return k.key == key; });
+  const auto found =
+      std::find_if(rule_->keys.begin(), rule_->keys.end(), [&](const KeyRule& k) { return k.key == key; });
   if (found == rule_->keys.end()) throw std::logic_error("no rule for the key " + key);
   return *found;
 }

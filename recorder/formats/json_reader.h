@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strict reading of JSON: every fault is one line that names file and JSON pointer. What an object may hold is a table of
-// rules, so that the reader, its messages and the published schema agree (and a test can hold them against each other).
+// Strict reading of JSON: every fault is one line that names file and JSON pointer. What an object may hold is a table
+// of rules, so that the reader, its messages and the published schema agree (and a test can hold them against each
+// other).
 #pragma once
 
 #include <cstddef>

@@ -100,18 +100,20 @@ std::string meshReportText(const MeshReport& report) {
   const auto out = std::back_inserter(text);
   const Vec3 size = 1000.0 * (in.box.upper - in.box.lower);
   fmt::format_to(out, "surface            {}: {} vertices, {} triangles, {} component{}, {:.1f} x {:.1f} x {:.1f} mm\n",
-                 report.input, in.vertices, in.triangles, in.components, in.components == 1 ? "" : "s", size[0], size[1],
-                 size[2]);
+                 report.input, in.vertices, in.triangles, in.components, in.components == 1 ? "" : "s", size[0],
+                 size[1], size[2]);
   if (in.closedManifold()) {
     fmt::format_to(out, "                   closed and consistently outward\n");
   } else {
-    fmt::format_to(out,
-                   "                   {} open edges in {} holes, {} non-manifold edges, {} flipped edges, {} components "
-                   "turned inward\n",
-                   in.openEdges, in.holes, in.nonManifoldEdges, in.flippedEdges, in.inwardComponents);
+    fmt::format_to(
+        out,
+        "                   {} open edges in {} holes, {} non-manifold edges, {} flipped edges, {} components "
+        "turned inward\n",
+        in.openEdges, in.holes, in.nonManifoldEdges, in.flippedEdges, in.inwardComponents);
   }
   if (in.degenerateTriangles + in.duplicateTriangles + in.coincidentVertices + in.unusedVertices > 0) {
-    fmt::format_to(out, "                   {} triangles without area, {} duplicate, {} coincident and {} unused vertices\n",
+    fmt::format_to(out,
+                   "                   {} triangles without area, {} duplicate, {} coincident and {} unused vertices\n",
                    in.degenerateTriangles, in.duplicateTriangles, in.coincidentVertices, in.unusedVertices);
   }
   if (report.repair.changed()) fmt::format_to(out, "put right          {}\n", repairSummary(report.repair));
@@ -128,11 +130,12 @@ std::string meshReportText(const MeshReport& report) {
   if (r.lostParts + r.lostComponents + r.droppedPieces == 0) {
     fmt::format_to(out, "thin parts         none lost (none farther than {:.2f} mm)\n", 1000.0 * r.lostDistance);
   } else {
-    fmt::format_to(out,
-                   "thin parts         {:.2f} % of the surface, in {} parts, lies farther than {:.2f} mm from the mesh; "
-                   "worst at ({:.4f}, {:.4f}, {:.4f}) m; {} components lost; {} loose pieces left out ({:.3f} mL)\n",
-                   100.0 * r.lostArea, r.lostParts, 1000.0 * r.lostDistance, r.lostWhere[0], r.lostWhere[1],
-                   r.lostWhere[2], r.lostComponents, r.droppedPieces, 1e6 * r.droppedVolume);
+    fmt::format_to(
+        out,
+        "thin parts         {:.2f} % of the surface, in {} parts, lies farther than {:.2f} mm from the mesh; "
+        "worst at ({:.4f}, {:.4f}, {:.4f}) m; {} components lost; {} loose pieces left out ({:.3f} mL)\n",
+        100.0 * r.lostArea, r.lostParts, 1000.0 * r.lostDistance, r.lostWhere[0], r.lostWhere[1], r.lostWhere[2],
+        r.lostComponents, r.droppedPieces, 1e6 * r.droppedVolume);
   }
   if (!report.output.empty()) fmt::format_to(out, "written            {}\n", report.output);
   return text;

@@ -10,12 +10,12 @@
 namespace calot::recorder {
 
 struct MeshReport {
-  std::string input;          ///< the file's name
-  std::string unit;           ///< as given: m, cm, mm
-  std::string output;         ///< empty when nothing was written
-  SurfaceReport found;        ///< the surface as it was read
-  SurfaceRepair repair;       ///< what was put right before meshing
-  StuffedMesh stuffed;        ///< the mesh, or why there is none
+  std::string input;     ///< the file's name
+  std::string unit;      ///< as given: m, cm, mm
+  std::string output;    ///< empty when nothing was written
+  SurfaceReport found;   ///< the surface as it was read
+  SurfaceRepair repair;  ///< what was put right before meshing
+  StuffedMesh stuffed;   ///< the mesh, or why there is none
 };
 
 /// One JSON object (docs/meshing.md lists its members), with a line break at the end.

@@ -21,8 +21,8 @@ namespace {
 /// Farther than this nothing is an organ, and sums of squares stay far from overflow (m).
 constexpr double farthest = 1000.0;
 
-constexpr std::array<std::string_view, 17> passedOver = {"vt",     "vn",     "vp",       "g",      "o",     "s",
-                                                         "usemtl", "mtllib", "l",        "p",      "mg",    "lod",
+constexpr std::array<std::string_view, 17> passedOver = {"vt",     "vn",     "vp",       "g",      "o",       "s",
+                                                         "usemtl", "mtllib", "l",        "p",      "mg",      "lod",
                                                          "bevel",  "usemap", "c_interp", "maplib", "d_interp"};
 
 /// Words of one line; a comment ends it.
@@ -47,7 +47,8 @@ class Words {
 /// A word for a message: short, and without control characters.
 std::string shown(std::string_view word) {
   std::string text(word.substr(0, 40));
-  std::replace_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return word.size() > 40 ? text + "..." : text;
 }
 
@@ -102,7 +103,8 @@ class ObjParser {
     double value = 0.0;
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault != std::errc() || end != word.data() + word.size()) fail(fmt::format("\"{}\" is not a number", shown(word)));
+    if (fault != std::errc() || end != word.data() + word.size())
+      fail(fmt::format("\"{}\" is not a number", shown(word)));
     if (!std::isfinite(value)) fail(fmt::format("\"{}\" is not a finite number", shown(word)));
     return value;
   }
@@ -125,7 +127,8 @@ class ObjParser {
   int readIndex(std::string_view word, bool isVertex) const {
     int value = 0;
     const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault != std::errc() || end != word.data() + word.size()) fail(fmt::format("\"{}\" is not an index", shown(word)));
+    if (fault != std::errc() || end != word.data() + word.size())
+      fail(fmt::format("\"{}\" is not an index", shown(word)));
     if (value == 0) fail("index 0: OBJ counts from 1");
     if (!isVertex || value > 0) return value - 1;
     const int counted = mesh_.vertices() + value;

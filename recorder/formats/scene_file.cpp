@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <map>
 
@@ -15,6 +14,7 @@
 #include "recorder/formats/obj.h"
 #include "recorder/formats/scene_rules.h"
 #include "sim/geometry/surface_report.h"
+#include "sim/math/floating_point.h"
 
 namespace calot::recorder {
 namespace fs = std::filesystem;
@@ -31,10 +31,10 @@ using FetchAsset = std::function<const Asset&(const std::string& name, const Jso
 std::string readName(const JsonObject& object, const std::string& key) {
   std::string name;
   object.read(key, name, longestName);
-  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
-  });
-  if (!plain || name.front() == '-') object.at(key).fail("small letters, digits and hyphens are allowed, the first no hyphen");
+  const bool plain = std::all_of(name.begin(), name.end(),
+                                 [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; });
+  if (!plain || name.front() == '-')
+    object.at(key).fail("small letters, digits and hyphens are allowed, the first no hyphen");
   return name;
 }
 
@@ -67,18 +67,20 @@ SurfaceDescription readSurface(const Asset& asset, LengthUnit unit) {
   TriangleMesh mesh = parseObj(asset.bytes, asset.name, unit);
   const SurfaceReport report = inspectSurface(mesh);
   if (!report.closedManifold()) {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: {} triangles with {} open edges, {} edges of more than two triangles, {} flipped edges and "
-                            "{} parts turned inside out; an organ is a closed outward surface",
-                            asset.name, report.triangles, report.openEdges, report.nonManifoldEdges, report.flippedEdges,
-                            report.inwardComponents));
+    throw Error(
+        ExitCode::damaged,
+        fmt::format("{}: {} triangles with {} open edges, {} edges of more than two triangles, {} flipped edges and "
+                    "{} parts turned inside out; an organ is a closed outward surface",
+                    asset.name, report.triangles, report.openEdges, report.nonManifoldEdges, report.flippedEdges,
+                    report.inwardComponents));
   }
   const double size = (report.box.upper - report.box.lower).maxCoeff();
   const double farthest = std::max(report.box.lower.cwiseAbs().maxCoeff(), report.box.upper.cwiseAbs().maxCoeff());
   if (!(size >= 0.001) || !(farthest <= 1.0)) {
-    throw Error(ExitCode::damaged, fmt::format("{}: {:.4g} m long and up to {:.4g} m from the origin; an organ is at least 0.001 m "
-                                               "long and within 1 m: is the scene's unit right?",
-                                               asset.name, size, farthest));
+    throw Error(ExitCode::damaged,
+                fmt::format("{}: {:.4g} m long and up to {:.4g} m from the origin; an organ is at least 0.001 m "
+                            "long and within 1 m: is the scene's unit right?",
+                            asset.name, size, farthest));
   }
   return {std::move(mesh.vertex), std::move(mesh.triangle)};
 }
@@ -159,8 +161,8 @@ OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
   for (const JsonPlace& anchor : object.at("anchors").list(0, mostAnchors)) organ.anchors.push_back(readAnchor(anchor));
 
   const JsonObject mesh = object.at("mesh").object(sceneRule("mesh"));
-  const LengthUnit unit =
-      readWord<LengthUnit>(mesh, "unit", {{"m", LengthUnit::metre}, {"cm", LengthUnit::centimetre}, {"mm", LengthUnit::millimetre}});
+  const LengthUnit unit = readWord<LengthUnit>(
+      mesh, "unit", {{"m", LengthUnit::metre}, {"cm", LengthUnit::centimetre}, {"mm", LengthUnit::millimetre}});
   const Asset& asset = fetch(readAssetName(mesh, "file"), mesh.at("file"));
   organ.surface = readSurface(asset, unit);
   return organ;
@@ -168,7 +170,8 @@ OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
 
 void checkOrgans(const JsonPlace& place, const std::vector<OrganDescription>& organs) {
   const auto index = [&](const std::string& name) {
-    const auto found = std::find_if(organs.begin(), organs.end(), [&](const OrganDescription& o) { return o.name == name; });
+    const auto found =
+        std::find_if(organs.begin(), organs.end(), [&](const OrganDescription& o) { return o.name == name; });
     return static_cast<std::size_t>(found - organs.begin());
   };
   const std::vector<JsonPlace> places = place.list(1, mostOrgans);
@@ -179,7 +182,8 @@ void checkOrgans(const JsonPlace& place, const std::vector<OrganDescription>& or
     for (std::size_t a = 0; a < anchors.size(); ++a) {
       const std::string& near = organs[i].anchors[a].nearOrgan;
       if (near.empty()) continue;
-      const JsonPlace name = anchors[a].object(sceneRule("anchor")).at("nearOrgan").object(sceneRule("nearOrgan")).at("organ");
+      const JsonPlace name =
+          anchors[a].object(sceneRule("anchor")).at("nearOrgan").object(sceneRule("nearOrgan")).at("organ");
       if (index(near) == organs.size()) name.fail("the scene has no organ \"" + near + "\"");
       if (index(near) == i) name.fail("an organ cannot be anchored to itself");
     }
@@ -187,6 +191,7 @@ void checkOrgans(const JsonPlace& place, const std::vector<OrganDescription>& or
 }
 
 LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
+  const FloatingPointScope environment;  // numbers are read and the camera is turned the same in every process
   const nlohmann::json json = parseStrictJson(file.bytes, file.name);
   const JsonPlace root(json, file.name);
   const JsonObject object = root.object(sceneRule(""));
@@ -215,7 +220,8 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   const JsonObject hands = object.at("hands").object(sceneRule("hands"));
   for (std::size_t h = 0; h < handCount; ++h) scene.hands[h] = readHand(hands.at(handNames[h]), scene.workspace);
 
-  for (const JsonPlace& organ : object.at("organs").list(1, mostOrgans)) scene.organs.push_back(readOrgan(organ, fetch));
+  for (const JsonPlace& organ : object.at("organs").list(1, mostOrgans))
+    scene.organs.push_back(readOrgan(organ, fetch));
   checkOrgans(object.at("organs"), scene.organs);
 
   if (object.has("solver")) {
@@ -267,7 +273,8 @@ LoadedScene sceneFromAssets(std::vector<Asset> assets) {
   used[0] = true;
   for (std::size_t i = 0; i < assets.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (assets[i].name == assets[j].name) throw Error(ExitCode::damaged, "scene: two assets are called " + assets[i].name);
+      if (assets[i].name == assets[j].name)
+        throw Error(ExitCode::damaged, "scene: two assets are called " + assets[i].name);
     }
   }
   const FetchAsset fetch = [&](const std::string& name, const JsonPlace& place) -> const Asset& {
@@ -280,44 +287,12 @@ LoadedScene sceneFromAssets(std::vector<Asset> assets) {
   };
   LoadedScene loaded = parseScene(assets[0], fetch);
   for (std::size_t i = 0; i < assets.size(); ++i) {
-    if (!used[i]) throw Error(ExitCode::damaged, fmt::format("{}: the asset {} is named nowhere in it", assets[0].name, assets[i].name));
+    if (!used[i])
+      throw Error(ExitCode::damaged,
+                  fmt::format("{}: the asset {} is named nowhere in it", assets[0].name, assets[i].name));
   }
   loaded.assets = std::move(assets);
   return loaded;
-}
-
-std::vector<fs::path> assetRoots(const fs::path& programFolder, const fs::path& compiledIn) {
-  if (const char* named = std::getenv("CALOT_ASSETS"); named != nullptr && *named != '\0') return {fs::path(named)};
-  return {programFolder / ".." / "share" / "calot", compiledIn};
-}
-
-std::vector<fs::path> listScenes(const std::vector<fs::path>& roots) {
-  std::map<std::string, fs::path> byName;
-  for (const fs::path& root : roots) {
-    std::error_code fault;
-    for (fs::directory_iterator it(root / "scenes", fault), end; !fault && it != end; it.increment(fault)) {
-      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
-    }
-  }
-  std::vector<fs::path> files;
-  for (const auto& entry : byName) files.push_back(entry.second);
-  return files;
-}
-
-fs::path findScene(const std::string& name, const std::vector<fs::path>& roots) {
-  std::error_code ignored;
-  if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
-    if (fs::is_regular_file(name, ignored)) return name;
-    throw Error(ExitCode::usage, name + ": there is no such scene file");
-  }
-  std::string known;
-  for (const fs::path& file : listScenes(roots)) {
-    if (file.stem() == name) return file;
-    known += (known.empty() ? "" : ", ") + file.stem().string();
-  }
-  throw Error(ExitCode::usage, fmt::format("there is no scene \"{}\"; {}", name,
-                                           known.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)")
-                                                         : "there are " + known));
 }
 
 }  // namespace calot::recorder

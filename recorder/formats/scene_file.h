@@ -21,8 +21,8 @@ struct LoadedScene {
 
 /// Reads a scene file and the meshes that it names.
 ///
-/// Names in the file are relative to the assets root: the folder above when the file lies in a folder `scenes`, else the
-/// file's own folder. Nothing outside the root is read.
+/// Names in the file are relative to the assets root: the folder above when the file lies in a folder `scenes`, else
+/// the file's own folder. Nothing outside the root is read.
 ///
 /// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
 LoadedScene loadScene(const std::filesystem::path& sceneFile);

@@ -29,7 +29,8 @@ std::vector<ObjectRule> makeRules() {
       {"",
        {required("format"), required("formatVersion", 1, sceneFormatVersion), required("name"), required("version"),
         required("summary"), required("workspace"), required("camera"), required("hands"), required("organs"),
-        optional("ticksPerStep", 1, 100), optional("timeLimit", 0, 86400), optional("gravity", -20, 20), optional("solver")}},
+        optional("ticksPerStep", 1, 100), optional("timeLimit", 0, 86400), optional("gravity", -20, 20),
+        optional("solver")}},
       {"version", {required("major", 1, 1000000), required("minor", 0, 1000000)}},
       {"workspace", {required("lower", -reach, reach), required("upper", -reach, reach)}},
       {"camera",
@@ -52,7 +53,8 @@ std::vector<ObjectRule> makeRules() {
       {"nearOrgan", {required("organ"), openBelow(required("distance", 0, 0.1))}},
       {"solver",
        {openBelow(optional("tolerance", 0, 0.1)), optional("iterations", 1, 100000),
-        openBelow(optional("contactTolerance", 0, 0.001)), optional("contactIterations", 1, 100000), optional("sleeping")}},
+        openBelow(optional("contactTolerance", 0, 0.001)), optional("contactIterations", 1, 100000),
+        optional("sleeping")}},
   };
 }
 

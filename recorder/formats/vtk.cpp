@@ -12,7 +12,8 @@ namespace calot::recorder {
 
 std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title) {
   std::string line = title.substr(0, 255);
-  std::replace_if(line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   std::string text;
   text.reserve(64 * mesh.vertex.size() + 32 * mesh.tetrahedron.size() + 512);
   const auto out = std::back_inserter(text);

@@ -123,13 +123,4 @@ ChainHead chainNext(const Layout& layout, const StatusRow& before, const Block& 
   return hash.head();
 }
 
-std::string sha256Hex(std::span<const std::byte> bytes) {
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
-  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  std::string text(2 * digest.size() + 1, '\0');
-  sodium_bin2hex(text.data(), text.size(), digest.data(), digest.size());
-  text.pop_back();
-  return text;
-}
-
 }  // namespace calot::recorder

@@ -20,7 +20,4 @@ ChainHead chainStart(const AttemptHeader& header);
 /// The next link: the rows of a block and the counts of its row of /status. @param before the row before it.
 ChainHead chainNext(const Layout& layout, const StatusRow& before, const Block& block, const StatusRow& after);
 
-/// Hex SHA-256 of bytes, lower case.
-std::string sha256Hex(std::span<const std::byte> bytes);
-
 }  // namespace calot::recorder

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "recorder/formats/file_bytes.h"
 #include "recorder/recording/chain.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/header.h"
@@ -95,10 +96,15 @@ class Builder {
 
   void need(bool ok, const std::string& what) const {
     if (ok) return;
-    throw Error(ExitCode::failure, fmt::format("{}: cannot create {}: {}", path_.string(), what, hdf5::reason()));
+    const std::string why = hdf5::reason();
+    hdf5::freeze(file_);
+    throw Error(ExitCode::failure, fmt::format("{}: cannot create {}: {}", path_.string(), what, why));
   }
 
-  void close() { need(file_.reset(), "the file"); }
+  void close() {
+    need(H5Fflush(file_.get(), H5F_SCOPE_LOCAL) >= 0, "the file");
+    need(file_.reset(), "the file");
+  }
 
  private:
   std::filesystem::path path_;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "recorder/recording/chain.h"
 #include "recorder/recording/file_writer.h"
@@ -42,19 +40,8 @@ FileAppender::~FileAppender() {
 
 void FileAppender::fail(const std::string& what) {
   const std::string why = hdf5::reason();
-  freeze();
+  hdf5::freeze(file_);
   throw Error(ExitCode::failure, fmt::format("{}: {}: {}", path_.string(), what, why));
-}
-
-void FileAppender::freeze() {
-  // HDF5 goes on trying to write what it holds, until the file is closed, in an order that no longer protects what was
-  // flushed. Its descriptor is pointed elsewhere, so that the file keeps the state in which every flushed row is whole.
-  void* handle = nullptr;
-  if (!file_.valid() || H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &handle) < 0 || handle == nullptr) return;
-  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (nowhere < 0) return;
-  ::dup2(nowhere, *static_cast<int*>(handle));
-  ::close(nowhere);
 }
 
 void FileAppender::writeRows(const hdf5::Id& dataset, const hdf5::Id& type, std::uint64_t first, std::uint64_t rows,

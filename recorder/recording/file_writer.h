@@ -42,7 +42,6 @@ class FileAppender {
  private:
   void writeRows(const hdf5::Id& dataset, const hdf5::Id& type, std::uint64_t first, std::uint64_t rows,
                  std::uint64_t width, bool vector, const void* data, const std::string& path);
-  void freeze();
   [[noreturn]] void fail(const std::string& what);
 
   std::filesystem::path path_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/file_bytes.h"
 #include "recorder/recording/header_reader.h"
 
 #include <fmt/format.h>

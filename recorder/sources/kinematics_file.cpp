@@ -19,8 +19,8 @@ constexpr std::size_t groupColumns = 19;
 constexpr std::array<std::size_t, handCount> slaveColumn{2 * groupColumns, 3 * groupColumns};
 constexpr std::size_t mostBytes = std::size_t{1} << 30U;
 constexpr std::size_t mostRows = 1000000;
-constexpr double farthest = 5.0;          // m
-constexpr double orthonormality = 1e-3;   // the format's own rounding is below 1e-4
+constexpr double farthest = 5.0;         // m
+constexpr double orthonormality = 1e-3;  // the format's own rounding is below 1e-4
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -53,7 +53,8 @@ class LineReader {
     KinematicsPose pose;
     pose.position = Vec3(v[first], v[first + 1], v[first + 2]);
     if (!(pose.position.cwiseAbs().maxCoeff() <= farthest)) {
-      fail(fmt::format("columns {} to {}: a position farther than {} m; positions are in metres", first + 1, first + 3, farthest));
+      fail(fmt::format("columns {} to {}: a position farther than {} m; positions are in metres", first + 1, first + 3,
+                       farthest));
     }
     Mat3 rotation;
     for (int r = 0; r < 3; ++r) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two-handed instrument motion as text: 76 numbers a row, 30 rows a second, no clock. Four groups of 19 in the order
-// master left, master right, slave left, slave right; in each group tip position (3, m), rotation matrix (9, row by row),
-// linear velocity (3, m/s), angular velocity (3, rad/s), gripper angle (rad). The instruments' own motion is that of the
-// slave groups.
+// master left, master right, slave left, slave right; in each group tip position (3, m), rotation matrix (9, row by
+// row), linear velocity (3, m/s), angular velocity (3, rad/s), gripper angle (rad). The instruments' own motion is that
+// of the slave groups.
 #pragma once
 
 #include <array>
@@ -25,15 +25,15 @@ struct KinematicsPose {
 };
 
 struct KinematicsMotion {
-  std::string file;    ///< base name
-  std::string sha256;  ///< of the file's bytes, hexadecimal
+  std::string file;                                         ///< base name
+  std::string sha256;                                       ///< of the file's bytes, hexadecimal
   std::vector<std::array<KinematicsPose, handCount>> rows;  ///< row i is at i / rowsPerSecond
 };
 
 inline constexpr int kinematicsRowsPerSecond = 30;
 
-/// Reads and checks a file: every number of every row finite, positions within 5 m, rotation matrices orthonormal within
-/// 1e-3, two rows at least and a million at most.
+/// Reads and checks a file: every number of every row finite, positions within 5 m, rotation matrices orthonormal
+/// within 1e-3, two rows at least and a million at most.
 /// @throws Error (damaged) naming the file's base name and the line.
 KinematicsMotion readKinematics(const std::filesystem::path& file);
 

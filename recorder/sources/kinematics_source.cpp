@@ -8,6 +8,7 @@
 #include "recorder/errors.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"
+#include "sim/math/floating_point.h"
 
 namespace calot::recorder {
 namespace {
@@ -20,12 +21,12 @@ constexpr double largestJaw = 1.2;  // rad
 const Vec3 taskRegion(0.030, 0.020, 0.030);
 constexpr double smallestScale = 0.1;
 constexpr double largestScale = 2.0;
-constexpr double sight = 1.0;            // m
-constexpr double touchShare = 0.95;      // this share of the rows is no deeper ...
-constexpr double touchDepth = 0.003;     // ... than this (m)
-constexpr double largestDepth = 0.012;   // and none is deeper than this (m)
-constexpr double longestSlide = 0.08;    // m, either way
-constexpr double slideStep = 0.001;      // m
+constexpr double sight = 1.0;           // m
+constexpr double touchShare = 0.95;     // this share of the rows is no deeper ...
+constexpr double touchDepth = 0.003;    // ... than this (m)
+constexpr double largestDepth = 0.012;  // and none is deeper than this (m)
+constexpr double longestSlide = 0.08;   // m, either way
+constexpr double slideStep = 0.001;     // m
 constexpr std::size_t slideRows = 300;
 constexpr std::array<double, 3> shaftPoints{0.015, 0.030, 0.045};  // m from the tip
 
@@ -55,7 +56,8 @@ std::optional<double> slideToTouch(const std::vector<Vec3>& tips, const Vec3& po
   std::vector<double> distance(tips.size());
   for (int i = 0; i <= steps; ++i) {
     const double slide = -longestSlide + slideStep * i;
-    for (std::size_t p = 0; p < tips.size(); ++p) distance[p] = instrumentDistance(tips[p] + slide * view, port, surfaces);
+    for (std::size_t p = 0; p < tips.size(); ++p)
+      distance[p] = instrumentDistance(tips[p] + slide * view, port, surfaces);
     const double deepest = *std::min_element(distance.begin(), distance.end());
     if (deepest <= -largestDepth || percentile(distance, 1.0 - touchShare) <= -touchDepth) return slide;
   }
@@ -65,6 +67,7 @@ std::optional<double> slideToTouch(const std::vector<Vec3>& tips, const Vec3& po
 }  // namespace
 
 KinematicsMapping mapIntoScene(const KinematicsMotion& motion, const SceneDescription& scene) {
+  const FloatingPointScope environment;
   KinematicsMapping m;
   Vec3 half;
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,14 +90,17 @@ KinematicsMapping mapIntoScene(const KinematicsMotion& motion, const SceneDescri
   const SceneSurfaces surfaces(scene);
   const auto hit = surfaces.firstHit(scene.camera.position, scene.camera.position + sight * view);
   if (!hit) {
-    throw Error(ExitCode::usage, "scene " + scene.name + ": the middle of the picture shows no organ; a kinematics file has no place there");
+    throw Error(
+        ExitCode::usage,
+        "scene " + scene.name + ": the middle of the picture shows no organ; a kinematics file has no place there");
   }
   m.taskCentre = hit->point;
 
   const std::size_t stride = (motion.rows.size() + slideRows - 1) / slideRows;
   for (std::size_t h = 0; h < handCount; ++h) {
     std::vector<Vec3> points;
-    for (std::size_t i = 0; i < motion.rows.size(); i += stride) points.push_back(placed(m, motion.rows[i][h].position));
+    for (std::size_t i = 0; i < motion.rows.size(); i += stride)
+      points.push_back(placed(m, motion.rows[i][h].position));
     m.slide[h] = slideToTouch(points, scene.hands[h].port, view, surfaces).value_or(0.0);
   }
   return m;
@@ -105,6 +111,7 @@ KinematicsSource::KinematicsSource(const std::filesystem::path& file, const Scen
 
 KinematicsSource::KinematicsSource(KinematicsMotion motion, const SceneDescription& scene)
     : mapping_(mapIntoScene(motion, scene)), hands_(scene.hands), camera_(scene.camera) {
+  const FloatingPointScope environment;
   provenance_.kind = OperatorKind::kinematics;
   provenance_.sourceFile = motion.file;
   provenance_.sourceSha256 = motion.sha256;
@@ -146,8 +153,8 @@ InstrumentSample KinematicsSource::sampleOf(std::size_t hand, std::uint64_t tick
     const Vec3 leave = i > 0 ? Vec3(0.5 * (b.position - rows_[i - 1][hand].position)) : leap;
     const Vec3 arrive = i + 2 <= last ? Vec3(0.5 * (rows_[i + 2][hand].position - a.position)) : leap;
     const double s2 = s * s, s3 = s2 * s;
-    row.position = (2.0 * s3 - 3.0 * s2 + 1.0) * a.position + (s3 - 2.0 * s2 + s) * leave + (3.0 * s2 - 2.0 * s3) * b.position +
-                   (s3 - s2) * arrive;
+    row.position = (2.0 * s3 - 3.0 * s2 + 1.0) * a.position + (s3 - 2.0 * s2 + s) * leave +
+                   (3.0 * s2 - 2.0 * s3) * b.position + (s3 - s2) * arrive;
     row.orientation = interpolated(a.orientation, b.orientation, s);
     row.jaw = a.jaw + s * (b.jaw - a.jaw);
   }
@@ -159,6 +166,7 @@ InstrumentSample KinematicsSource::sampleOf(std::size_t hand, std::uint64_t tick
 
 bool KinematicsSource::next(std::uint64_t tick, TickSamples& out) {
   if (tick >= ticks()) return false;
+  const FloatingPointScope environment;
   TickSamples samples;
   for (std::size_t h = 0; h < handCount; ++h) samples.hand[h] = sampleOf(h, tick);
   samples.camera = camera_;

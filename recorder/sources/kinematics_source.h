@@ -11,12 +11,14 @@
 
 namespace calot::recorder {
 
-/// How a file's frame F is laid into the scene (docs/sources.md): p_W = taskCentre + slide_h view + scale R_WC (p_F - middle).
+/// How a file's frame F is laid into the scene (docs/sources.md): p_W = taskCentre + slide_h view + scale R_WC (p_F -
+/// middle).
 struct KinematicsMapping {
-  Vec3 middle = Vec3::Zero();      ///< p_F: of the central 90 % of both hands' positions, axis by axis (m)
+  Vec3 middle = Vec3::Zero();  ///< p_F: of the central 90 % of both hands' positions, axis by axis (m)
   double scale = 1.0;
-  Vec3 taskCentre = Vec3::Zero();  ///< p_W: where the line of sight through the picture's middle meets the first organ (m)
-  Quat axes = Quat::Identity();    ///< q_WC of the scene's camera: F is read as x right, y down, z away from the operator
+  Vec3 taskCentre =
+      Vec3::Zero();  ///< p_W: where the line of sight through the picture's middle meets the first organ (m)
+  Quat axes = Quat::Identity();  ///< q_WC of the scene's camera: F is read as x right, y down, z away from the operator
   std::array<double, handCount> slide{};  ///< along the view, so that the hand touches (m)
 };
 
@@ -25,7 +27,8 @@ struct KinematicsMapping {
 /// Row i falls on tick 1000 + i * 1000 / 30; between rows positions follow a cubic Hermite curve with Catmull-Rom
 /// tangents (one-sided at both ends), orientations the normalised linear interpolation on the shorter arc, grippers a
 /// straight line. The instrument goes through its port: of the file's orientation only the roll is left
-/// (alignedToShaft). Jaw opening is the gripper angle clamped to [0, 1.2] rad: below zero is a closed gripper that presses.
+/// (alignedToShaft). Jaw opening is the gripper angle clamped to [0, 1.2] rad: below zero is a closed gripper that
+/// presses.
 class KinematicsSource : public SampleSource {
  public:
   /// @throws Error as readKinematics; usage where the scene's camera looks at no organ.

@@ -9,6 +9,7 @@
 
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
+#include "sim/math/floating_point.h"
 
 namespace calot::recorder {
 namespace fs = std::filesystem;
@@ -29,9 +30,9 @@ std::vector<ObjectRule> makeRules() {
        {bounded("reactionTime", 0, 3), bounded("reactionSpread", 0, 1), bounded("lateralError", 0, 0.01),
         bounded("depthError", 0, 0.02)}},
       {"decision",
-       {bounded("touches", 1, 50), bounded("pressDepth", 0, 0.02), bounded("pressSpread", 0, 0.01), bounded("dwell", 0, 30),
-        bounded("pause", 0, 30), bounded("pauseSpread", 0, 10), bounded("corrections", 0, 10), bounded("pullBack", 0.005, 0.1),
-        KeyRule{"bimanual"}}},
+       {bounded("touches", 1, 50), bounded("pressDepth", 0, 0.02), bounded("pressSpread", 0, 0.01),
+        bounded("dwell", 0, 30), bounded("pause", 0, 30), bounded("pauseSpread", 0, 10), bounded("corrections", 0, 10),
+        bounded("pullBack", 0.005, 0.1), KeyRule{"bimanual"}}},
   };
 }
 
@@ -51,6 +52,7 @@ const std::vector<ObjectRule>& performerRules() {
 }
 
 PerformerProfile loadPerformer(const fs::path& file) {
+  const FloatingPointScope environment;
   const std::string name = file.filename().string();
   const nlohmann::json json = parseStrictJson(readFileBytes(file, name, std::size_t{4} << 20U), name);
   const JsonObject object = JsonPlace(json, name).object(ruleOf(""));
@@ -110,9 +112,9 @@ fs::path findPerformer(const std::string& name, const std::vector<fs::path>& roo
   }
   std::string names;
   for (const std::string& n : known) names += (names.empty() ? "" : ", ") + n;
-  throw Error(ExitCode::usage,
-              fmt::format("there is no performer \"{}\"; {}", name,
-                          names.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)") : "there are " + names));
+  throw Error(ExitCode::usage, fmt::format("there is no performer \"{}\"; {}", name,
+                                           names.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)")
+                                                         : "there are " + names));
 }
 
 }  // namespace calot::recorder

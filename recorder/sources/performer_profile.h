@@ -18,22 +18,22 @@ struct PerformerProfile {
   std::string summary;
 
   struct Motor {
-    double strokeSpeed = 0.0;       ///< mean speed of a free stroke (m/s)
-    double contactSpeed = 0.0;      ///< mean speed of a stroke that presses or leaves tissue (m/s)
-    double shortestStroke = 0.0;    ///< s
-    double endpointNoise = 0.0;     ///< standard deviation of a stroke's end, per length of the stroke
-    double tremorAmplitude = 0.0;   ///< root mean square at the tip, each axis (m)
-    double tremorLower = 8.0;       ///< band (Hz)
+    double strokeSpeed = 0.0;      ///< mean speed of a free stroke (m/s)
+    double contactSpeed = 0.0;     ///< mean speed of a stroke that presses or leaves tissue (m/s)
+    double shortestStroke = 0.0;   ///< s
+    double endpointNoise = 0.0;    ///< standard deviation of a stroke's end, per length of the stroke
+    double tremorAmplitude = 0.0;  ///< root mean square at the tip, each axis (m)
+    double tremorLower = 8.0;      ///< band (Hz)
     double tremorUpper = 12.0;
-    double wanderAmplitude = 0.0;   ///< root mean square below 1 Hz, each axis (m)
-    double rollSpread = 0.0;        ///< standard deviation of the roll at a target (rad)
+    double wanderAmplitude = 0.0;  ///< root mean square below 1 Hz, each axis (m)
+    double rollSpread = 0.0;       ///< standard deviation of the roll at a target (rad)
   } motor;
 
   struct Perception {
-    double reactionTime = 0.0;      ///< before each correction (s)
-    double reactionSpread = 0.0;    ///< its standard deviation (s)
-    double lateralError = 0.0;      ///< standard deviation of where a target seems to be, across the view (m)
-    double depthError = 0.0;        ///< the same along the view (m)
+    double reactionTime = 0.0;    ///< before each correction (s)
+    double reactionSpread = 0.0;  ///< its standard deviation (s)
+    double lateralError = 0.0;    ///< standard deviation of where a target seems to be, across the view (m)
+    double depthError = 0.0;      ///< the same along the view (m)
   } perception;
 
   struct Decision {

@@ -7,17 +7,18 @@
 #include "recorder/errors.h"
 #include "recorder/sources/pointing.h"
 #include "sim/math/elementary.h"
+#include "sim/math/floating_point.h"
 
 namespace calot::recorder {
 namespace {
 
-constexpr double hover = 0.004;           // where a hand looks again before it presses: this far off the surface (m)
-constexpr double travelClearance = 0.003; // m
-constexpr double openJaw = 0.5;           // rad
-constexpr double settle = 0.5;            // at home before the start and after the end (s)
-constexpr double bimanualLag = 0.3;       // the second hand starts this much later (s)
-constexpr double fadeIn = 0.5;            // unsteadiness grows from nothing: the tip starts at home (s)
-constexpr double wanderLower = 0.1;       // Hz
+constexpr double hover = 0.004;            // where a hand looks again before it presses: this far off the surface (m)
+constexpr double travelClearance = 0.003;  // m
+constexpr double openJaw = 0.5;            // rad
+constexpr double settle = 0.5;             // at home before the start and after the end (s)
+constexpr double bimanualLag = 0.3;        // the second hand starts this much later (s)
+constexpr double fadeIn = 0.5;             // unsteadiness grows from nothing: the tip starts at home (s)
+constexpr double wanderLower = 0.1;        // Hz
 constexpr double wanderUpper = 0.8;
 constexpr int mostDraws = 400;
 constexpr double twoPi = 6.283185307179586;
@@ -26,8 +27,14 @@ constexpr double twoPi = 6.283185307179586;
 
 StrokePlan::StrokePlan(const PerformerProfile& profile, const SceneDescription& scene, const SceneSurfaces& surfaces,
                        std::size_t hand, std::uint64_t seed)
-    : profile_(profile), scene_(scene), surfaces_(surfaces), hand_(hand), random_(seed, 1 + hand),
-      targets_(touchTargets(scene, surfaces, hand, profile.decision.pullBack)), time_(settle), tip_(scene.hands[hand].home) {}
+    : profile_(profile),
+      scene_(scene),
+      surfaces_(surfaces),
+      hand_(hand),
+      random_(seed, 1 + hand),
+      targets_(touchTargets(scene, surfaces, hand, profile.decision.pullBack)),
+      time_(settle),
+      tip_(scene.hands[hand].home) {}
 
 void StrokePlan::waitUntil(double time) { time_ = std::max(time_, time); }
 
@@ -105,9 +112,7 @@ void StrokePlan::touch(const TouchTarget& target) {
   strokeTo(target.approach, motor.contactSpeed, 0.0, roll);
 }
 
-void StrokePlan::goHome() {
-  strokeTo(scene_.hands[hand_].home, profile_.motor.strokeSpeed, 0.0, 0.0);
-}
+void StrokePlan::goHome() { strokeTo(scene_.hands[hand_].home, profile_.motor.strokeSpeed, 0.0, 0.0); }
 
 Unsteadiness::Unsteadiness(double amplitude, double lower, double upper, Random& random)
     : amplitude_(amplitude * std::sqrt(2.0 / static_cast<double>(sines))) {
@@ -132,6 +137,7 @@ Vec3 Unsteadiness::at(double time) const {
 
 PerformerSource::PerformerSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed)
     : hands_(scene.hands), camera_(scene.camera) {
+  const FloatingPointScope environment;
   provenance_.kind = OperatorKind::performer;
   provenance_.profile = profile.name;
   provenance_.profileVersion = profile.version;
@@ -170,7 +176,8 @@ InstrumentSample PerformerSource::sampleOf(std::size_t hand, double time) const 
 
   InstrumentSample sample;
   sample.instrument = hands_[hand].instrument;
-  sample.position = stroke.from + s * (stroke.to - stroke.from) + fade * (tremor_[hand].at(time) + wander_[hand].at(time));
+  sample.position =
+      stroke.from + s * (stroke.to - stroke.from) + fade * (tremor_[hand].at(time) + wander_[hand].at(time));
   const double roll = stroke.rollFrom + s * (stroke.rollTo - stroke.rollFrom);
   sample.orientation = pointing(hands_[hand].port, sample.position, roll);
   sample.jaw = stroke.jawFrom + s * (stroke.jawTo - stroke.jawFrom);
@@ -179,6 +186,7 @@ InstrumentSample PerformerSource::sampleOf(std::size_t hand, double time) const 
 
 bool PerformerSource::next(std::uint64_t tick, TickSamples& out) {
   if (tick >= ticks_) return false;
+  const FloatingPointScope environment;
   const double time = static_cast<double>(tick) * tickLength;
   TickSamples samples;
   for (std::size_t h = 0; h < handCount; ++h) samples.hand[h] = sampleOf(h, time);

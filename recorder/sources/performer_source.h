@@ -15,10 +15,10 @@ namespace calot::recorder {
 
 /// One stroke of a hand: a straight line with minimum-jerk progress.
 struct Stroke {
-  double start = 0.0, duration = 0.0;  ///< s
+  double start = 0.0, duration = 0.0;           ///< s
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< p_WI (m)
-  double jawFrom = 0.0, jawTo = 0.0;   ///< rad
-  double rollFrom = 0.0, rollTo = 0.0; ///< rad
+  double jawFrom = 0.0, jawTo = 0.0;            ///< rad
+  double rollFrom = 0.0, rollTo = 0.0;          ///< rad
 };
 
 /// Plans what one hand does, stroke after stroke; draws from its own generator.
@@ -73,8 +73,8 @@ class Unsteadiness {
 /// A synthetic operator, open loop: touches targets on the organs with each hand and returns home; then it ends.
 ///
 /// Strokes are minimum-jerk (Flash and Hogan 1985) with noise that grows with their length (Harris and Wolpert 1998);
-/// between targets the instrument is pulled back towards its port (Chmarra et al. 2008). The same profile, scene and seed
-/// give the same samples. The camera rests at the scene's pose. Parameters and their sources: docs/sources.md.
+/// between targets the instrument is pulled back towards its port (Chmarra et al. 2008). The same profile, scene and
+/// seed give the same samples. The camera rests at the scene's pose. Parameters and their sources: docs/sources.md.
 class PerformerSource : public SampleSource {
  public:
   /// @throws Error (usage) where the scene offers a hand nothing to touch.
@@ -86,7 +86,9 @@ class PerformerSource : public SampleSource {
   [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
   /// What the hand means to do, without unsteadiness.
   [[nodiscard]] const std::vector<Stroke>& strokes(Hand hand) const { return strokes_[static_cast<std::size_t>(hand)]; }
-  [[nodiscard]] const std::vector<TouchTarget>& targets(Hand hand) const { return targets_[static_cast<std::size_t>(hand)]; }
+  [[nodiscard]] const std::vector<TouchTarget>& targets(Hand hand) const {
+    return targets_[static_cast<std::size_t>(hand)];
+  }
 
  private:
   [[nodiscard]] InstrumentSample sampleOf(std::size_t hand, double time) const;

@@ -70,7 +70,8 @@ Quat interpolated(const Quat& from, const Quat& to, double s) {
   const double dot = from.w() * to.w() + from.x() * to.x() + from.y() * to.y() + from.z() * to.z();
   const double a = 1.0 - s;
   const double b = dot < 0.0 ? -s : s;
-  return unit(Quat(a * from.w() + b * to.w(), a * from.x() + b * to.x(), a * from.y() + b * to.y(), a * from.z() + b * to.z()));
+  return unit(
+      Quat(a * from.w() + b * to.w(), a * from.x() + b * to.x(), a * from.y() + b * to.y(), a * from.z() + b * to.z()));
 }
 
 double minimumJerk(double s) {

@@ -16,9 +16,9 @@ Vec3 shaftDirection(const Vec3& port, const Vec3& tip);
 /// @param roll turn about the shaft, right-handed about z (rad).
 Quat pointing(const Vec3& port, const Vec3& tip, double roll = 0.0);
 
-/// The orientation nearest to `orientation` whose z axis is along `shaft`: the shortest turn that brings the one onto the
-/// other comes after it, so that the roll about the shaft is what is left of `orientation`. A half turn, which has no
-/// shortest way, is made about the orientation's own x axis.
+/// The orientation nearest to `orientation` whose z axis is along `shaft`: the shortest turn that brings the one onto
+/// the other comes after it, so that the roll about the shaft is what is left of `orientation`. A half turn, which has
+/// no shortest way, is made about the orientation's own x axis.
 /// @pre `shaft` is a unit vector
 Quat alignedToShaft(const Quat& orientation, const Vec3& shaft);
 

@@ -17,7 +17,9 @@ class SceneSurfaces {
   /// Distance to the nearest organ surface (m), negative inside an organ.
   [[nodiscard]] double signedDistance(const Vec3& p) const;
   /// The same to one organ.
-  [[nodiscard]] double signedDistance(std::size_t organ, const Vec3& p) const { return organs_[organ].signedDistance(p); }
+  [[nodiscard]] double signedDistance(std::size_t organ, const Vec3& p) const {
+    return organs_[organ].signedDistance(p);
+  }
 
   struct Hit {
     std::size_t organ = 0;

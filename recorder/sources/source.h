@@ -8,8 +8,8 @@
 
 namespace calot::recorder {
 
-/// Where instrument samples come from: a kinematics file, a performer, a recording, a device. Live, scripted and replayed
-/// runs differ in nothing else.
+/// Where instrument samples come from: a kinematics file, a performer, a recording, a device. Live, scripted and
+/// replayed runs differ in nothing else.
 ///
 /// Every source rounds what it hands out with roundedToGrid(), so that what is logged is exactly what was simulated.
 class SampleSource {

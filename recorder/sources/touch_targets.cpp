@@ -23,7 +23,8 @@ bool isInPicture(const SceneDescription& scene, const Vec3& p, double tangent) {
 }
 
 bool isInWorkspace(const SceneDescription& scene, const Vec3& p) {
-  return (p.array() > scene.workspace[0].array() + margin).all() && (p.array() < scene.workspace[1].array() - margin).all();
+  return (p.array() > scene.workspace[0].array() + margin).all() &&
+         (p.array() < scene.workspace[1].array() - margin).all();
 }
 
 }  // namespace

@@ -160,13 +160,13 @@ namespace detail {
 }
 
 struct SegmentTriangle {
-  double parameter = 0.0;             ///< in [0, 1] on the segment
-  Vec3 onSegment = Vec3::Zero();      ///< m
-  Vec3 onTriangle = Vec3::Zero();     ///< m
-  Vec3 barycentric = Vec3::Zero();    ///< of onTriangle; none negative, sum 1
-  double squaredDistance = 0.0;       ///< m^2; zero when they cross
+  double parameter = 0.0;           ///< in [0, 1] on the segment
+  Vec3 onSegment = Vec3::Zero();    ///< m
+  Vec3 onTriangle = Vec3::Zero();   ///< m
+  Vec3 barycentric = Vec3::Zero();  ///< of onTriangle; none negative, sum 1
+  double squaredDistance = 0.0;     ///< m^2; zero when they cross
   TriangleFeature feature = TriangleFeature::face;
-  bool crosses = false;               ///< the segment passes through the face; `parameter` says where
+  bool crosses = false;  ///< the segment passes through the face; `parameter` says where
 };
 
 /// Closest points of segment p0-p1 and triangle abc. The least over: a crossing, each end against the triangle, each

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/geometry/isosurface_stuffing.h"
 
-#include <array>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,9 +25,7 @@ class Grid {
       : nx_(lattice.size[0]), ny_(lattice.size[1]), nz_(lattice.size[2]), corners_(nx_ * ny_ * nz_) {}
 
   [[nodiscard]] Point corner(Point i, Point j, Point k) const { return i + nx_ * (j + ny_ * k); }
-  [[nodiscard]] Point centre(Point i, Point j, Point k) const {
-    return corners_ + i + (nx_ - 1) * (j + (ny_ - 1) * k);
-  }
+  [[nodiscard]] Point centre(Point i, Point j, Point k) const { return corners_ + i + (nx_ - 1) * (j + (ny_ - 1) * k); }
   [[nodiscard]] bool hasCorner(Point i, Point j, Point k) const {
     return i >= 0 && j >= 0 && k >= 0 && i < nx_ && j < ny_ && k < nz_;
   }
@@ -69,7 +67,8 @@ class Grid {
     return n;
   }
 
-  /// Calls visit(corner, corner, centre, centre) for every lattice tetrahedron: first and last two joined by long edges.
+  /// Calls visit(corner, corner, centre, centre) for every lattice tetrahedron: first and last two joined by long
+  /// edges.
   template <class Visit>
   void forEachTetrahedron(const Visit& visit) const {
     for (Point k = 0; k < nz_; ++k) {
@@ -174,10 +173,10 @@ class Stuffing {
   }
 
   /// Quadrilateral p1, p2 (inside) and their cuts towards m (outside), a piece of the lattice face p1 p2 m. True when
-  /// its diagonal runs from p1 to the cut of p2. It ends at the cut of the long edge. With two short edges it starts at the
-  /// inside point whose coordinates' sum has the parity of m's: then the two such faces of a tetrahedron get diagonals
-  /// that start at different points (with parity of the inside point alone, both start at one, and angles of 8.6
-  /// degrees appear). Both sides of a face decide alike.
+  /// its diagonal runs from p1 to the cut of p2. It ends at the cut of the long edge. With two short edges it starts at
+  /// the inside point whose coordinates' sum has the parity of m's: then the two such faces of a tetrahedron get
+  /// diagonals that start at different points (with parity of the inside point alone, both start at one, and angles
+  /// of 8.6 degrees appear). Both sides of a face decide alike.
   [[nodiscard]] bool diagonalAtFirst(Point p1, Point p2, Point m) const {
     if (grid_.isCorner(p1) == grid_.isCorner(m)) return false;
     if (grid_.isCorner(p2) == grid_.isCorner(m)) return true;
@@ -320,7 +319,8 @@ std::int64_t BccLattice::points() const {
 Vec3 BccLattice::position(std::int64_t p) const {
   const std::array<Point, 3> c = Grid(*this).coordinates(p);
   const double shift = p < corners() ? 0.0 : 0.5;
-  return {origin[0] + cell * (static_cast<double>(c[0]) + shift), origin[1] + cell * (static_cast<double>(c[1]) + shift),
+  return {origin[0] + cell * (static_cast<double>(c[0]) + shift),
+          origin[1] + cell * (static_cast<double>(c[1]) + shift),
           origin[2] + cell * (static_cast<double>(c[2]) + shift)};
 }
 

@@ -49,9 +49,9 @@ struct BoundaryTriangle {
 /// Body-centred cubic lattice: a cubic grid of `size` points, origin + cell (i, j, k), and the centres of its cubes.
 /// Long edges (length `cell`) join neighbours of one kind, short ones (sqrt(3)/2 cell) join the kinds.
 struct BccLattice {
-  Vec3 origin = Vec3::Zero();       ///< m
-  double cell = 0.0;                ///< edge of a cube (m)
-  Index3 size = Index3::Zero();     ///< corner points along each axis, at least 2 each
+  Vec3 origin = Vec3::Zero();    ///< m
+  double cell = 0.0;             ///< edge of a cube (m)
+  Index3 size = Index3::Zero();  ///< corner points along each axis, at least 2 each
 
   /// Smallest lattice with a margin of at least one cell around the box. Its middle is the box's middle, so that a
   /// mirrored surface has a mirrored lattice. @pre cell > 0, the box not empty
@@ -65,7 +65,7 @@ struct BccLattice {
 
 /// How near to a lattice point a cut may be, as a share of its edge, before the point is moved onto it.
 struct StuffingLimits {
-  double longEdge = 0.285;   ///< these two give dihedral angles in [10.65, 164.70] degrees, whatever the cuts
+  double longEdge = 0.285;  ///< these two give dihedral angles in [10.65, 164.70] degrees, whatever the cuts
   double shortEdge = 0.40;
 };
 

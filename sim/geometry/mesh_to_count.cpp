@@ -17,7 +17,6 @@ constexpr double countTolerance = 0.15;
 constexpr double countAim = 0.05;
 constexpr double volumeTolerance = 0.01;
 constexpr double volumeAim = 0.002;
-constexpr std::int64_t largestLattice = 40'000'000;
 /// The level set may move by this share of a cell: beyond it the lattice's margin ends, and the shape is no longer the
 /// surface's.
 constexpr double largestOffset = 0.75;
@@ -83,9 +82,7 @@ struct Candidate {
     return std::max(countError / countTolerance, volumeError / volumeTolerance) + 0.07 * droppedPieces;
   }
   [[nodiscard]] bool holds() const { return countError <= countTolerance && volumeError <= volumeTolerance; }
-  [[nodiscard]] bool aimed() const {
-    return countError <= countAim && volumeError <= volumeAim && droppedPieces == 0;
-  }
+  [[nodiscard]] bool aimed() const { return countError <= countAim && volumeError <= volumeAim && droppedPieces == 0; }
 };
 
 class Search {
@@ -93,6 +90,7 @@ class Search {
   Search(const TriangleMesh& surface, int requested)
       : distance_(surface, InsideRule::winding),
         requested_(requested),
+        largestLattice_(20'000 + 60 * std::int64_t{requested}),
         box_(bounds(surface)),
         area_(surfaceArea(surface)),
         volume_(signedVolume(surface)) {
@@ -109,7 +107,7 @@ class Search {
     // A lattice cube has 12 tetrahedra; the surface's pieces come on top, hence the correction that follows.
     double cell = cubeRoot(12.0 * volume_ / static_cast<double>(requested_));
     for (int i = 0; i < 6; ++i) {
-      if (BccLattice::around(box_, cell).points() > largestLattice) return false;
+      if (BccLattice::around(box_, cell).points() > largestLattice_) return false;
       const Candidate now = at(cell);
       const auto count = static_cast<double>(now.mesh.tetrahedron.size());
       if (now.cost() < best.cost()) best = now;
@@ -118,23 +116,29 @@ class Search {
       cell *= cubeRoot(std::clamp(ratio, 0.125, 8.0));
     }
     if (best.cost() < 0.5) return true;
-    // Coarse lattices jump: look around the best cell size, near first.
+    // On coarse lattices the count jumps with the cell size: look around the best one, near first, with the lattice
+    // shifted as well.
     const double middle = best.cell > 0.0 ? best.cell : cell;
-    for (int i = 1; i <= 20; ++i) {
-      const double share = 0.01 * static_cast<double>((i + 1) / 2);
-      const double tried = i % 2 == 1 ? middle * (1.0 + share) : middle * (1.0 - share);
-      if (BccLattice::around(box_, tried).points() > largestLattice) continue;
-      Candidate now = at(tried);
+    const Vec3 shifts[5] = {Vec3(0.25, 0.25, 0.25), Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.5, 0.0), Vec3(0.0, 0.0, 0.5),
+                            Vec3::Zero()};
+    for (int i = 0; i < 60; ++i) {
+      const double share = 0.012 * static_cast<double>(i / 10);
+      const double tried = middle * (i / 5 % 2 == 0 ? 1.0 + share : 1.0 - share);
+      if (BccLattice::around(box_, tried).points() > largestLattice_) continue;
+      Candidate now = at(tried, shifts[i % 5]);
       if (now.cost() < best.cost()) best = std::move(now);
-      if (best.cost() < 0.5) break;
+      if (best.cost() < 0.5 || (i >= 20 && best.holds())) break;
     }
     return true;
   }
 
  private:
   /// The best offset at one cell size: Newton steps, the slope of volume over offset being the surface's area.
-  Candidate at(double cell) {
-    const BccLattice lattice = BccLattice::around(box_, cell);
+  Candidate at(double cell, const Vec3& shift = Vec3::Zero()) {
+    Box box = box_;
+    if (shift != Vec3::Zero()) box.grow(0.5 * cell);
+    BccLattice lattice = BccLattice::around(box, cell);
+    lattice.origin += cell * shift;
     const std::vector<double> value = sample(distance_, lattice);
     Candidate best;
     best.cell = cell;
@@ -197,6 +201,9 @@ class Search {
 
   SurfaceDistance distance_;
   int requested_;
+  /// A lattice has about 1/6 point for each tetrahedron and fills its box; a body that leaves more than 99 % of its box
+  /// empty would cost minutes and come out in crumbs.
+  std::int64_t largestLattice_;
   Box box_;
   double area_;
   double volume_;
@@ -253,7 +260,8 @@ void compare(const Search& search, StuffedMesh& result) {
   };
   const TriangleMesh& shell = boundary.mesh();
   for (const Vec3& p : shell.vertex) back(p);
-  for (int t = 0; t < shell.triangles(); ++t) back((shell.corner(t, 0) + shell.corner(t, 1) + shell.corner(t, 2)) / 3.0);
+  for (int t = 0; t < shell.triangles(); ++t)
+    back((shell.corner(t, 0) + shell.corner(t, 1) + shell.corner(t, 2)) / 3.0);
   report.meshToSurface = std::sqrt(largest);
   report.lostComponents = static_cast<int>(std::count(followed.begin(), followed.end(), char{0}));
 }
@@ -261,7 +269,8 @@ void compare(const Search& search, StuffedMesh& result) {
 std::string faultOf(const TriangleMesh& surface) {
   if (surface.triangle.empty()) return "the surface has no triangles";
   for (const Vec3& p : surface.vertex) {
-    if (!(p.cwiseAbs().maxCoeff() < 1e6)) return "the surface has a vertex that is not finite or farther than 1000 km";
+    if (!p.allFinite() || !(p.cwiseAbs().maxCoeff() < 1e6))
+      return "the surface has a vertex that is not finite or farther than 1000 km";
   }
   const SurfaceReport report = inspectSurface(surface);
   if (report.openEdges > 0) {

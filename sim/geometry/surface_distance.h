@@ -65,8 +65,8 @@ class SurfaceDistance {
   InsideRule rule_;
   std::vector<int> order_;
   std::vector<Node> node_;
-  std::vector<Vec3> faceNormal_;                  ///< unit; zero for a degenerate triangle
-  std::vector<std::array<Vec3, 3>> edgeNormal_;   ///< not unit: only signs are asked
+  std::vector<Vec3> faceNormal_;                 ///< unit; zero for a degenerate triangle
+  std::vector<std::array<Vec3, 3>> edgeNormal_;  ///< not unit: only signs are asked
   std::vector<Vec3> vertexNormal_;
 };
 

@@ -113,7 +113,8 @@ std::vector<Component> components(const TriangleMesh& mesh) {
   for (Component& c : result) {
     const Vec3 middle = 0.5 * (c.box.lower + c.box.upper);
     for (const int t : c.triangle) {
-      c.volume += (mesh.corner(t, 0) - middle).dot((mesh.corner(t, 1) - middle).cross(mesh.corner(t, 2) - middle)) / 6.0;
+      c.volume +=
+          (mesh.corner(t, 0) - middle).dot((mesh.corner(t, 1) - middle).cross(mesh.corner(t, 2) - middle)) / 6.0;
     }
   }
   return result;

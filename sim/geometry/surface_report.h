@@ -10,20 +10,20 @@ namespace calot {
 struct SurfaceReport {
   int vertices = 0;
   int triangles = 0;
-  int unusedVertices = 0;        ///< in no triangle
-  int coincidentVertices = 0;    ///< at exactly the place of an earlier one
-  int degenerateTriangles = 0;   ///< a corner repeated, or height below 1e-10 of the longest side
-  int duplicateTriangles = 0;    ///< the same three vertices as an earlier one, in any order
-  int openEdges = 0;             ///< with one triangle
-  int holes = 0;                 ///< groups of open edges that hang together
-  int nonManifoldEdges = 0;      ///< with more than two triangles
-  int flippedEdges = 0;          ///< whose two triangles disagree on what is outside
-  int components = 0;            ///< connected across edges
-  int inwardComponents = 0;      ///< closed, consistent, and of negative volume though not a cavity of another
-  int cavities = 0;              ///< closed, of negative volume, and inside another component: rightly so
-  double area = 0.0;             ///< m^2
-  double volume = 0.0;           ///< signed (m^3); of little meaning while there are holes or flipped edges
-  Box box;                       ///< m
+  int unusedVertices = 0;       ///< in no triangle
+  int coincidentVertices = 0;   ///< at exactly the place of an earlier one
+  int degenerateTriangles = 0;  ///< a corner repeated, or height below 1e-10 of the longest side
+  int duplicateTriangles = 0;   ///< the same three vertices as an earlier one, in any order
+  int openEdges = 0;            ///< with one triangle
+  int holes = 0;                ///< groups of open edges that hang together
+  int nonManifoldEdges = 0;     ///< with more than two triangles
+  int flippedEdges = 0;         ///< whose two triangles disagree on what is outside
+  int components = 0;           ///< connected across edges
+  int inwardComponents = 0;     ///< closed, consistent, and of negative volume though not a cavity of another
+  int cavities = 0;             ///< closed, of negative volume, and inside another component: rightly so
+  double area = 0.0;            ///< m^2
+  double volume = 0.0;          ///< signed (m^3); of little meaning while there are holes or flipped edges
+  Box box;                      ///< m
 
   /// No hole, every edge with two triangles that agree, every component outward (or a cavity).
   [[nodiscard]] bool closedManifold() const {
@@ -36,11 +36,11 @@ struct SurfaceReport {
 /// What repairSurface did.
 struct SurfaceRepair {
   TriangleMesh mesh;
-  int weldedVertices = 0;      ///< made one with an earlier vertex at exactly the same place
-  int droppedDegenerate = 0;   ///< triangles with a repeated corner after welding
+  int weldedVertices = 0;     ///< made one with an earlier vertex at exactly the same place
+  int droppedDegenerate = 0;  ///< triangles with a repeated corner after welding
   int droppedDuplicates = 0;
-  int droppedVertices = 0;     ///< in no triangle
-  int flippedTriangles = 0;    ///< turned to agree with their component, and the component outward
+  int droppedVertices = 0;   ///< in no triangle
+  int flippedTriangles = 0;  ///< turned to agree with their component, and the component outward
 
   [[nodiscard]] bool changed() const {
     return weldedVertices + droppedDegenerate + droppedDuplicates + droppedVertices + flippedTriangles > 0;

@@ -36,8 +36,8 @@ struct TriangleMesh {
 
 /// One side of one triangle: edge k joins corner k and corner (k + 1) mod 3.
 struct TriangleSide {
-  int low = 0;           ///< the edge's smaller vertex index
-  int high = 0;          ///< the larger
+  int low = 0;   ///< the edge's smaller vertex index
+  int high = 0;  ///< the larger
   int triangle = 0;
   int side = 0;          ///< k
   bool forward = false;  ///< the triangle runs from low to high

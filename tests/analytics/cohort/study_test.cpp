@@ -140,7 +140,8 @@ TEST(Study, countsWhyAttemptsStayOut) {
   }
   EXPECT_EQ(out + study.analysed, study.recruited);
   EXPECT_EQ(reasons,
-            "excluded by hand:1;recording diverged or damaged:1;not verified yet:1;recording incomplete:1;technical failure:1;"
+            "excluded by hand:1;recording diverged or damaged:1;not verified yet:1;recording incomplete:1;technical "
+            "failure:1;"
             "practice:2;branch of another attempt:1;golden recording:1;no group:1;");
   EXPECT_DOUBLE_EQ(*rowOf(study, "elapsed-time", "").group[0].mean, 22.0);
   StudyOptions withPractice = performers;
@@ -158,7 +159,8 @@ TEST(Study, takesOneValueAParticipant) {
   AttemptRecord gaveUp = humanAttempt(3, "E1");
   gaveUp.outcome = recorder::Outcome::abandoned;
   auto values = valuesOf(0, 0.07);
-  values[0] = makeMissing(*findCheckpoint("elapsed-time"), "", Origin::resimulated, Availability::notApplicable, "not completed: abandoned");
+  values[0] = makeMissing(*findCheckpoint("elapsed-time"), "", Origin::resimulated, Availability::notApplicable,
+                          "not completed: abandoned");
   database.storeAttempt(gaveUp, values);
   database.storeAttempt(humanAttempt(4, "E2"), valuesOf(50, 0.05));
   database.storeAttempt(humanAttempt(5, "N1"), valuesOf(100, 0.1));

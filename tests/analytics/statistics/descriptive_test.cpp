@@ -14,7 +14,8 @@ using Values = std::vector<double>;
 
 TEST(Descriptive, meanAndDeviationOfSleep) {
   // R: mean(sleep$extra) 1.54, sd(sleep$extra) 2.01792.
-  const Values all{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0, 1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+  const Values all{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0,
+                   1.9, 0.8,  1.1,  0.1,  -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
   EXPECT_NEAR(*mean(all), 1.54, 1e-14);
   EXPECT_NEAR(*standardDeviation(all), 2.01792, 5e-6);
 }

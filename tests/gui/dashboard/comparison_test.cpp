@@ -12,7 +12,7 @@ using analytics::AttemptRow;
 using analytics::AttemptValue;
 using analytics::Verdict;
 
-AttemptRow attempt(const std::string& uuid, const std::string& group, const std::string& key = "k1") {
+AttemptRow attempt(const std::string& uuid, const std::string& group, const std::string& key = std::string("k1")) {
   AttemptRow row;
   row.uuid = uuid;
   row.group = group;
@@ -24,8 +24,8 @@ AttemptRow attempt(const std::string& uuid, const std::string& group, const std:
 AttemptValue seconds(const std::string& uuid, double value, std::uint32_t version = 1) {
   AttemptValue v;
   v.attempt = uuid;
-  v.value.name = "a-checkpoint-of-the-test";  // no definition: shown as stored
-  v.value.unit = "s";
+  v.value.name = std::string("a-checkpoint-of-the-test");  // no definition: shown as stored
+  v.value.unit = std::string(1, 's');
   v.value.version = version;
   v.value.value = value;
   return v;
@@ -37,7 +37,7 @@ TEST(Comparison, QuartilesOfKnownNumbers) {
   std::vector<AttemptRow> attempts;
   std::vector<AttemptValue> values;
   for (int i = 0; i < 9; ++i) {
-    const std::string uuid(1, static_cast<char>('a' + i));
+    const std::string uuid = std::to_string(i);
     attempts.push_back(attempt(uuid, "expert"));
     values.push_back(seconds(uuid, (i * 4 % 9) + 1.0));  // 1 to 9 in some order
   }

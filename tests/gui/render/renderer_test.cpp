@@ -113,8 +113,13 @@ TEST(Renderer, SameViewGivesSameBytes) {
 
 TEST(Renderer, TriangleFacingTheCameraCoversItsProjectedArea) {
   SceneView view = emptyView();
-  view.surface.push_back(triangleAt(0.1, 0.03));
-  const double projected = 0.5 * std::pow(focalLength() * 0.03 / 0.1, 2);
+  SurfaceView plate = triangleAt(0.1, 0.03);
+  // No edge along a row, a column or a diagonal of samples, where rounding would add up.
+  plate.position = {Vec3(-0.011, -0.0073, 0.1), Vec3(0.0041, 0.019, 0.1), Vec3(0.0213, -0.0019, 0.1)};
+  plate.rest = plate.position;
+  view.surface.push_back(plate);
+  const double area = 0.5 * (plate.position[1] - plate.position[0]).cross(plate.position[2] - plate.position[0]).norm();
+  const double projected = area * std::pow(focalLength() / 0.1, 2);
   EXPECT_NEAR(coveredPixels(renderer().render(view, width, height, bare)), projected, 0.004 * projected);
 }
 

@@ -46,7 +46,8 @@ TEST(Obj, ReadsTheFormsOfAFace) {
 
 TEST(Obj, ScalesToMetresAndPassesOverDrawing) {
   const std::string text =
-      "# comment\nmtllib x.mtl\no liver\ng a b\ns off\nusemtl red\nvt 0 0\nvn 0 0 1\nv 1 2 3 1.0\nv 4e0 +5 6 0.1 0.2 0.3\nv 7 "
+      "# comment\nmtllib x.mtl\no liver\ng a b\ns off\nusemtl red\nvt 0 0\nvn 0 0 1\nv 1 2 3 1.0\nv 4e0 +5 6 0.1 0.2 "
+      "0.3\nv 7 "
       "8 -9.5\n\nl 1 2\nf 1 2 3";
   const TriangleMesh mesh = parse(text, LengthUnit::millimetre);
   EXPECT_EQ(mesh.vertex[1], Vec3(4.0 * 0.001, 5.0 * 0.001, 6.0 * 0.001));

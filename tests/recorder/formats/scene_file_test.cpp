@@ -111,10 +111,11 @@ TEST(SceneFile, cameraLooksAtItsTargetWithUpInThePicture) {
   json scene = validScene();
   scene["camera"]["position"] = {0.03, 0.05, -0.1};
   const CameraSample camera = load(scene.dump()).description.camera;
-  const Vec3 x = camera.orientation * Vec3::UnitX(), y = camera.orientation * Vec3::UnitY(), z = camera.orientation * Vec3::UnitZ();
+  const Vec3 x = camera.orientation * Vec3::UnitX(), y = camera.orientation * Vec3::UnitY(),
+             z = camera.orientation * Vec3::UnitZ();
   EXPECT_NEAR((z + Vec3(0.03, 0.05, -0.1).normalized()).norm(), 0.0, 1e-14);
-  EXPECT_NEAR(x.y(), 0.0, 1e-14);            // level
-  EXPECT_LT(y.y(), 0.0);                     // y runs down
+  EXPECT_NEAR(x.y(), 0.0, 1e-14);  // level
+  EXPECT_LT(y.y(), 0.0);           // y runs down
   EXPECT_NEAR((x.cross(y) - z).norm(), 0.0, 1e-14);
 }
 
@@ -141,7 +142,8 @@ TEST(SceneFile, bytesOfARecordingGiveTheSameScene) {
             "scenes/small.json: /organs/0/mesh/file: there is no file \"organs/a.obj\" in the assets folder");
   std::ofstream(fs::path(testing::TempDir()) / "calot_outside.obj") << tetrahedron;
   fs::create_symlink(fs::path(testing::TempDir()) / "calot_outside.obj", folder / "organs" / "a.obj");
-  EXPECT_NE(faultOf([&] { loadScene(folder / "scenes" / "small.json"); }).find("leads out of the assets folder"), std::string::npos);
+  EXPECT_NE(faultOf([&] { loadScene(folder / "scenes" / "small.json"); }).find("leads out of the assets folder"),
+            std::string::npos);
   EXPECT_EQ(faultOf([&] { loadScene(folder / "scenes" / "none.json"); }), "scenes/none.json: there is no such file");
   fs::remove_all(folder);
 }
@@ -154,38 +156,48 @@ struct Fault {
 
 TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
   const std::vector<Fault> faults{
-      {"/organs/0/material/poissonRatio", "0.5", "scenes/small.json: /organs/0/material/poissonRatio: 0.5 is not in [0, 0.5)"},
-      {"/organs/0/material/youngModulus", "-5000", "scenes/small.json: /organs/0/material/youngModulus: -5000 is not in [10, 1000000000]"},
-      {"/organs/0/material/density", "\"heavy\"", "scenes/small.json: /organs/0/material/density: a number is wanted, not string"},
+      {"/organs/0/material/poissonRatio", "0.5",
+       "scenes/small.json: /organs/0/material/poissonRatio: 0.5 is not in [0, 0.5)"},
+      {"/organs/0/material/youngModulus", "-5000",
+       "scenes/small.json: /organs/0/material/youngModulus: -5000 is not in [10, 1000000000]"},
+      {"/organs/0/material/density", "\"heavy\"",
+       "scenes/small.json: /organs/0/material/density: a number is wanted, not string"},
       {"/organs/0/material/density", "", "scenes/small.json: /organs/0/material: the key \"density\" is missing"},
       {"/organs/0/colour", "1",
-       "scenes/small.json: /organs/0/colour: unknown key; known are name, appearance, mesh, tetrahedra, material, anchors"},
+       "scenes/small.json: /organs/0/colour: unknown key; known are name, appearance, mesh, tetrahedra, material, "
+       "anchors"},
       {"/organs/0/tetrahedra", "9", "scenes/small.json: /organs/0/tetrahedra: 9 is not in [10, 1000000]"},
       {"/organs/0/tetrahedra", "100.5", "scenes/small.json: /organs/0/tetrahedra: a whole number is wanted"},
       {"/organs/0/tetrahedra", "-100", "scenes/small.json: /organs/0/tetrahedra: -100 is not in [10, 1000000]"},
-      {"/organs/0/tetrahedra", "18446744073709551615", "scenes/small.json: /organs/0/tetrahedra: 1.8446744073709552e+19 is not in [10, 1000000]"},
+      {"/organs/0/tetrahedra", "18446744073709551615",
+       "scenes/small.json: /organs/0/tetrahedra: 1.8446744073709552e+19 is not in [10, 1000000]"},
       {"/organs/1/anchors/0/nearOrgan/organ", "\"spleen\"",
        "scenes/small.json: /organs/1/anchors/0/nearOrgan/organ: the scene has no organ \"spleen\""},
       {"/organs/1/anchors/0/nearOrgan/organ", "\"gallbladder\"",
        "scenes/small.json: /organs/1/anchors/0/nearOrgan/organ: an organ cannot be anchored to itself"},
-      {"/organs/1/anchors/0", "{}", "scenes/small.json: /organs/1/anchors/0: one of \"sphere\" and \"nearOrgan\" is wanted"},
-      {"/organs/0/anchors/0/sphere/radius", "0", "scenes/small.json: /organs/0/anchors/0/sphere/radius: 0 is not in (0, 1]"},
+      {"/organs/1/anchors/0", "{}",
+       "scenes/small.json: /organs/1/anchors/0: one of \"sphere\" and \"nearOrgan\" is wanted"},
+      {"/organs/0/anchors/0/sphere/radius", "0",
+       "scenes/small.json: /organs/0/anchors/0/sphere/radius: 0 is not in (0, 1]"},
       {"/organs/1/name", "\"liver\"", "scenes/small.json: /organs/1/name: another organ has this name"},
       {"/organs/1/name", "\"Gall bladder\"",
        "scenes/small.json: /organs/1/name: small letters, digits and hyphens are allowed, the first no hyphen"},
       {"/organs", "[]", "scenes/small.json: /organs: 0 entries; from 1 to 32 are allowed"},
       {"/organs/0/mesh/unit", "\"inch\"", "scenes/small.json: /organs/0/mesh/unit: unknown word; known are cm, m, mm"},
-      {"/organs/0/mesh/file", "\"organs/b.obj\"", "scenes/small.json: /organs/0/mesh/file: there is no asset \"organs/b.obj\""},
+      {"/organs/0/mesh/file", "\"organs/b.obj\"",
+       "scenes/small.json: /organs/0/mesh/file: there is no asset \"organs/b.obj\""},
       {"/hands/left", "", "scenes/small.json: /hands: the key \"left\" is missing"},
       {"/hands", "[]", "scenes/small.json: /hands: an object is wanted, not array"},
       {"/hands/left/port", "[0, 0]", "scenes/small.json: /hands/left/port: 2 entries; from 3 to 3 are allowed"},
       {"/hands/left/port", "[0, null, 0]", "scenes/small.json: /hands/left/port/1: a number is wanted, not null"},
       {"/hands/left/port", "[-0.02, 0, -0.02]", "scenes/small.json: /hands/left/home: nearer than 0.01 m to the port"},
-      {"/hands/left/port", "[-0.9, 0, 0]", "scenes/small.json: /hands/left/port: farther than 0.3 m from the workspace"},
+      {"/hands/left/port", "[-0.9, 0, 0]",
+       "scenes/small.json: /hands/left/port: farther than 0.3 m from the workspace"},
       {"/hands/left/home", "[0.11, 0, 0]", "scenes/small.json: /hands/left/home: outside the workspace"},
       {"/hands/left/instrument", "\"laser\"",
        "scenes/small.json: /hands/left/instrument: unknown word; known are clip-applier, grasper, hook, scissors"},
-      {"/hands/right/couplingStiffness", "0", "scenes/small.json: /hands/right/couplingStiffness: 0 is not in (0, 100000]"},
+      {"/hands/right/couplingStiffness", "0",
+       "scenes/small.json: /hands/right/couplingStiffness: 0 is not in (0, 100000]"},
       {"/workspace/upper", "[0.1, -0.1, 0.1]",
        "scenes/small.json: /workspace/upper: every side of the workspace must be at least 0.01 m long"},
       {"/camera/target", "[0, 0, -0.1]", "scenes/small.json: /camera/target: the target is the camera's own position"},
@@ -208,11 +220,13 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
 }
 
 TEST(SceneFile, pathsThatLeaveTheAssetsAreRefused) {
-  for (const char* path : {"../a.obj", "organs/../../a.obj", "/etc/passwd", "./a.obj", "organs//a.obj", "organs/", "..\\a.obj", "C:a.obj"}) {
+  for (const char* path : {"../a.obj", "organs/../../a.obj", "/etc/passwd", "./a.obj", "organs//a.obj", "organs/",
+                           "..\\a.obj", "C:a.obj"}) {
     json scene = validScene();
     scene["organs"][0]["mesh"]["file"] = path;
     EXPECT_EQ(faultOf(scene),
-              "scenes/small.json: /organs/0/mesh/file: a path relative to the assets folder is wanted, with / and without . or ..");
+              "scenes/small.json: /organs/0/mesh/file: a path relative to the assets folder is wanted, with / and "
+              "without . or ..");
   }
 }
 
@@ -221,8 +235,10 @@ TEST(SceneFile, whatIsNotJsonIsNamedWithLineAndColumn) {
   EXPECT_EQ(faultOf([] { load(""); }), "scenes/small.json: the file is empty");
   EXPECT_EQ(faultOf([] { load("[]"); }), "scenes/small.json: /: an object is wanted, not array");
   EXPECT_EQ(faultOf([] { load("{\"gravity\": [NaN, 0, 0]}"); }).substr(0, 27), "scenes/small.json: not JSON");
-  EXPECT_EQ(faultOf([] { load("{\"timeLimit\": 1e999}"); }), "scenes/small.json: a number is larger than a double holds");
-  EXPECT_EQ(faultOf([] { load("{\"name\": \"a\", \"name\": \"b\"}"); }), "scenes/small.json: the key \"name\" is given twice");
+  EXPECT_EQ(faultOf([] { load("{\"timeLimit\": 1e999}"); }),
+            "scenes/small.json: a number is larger than a double holds");
+  EXPECT_EQ(faultOf([] { load("{\"name\": \"a\", \"name\": \"b\"}"); }),
+            "scenes/small.json: the key \"name\" is given twice");
   EXPECT_EQ(faultOf([] { load(std::string(100000, '[')); }), "scenes/small.json: nested deeper than 32 levels");
   const std::string whole = validScene().dump();
   for (std::size_t cut = 1; cut < whole.size(); cut += 7) {
@@ -234,7 +250,8 @@ TEST(SceneFile, aMeshThatIsNoBodyIsRefused) {
   const std::string text = validScene().dump();
   const std::string open = faultOf([&] { load(text, "v 0 0 0\nv 50 0 0\nv 0 50 0\nf 1 2 3\n"); });
   EXPECT_EQ(open.substr(0, 38), "organs/a.obj: 1 triangles with 3 open ") << open;
-  const std::string inside = faultOf([&] { load(text, "v 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n"); });
+  const std::string inside =
+      faultOf([&] { load(text, "v 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n"); });
   EXPECT_NE(inside.find("1 parts turned inside out"), std::string::npos) << inside;
   json metres = validScene();
   metres["organs"][0]["mesh"]["unit"] = "m";
@@ -245,9 +262,13 @@ TEST(SceneFile, aMeshThatIsNoBodyIsRefused) {
 TEST(SceneFile, assetsThatDoNotFitAreRefused) {
   const std::vector<std::byte> scene = bytesOfText(validScene().dump()), mesh = bytesOfText(tetrahedron);
   EXPECT_EQ(faultOf([] { sceneFromAssets({}); }), "scene: there is no scene file among the assets");
-  EXPECT_EQ(faultOf([&] { sceneFromAssets({{"scenes/small.json", scene}, {"organs/a.obj", mesh}, {"organs/c.obj", mesh}}); }),
+  EXPECT_EQ(faultOf([&] {
+              sceneFromAssets({{"scenes/small.json", scene}, {"organs/a.obj", mesh}, {"organs/c.obj", mesh}});
+            }),
             "scenes/small.json: the asset organs/c.obj is named nowhere in it");
-  EXPECT_EQ(faultOf([&] { sceneFromAssets({{"scenes/small.json", scene}, {"organs/a.obj", mesh}, {"organs/a.obj", mesh}}); }),
+  EXPECT_EQ(faultOf([&] {
+              sceneFromAssets({{"scenes/small.json", scene}, {"organs/a.obj", mesh}, {"organs/a.obj", mesh}});
+            }),
             "scene: two assets are called organs/a.obj");
 }
 
@@ -307,7 +328,9 @@ TEST(SceneFile, defaultsAreTheSchemas) {
   const SceneDescription s = load(scene.dump()).description;
   const json& root = schema.at("properties");
   const json& d = schema.at("$defs");
-  const auto of = [&](const char* definition, const char* key) { return d.at(definition).at("properties").at(key).at("default"); };
+  const auto of = [&](const char* definition, const char* key) {
+    return d.at(definition).at("properties").at(key).at("default");
+  };
   EXPECT_EQ(s.ticksPerStep, root.at("ticksPerStep").at("default").get<std::uint32_t>());
   EXPECT_EQ(s.timeLimit, root.at("timeLimit").at("default").get<double>());
   EXPECT_EQ(s.hands[1].shaftRadius, of("hand", "shaftRadius").get<double>());

@@ -15,7 +15,8 @@ TEST(Vtk, IsTheLegacyFormatAndReadsBackExactly) {
   mesh.tetrahedron = {Index4(0, 1, 2, 3), Index4(3, 2, 1, 0)};
   std::istringstream in(formatVtk(mesh, "two\nlines"));
   std::string line;
-  for (const char* wanted : {"# vtk DataFile Version 3.0", "two lines", "ASCII", "DATASET UNSTRUCTURED_GRID", "POINTS 4 double"}) {
+  for (const char* wanted :
+       {"# vtk DataFile Version 3.0", "two lines", "ASCII", "DATASET UNSTRUCTURED_GRID", "POINTS 4 double"}) {
     ASSERT_TRUE(std::getline(in, line));
     EXPECT_EQ(line, wanted);
   }

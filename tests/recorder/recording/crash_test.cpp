@@ -5,6 +5,7 @@
 #include <hdf5.h>
 #include <signal.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -49,6 +50,7 @@ void feedOne(RecordingWriter& writer, const AttemptHeader& header, std::uint64_t
 
 /// Records at real time until it is killed.
 [[noreturn]] void recordPaced(const std::filesystem::path& path, const AttemptHeader& header, std::atomic<std::uint64_t>& done) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   RecordingWriter writer(path, header);
   const auto begin = std::chrono::steady_clock::now();
   for (std::uint64_t n = 0;; ++n) {
@@ -205,12 +207,13 @@ TEST(DiskFull, AtTheStartLeavesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-/// Names of all objects, as the library lists them.
-std::vector<std::string> objects(const std::filesystem::path& path, bool writing) {
+/// Names of all objects with their number of attributes, as the library lists them.
+std::vector<std::string> objects(const std::filesystem::path& path, bool left) {
   std::vector<std::string> names;
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | (writing ? H5F_ACC_SWMR_READ : 0U), access);
+  H5Eset_auto2(H5E_DEFAULT, reinterpret_cast<H5E_auto2_t>(H5Eprint2), stderr);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | (left ? H5F_ACC_SWMR_READ : 0U), access);
   H5Ovisit2(
       file, H5_INDEX_NAME, H5_ITER_INC,
       [](hid_t, const char* name, const H5O_info_t* info, void* out) -> herr_t {
@@ -226,12 +229,17 @@ std::vector<std::string> objects(const std::filesystem::path& path, bool writing
 TEST(Swmr, NothingIsCreatedAfterItHasBegun) {
   const Folder folder;
   const AttemptHeader header = makeHeader();
-  RecordingWriter writer(folder / "r.h5", header);
-  const std::vector<std::string> first = objects(folder / "r.h5", true);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const RecordingWriter writer(folder / "first.h5", header);  // as it is before the first row
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  const std::vector<std::string> first = objects(folder / "first.h5", true);
+  EXPECT_TRUE(probe(folder / "first.h5").intact);
   EXPECT_GT(first.size(), 60U);
-  for (std::uint64_t n = 0; n < 310; ++n) feedOne(writer, header, n);
-  writer.onEnd(Outcome::stopped);
-  writer.finish();
+  test::writeRecording(folder / "r.h5", header, 310);
   EXPECT_EQ(objects(folder / "r.h5", false), first);
 }
 

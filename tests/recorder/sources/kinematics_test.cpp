@@ -119,7 +119,8 @@ TEST(KinematicsFile, roundedMatricesAreMadeRotations) {
   std::vector<Row> rows(2);
   rows[0].orientation[0] = Quat(Eigen::AngleAxisd(1.1, Vec3(3, -1, 2).normalized()));
   std::vector<std::string> words = wordsOf(rows[0]);
-  for (std::size_t i = 41; i < 50; ++i) words[i] = std::to_string(std::round(1e4 * std::stod(words[i])) / 1e4);  // 4 digits
+  for (std::size_t i = 41; i < 50; ++i)
+    words[i] = std::to_string(std::round(1e4 * std::stod(words[i])) / 1e4);  // 4 digits
   const KinematicsMotion motion = parseKinematics(bytesOfText(joined(words) + textOf({rows[1]})), "k.txt");
   EXPECT_NEAR(motion.rows[0][0].orientation.norm(), 1.0, 1e-15);
   EXPECT_LT(motion.rows[0][0].orientation.angularDistance(rows[0].orientation[0]), 2e-4);
@@ -142,10 +143,14 @@ TEST(KinematicsFile, everyFaultIsNamedWithItsLine) {
   EXPECT_EQ(faultOf(with(56, "1e999")), "k.txt: line 4: column 57: \"1e999\" is no finite number");
   EXPECT_EQ(faultOf(with(56, "0x10")), "k.txt: line 4: column 57: \"0x10\" is no finite number");
   EXPECT_EQ(faultOf(with(56, "0,5")), "k.txt: line 4: column 57: \"0,5\" is no finite number");
-  EXPECT_EQ(faultOf(with(39, "43.6")), "k.txt: line 4: columns 39 to 41: a position farther than 5 m; positions are in metres");
-  EXPECT_EQ(faultOf(with(41, "0.9")), "k.txt: line 4: columns 42 to 50: no rotation matrix (off by 0.19; 0.001 is allowed)");
-  EXPECT_EQ(faultOf(with(60, "1.0006")), "k.txt: line 4: columns 61 to 69: no rotation matrix (off by 0.0012; 0.001 is allowed)");
-  EXPECT_EQ(faultOf(with(41, "-1")), "k.txt: line 4: columns 42 to 50: no rotation matrix (off by 2; 0.001 is allowed)");
+  EXPECT_EQ(faultOf(with(39, "43.6")),
+            "k.txt: line 4: columns 39 to 41: a position farther than 5 m; positions are in metres");
+  EXPECT_EQ(faultOf(with(41, "0.9")),
+            "k.txt: line 4: columns 42 to 50: no rotation matrix (off by 0.19; 0.001 is allowed)");
+  EXPECT_EQ(faultOf(with(60, "1.0006")),
+            "k.txt: line 4: columns 61 to 69: no rotation matrix (off by 0.0012; 0.001 is allowed)");
+  EXPECT_EQ(faultOf(with(41, "-1")),
+            "k.txt: line 4: columns 42 to 50: no rotation matrix (off by 2; 0.001 is allowed)");
   EXPECT_EQ(faultOf(good + "\n" + good), "k.txt: line 4: an empty line between rows");
   EXPECT_EQ(faultOf(good + "\n\n"), "(no fault)");
   EXPECT_EQ(faultOf(std::string("\x89HDF\r\n\x1a\n", 8)).substr(0, 14), "k.txt: line 1:");
@@ -293,7 +298,8 @@ TEST(KinematicsSource, overwrittenBytesNeverCrash) {
   for (int n = 0; n < 500; ++n) {
     std::string text = good;
     for (int k = 0; k < 3; ++k) {
-      text[static_cast<std::size_t>(random.uniform() * static_cast<double>(text.size()))] = static_cast<char>(random.next() & 0xffU);
+      text[static_cast<std::size_t>(random.uniform() * static_cast<double>(text.size()))] =
+          static_cast<char>(random.next() & 0xffU);
     }
     if (faultOf(text) != "(no fault)") ++refused;
   }

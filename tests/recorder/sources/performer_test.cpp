@@ -160,7 +160,8 @@ TEST(PerformerSource, handsTakeTurnsUnlessBimanual) {
     double together = 0.0;
     for (std::size_t i = 0; i + 1 < l.size(); ++i) {  // without the way home
       for (std::size_t j = 0; j + 1 < r.size(); ++j) {
-        together += std::max(0.0, std::min(l[i].start + l[i].duration, r[j].start + r[j].duration) - std::max(l[i].start, r[j].start));
+        together += std::max(
+            0.0, std::min(l[i].start + l[i].duration, r[j].start + r[j].duration) - std::max(l[i].start, r[j].start));
       }
     }
     return together;

@@ -86,7 +86,9 @@ TEST(TouchLiver, anchorsHoldAPartOfEachOrganAndLeaveTheRest) {
   const SceneSurfaces surfaces(scene);
   const auto held = [&](std::size_t o, const Vec3& p) {
     for (const AnchorDescription& a : scene.organs[o].anchors) {
-      if (a.nearOrgan.empty() ? (p - a.centre).norm() <= a.radius : std::abs(surfaces.signedDistance(0, p)) <= a.distance) return true;
+      if (a.nearOrgan.empty() ? (p - a.centre).norm() <= a.radius
+                              : std::abs(surfaces.signedDistance(0, p)) <= a.distance)
+        return true;
     }
     return false;
   };
@@ -110,10 +112,10 @@ TEST(TouchLiver, anchorsHoldAPartOfEachOrganAndLeaveTheRest) {
 }
 
 struct Touch {
-  double seconds = 0.0;                      // tip inside an organ at rest
+  double seconds = 0.0;  // tip inside an organ at rest
   std::array<double, 2> organSeconds{};
-  double deepest = 0.0;                      // m
-  double outside = 0.0;                      // s outside the workspace
+  double deepest = 0.0;  // m
+  double outside = 0.0;  // s outside the workspace
   std::uint64_t ticks = 0;
 };
 
@@ -134,7 +136,8 @@ std::array<Touch, 2> play(SampleSource& source, const SceneDescription& scene) {
         t.deepest = std::max(t.deepest, -distance);
       }
       t.seconds = t.organSeconds[0] + t.organSeconds[1];
-      if ((p.array() < scene.workspace[0].array()).any() || (p.array() > scene.workspace[1].array()).any()) t.outside += 0.02;
+      if ((p.array() < scene.workspace[0].array()).any() || (p.array() > scene.workspace[1].array()).any())
+        t.outside += 0.02;
     }
   }
   return touch;
@@ -170,7 +173,8 @@ TEST(TouchLiver, realMotionTouchesTheOrgansByMillimetres) {
 TEST(TouchLiver, performersTouchBothOrgansWithBothHandsInTime) {
   const SceneDescription& scene = touchLiver().description;
   for (const char* name : {"skilled", "unskilled"}) {
-    const PerformerProfile profile = loadPerformer(fs::path(CALOT_SOURCE_DIR) / "assets" / "performers" / (std::string(name) + ".json"));
+    const PerformerProfile profile =
+        loadPerformer(fs::path(CALOT_SOURCE_DIR) / "assets" / "performers" / (std::string(name) + ".json"));
     for (const std::uint64_t seed : {1U, 2U, 3U, 20140517U}) {
       SCOPED_TRACE(std::string(name) + " seed " + std::to_string(seed));
       PerformerSource source(profile, scene, seed);

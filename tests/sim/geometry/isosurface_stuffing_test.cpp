@@ -72,7 +72,8 @@ TEST(Stuffing, ALevelIsAGrownShape) {
 /// Sides at random, and a cut of its own on every edge, often just beside a limit at which points are moved: what a
 /// smooth shape never shows.
 struct Adversary {
-  Adversary(const BccLattice& lattice, Random& random) : corners(lattice.corners()), seed(random.next()), style(random.next() % 4) {
+  Adversary(const BccLattice& lattice, Random& random)
+      : corners(lattice.corners()), seed(random.next()), style(random.next() % 4) {
     const double inside = random.uniform(0.2, 0.8);
     for (std::int64_t p = 0; p < lattice.points(); ++p) value.push_back(random.uniform() < inside ? -1.0 : 1.0);
   }
@@ -187,8 +188,8 @@ TEST(BoundaryTriangles, AreOutwardSortedAndOwned) {
     EXPECT_EQ(v[0], v.minCoeff());
     EXPECT_EQ(boundary[i].tetrahedron, v.maxCoeff() == 4 ? 1 : 0);
     if (i > 0) {
-      EXPECT_TRUE(std::lexicographical_compare(boundary[i - 1].vertex.data(), boundary[i - 1].vertex.data() + 3, v.data(),
-                                               v.data() + 3));
+      EXPECT_TRUE(std::lexicographical_compare(boundary[i - 1].vertex.data(), boundary[i - 1].vertex.data() + 3,
+                                               v.data(), v.data() + 3));
     }
   }
   EXPECT_TRUE(inspectSurface(boundarySurface(mesh)).closedManifold());

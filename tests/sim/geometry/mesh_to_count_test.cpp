@@ -103,8 +103,8 @@ TEST(StuffToCount, ThinPartsAndLostComponentsAreReported) {
 }
 
 TEST(StuffToCount, TwoBodiesStayTwo) {
-  const TriangleMesh both = test::together(test::sphereSurface({-0.04, 0.0, 0.0}, 0.03, 3),
-                                           test::sphereSurface({0.04, 0.0, 0.0}, 0.03, 3));
+  const TriangleMesh both =
+      test::together(test::sphereSurface({-0.04, 0.0, 0.0}, 0.03, 3), test::sphereSurface({0.04, 0.0, 0.0}, 0.03, 3));
   const StuffedMesh stuffed = stuffToCount(both, 600);
   ASSERT_TRUE(stuffed.ok()) << stuffed.error;
   int count = 0;

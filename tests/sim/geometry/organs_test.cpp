@@ -19,13 +19,23 @@ std::string kept(const std::string& name) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+const TriangleMesh& liverMesh() {
+  static const TriangleMesh mesh = organs::makeLiver();
+  return mesh;
+}
+
+const TriangleMesh& gallbladderMesh() {
+  static const TriangleMesh mesh = organs::makeGallbladder();
+  return mesh;
+}
+
 TEST(Organs, ProgramMakesTheSameBytes) {
-  EXPECT_TRUE(recorder::formatObj(organs::makeLiver(), organs::liverHead) == kept("liver.obj"));
-  EXPECT_TRUE(recorder::formatObj(organs::makeGallbladder(), organs::gallbladderHead) == kept("gallbladder.obj"));
+  EXPECT_TRUE(recorder::formatObj(liverMesh(), organs::liverHead) == kept("liver.obj"));
+  EXPECT_TRUE(recorder::formatObj(gallbladderMesh(), organs::gallbladderHead) == kept("gallbladder.obj"));
 }
 
 TEST(Organs, HavePlausibleSizes) {
-  const SurfaceReport liver = inspectSurface(organs::makeLiver());
+  const SurfaceReport liver = inspectSurface(liverMesh());
   EXPECT_TRUE(liver.closedManifold());
   EXPECT_EQ(liver.components, 1);
   EXPECT_NEAR(liver.volume, 1.5e-3, 0.1e-3);
@@ -35,7 +45,7 @@ TEST(Organs, HavePlausibleSizes) {
   EXPECT_TRUE(size[2] > 0.15 && size[2] < 0.18) << size[2];
   EXPECT_TRUE(liver.triangles >= 4000 && liver.triangles <= 8000);
 
-  const SurfaceReport gallbladder = inspectSurface(organs::makeGallbladder());
+  const SurfaceReport gallbladder = inspectSurface(gallbladderMesh());
   EXPECT_TRUE(gallbladder.closedManifold());
   EXPECT_EQ(gallbladder.components, 1);
   EXPECT_TRUE(gallbladder.volume > 30e-6 && gallbladder.volume < 50e-6) << gallbladder.volume;
@@ -43,8 +53,8 @@ TEST(Organs, HavePlausibleSizes) {
 }
 
 TEST(Organs, GallbladderLiesInItsBed) {
-  const TriangleMesh liver = organs::makeLiver();
-  const TriangleMesh gallbladder = organs::makeGallbladder();
+  const TriangleMesh& liver = liverMesh();
+  const TriangleMesh& gallbladder = gallbladderMesh();
   const SurfaceDistance toLiver(liver);
   const SurfaceDistance toGallbladder(gallbladder);
   double gap = 1.0;
@@ -70,13 +80,13 @@ TEST(Organs, GallbladderLiesInItsBed) {
 }
 
 TEST(Organs, FundusReachesPastTheInferiorBorder) {
-  const Box liver = bounds(organs::makeLiver());
+  const Box liver = bounds(liverMesh());
   double border = -1.0;
   double fundus = -1.0;
-  for (const Vec3& p : organs::makeLiver().vertex) {
+  for (const Vec3& p : liverMesh().vertex) {
     if (std::abs(p[0] - 0.012) < 0.012 && p[2] < -0.005) border = std::max(border, p[1]);
   }
-  for (const Vec3& p : organs::makeGallbladder().vertex) fundus = std::max(fundus, p[1]);
+  for (const Vec3& p : gallbladderMesh().vertex) fundus = std::max(fundus, p[1]);
   EXPECT_GT(fundus, border);
   EXPECT_LT(fundus, liver.upper[1] + 0.02);
 }

@@ -31,7 +31,8 @@ TEST(SurfaceReport, ASoundSurface) {
   const SurfaceReport report = inspectSurface(boxSurface(-one, one));
   EXPECT_TRUE(report.closedManifold());
   EXPECT_EQ(report.components, 1);
-  EXPECT_EQ(report.degenerateTriangles + report.duplicateTriangles + report.coincidentVertices + report.unusedVertices, 0);
+  EXPECT_EQ(report.degenerateTriangles + report.duplicateTriangles + report.coincidentVertices + report.unusedVertices,
+            0);
 }
 
 TEST(SurfaceReport, NamesEveryFault) {
@@ -117,7 +118,8 @@ TEST(SurfaceDistance, ClosestAgreesWithTestingEveryTriangle) {
     double best = 1e300;
     int which = -1;
     for (int t = 0; t < sphere.triangles(); ++t) {
-      const double d = closestOnTriangle(p, sphere.corner(t, 0), sphere.corner(t, 1), sphere.corner(t, 2)).squaredDistance;
+      const double d =
+          closestOnTriangle(p, sphere.corner(t, 0), sphere.corner(t, 1), sphere.corner(t, 2)).squaredDistance;
       if (d < best) {
         best = d;
         which = t;

@@ -4,9 +4,9 @@
 
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <cstdint>
 #include <filesystem>
-#include <fmt/format.h>
 #include <string>
 #include <vector>
 
@@ -76,7 +76,8 @@ inline AttemptRecord humanAttempt(unsigned n, const std::string& participant) {
 inline std::vector<CheckpointValue> valuesOf(double seconds, double left) {
   return {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, seconds),
           makeValue(*findCheckpoint("path-length"), "left", Origin::samples, left),
-          makeMissing(*findCheckpoint("path-length"), "right", Origin::samples, Availability::notApplicable, "no instrument in this hand")};
+          makeMissing(*findCheckpoint("path-length"), "right", Origin::samples, Availability::notApplicable,
+                      "no instrument in this hand")};
 }
 
 }  // namespace calot::analytics::support

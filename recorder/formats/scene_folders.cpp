@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where scenes are found: the part of scene_file.h that asks folders rather than files.
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "recorder/errors.h"
+#include "recorder/formats/scene_file.h"
+
+namespace calot::recorder {
+namespace fs = std::filesystem;
+
+std::vector<fs::path> assetRoots(const fs::path& programFolder, const fs::path& compiledIn) {
+  if (const char* named = std::getenv("CALOT_ASSETS"); named != nullptr && *named != '\0') return {fs::path(named)};
+  return {programFolder / ".." / "share" / "calot", compiledIn};
+}
+
+std::vector<fs::path> listScenes(const std::vector<fs::path>& roots) {
+  std::map<std::string, fs::path> byName;
+  for (const fs::path& root : roots) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / "scenes", fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+    }
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : byName) files.push_back(entry.second);
+  return files;
+}
+
+fs::path findScene(const std::string& name, const std::vector<fs::path>& roots) {
+  std::error_code ignored;
+  if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
+    if (fs::is_regular_file(name, ignored)) return name;
+    throw Error(ExitCode::usage, name + ": there is no such scene file");
+  }
+  std::string known;
+  for (const fs::path& file : listScenes(roots)) {
+    if (file.stem() == name) return file;
+    known += (known.empty() ? "" : ", ") + file.stem().string();
+  }
+  throw Error(ExitCode::usage, fmt::format("there is no scene \"{}\"; {}", name,
+                                           known.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)")
+                                                         : "there are " + known));
+}
+
+}  // namespace calot::recorder
