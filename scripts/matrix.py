@@ -32,8 +32,9 @@ LEVELS = {  # what each level of the x86-64 ABI adds, as /proc/cpuinfo names it
     "native": set(),
 }
 CROSS = {"gcc": "aarch64-linux-gnu-g++", "clang": "clang++"}
-# What is recorded to take States from: (performer, seed, steps before the State).
-STATES = (("skilled", 1, 100), ("unskilled", 2, 250))
+# What is recorded to take States from: (performer, seed). The State is taken just before the first touch.
+PERFORMERS = (("skilled", 1), ("unskilled", 2))
+RECORDED_SECONDS, STEPS, STEPS_BEFORE_TOUCH = 8, 200, 20
 
 
 @dataclasses.dataclass(frozen=True)
@@ -157,20 +158,39 @@ def build_all(builds, work, jobs):
     return failed
 
 
+def step_before_touch(recording):
+    """The step a little before the first force, so that touch, slide and release lie in the cells' steps."""
+    import h5py  # the distribution's; needed here only
+
+    with h5py.File(recording, "r") as file:
+        per_step = int(file.attrs["ticks_per_step"])
+        touches = [int(force.any(axis=1).argmax()) // per_step
+                   for hand in ("left", "right") if (force := file[f"ticks/{hand}/force"][:]).any()]
+        steps = len(file["ticks/left/force"]) // per_step
+    step = max(1, min(touches, default=0) - STEPS_BEFORE_TOUCH)
+    if not touches or step + STEPS >= steps:
+        raise SystemExit(f"matrix: {recording}: nobody touches anything early enough: no State worth comparing")
+    return step
+
+
 def make_states(calot, work):
     """Records two short attempts with the release build and takes a State from each."""
     folder = work / "states"
     folder.mkdir(parents=True, exist_ok=True)
+
+    def call(*command):
+        run = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
+        if run.returncode != 0:
+            raise SystemExit(f"matrix: {' '.join(map(str, command))}: exit {run.returncode}: {run.stderr.strip()}")
+
     states = []
-    for performer, seed, step in STATES:
-        recording, flat = folder / f"{performer}.h5", folder / f"{performer}-{step}.flat"
-        for command in ([calot, "record", "--scene", "touch-liver", "--performer", performer, "--seed", str(seed), "--seconds",
-                         str(step / 100 + 2.5), "-o", recording, "--force"],
-                        [calot, "state", recording, "--step", str(step), "--flat", "-o", flat, "--force"]):
-            run = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
-            if run.returncode != 0:
-                raise SystemExit(f"matrix: {' '.join(map(str, command))}: exit {run.returncode}: {run.stderr.strip()}")
-        states.append(flat)
+    for performer, seed in PERFORMERS:
+        recording = folder / f"{performer}.h5"
+        call(calot, "record", "--scene", "touch-liver", "--performer", performer, "--seed", seed, "--seconds", RECORDED_SECONDS,
+             "-o", recording, "--force")
+        step = step_before_touch(recording)
+        states.append(folder / f"{performer}-{step}.flat")
+        call(calot, "state", recording, "--step", step, "--flat", "-o", states[-1], "--force")
     return states
 
 

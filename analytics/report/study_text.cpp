@@ -13,7 +13,7 @@ std::string number(const std::optional<double>& value) { return value ? signific
 
 std::string published(const StudyRow& row) {
   if (!row.publishedExpert) return "";
-  return fmt::format("{} / {}", significant(*row.publishedExpert), significant(*row.publishedNovice));
+  return fmt::format("{} / {}", *row.publishedExpert, *row.publishedNovice);  // as printed there
 }
 
 std::string nameOfRow(const StudyRow& row) {

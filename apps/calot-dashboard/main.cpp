@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <QApplication>
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <QApplication>
 #include <string>
 
 #include "gui/dashboard/dashboard_window.h"

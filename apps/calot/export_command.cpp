@@ -28,7 +28,8 @@ void addExport(CLI::App& app, Run& run) {
       const bool terminal = ::isatty(STDERR_FILENO) != 0;
       const std::uint64_t steps = recording.stepCount();
       const auto progress = [terminal, steps](std::uint64_t done) {
-        if (terminal && (done % 1000 == 0 || done == steps)) fmt::print(stderr, "\r{} of {} steps{}", done, steps, done == steps ? "\n" : "");
+        if (terminal && (done % 1000 == 0 || done == steps))
+          fmt::print(stderr, "\r{} of {} steps{}", done, steps, done == steps ? "\n" : "");
       };
       const auto files = recorder::exportCsv(recording, options->folder, options->force, progress);
       for (const auto& file : files) fmt::print("{}\n", file.string());

@@ -57,12 +57,16 @@ ordered_json describe(const recorder::Recording& recording, const recorder::Chai
   out["attempt"] = attributes;
   out["organs"] = header.organs;
   ordered_json assets = ordered_json::array();
-  for (const recorder::Asset& asset : header.assets) assets.push_back({{"name", asset.name}, {"bytes", asset.bytes.size()}});
+  for (const recorder::Asset& asset : header.assets)
+    assets.push_back({{"name", asset.name}, {"bytes", asset.bytes.size()}});
   out["scene_files"] = assets;
   return out;
 }
 
-std::string shown(const ordered_json& value) { return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
+std::string shown(const ordered_json& value) {
+  return value.is_string() ? value.get<std::string>()
+                           : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
 
 void print(const ordered_json& d) {
   for (const auto& [key, value] : d.items()) {
@@ -71,7 +75,8 @@ void print(const ordered_json& d) {
         if (!(v.is_string() && v.get<std::string>().empty())) fmt::print("{:<24} {}\n", name, shown(v));
       }
     } else if (key == "scene_files") {
-      for (const auto& asset : value) fmt::print("{:<24} {} ({} bytes)\n", "scene file", shown(asset["name"]), shown(asset["bytes"]));
+      for (const auto& asset : value)
+        fmt::print("{:<24} {} ({} bytes)\n", "scene file", shown(asset["name"]), shown(asset["bytes"]));
     } else {
       fmt::print("{:<24} {}\n", key, shown(value));
     }
@@ -86,7 +91,8 @@ void addInspect(CLI::App& app, Run& run) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("inspect", "Say what a recording holds, and whether its content chain is intact");
+  CLI::App* command =
+      app.add_subcommand("inspect", "Say what a recording holds, and whether its content chain is intact");
   command->add_option("recording", options->file, "Recording (.h5)")->required();
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &run] {

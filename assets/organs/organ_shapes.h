@@ -30,6 +30,11 @@ inline double gallbladder(const Vec3& p) {
   return smoothMin(body(p), pouch(p), 0.008);
 }
 
+inline const Box& gallbladderBox() {
+  static const Box box{Vec3(-0.040, -0.045, -0.045), Vec3(0.035, 0.072, 0.020)};
+  return box;
+}
+
 /// Height of the visceral surface over (x, y), before the fossa: rises to the patient's left and to the back.
 inline double visceralHeight(double x, double y) {
   double z = 0.004 - 0.37 * x - 0.26 * y;
@@ -52,16 +57,16 @@ inline double liver(const Vec3& p) {
   // The slope's length makes the height difference a distance.
   const double below = (visceralHeight(p[0], p[1]) - p[2]) / 1.1;
   const double body = smoothMax(dome, below, 0.020);
-  return smoothMax(body, bedGap - gallbladder(p), 0.006);
+  // Two centimetres off the gallbladder's box the fossa changes nothing.
+  const Vec3 outside = (gallbladderBox().lower - p).cwiseMax(p - gallbladderBox().upper);
+  return outside.maxCoeff() > 0.02 ? body : smoothMax(body, bedGap - gallbladder(p), 0.006);
 }
 
 inline TriangleMesh makeLiver() {
   return polygonize(liver, {Vec3(-0.140, -0.100, -0.090), Vec3(0.140, 0.100, 0.150)}, 0.0066);
 }
 
-inline TriangleMesh makeGallbladder() {
-  return polygonize(gallbladder, {Vec3(-0.040, -0.045, -0.045), Vec3(0.035, 0.072, 0.020)}, 0.0032);
-}
+inline TriangleMesh makeGallbladder() { return polygonize(gallbladder, gallbladderBox(), 0.0032); }
 
 inline constexpr const char* liverHead =
     "Liver of an adult, made by calot-organs from implicit shapes (docs/organs.md).\n"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <QSortFilterProxyModel>
 #include <QStringList>
-#include <optional>
 
 #include "analytics/cohort/cohort_database.h"
 

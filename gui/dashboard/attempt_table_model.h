@@ -12,8 +12,18 @@ namespace calot::gui {
 class AttemptTableModel : public QAbstractTableModel {
   Q_OBJECT
  public:
-  enum Column { attemptColumn, operatorColumn, groupColumn, sceneColumn, modeColumn, outcomeColumn, startColumn, verificationColumn,
-                syntheticColumn, columnTotal };
+  enum Column {
+    attemptColumn,
+    operatorColumn,
+    groupColumn,
+    sceneColumn,
+    modeColumn,
+    outcomeColumn,
+    startColumn,
+    verificationColumn,
+    syntheticColumn,
+    columnTotal
+  };
   enum Role {
     sortRole = Qt::UserRole,  ///< what a column is ordered by
     searchRole,               ///< QString: all that the search box looks through, lower case; same for every column

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/attempts_page.h"
 
+#include <array>
 #include <QBoxLayout>
 #include <QComboBox>
 #include <QHeaderView>
@@ -9,7 +10,6 @@
 #include <QLineEdit>
 #include <QSplitter>
 #include <QTableView>
-#include <array>
 
 #include "gui/dashboard/words.h"
 #include "recorder/errors.h"
@@ -18,7 +18,8 @@ namespace calot::gui {
 namespace {
 
 using analytics::Verdict;
-constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::damaged, Verdict::notCheckableHere, Verdict::notChecked};
+constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::damaged, Verdict::notCheckableHere,
+                              Verdict::notChecked};
 
 QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* spokenName) {
   auto* table = new QTableView;
@@ -100,7 +101,7 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
   };
   add("&Search", search_, 1);
   add("&Verification", verdict_, 0);
-  add("O&rigin", operators_, 0);
+  add("&Made by", operators_, 0);
   row->addWidget(count_);
   layout.addLayout(row);
 
@@ -129,7 +130,8 @@ void AttemptsPage::buildDetails(QBoxLayout& layout) {
     return made;
   };
   watermark_ = label("watermark");
-  watermark_->setText("SYNTHETIC — made by a performer. It shows that the pipeline works and says nothing about people.");
+  watermark_->setText(
+      "SYNTHETIC — made by a performer. It shows that the pipeline works and says nothing about people.");
   watermark_->setStyleSheet("QLabel { background: #f0e442; color: #000000; font-weight: bold; padding: 4px; }");
   watermark_->hide();
   identity_ = label("identity");
@@ -166,8 +168,9 @@ void AttemptsPage::showSelected() {
     return;
   }
   const analytics::AttemptRow& attempt = attempts_.attempt(selected.row());
-  QString text = QString("Attempt %1 · %2 · %3").arg(QString::fromStdString(attempt.uuid), operatorText(attempt),
-                                                      QString::fromStdString(attempt.comparabilityKey));
+  QString text = QString("Attempt %1 · %2 · %3")
+                     .arg(QString::fromStdString(attempt.uuid), operatorText(attempt),
+                          QString::fromStdString(attempt.comparabilityKey));
   if (attempt.excluded) text += "\nExcluded from studies: " + QString::fromStdString(attempt.exclusionReason);
   identity_->setText(text);
   const Badge badge = badgeOf(attempt);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <QWidget>
 #include <memory>
+#include <QWidget>
 
 #include "gui/dashboard/attempt_filter.h"
 #include "gui/dashboard/attempt_table_model.h"

@@ -24,14 +24,22 @@ QVariant CheckpointTableModel::data(const QModelIndex& index, int role) const {
   const analytics::CheckpointValue& value = values_[static_cast<std::size_t>(index.row())];
   const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
   if (role == Qt::DisplayRole) switch (index.column()) {
-      case nameColumn: return figureTitle(value.name, {});
-      case subjectColumn: return value.subject.empty() ? QStringLiteral("attempt") : QString::fromStdString(value.subject);
-      case valueColumn: return valueText(value) + (value.note.empty() ? "" : " *");
-      case directionColumn: return directionText(value);
-      case windowColumn: return definition != nullptr ? QString::fromStdString(definition->window) : QString();
-      case originColumn: return originText(value.origin);
-      case versionColumn: return static_cast<int>(value.version);
-      default: return {};
+      case nameColumn:
+        return figureTitle(value.name, {});
+      case subjectColumn:
+        return value.subject.empty() ? QStringLiteral("attempt") : QString::fromStdString(value.subject);
+      case valueColumn:
+        return valueText(value) + (value.note.empty() ? "" : " *");
+      case directionColumn:
+        return directionText(value);
+      case windowColumn:
+        return definition != nullptr ? QString::fromStdString(definition->window) : QString();
+      case originColumn:
+        return originText(value.origin);
+      case versionColumn:
+        return static_cast<int>(value.version);
+      default:
+        return {};
     }
   if (role == Qt::TextAlignmentRole && index.column() == valueColumn)
     return QVariant::fromValue(Qt::Alignment(Qt::AlignVCenter | (value.value ? Qt::AlignRight : Qt::AlignLeft)));

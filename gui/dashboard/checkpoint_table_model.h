@@ -12,7 +12,16 @@ namespace calot::gui {
 class CheckpointTableModel : public QAbstractTableModel {
   Q_OBJECT
  public:
-  enum Column { nameColumn, subjectColumn, valueColumn, directionColumn, windowColumn, originColumn, versionColumn, columnTotal };
+  enum Column {
+    nameColumn,
+    subjectColumn,
+    valueColumn,
+    directionColumn,
+    windowColumn,
+    originColumn,
+    versionColumn,
+    columnTotal
+  };
 
   using QAbstractTableModel::QAbstractTableModel;
   void setValues(std::vector<analytics::CheckpointValue> values);

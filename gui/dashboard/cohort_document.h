@@ -17,7 +17,9 @@ class CohortDocument {
   [[nodiscard]] const std::string& path() const { return database_.path(); }
   [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return attempts_; }
   /// @throws calot::Error
-  [[nodiscard]] std::vector<analytics::CheckpointValue> values(const std::string& uuid) const { return database_.values(uuid); }
+  [[nodiscard]] std::vector<analytics::CheckpointValue> values(const std::string& uuid) const {
+    return database_.values(uuid);
+  }
   /// @throws calot::Error
   [[nodiscard]] std::vector<analytics::AttemptValue> allValues() const { return database_.allValues(); }
 

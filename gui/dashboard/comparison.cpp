@@ -29,7 +29,8 @@ std::vector<std::string> comparabilityKeysOf(const std::vector<AttemptRow>& atte
   for (const AttemptRow& a : attempts) ++count[a.comparabilityKey];
   std::vector<std::string> keys;
   for (const auto& entry : count) keys.push_back(entry.first);
-  std::stable_sort(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) { return count[a] > count[b]; });
+  std::stable_sort(keys.begin(), keys.end(),
+                   [&](const std::string& a, const std::string& b) { return count[a] > count[b]; });
   return keys;
 }
 

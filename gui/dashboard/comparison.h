@@ -47,7 +47,8 @@ struct Comparison {
   std::string unit;                    ///< displayed one
   bool synthetic = false;              ///< at least one point was made by a performer
   int shown = 0;                       ///< attempts with a point
-  int otherKey = 0, excluded = 0, notTrusted = 0, withoutValue = 0, otherVersion = 0, syntheticLeftOut = 0;  ///< left out
+  int otherKey = 0, excluded = 0, notTrusted = 0, withoutValue = 0, otherVersion = 0,
+      syntheticLeftOut = 0;  ///< left out
 };
 
 /// Left out, in this order: another comparability key, excluded from studies, diverged or damaged, synthetic (unless

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/comparison_chart.h"
 
+#include <algorithm>
 #include <QFont>
 #include <QGraphicsScene>
 #include <QGraphicsSimpleTextItem>
@@ -10,7 +11,6 @@
 #include <QtCharts/QLegend>
 #include <QtCharts/QScatterSeries>
 #include <QtCharts/QValueAxis>
-#include <algorithm>
 
 namespace calot::gui {
 namespace {
@@ -53,7 +53,7 @@ QScatterSeries* pointsOf(const Comparison& comparison, bool synthetic) {
     for (std::size_t i = 0; i < points.size(); i += stride) {
       if (points[i].synthetic != synthetic) continue;
       // Neighbours in value stand at five different places beside the box, always the same ones.
-      const double aside = 0.05 * (static_cast<double>(i / stride % 5) - 2.0);
+      const double aside = 0.05 * (static_cast<double>(2 * (i / stride) % 5) - 2.0);
       series->append(static_cast<double>(g) + 0.32 + aside, points[i].value);
     }
   }
@@ -62,7 +62,8 @@ QScatterSeries* pointsOf(const Comparison& comparison, bool synthetic) {
 
 }  // namespace
 
-ComparisonChart::ComparisonChart(QWidget* parent) : QChartView(parent), watermark_(new QGraphicsSimpleTextItem("SYNTHETIC")) {
+ComparisonChart::ComparisonChart(QWidget* parent)
+    : QChartView(parent), watermark_(new QGraphicsSimpleTextItem("SYNTHETIC")) {
   setRenderHint(QPainter::Antialiasing);
   setObjectName("comparison-chart");
   chart()->setMargins(QMargins(8, 8, 8, 8));

@@ -31,7 +31,8 @@ DashboardWindow::DashboardWindow(QWidget* parent)
   problem_->setTextFormat(Qt::PlainText);
   problem_->setWordWrap(true);
   problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  problem_->setStyleSheet("QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
+  problem_->setStyleSheet(
+      "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
   problem_->hide();
   tabs_->addTab(attempts_, "&Attempts");
   tabs_->addTab(compare_, "Com&pare");
@@ -99,7 +100,8 @@ void DashboardWindow::reload() {
 }
 
 void DashboardWindow::askForDatabase() {
-  const QString path = QFileDialog::getOpenFileName(this, "Open a cohort database", {}, "Cohort databases (*.db);;All files (*)");
+  const QString path =
+      QFileDialog::getOpenFileName(this, "Open a cohort database", {}, "Cohort databases (*.db);;All files (*)");
   if (!path.isEmpty()) openDatabase(path);
 }
 

@@ -41,9 +41,11 @@ void GreetingPage::explainNoDatabase() {
 
 void GreetingPage::explainEmptyDatabase(const QString& fileName) {
   title_->setText("This cohort is still empty");
-  text_->setText(fileName +
-                 " is a cohort database without attempts.\nAssess recordings into it; each is simulated again, verified "
-                 "and measured:\n\ncalot assess recording.h5 --cohort " + fileName + "\n\nThen choose View, Reload.");
+  text_->setText(
+      fileName +
+      " is a cohort database without attempts.\nAssess recordings into it; each is simulated again, verified "
+      "and measured:\n\ncalot assess recording.h5 --cohort " +
+      fileName + "\n\nThen choose View, Reload.");
 }
 
 }  // namespace calot::gui

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/words.h"
 
+#include <algorithm>
+#include <cmath>
 #include <QDateTime>
 #include <QLocale>
 #include <QTimeZone>
-#include <algorithm>
-#include <cmath>
 
 #include "analytics/checkpoints/registry.h"
 
@@ -16,11 +16,20 @@ using analytics::Verdict;
 QString badgeText(Verdict verdict) {
   const char* sign = "–";
   switch (verdict) {
-    case Verdict::verified: sign = "✓"; break;
-    case Verdict::diverged: sign = "≠"; break;
-    case Verdict::damaged: sign = "✕"; break;
-    case Verdict::notCheckableHere: sign = "?"; break;
-    case Verdict::notChecked: break;
+    case Verdict::verified:
+      sign = "✓";
+      break;
+    case Verdict::diverged:
+      sign = "≠";
+      break;
+    case Verdict::damaged:
+      sign = "✕";
+      break;
+    case Verdict::notCheckableHere:
+      sign = "?";
+      break;
+    case Verdict::notChecked:
+      break;
   }
   return QString::fromUtf8(sign) + ' ' + QString::fromStdString(analytics::nameOf(verdict));
 }
@@ -62,12 +71,18 @@ QString modeText(recorder::Mode mode) { return mode == recorder::Mode::assessmen
 
 QString outcomeText(recorder::Outcome outcome) {
   switch (outcome) {
-    case recorder::Outcome::running: return "incomplete";
-    case recorder::Outcome::completed: return "completed";
-    case recorder::Outcome::timeLimit: return "time limit";
-    case recorder::Outcome::abandoned: return "abandoned";
-    case recorder::Outcome::stopped: return "stopped";
-    case recorder::Outcome::technicalFailure: return "technical failure";
+    case recorder::Outcome::running:
+      return "incomplete";
+    case recorder::Outcome::completed:
+      return "completed";
+    case recorder::Outcome::timeLimit:
+      return "time limit";
+    case recorder::Outcome::abandoned:
+      return "abandoned";
+    case recorder::Outcome::stopped:
+      return "stopped";
+    case recorder::Outcome::technicalFailure:
+      return "technical failure";
   }
   return "unknown";
 }
@@ -76,9 +91,12 @@ QString operatorText(const analytics::AttemptRow& attempt) {
   if (!attempt.participant.empty()) return QString::fromStdString(attempt.participant);
   if (!attempt.profile.empty()) return QString::fromStdString(attempt.profile);
   switch (attempt.operatorKind) {
-    case recorder::OperatorKind::human: return "(no pseudonym)";
-    case recorder::OperatorKind::kinematics: return "(kinematics file)";
-    case recorder::OperatorKind::performer: return "(performer)";
+    case recorder::OperatorKind::human:
+      return "(no pseudonym)";
+    case recorder::OperatorKind::kinematics:
+      return "(kinematics file)";
+    case recorder::OperatorKind::performer:
+      return "(performer)";
   }
   return {};
 }
@@ -115,9 +133,12 @@ QString directionText(const analytics::CheckpointValue& value) {
   const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
   if (definition == nullptr) return "unknown to this version";
   switch (definition->direction) {
-    case analytics::Direction::none: return "describes only";
-    case analytics::Direction::lower: return "↓ lower is better";
-    case analytics::Direction::higher: return "↑ higher is better";
+    case analytics::Direction::none:
+      return "describes only";
+    case analytics::Direction::lower:
+      return "↓ lower is better";
+    case analytics::Direction::higher:
+      return "↑ higher is better";
   }
   return {};
 }

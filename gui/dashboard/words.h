@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tables say for stored values. Numbers are shown in the user's locale (a German sees a decimal comma); nothing
-// is ever read back from such a text.
+// What the tables say for stored values. Numbers are shown in the user's locale (a German sees a decimal comma);
+// nothing is ever read back from such a text.
 #pragma once
 
 #include <QColor>
@@ -10,8 +10,8 @@
 
 namespace calot::gui {
 
-/// A verdict as sign, word and colour: the sign and the word carry it, the colour (Okabe and Ito's, darkened for text on
-/// white) only helps.
+/// A verdict as sign, word and colour: the sign and the word carry it, the colour (Okabe and Ito's, darkened for text
+/// on white) only helps.
 struct Badge {
   QString text;         ///< "✓ verified"
   QString explanation;  ///< one or more sentences, with what was found, by what and when

@@ -31,7 +31,8 @@ Mesh makeCavity(const SceneView& view) {
   for (const SurfaceView& surface : view.surface)
     for (const Vec3& p : surface.rest) radius = std::max(radius, (p - centre).norm());
   for (const InstrumentView& instrument : view.instrument)
-    if (instrument.kind != InstrumentKind::none) radius = std::max(radius, std::min(0.25, (instrument.port - centre).norm()));
+    if (instrument.kind != InstrumentKind::none)
+      radius = std::max(radius, std::min(0.25, (instrument.port - centre).norm()));
   radius *= 1.15;
 
   Mesh mesh;

@@ -5,8 +5,9 @@
 
 namespace calot::gui {
 
-/// The abdominal wall under pneumoperitoneum, as a gently uneven dome around organs and ports, seen from inside (normals
-/// point inward). It depends on rest positions and ports alone, so it stands still while organs and camera move.
+/// The abdominal wall under pneumoperitoneum, as a gently uneven dome around organs and ports, seen from inside
+/// (normals point inward). It depends on rest positions and ports alone, so it stands still while organs and camera
+/// move.
 [[nodiscard]] Mesh makeCavity(const SceneView& view);
 
 }  // namespace calot::gui

@@ -14,11 +14,11 @@ enum class Appearance : int {
   tissue = 0,
   liver = 1,
   gallbladder = 2,
-  cavity = 3,      ///< abdominal wall around the scene
-  insulation = 10, ///< black sleeve of a shaft
+  cavity = 3,       ///< abdominal wall around the scene
+  insulation = 10,  ///< black sleeve of a shaft
   steel = 11,
   ceramic = 12,
-  titanium = 13,   ///< clips
+  titanium = 13,  ///< clips
 };
 
 /// From SurfaceView::appearance; a word that is not known here is drawn as plain tissue.
@@ -31,14 +31,15 @@ struct Mesh {
   std::vector<Index3> triangle;  ///< counter-clockwise from outside
 };
 
-/// Unit normals of vertices: sums of the triangles' area vectors, in the triangles' order. A vertex without area gets z.
+/// Unit normals of vertices: sums of the triangles' area vectors, in the triangles' order. A vertex without area gets
+/// z.
 [[nodiscard]] std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::vector<Index3>& triangle);
 
 /// A vertex as the graphics side sees it, in the camera's frame C (x right, y down, z forward).
 struct DrawVertex {
   float position[3];
   float normal[3];
-  float rest[3];        ///< where textures stick: rest position in W, or position in the instrument's frame (m)
+  float rest[3];  ///< where textures stick: rest position in W, or position in the instrument's frame (m)
   float restNormal[3];
 };
 
@@ -52,8 +53,8 @@ struct DrawPart {
 struct DrawList {
   std::vector<DrawVertex> vertex;
   std::vector<std::uint32_t> index;
-  std::vector<DrawPart> part;     ///< the cavity, if any, last
-  float referenceDistance = 0.1F; ///< distance at which the endoscope's exposure is right (m)
+  std::vector<DrawPart> part;      ///< the cavity, if any, last
+  float referenceDistance = 0.1F;  ///< distance at which the endoscope's exposure is right (m)
 };
 
 /// @pre checkView(view) has passed

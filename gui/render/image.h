@@ -16,7 +16,8 @@ struct Image {
 
   /// First of the four bytes of a pixel. @pre 0 <= x < width, 0 <= y < height
   [[nodiscard]] const std::uint8_t* pixel(int x, int y) const {
-    return rgba.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4;
+    return rgba.data() +
+           (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4;
   }
 };
 

@@ -38,8 +38,9 @@ Mesh clevis(double from, double hinge, double scale) {
   for (int i = 0; i <= steps; ++i) {
     const double u = static_cast<double>(i) / steps;
     const double narrow = u * u * (3.0 - 2.0 * u);
-    rings.push_back(superellipse({0, 0, from + u * (hinge + 1.4 * mm * scale - from)}, (2.3 - 0.2 * narrow) * mm * scale,
-                                 (2.3 - 1.0 * narrow) * mm * scale, 2.0 + 1.5 * narrow, around));
+    rings.push_back(superellipse({0, 0, from + u * (hinge + 1.4 * mm * scale - from)},
+                                 (2.3 - 0.2 * narrow) * mm * scale, (2.3 - 1.0 * narrow) * mm * scale,
+                                 2.0 + 1.5 * narrow, around));
   }
   return loft(rings);
 }
@@ -57,7 +58,8 @@ Mesh grasperJaw(double length, double scale) {
     const double z = u * length;
     const double toTip = (1.0 - u) * length;
     const double blunt = 1.8 * mm * scale;
-    const double rounding = toTip < blunt ? std::sqrt(std::max(0.02, 1.0 - (1.0 - toTip / blunt) * (1.0 - toTip / blunt))) : 1.0;
+    const double rounding =
+        toTip < blunt ? std::sqrt(std::max(0.02, 1.0 - (1.0 - toTip / blunt) * (1.0 - toTip / blunt))) : 1.0;
     const double halfWidth = (2.05 - 0.75 * u) * mm * scale * rounding;
     const double thickness = (2.0 - 1.05 * u) * mm * scale * rounding;
     const double tooth = i % 2 == 0 && u > 0.2 ? 0.16 * mm * scale : 0.0;
@@ -97,7 +99,8 @@ Mesh clipJaw(double length, double scale) {
     const double rise = std::min(1.0, u / 0.35);
     const double lift = 1.7 * mm * scale * rise * rise * (3.0 - 2.0 * rise);
     const double tip = u > 0.9 ? (u - 0.9) / 0.1 : 0.0;
-    Ring ring = superellipse({0, 0, u * length}, (1.9 - 0.35 * u - 0.3 * tip) * mm * scale, (0.95 - 0.2 * tip) * mm * scale, 3.5, around);
+    Ring ring = superellipse({0, 0, u * length}, (1.9 - 0.35 * u - 0.3 * tip) * mm * scale,
+                             (0.95 - 0.2 * tip) * mm * scale, 3.5, around);
     for (Vec3& p : ring) p.y() += lift + 0.2 * mm * scale - 0.7 * mm * scale * tip * tip;
     rings.push_back(ring);
   }
@@ -125,7 +128,8 @@ class Maker {
     const double length = 15.0 * mm * scale_;
     jawed(length, 9.0 * mm * scale_);
     add(Appearance::steel, moved(scissorBlade(length, 1.0, scale_), aboutHinge(-0.5 * jaw_), Vec3(0, 0, -length)));
-    add(Appearance::steel, moved(mirrored(scissorBlade(length, -1.0, scale_)), aboutHinge(0.5 * jaw_), Vec3(0, 0, -length)));
+    add(Appearance::steel,
+        moved(mirrored(scissorBlade(length, -1.0, scale_)), aboutHinge(0.5 * jaw_), Vec3(0, 0, -length)));
   }
 
   void clipApplier() {
@@ -135,18 +139,22 @@ class Maker {
     // A loaded clip: a V whose legs lie in the jaws.
     const auto leg = [&](double z) { return std::sin(0.5 * jaw_) * z + 1.15 * mm * scale_; };
     const double front = length - 1.2 * mm * scale_, back = length - 8.5 * mm * scale_;
-    std::vector<Vec3> path{{0, leg(front), front - length}, {0, leg(back + 1.5 * mm * scale_), back + 1.5 * mm * scale_ - length},
-                           {0, 0.45 * leg(back), back - length}, {0, -0.45 * leg(back), back - length},
-                           {0, -leg(back + 1.5 * mm * scale_), back + 1.5 * mm * scale_ - length}, {0, -leg(front), front - length}};
+    std::vector<Vec3> path{{0, leg(front), front - length},
+                           {0, leg(back + 1.5 * mm * scale_), back + 1.5 * mm * scale_ - length},
+                           {0, 0.45 * leg(back), back - length},
+                           {0, -0.45 * leg(back), back - length},
+                           {0, -leg(back + 1.5 * mm * scale_), back + 1.5 * mm * scale_ - length},
+                           {0, -leg(front), front - length}};
     add(Appearance::titanium, tube(path, 0.42 * mm * scale_, 14));
   }
 
   void hook() {
     const double sleeveEnd = -13.0 * mm * scale_;
     add(Appearance::insulation, barrel(shaftStart_, sleeveEnd, nominalRadius * scale_, 0.4 * mm * scale_));
-    add(Appearance::ceramic, loft({superellipse({0, 0, sleeveEnd}, 2.0 * mm * scale_, 2.0 * mm * scale_, 2, around),
-                                   superellipse({0, 0, sleeveEnd + 2.5 * mm * scale_}, 1.9 * mm * scale_, 1.9 * mm * scale_, 2, around),
-                                   superellipse({0, 0, sleeveEnd + 3.6 * mm * scale_}, 1.0 * mm * scale_, 1.0 * mm * scale_, 2, around)}));
+    add(Appearance::ceramic,
+        loft({superellipse({0, 0, sleeveEnd}, 2.0 * mm * scale_, 2.0 * mm * scale_, 2, around),
+              superellipse({0, 0, sleeveEnd + 2.5 * mm * scale_}, 1.9 * mm * scale_, 1.9 * mm * scale_, 2, around),
+              superellipse({0, 0, sleeveEnd + 3.6 * mm * scale_}, 1.0 * mm * scale_, 1.0 * mm * scale_, 2, around)}));
     // The L: along the axis, a short bend, then across; its heel is the tip of the frame.
     const double wire = 0.6 * mm * scale_, bend = 1.3 * mm * scale_, across = 4.6 * mm * scale_;
     std::vector<Vec3> path{{0, 0, sleeveEnd + 2.0 * mm * scale_}, {0, 0, -6.0 * mm * scale_}};
@@ -186,11 +194,20 @@ class Maker {
 std::vector<InstrumentPart> makeInstrument(const InstrumentView& instrument) {
   Maker maker(instrument);
   switch (instrument.kind) {
-    case InstrumentKind::none: break;
-    case InstrumentKind::grasper: maker.grasper(); break;
-    case InstrumentKind::hook: maker.hook(); break;
-    case InstrumentKind::clipApplier: maker.clipApplier(); break;
-    case InstrumentKind::scissors: maker.scissors(); break;
+    case InstrumentKind::none:
+      break;
+    case InstrumentKind::grasper:
+      maker.grasper();
+      break;
+    case InstrumentKind::hook:
+      maker.hook();
+      break;
+    case InstrumentKind::clipApplier:
+      maker.clipApplier();
+      break;
+    case InstrumentKind::scissors:
+      maker.scissors();
+      break;
   }
   return std::move(maker.parts);
 }

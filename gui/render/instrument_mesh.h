@@ -7,7 +7,8 @@ namespace calot::gui {
 
 struct InstrumentPart {
   Appearance appearance = Appearance::steel;
-  Mesh mesh;  ///< in the instrument's frame I: origin at the tip, z along the shaft towards it, x along the jaws' hinge (m)
+  Mesh mesh;  ///< in the instrument's frame I: origin at the tip, z along the shaft towards it, x along the jaws' hinge
+              ///< (m)
 };
 
 /// Shaft from beyond the port to the tip, and what the kind of instrument carries there: two jaws opened by

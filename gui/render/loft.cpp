@@ -11,8 +11,7 @@ namespace {
 void addCap(Mesh& mesh, const Ring& ring, bool atEnd) {
   Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
   for (const Vec3& p : ring) centre += p / static_cast<double>(ring.size());
-  for (std::size_t k = 0; k < ring.size(); ++k)
-    area += (ring[k] - centre).cross(ring[(k + 1) % ring.size()] - centre);
+  for (std::size_t k = 0; k < ring.size(); ++k) area += (ring[k] - centre).cross(ring[(k + 1) % ring.size()] - centre);
   const double length = area.norm();
   if (length < 1e-16) return;
   const Vec3 normal = (atEnd ? 1.0 : -1.0) * area / length;

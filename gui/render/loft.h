@@ -12,8 +12,8 @@ using Ring = std::vector<Vec3>;
 /// @pre at least two rings of at least three points
 [[nodiscard]] Mesh loft(const std::vector<Ring>& rings);
 
-/// n points of |x / a|^e + |y / b|^e = 1 around (centre.x, centre.y) in the plane z = centre.z; e = 2 is an ellipse, larger
-/// values near a rectangle.
+/// n points of |x / a|^e + |y / b|^e = 1 around (centre.x, centre.y) in the plane z = centre.z; e = 2 is an ellipse,
+/// larger values near a rectangle.
 [[nodiscard]] Ring superellipse(const Vec3& centre, double a, double b, double e, int n);
 
 /// A tube of circular section along a path of points (m). Sections stand across the path; ends are rounded.

@@ -12,12 +12,19 @@ namespace {
 class OsmesaContext final : public GraphicsContext {
  public:
   OsmesaContext() {
-    static constexpr std::array<int, 13> attributes{OSMESA_FORMAT, OSMESA_RGBA,
-                                                    OSMESA_DEPTH_BITS, 0,
-                                                    OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                                                    OSMESA_CONTEXT_MAJOR_VERSION, 4,
-                                                    OSMESA_CONTEXT_MINOR_VERSION, 5,
-                                                    0, 0, 0};
+    static constexpr std::array<int, 13> attributes{OSMESA_FORMAT,
+                                                    OSMESA_RGBA,
+                                                    OSMESA_DEPTH_BITS,
+                                                    0,
+                                                    OSMESA_PROFILE,
+                                                    OSMESA_CORE_PROFILE,
+                                                    OSMESA_CONTEXT_MAJOR_VERSION,
+                                                    4,
+                                                    OSMESA_CONTEXT_MINOR_VERSION,
+                                                    5,
+                                                    0,
+                                                    0,
+                                                    0};
     context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
     if (context_ == nullptr)
       throw Error(ExitCode::failure, "rendering: no off-screen OpenGL 4.5; install a Mesa with libosmesa6 22 or newer");

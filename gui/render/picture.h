@@ -10,8 +10,8 @@
 namespace calot::gui {
 
 struct PictureSize {
-  int width = 1280;   ///< pixels
-  int height = 720;   ///< pixels
+  int width = 1280;  ///< pixels
+  int height = 720;  ///< pixels
 };
 
 /// "1280x720". @throws calot::Error (usage) for anything else, or for a size outside the renderer's limits.

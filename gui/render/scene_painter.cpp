@@ -12,10 +12,10 @@
 namespace calot::gui {
 namespace {
 
-constexpr float nearPlane = 0.002F, farPlane = 2.0F;           // m
-constexpr float lightX = 0.0045F, lightY = -0.0050F;           // of the light's bundle beside the lens, in C (m)
-constexpr float shadowHalfWidth = 1.25F;                       // of the light's field over the picture's
-constexpr float occlusionReach = 0.016F;                       // m
+constexpr float nearPlane = 0.002F, farPlane = 2.0F;  // m
+constexpr float lightX = 0.0045F, lightY = -0.0050F;  // of the light's bundle beside the lens, in C (m)
+constexpr float shadowHalfWidth = 1.25F;              // of the light's field over the picture's
+constexpr float occlusionReach = 0.016F;              // m
 
 enum Unit : int { noiseUnit = 0, occlusionUnit = 1, shadowUnit = 2, depthUnit = 3 };
 
@@ -30,7 +30,8 @@ struct ScenePainter::Programs {
   Programs(const GlFunctions& gl, const char* counts)
       : shadow(gl, "shadow", {glsl::common, glsl::surfaceVertex}, {glsl::shadowFragment}),
         prepass(gl, "prepass", {glsl::common, glsl::surfaceVertex}, {glsl::prepassFragment}),
-        surface(gl, "surface", {glsl::common, glsl::surfaceVertex}, {counts, glsl::common, glsl::surfaceMaterial, glsl::surfaceFragment}),
+        surface(gl, "surface", {glsl::common, glsl::surfaceVertex},
+                {counts, glsl::common, glsl::surfaceMaterial, glsl::surfaceFragment}),
         occlusion(gl, "occlusion", {glsl::pictureVertex}, {counts, glsl::common, glsl::occlusionFragment}),
         blur(gl, "blur", {glsl::pictureVertex}, {glsl::blurFragment}),
         compose(gl, "compose", {glsl::pictureVertex}, {glsl::composeFragment}) {}
@@ -39,7 +40,9 @@ struct ScenePainter::Programs {
 
 struct ScenePainter::Targets {
   Targets(const GlFunctions& gl, int w, int h, Quality q)
-      : width(w), height(h), quality(q),
+      : width(w),
+        height(h),
+        quality(q),
         shadow(gl, q == Quality::film ? 1536 : 768, q == Quality::film ? 1536 : 768, {{}, true, false}),
         prepass(gl, coarse(w, q), coarse(h, q), {{GL_RGBA32F}, true, false}),
         open(gl, prepass.width(), prepass.height(), {{GL_R8}, false, false}),
@@ -64,7 +67,8 @@ ScenePainter::ScenePainter(const GraphicsContext& context) : gl_(context) {
   for (GLuint attribute = 0; attribute < 4; ++attribute) {
     gl_.EnableVertexAttribArray(attribute);
     const std::size_t offset = attribute * 3 * sizeof(float);
-    gl_.VertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, sizeof(DrawVertex), reinterpret_cast<const void*>(offset));
+    gl_.VertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, sizeof(DrawVertex),
+                            reinterpret_cast<const void*>(offset));
   }
   const std::vector<float> volume = makeNoiseVolume();
   gl_.GenTextures(1, &noise_);
@@ -188,7 +192,8 @@ Image ScenePainter::paint(const DrawList& list, double verticalFieldOfView, int 
   programs.surface.set("shadowFocal", shadowFocal, shadowFocal);
   programs.surface.set("light", lightX, lightY, 0.0F);
   programs.surface.set("referenceDistance", list.referenceDistance);
-  programs.surface.set("pixels", static_cast<float>(targets.radiance.width()), static_cast<float>(targets.radiance.height()));
+  programs.surface.set("pixels", static_cast<float>(targets.radiance.width()),
+                       static_cast<float>(targets.radiance.height()));
   drawParts(list, programs.surface, true);
 
   targets.picture.bind();
@@ -199,9 +204,11 @@ Image ScenePainter::paint(const DrawList& list, double verticalFieldOfView, int 
   programs.compose.set("mask", settings.endoscopeMask ? 1 : 0);
   drawPicture();
 
-  Image image{width, height, std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
+  Image image{width, height,
+              std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-  if (gl_.GetError() != GL_NO_ERROR) throw Error(ExitCode::failure, "rendering: OpenGL reported an error; is memory short?");
+  if (gl_.GetError() != GL_NO_ERROR)
+    throw Error(ExitCode::failure, "rendering: OpenGL reported an error; is memory short?");
   return image;
 }
 

@@ -9,11 +9,12 @@ namespace calot::gui {
 namespace {
 
 [[noreturn]] void fail(const char* name, const std::string& log) {
-  throw Error(ExitCode::failure,
-              std::string("rendering: shader '") + name + "' is refused by this OpenGL: " + log.substr(0, log.find('\n')));
+  throw Error(ExitCode::failure, std::string("rendering: shader '") + name +
+                                     "' is refused by this OpenGL: " + log.substr(0, log.find('\n')));
 }
 
-GLuint compile(const GlFunctions& gl, const char* name, GLenum kind, const std::initializer_list<const char*>& sources) {
+GLuint compile(const GlFunctions& gl, const char* name, GLenum kind,
+               const std::initializer_list<const char*>& sources) {
   std::vector<const char*> text{"#version 450 core\n"};
   text.insert(text.end(), sources.begin(), sources.end());
   const GLuint shader = gl.CreateShader(kind);

@@ -4,15 +4,15 @@
 
 namespace calot::gui::glsl {
 
-extern const char* const common;            ///< hash, noise volume, projection; stands before each of the others
-extern const char* const surfaceVertex;     ///< transforms a DrawVertex
-extern const char* const shadowFragment;    ///< depth only
-extern const char* const prepassFragment;   ///< normal and depth, for the occlusion
-extern const char* const surfaceMaterial;   ///< the looks: colour, gloss and bumps of every Appearance
-extern const char* const surfaceFragment;   ///< lighting
-extern const char* const pictureVertex;     ///< one triangle over the whole picture
-extern const char* const occlusionFragment; ///< how much of the surroundings a point sees
-extern const char* const blurFragment;      ///< smooths the occlusion within surfaces
-extern const char* const composeFragment;   ///< tone curve, sample averaging, endoscope's round field
+extern const char* const common;             ///< hash, noise volume, projection; stands before each of the others
+extern const char* const surfaceVertex;      ///< transforms a DrawVertex
+extern const char* const shadowFragment;     ///< depth only
+extern const char* const prepassFragment;    ///< normal and depth, for the occlusion
+extern const char* const surfaceMaterial;    ///< the looks: colour, gloss and bumps of every Appearance
+extern const char* const surfaceFragment;    ///< lighting
+extern const char* const pictureVertex;      ///< one triangle over the whole picture
+extern const char* const occlusionFragment;  ///< how much of the surroundings a point sees
+extern const char* const blurFragment;       ///< smooths the occlusion within surfaces
+extern const char* const composeFragment;    ///< tone curve, sample averaging, endoscope's round field
 
 }  // namespace calot::gui::glsl

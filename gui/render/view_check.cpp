@@ -23,8 +23,9 @@ void checkSurface(const SurfaceView& surface) {
                        surface.rest.size()));
   for (std::size_t v = 0; v < surface.position.size(); ++v)
     if (!drawable(surface.position[v]) || !drawable(surface.rest[v]))
-      refuse(fmt::format("surface '{}', vertex {}: a coordinate is not finite or over 1 km; the step behind it is not valid",
-                         surface.organ, v));
+      refuse(fmt::format(
+          "surface '{}', vertex {}: a coordinate is not finite or over 1 km; the step behind it is not valid",
+          surface.organ, v));
   const int count = static_cast<int>(surface.position.size());
   for (std::size_t t = 0; t < surface.triangle.size(); ++t)
     if (surface.triangle[t].minCoeff() < 0 || surface.triangle[t].maxCoeff() >= count)
@@ -52,8 +53,8 @@ void checkView(const SceneView& view) {
 void checkPictureSize(long long width, long long height) {
   if (width < smallestSide || height < smallestSide || width > largestSide || height > largestSide ||
       width * height > mostPixels)
-    throw Error(ExitCode::usage, fmt::format("picture size {}x{}: give {} to {} pixels a side and at most {} in all", width,
-                                             height, smallestSide, largestSide, mostPixels));
+    throw Error(ExitCode::usage, fmt::format("picture size {}x{}: give {} to {} pixels a side and at most {} in all",
+                                             width, height, smallestSide, largestSide, mostPixels));
 }
 
 }  // namespace calot::gui

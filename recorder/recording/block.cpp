@@ -72,7 +72,8 @@ struct ExtractVisitor {
   const Block& block;
   std::uint64_t row = 0;
   std::size_t index = 0;
-  bool input = false;  ///< samples must be finite; results are what the simulation made of them, and the chain's concern
+  bool input =
+      false;  ///< samples must be finite; results are what the simulation made of them, and the chain's concern
   std::string fault;
 
   template <class T>
@@ -219,7 +220,8 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
     if (!visit.fault.empty()) return named(visit.fault, out.step * layout.ticksPerStep + t);
     for (const HandTick& hand : out.ticks[t].hand) {
       if (hand.contactSet < -1 || hand.contactSet > static_cast<std::int64_t>(out.step)) {
-        return fmt::format("/ticks: contact_set[{}] names a step that is not there", out.step * layout.ticksPerStep + t);
+        return fmt::format("/ticks: contact_set[{}] names a step that is not there",
+                           out.step * layout.ticksPerStep + t);
       }
     }
   }

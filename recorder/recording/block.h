@@ -15,10 +15,10 @@
 namespace calot::recorder {
 
 struct Block {
-  std::vector<std::vector<std::byte>> column;       ///< as Layout::columns
-  std::array<std::uint64_t, streamCount> rows{};    ///< of each stream in this block
-  bool last = false;                                ///< nothing comes after it
-  bool completed = false;                           ///< the attempt ended with it
+  std::vector<std::vector<std::byte>> column;     ///< as Layout::columns
+  std::array<std::uint64_t, streamCount> rows{};  ///< of each stream in this block
+  bool last = false;                              ///< nothing comes after it
+  bool completed = false;                         ///< the attempt ended with it
   Outcome outcome = Outcome::running;
 
   /// Room for a whole block, so that filling it does not allocate (but for events and keyframes).

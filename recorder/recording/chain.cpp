@@ -20,10 +20,8 @@ class Hash {
     if (size > 0) crypto_generichash_update(&state_, static_cast<const unsigned char*>(data), size);
   }
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void number(T value) {
-    bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T>
+  void number(T value) { bytes(&value, sizeof value); }
   void string(const std::string& text) {
     number(static_cast<std::uint32_t>(text.size()));
     bytes(text.data(), text.size());
@@ -45,7 +43,7 @@ struct HashAttributes {
     hash.string(value);
   }
   template <class T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   void operator()(const char* name, const T& value) {
     hash.string(name);
     hash.number(value);
@@ -72,11 +70,16 @@ void appendCounts(Hash& hash, const StatusRow& row) {
 
 std::uint64_t countOf(const StatusRow& row, Stream stream) {
   switch (stream) {
-    case Stream::ticks: return row.ticks;
-    case Stream::steps: return row.steps;
-    case Stream::events: return row.events;
-    case Stream::keyframes: return row.keyframes;
-    case Stream::keyframeWords: return row.keyframeWords;
+    case Stream::ticks:
+      return row.ticks;
+    case Stream::steps:
+      return row.steps;
+    case Stream::events:
+      return row.events;
+    case Stream::keyframes:
+      return row.keyframes;
+    case Stream::keyframeWords:
+      return row.keyframeWords;
   }
   return 0;
 }

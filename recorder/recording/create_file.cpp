@@ -2,14 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 
 #include "recorder/formats/file_bytes.h"
 #include "recorder/recording/chain.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/header.h"
+#include "recorder/recording/superblock.h"
 #include "recorder/recording/types.h"
 
 namespace calot::recorder {
@@ -18,7 +20,8 @@ namespace {
 
 using hdf5::Id;
 
-/// Creates objects; every failure is an exception.
+/// Creates objects in a file that lies in memory until it is whole and is then written plainly: HDF5 does not survive
+/// every disk that fills up while it creates. Every failure is an exception.
 class Builder {
  public:
   explicit Builder(const std::filesystem::path& path) : path_(path) {
@@ -27,6 +30,7 @@ class Builder {
     H5Pset_attr_phase_change(create.get(), 64, 32);
     H5Pset_link_phase_change(create.get(), 64, 32);
     const Id access = hdf5::fileAccess(0);
+    H5Pset_fapl_core(access.get(), std::size_t{1} << 20U, false);
     file_ = hdf5::file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create.get(), access.get()));
     need(file_.valid(), "the file");
   }
@@ -55,8 +59,8 @@ class Builder {
   }
 
   /// A data set of fixed size (`growing` false) or that starts empty and grows.
-  [[nodiscard]] Id dataset(const std::string& path, hid_t type, std::vector<hsize_t> shape, hsize_t chunkRows, bool deflate,
-                           bool growing) const {
+  [[nodiscard]] Id dataset(const std::string& path, hid_t type, std::vector<hsize_t> shape, hsize_t chunkRows,
+                           bool deflate, bool growing) const {
     std::vector<hsize_t> most = shape;
     if (growing) most[0] = H5S_UNLIMITED;
     std::vector<hsize_t> chunk = shape;
@@ -70,15 +74,18 @@ class Builder {
       H5Pset_deflate(create.get(), 1);
     }
     H5Pset_fletcher32(create.get());
-    Id d = hdf5::dataset(H5Dcreate2(file_.get(), path.c_str(), type, space.get(), H5P_DEFAULT, create.get(), H5P_DEFAULT));
+    Id d =
+        hdf5::dataset(H5Dcreate2(file_.get(), path.c_str(), type, space.get(), H5P_DEFAULT, create.get(), H5P_DEFAULT));
     need(d.valid(), path);
     return d;
   }
 
   void bytes(const std::string& path, const Asset& asset) const {
     const Id type = hdf5::elementType(Element::u1);
-    const Id d = dataset(path, type.get(), {asset.bytes.size()}, std::min<hsize_t>(asset.bytes.size(), 65536), true, false);
-    need(asset.bytes.empty() || H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, asset.bytes.data()) >= 0, path);
+    const Id d =
+        dataset(path, type.get(), {asset.bytes.size()}, std::min<hsize_t>(asset.bytes.size(), 65536), true, false);
+    need(asset.bytes.empty() || H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, asset.bytes.data()) >= 0,
+         path);
     text(d.get(), "name", asset.name);
     text(d.get(), "sha256", sha256Hex(asset.bytes));
   }
@@ -96,14 +103,23 @@ class Builder {
 
   void need(bool ok, const std::string& what) const {
     if (ok) return;
-    const std::string why = hdf5::reason();
-    hdf5::freeze(file_);
-    throw Error(ExitCode::failure, fmt::format("{}: cannot create {}: {}", path_.string(), what, why));
+    throw Error(ExitCode::failure, fmt::format("{}: cannot create {}: {}", path_.string(), what, hdf5::reason()));
   }
 
+  /// Writes the file to its path.
   void close() {
     need(H5Fflush(file_.get(), H5F_SCOPE_LOCAL) >= 0, "the file");
+    const ssize_t size = H5Fget_file_image(file_.get(), nullptr, 0);
+    need(size > 0, "the file");
+    std::vector<unsigned char> image(static_cast<std::size_t>(size));
+    need(H5Fget_file_image(file_.get(), image.data(), image.size()) == size, "the file");
     need(file_.reset(), "the file");
+    need(markClosed(image), "the file");  // the image was taken while the file was open
+    std::ofstream out(path_, std::ios::binary | std::ios::trunc);
+    out.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
+    out.close();
+    if (!out)
+      throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
   }
 
  private:
@@ -114,9 +130,15 @@ class Builder {
 struct WriteAttributes {
   const Builder& builder;
   void operator()(const char* name, const std::string& v) { builder.text(builder.root(), name, v); }
-  void operator()(const char* name, const std::uint32_t& v) { builder.attribute(builder.root(), name, H5T_STD_U32LE, &v); }
-  void operator()(const char* name, const std::uint64_t& v) { builder.attribute(builder.root(), name, H5T_STD_U64LE, &v); }
-  void operator()(const char* name, const std::int64_t& v) { builder.attribute(builder.root(), name, H5T_STD_I64LE, &v); }
+  void operator()(const char* name, const std::uint32_t& v) {
+    builder.attribute(builder.root(), name, H5T_STD_U32LE, &v);
+  }
+  void operator()(const char* name, const std::uint64_t& v) {
+    builder.attribute(builder.root(), name, H5T_STD_U64LE, &v);
+  }
+  void operator()(const char* name, const std::int64_t& v) {
+    builder.attribute(builder.root(), name, H5T_STD_I64LE, &v);
+  }
   void operator()(const char* name, const double& v) { builder.attribute(builder.root(), name, H5T_IEEE_F64LE, &v); }
   template <class T>
   void constant(const char* name, const T& v) {
@@ -131,8 +153,9 @@ struct WriteAttributes {
 StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout) {
   WriteAttributes attributes{builder};
   visitAttributes(header, attributes);
-  for (const char* name : {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps",
-                           "/observables", "/observables/left", "/observables/right", "/observables/contact", "/keyframes"}) {
+  for (const char* name :
+       {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps", "/observables",
+        "/observables/left", "/observables/right", "/observables/contact", "/keyframes"}) {
     builder.group(name);
   }
   if (layout.organs > 0) builder.group("/observables/organs");
@@ -157,8 +180,8 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
   }
   builder.names("/steps/field_names", fieldNames);
   if (!fieldComponents.empty()) {
-    const Id d = builder.dataset("/steps/field_component", H5T_STD_U32LE, {fieldComponents.size()}, fieldComponents.size(),
-                                 false, false);
+    const Id d = builder.dataset("/steps/field_component", H5T_STD_U32LE, {fieldComponents.size()},
+                                 fieldComponents.size(), false, false);
     builder.need(H5Dwrite(d.get(), H5T_STD_U32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, fieldComponents.data()) >= 0,
                  "/steps/field_component");
   }
@@ -188,7 +211,8 @@ void checkHeader(const AttemptHeader& header) {
   if (header.organs.size() > largestOrganCount) refuse("more than 32 organs");
   if (header.layout.components.size() > 4096 || header.layout.fields.size() > 65536) refuse("too many digests");
   for (const DigestLayout::Field& f : header.layout.fields) {
-    if (f.component >= header.layout.components.size()) refuse("field " + f.name + " names a component that is not there");
+    if (f.component >= header.layout.components.size())
+      refuse("field " + f.name + " names a component that is not there");
   }
   if (header.assets.empty()) refuse("no scene");
   if (header.assets.size() > 1000) refuse("more than 999 assets beside the scene");
@@ -197,8 +221,8 @@ void checkHeader(const AttemptHeader& header) {
 StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout) {
   checkHeader(header);
   const hdf5::Session session;
-  Builder builder(path);
   try {
+    Builder builder(path);
     const StatusRow first = build(builder, header, layout);
     builder.close();
     return first;

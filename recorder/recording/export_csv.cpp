@@ -53,10 +53,7 @@ class Table {
   void put(InstrumentKind v) { value("{}", static_cast<unsigned>(v)); }
   void put(const std::string& v) { value("{}", cell(v)); }
   template <class T>
-    requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
-  void put(T v) {
-    value("{}", v);
-  }
+  requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) void put(T v) { value("{}", v); }
 
   void endRow() {
     line_.push_back('\n');
@@ -70,7 +67,8 @@ class Table {
 
  private:
   [[noreturn]] void fail() const {
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", path_.string(), std::generic_category().message(errno)));
+    throw Error(ExitCode::failure,
+                fmt::format("{}: cannot be written: {}", path_.string(), std::generic_category().message(errno)));
   }
   struct Closer {
     void operator()(std::FILE* f) const { std::fclose(f); }
@@ -127,7 +125,8 @@ struct TitleVisitor {
     }
   }
   template <class T>
-  void organs(const char* folder, const char* name, const char* unit, const std::vector<OrganResult>&, T OrganResult::*) {
+  void organs(const char* folder, const char* name, const char* unit, const std::vector<OrganResult>&,
+              T OrganResult::*) {
     for (const std::string& organ : header.organs) title(folder, fmt::format("{}[{}]", name, organ), unit);
   }
 
@@ -170,7 +169,8 @@ struct ValueVisitor {
     for (const T& v : values) to(folder).put(v);
   }
   template <class T>
-  void organs(const char* folder, const char*, const char*, const std::vector<OrganResult>& organ, T OrganResult::*member) {
+  void organs(const char* folder, const char*, const char*, const std::vector<OrganResult>& organ,
+              T OrganResult::*member) {
     for (const OrganResult& o : organ) to(folder).put(o.*member);
   }
 
@@ -209,8 +209,8 @@ struct AttributeRows {
   }
 };
 
-void writeAll(Recording& recording, const std::filesystem::path& stage, const std::function<void(std::uint64_t)>& progress,
-              std::vector<std::filesystem::path>& files) {
+void writeAll(Recording& recording, const std::filesystem::path& stage,
+              const std::function<void(std::uint64_t)>& progress, std::vector<std::filesystem::path>& files) {
   const AttemptHeader& header = recording.header();
   const Layout layout(header);
   Tables ticks, steps;
@@ -226,7 +226,8 @@ void writeAll(Recording& recording, const std::filesystem::path& stage, const st
   endRows(ticks);
   endRows(steps);
   Table events(stage, "/events");
-  for (const char* title : {"step", "kind", "hand", "subject", "position_x (m)", "position_y (m)", "position_z (m)", "value"}) {
+  for (const char* title :
+       {"step", "kind", "hand", "subject", "position_x (m)", "position_y (m)", "position_z (m)", "value"}) {
     events.put(std::string(title));
   }
   events.endRow();

@@ -97,7 +97,8 @@ void FileAppender::close() {
   }
   if (!status_.reset()) fail("cannot close /status");
   if (H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
-  if (!file_.reset()) throw Error(ExitCode::failure, fmt::format("{}: cannot be closed: {}", path_.string(), hdf5::reason()));
+  if (!file_.reset())
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be closed: {}", path_.string(), hdf5::reason()));
 }
 
 }  // namespace calot::recorder

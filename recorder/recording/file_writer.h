@@ -13,7 +13,7 @@
 
 namespace calot::recorder {
 
-/// Creates (or truncates) a file with root attributes, scene, every data set, and the first row of /status; closes it.
+/// Creates (or truncates) a file with root attributes, scene, every data set, and the first row of /status.
 /// @return that first row. @throws Error failure; the file is removed then. Takes the HDF5 session itself.
 StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout);
 

@@ -47,7 +47,8 @@ constexpr char ok = 'r', refused = 'e';
 /// Reads until the child closes its end. @return false when the time is over.
 bool readAll(int in, std::chrono::steady_clock::time_point end, std::string& out) {
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
     if (left <= 0) return false;
     pollfd p{in, POLLIN, 0};
     const int ready = ::poll(&p, 1, static_cast<int>(std::min<long long>(left, 1'000'000)));
@@ -65,7 +66,8 @@ bool readAll(int in, std::chrono::steady_clock::time_point end, std::string& out
 
 std::string runGuarded(const std::string& what, const std::function<std::string()>& task, std::chrono::seconds limit) {
   std::array<int, 2> pipe{};
-  if (::pipe(pipe.data()) != 0) throw Error(ExitCode::failure, fmt::format("{}: no pipe: {}", what, std::strerror(errno)));
+  if (::pipe(pipe.data()) != 0)
+    throw Error(ExitCode::failure, fmt::format("{}: no pipe: {}", what, std::strerror(errno)));
   pid_t child = -1;
   {
     // No other thread is inside HDF5 at the moment of the fork: the child may use it.
@@ -89,15 +91,17 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!inTime) {
-    throw Error(ExitCode::damaged, fmt::format("{}: reading it took longer than {} s; the file is damaged or not a recording",
-                                               what, limit.count()));
+    throw Error(ExitCode::damaged,
+                fmt::format("{}: reading it took longer than {} s; the file is damaged or not a recording", what,
+                            limit.count()));
   }
   if (!WIFEXITED(status) || message.empty()) {
     throw Error(ExitCode::damaged,
-                fmt::format("{}: the reading library failed on it (signal {}); the file is damaged or not a recording", what,
-                            WIFSIGNALED(status) ? WTERMSIG(status) : 0));
+                fmt::format("{}: the reading library failed on it (signal {}); the file is damaged or not a recording",
+                            what, WIFSIGNALED(status) ? WTERMSIG(status) : 0));
   }
-  if (message[0] == refused && message.size() >= 2) throw Error(static_cast<ExitCode>(message[1] - '0'), message.substr(2));
+  if (message[0] == refused && message.size() >= 2)
+    throw Error(static_cast<ExitCode>(message[1] - '0'), message.substr(2));
   return message.substr(1);
 }
 

@@ -71,8 +71,8 @@ std::mutex& processLock();
 /// the innermost description.
 std::string reason();
 
-/// Points the descriptor of a file that could not be written elsewhere. HDF5 goes on trying to write what it holds until
-/// the file is closed, in an order that no longer protects what was flushed: after this the file stays as it is.
+/// Points the descriptor of a file that could not be written elsewhere. HDF5 goes on trying to write what it holds
+/// until the file is closed, in an order that no longer protects what was flushed: after this the file stays as it is.
 void freeze(const Id& file);
 
 /// Message of a damaged file: FILE: PLACE: WHAT.

@@ -12,7 +12,8 @@ namespace calot::recorder {
 
 inline constexpr std::array<const char*, 3> operatorKindNames{"human", "kinematics", "performer"};
 inline constexpr std::array<const char*, 2> modeNames{"practice", "assessment"};
-inline constexpr std::array<const char*, 6> outcomeNames{"running", "completed", "time_limit", "abandoned", "stopped", "technical_failure"};
+inline constexpr std::array<const char*, 6> outcomeNames{"running",   "completed", "time_limit",
+                                                         "abandoned", "stopped",   "technical_failure"};
 
 /// Lists the root attributes in the order of the chain. Values: std::string, std::uint32_t, std::uint64_t,
 /// std::int64_t, double; `choice` is a string from a list.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/file_bytes.h"
 #include "recorder/recording/header_reader.h"
+#include "recorder/formats/file_bytes.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +31,8 @@ class HeaderReader {
     const Id a = open(object, place, name);
     const Id type = hdf5::type(H5Aget_type(a.get()));
     const std::size_t size = type.valid() ? H5Tget_size(type.get()) : 0;
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 || size > longestAttribute) {
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 ||
+        size > longestAttribute) {
       throw damaged(path_, place + "@" + name, "is not a fixed-length string");
     }
     std::string value(size, '\0');
@@ -67,12 +68,14 @@ class HeaderReader {
     const Id d = vector(place, rows);
     const Id type = hdf5::type(H5Dget_type(d.get()));
     const std::size_t size = type.valid() ? H5Tget_size(type.get()) : 0;
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 || size > longestName) {
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 ||
+        size > longestName) {
       throw damaged(path_, place, "does not hold fixed-length strings");
     }
     if (rows < 1 || rows > most) throw damaged(path_, place, "has the wrong shape");
     std::string all(size * rows, '\0');
-    if (H5Dread(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) throw damaged(path_, place, hdf5::reason());
+    if (H5Dread(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
+      throw damaged(path_, place, hdf5::reason());
     std::vector<std::string> out;
     for (std::size_t i = 0; i < rows; ++i) {
       std::string one = all.substr(i * size, size);
@@ -101,7 +104,9 @@ class HeaderReader {
     return out;
   }
 
-  [[nodiscard]] bool there(const std::string& place) const { return H5Lexists(file_.get(), place.c_str(), H5P_DEFAULT) > 0; }
+  [[nodiscard]] bool there(const std::string& place) const {
+    return H5Lexists(file_.get(), place.c_str(), H5P_DEFAULT) > 0;
+  }
 
   std::vector<std::uint32_t> numbers(const std::string& place, std::uint64_t expected) const {
     std::uint64_t rows = 0;
@@ -110,7 +115,8 @@ class HeaderReader {
     if (H5Tequal(type.get(), H5T_STD_U32LE) <= 0) throw damaged(path_, place, "has the wrong type");
     if (rows != expected) throw damaged(path_, place, "has the wrong shape");
     std::vector<std::uint32_t> out(static_cast<std::size_t>(rows));
-    if (H5Dread(d.get(), H5T_STD_U32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) throw damaged(path_, place, hdf5::reason());
+    if (H5Dread(d.get(), H5T_STD_U32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
+      throw damaged(path_, place, hdf5::reason());
     return out;
   }
 
@@ -122,7 +128,8 @@ class HeaderReader {
     Id a = hdf5::attribute(H5Aopen(object, name, H5P_DEFAULT));
     if (!a.valid()) throw damaged(path_, place + "@" + name, "is missing; the file is not a recording, or damaged");
     const Id space = hdf5::space(H5Aget_space(a.get()));
-    if (H5Sget_simple_extent_type(space.get()) != H5S_SCALAR) throw damaged(path_, place + "@" + name, "has the wrong shape");
+    if (H5Sget_simple_extent_type(space.get()) != H5S_SCALAR)
+      throw damaged(path_, place + "@" + name, "has the wrong shape");
     return a;
   }
 
@@ -139,7 +146,8 @@ struct ReadAttributes {
   void operator()(const char* name, std::int64_t& v) { reader.number(reader.root(), "/", name, H5T_STD_I64LE, &v); }
   void operator()(const char* name, double& v) { reader.number(reader.root(), "/", name, H5T_IEEE_F64LE, &v); }
   void constant(const char* name, const std::string& expected) {
-    if (reader.text(reader.root(), "/", name) != expected) throw damaged(reader.path(), std::string("/@") + name, "the file is not a recording");
+    if (reader.text(reader.root(), "/", name) != expected)
+      throw damaged(reader.path(), std::string("/@") + name, "the file is not a recording");
   }
   void constant(const char* name, std::uint32_t expected) {
     std::uint32_t v = 0;
@@ -177,15 +185,18 @@ Superblock readSuperblock(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Error(ExitCode::damaged, path.string() + ": no such file");
-  if (std::filesystem::is_directory(status)) throw Error(ExitCode::damaged, path.string() + ": is a folder, not a recording");
-  if (!std::filesystem::is_regular_file(status)) throw Error(ExitCode::damaged, path.string() + ": is not a regular file");
+  if (std::filesystem::is_directory(status))
+    throw Error(ExitCode::damaged, path.string() + ": is a folder, not a recording");
+  if (!std::filesystem::is_regular_file(status))
+    throw Error(ExitCode::damaged, path.string() + ": is not a regular file");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(ExitCode::damaged, path.string() + ": cannot be opened; check its permissions");
   std::array<char, 36> head{};
   in.read(head.data(), head.size());
   if (in.gcount() == 0) throw Error(ExitCode::damaged, path.string() + ": is empty");
   constexpr std::array<char, 8> signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  if (in.gcount() < static_cast<std::streamsize>(head.size()) || !std::equal(signature.begin(), signature.end(), head.begin())) {
+  if (in.gcount() < static_cast<std::streamsize>(head.size()) ||
+      !std::equal(signature.begin(), signature.end(), head.begin())) {
     throw Error(ExitCode::damaged, path.string() + ": is not an HDF5 file, so not a recording");
   }
   // HDF5 File Format Specification 3.0, II.A: byte 8 version, 9 size of offsets, 11 consistency flags, 28 end of file.
@@ -206,8 +217,9 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   std::error_code ignored;
   const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
   if (superblock.endOfFile > bytes && !superblock.writing) {
-    throw Error(ExitCode::damaged, fmt::format("{}: is cut off: {} of {} bytes are there; calot recover saves what it can",
-                                               path.string(), bytes, superblock.endOfFile));
+    throw Error(ExitCode::damaged,
+                fmt::format("{}: is cut off: {} of {} bytes are there; calot recover saves what it can", path.string(),
+                            bytes, superblock.endOfFile));
   }
   throw Error(ExitCode::damaged, fmt::format("{}: cannot be opened: {}", path.string(), why));
 }
@@ -219,7 +231,8 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   visitAttributes(h, attributes);
   if (!isUuid(h.attempt)) throw damaged(path, "/@attempt_uuid", "is not a uuid");
   if (!h.parent.empty() && !isUuid(h.parent)) throw damaged(path, "/@parent_uuid", "is not a uuid");
-  if (h.ticksPerStep < 1 || h.ticksPerStep > largestTicksPerStep) throw damaged(path, "/@ticks_per_step", "is not in 1..1000");
+  if (h.ticksPerStep < 1 || h.ticksPerStep > largestTicksPerStep)
+    throw damaged(path, "/@ticks_per_step", "is not in 1..1000");
   if (!(h.tickSeconds > 0.0 && h.tickSeconds <= 1.0)) throw damaged(path, "/@tick_seconds", "is not in (0, 1] s");
 
   h.assets.push_back(reader.asset("/scene/description"));
@@ -227,7 +240,8 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   H5G_info_t info{};
   if (!assets.valid() || H5Gget_info(assets.get(), &info) < 0) throw damaged(path, "/scene/assets", "is missing");
   if (info.nlinks > 999) throw damaged(path, "/scene/assets", "holds too many assets");
-  for (std::size_t i = 1; i <= info.nlinks; ++i) h.assets.push_back(reader.asset(fmt::format("/scene/assets/{:03}", i)));
+  for (std::size_t i = 1; i <= info.nlinks; ++i)
+    h.assets.push_back(reader.asset(fmt::format("/scene/assets/{:03}", i)));
 
   h.organs = reader.names("/scene/organs", largestOrganCount);
   h.layout.components = reader.names("/steps/component_names", 4096);
@@ -235,7 +249,8 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   if (!fields.empty()) {
     const std::vector<std::uint32_t> component = reader.numbers("/steps/field_component", fields.size());
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (component[i] >= h.layout.components.size()) throw damaged(path, "/steps/field_component", "names a component that is not there");
+      if (component[i] >= h.layout.components.size())
+        throw damaged(path, "/steps/field_component", "names a component that is not there");
       h.layout.fields.push_back({component[i], fields[i]});
     }
   }
@@ -243,11 +258,13 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   if (!observables.valid()) throw damaged(path, "/observables", "is missing");
   std::uint32_t version = 0;
   reader.number(observables.get(), "/observables", "version", H5T_STD_U32LE, &version);
-  if (version != h.stepResultVersion) throw damaged(path, "/observables@version", "is not the root's step_result_version");
+  if (version != h.stepResultVersion)
+    throw damaged(path, "/observables@version", "is not the root's step_result_version");
   return h;
 }
 
-ColumnReader::ColumnReader(std::filesystem::path path, const hdf5::Id& file, const Layout& layout, std::uint64_t fileBytes)
+ColumnReader::ColumnReader(std::filesystem::path path, const hdf5::Id& file, const Layout& layout,
+                           std::uint64_t fileBytes)
     : path_(std::move(path)), layout_(layout), fileBytes_(fileBytes) {
   for (const Column& column : layout.columns) source_.push_back(open(file, column));
   statusColumn_.path = "/status";
@@ -272,7 +289,8 @@ ColumnReader::Source ColumnReader::open(const hdf5::Id& file, const Column& colu
   const int rank = column.vector ? 2 : 1;
   std::array<hsize_t, 2> extent{};
   if (H5Sget_simple_extent_ndims(space.get()) != rank ||
-      H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr) != rank || (column.vector && extent[1] != column.width)) {
+      H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr) != rank ||
+      (column.vector && extent[1] != column.width)) {
     throw damaged(path_, column.path, "has the wrong shape");
   }
   s.rows = extent[0];
@@ -284,19 +302,22 @@ void ColumnReader::read(const Source& source, const Column& column, std::uint64_
   out.resize(static_cast<std::size_t>(rows) * column.rowBytes());
   if (rows == 0 || column.width == 0) return;
   if (first + rows > source.rows) {
-    throw damaged(path_, column.path, fmt::format("holds {} rows where /status vouches for {}", source.rows, first + rows));
+    throw damaged(path_, column.path,
+                  fmt::format("holds {} rows where /status vouches for {}", source.rows, first + rows));
   }
   const std::array<hsize_t, 2> start{first, 0};
   const std::array<hsize_t, 2> count{rows, column.width};
   const Id fileSpace = hdf5::space(H5Dget_space(source.dataset.get()));
   const Id memorySpace = hdf5::space(H5Screate_simple(column.vector ? 2 : 1, count.data(), nullptr));
   if (H5Sselect_hyperslab(fileSpace.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
-      H5Dread(source.dataset.get(), source.type.get(), memorySpace.get(), fileSpace.get(), H5P_DEFAULT, out.data()) < 0) {
+      H5Dread(source.dataset.get(), source.type.get(), memorySpace.get(), fileSpace.get(), H5P_DEFAULT, out.data()) <
+          0) {
     throw damaged(path_, column.path, fmt::format("rows {} to {}: {}", first, first + rows - 1, hdf5::reason()));
   }
 }
 
-void ColumnReader::readRows(std::size_t column, std::uint64_t first, std::uint64_t rows, std::vector<std::byte>& out) const {
+void ColumnReader::readRows(std::size_t column, std::uint64_t first, std::uint64_t rows,
+                            std::vector<std::byte>& out) const {
   read(source_[column], layout_.columns[column], first, rows, out);
 }
 

@@ -10,16 +10,23 @@ namespace calot::recorder {
 
 std::size_t elementBytes(Element element) {
   switch (element) {
-    case Element::u1: return 1;
-    case Element::u2: return 2;
+    case Element::u1:
+      return 1;
+    case Element::u2:
+      return 2;
     case Element::u4:
-    case Element::f4: return 4;
+    case Element::f4:
+      return 4;
     case Element::u8:
     case Element::i8:
-    case Element::f8: return 8;
-    case Element::event: return eventBytes;
-    case Element::keyframe: return keyframeBytes;
-    case Element::status: return statusBytes;
+    case Element::f8:
+      return 8;
+    case Element::event:
+      return eventBytes;
+    case Element::keyframe:
+      return keyframeBytes;
+    case Element::status:
+      return statusBytes;
   }
   return 0;
 }
@@ -29,21 +36,37 @@ namespace {
 template <class T>
 struct Stored;
 template <>
-struct Stored<bool> { static constexpr Element element = Element::u1; };
+struct Stored<bool> {
+  static constexpr Element element = Element::u1;
+};
 template <>
-struct Stored<std::uint8_t> { static constexpr Element element = Element::u1; };
+struct Stored<std::uint8_t> {
+  static constexpr Element element = Element::u1;
+};
 template <>
-struct Stored<InstrumentKind> { static constexpr Element element = Element::u1; };
+struct Stored<InstrumentKind> {
+  static constexpr Element element = Element::u1;
+};
 template <>
-struct Stored<std::uint32_t> { static constexpr Element element = Element::u4; };
+struct Stored<std::uint32_t> {
+  static constexpr Element element = Element::u4;
+};
 template <>
-struct Stored<std::uint64_t> { static constexpr Element element = Element::u8; };
+struct Stored<std::uint64_t> {
+  static constexpr Element element = Element::u8;
+};
 template <>
-struct Stored<std::int64_t> { static constexpr Element element = Element::i8; };
+struct Stored<std::int64_t> {
+  static constexpr Element element = Element::i8;
+};
 template <>
-struct Stored<float> { static constexpr Element element = Element::f4; };
+struct Stored<float> {
+  static constexpr Element element = Element::f4;
+};
 template <>
-struct Stored<double> { static constexpr Element element = Element::f8; };
+struct Stored<double> {
+  static constexpr Element element = Element::f8;
+};
 
 /// Makes a column of every visited value.
 struct Collect {
@@ -51,9 +74,15 @@ struct Collect {
   Stream stream = Stream::ticks;
 
   template <class T>
-  void operator()(const char* folder, const char* name, const char* unit, const T&) { add<T>(folder, name, unit, false, 1); }
-  void operator()(const char* folder, const char* name, const char* unit, const Vec3&) { add<double>(folder, name, unit, true, 3); }
-  void operator()(const char* folder, const char* name, const char* unit, const Quat&) { add<double>(folder, name, unit, true, 4); }
+  void operator()(const char* folder, const char* name, const char* unit, const T&) {
+    add<T>(folder, name, unit, false, 1);
+  }
+  void operator()(const char* folder, const char* name, const char* unit, const Vec3&) {
+    add<double>(folder, name, unit, true, 3);
+  }
+  void operator()(const char* folder, const char* name, const char* unit, const Quat&) {
+    add<double>(folder, name, unit, true, 4);
+  }
   template <class T>
   void outside(const char* folder, const char* name, const char* unit, const T&) {
     add<T>(folder, name, unit, false, 1);
@@ -64,7 +93,8 @@ struct Collect {
     add<T>(folder, name, unit, true, width);
   }
   template <class T>
-  void organs(const char* folder, const char* name, const char* unit, const std::vector<OrganResult>&, T OrganResult::*) {
+  void organs(const char* folder, const char* name, const char* unit, const std::vector<OrganResult>&,
+              T OrganResult::*) {
     add<T>(folder, name, unit, true, layout.organs);
   }
 
@@ -94,7 +124,8 @@ Layout::Layout(const AttemptHeader& header)
   ticksPerBlock = stepsPerBlock * ticksPerStep;
   // About a second, and at the end of a block.
   const double blockSeconds = static_cast<double>(ticksPerBlock) * header.tickSeconds;
-  keyframeInterval = stepsPerBlock * static_cast<std::uint64_t>(std::clamp(std::floor(1.0 / blockSeconds + 0.5), 1.0, 1e6));
+  keyframeInterval =
+      stepsPerBlock * static_cast<std::uint64_t>(std::clamp(std::floor(1.0 / blockSeconds + 0.5), 1.0, 1e6));
 
   Collect collect{*this};
   TickSamples samples;
@@ -108,7 +139,8 @@ Layout::Layout(const AttemptHeader& header)
   visitStep(digest, lateness, result, collect);
   stepColumns = columns.size() - tickColumns;
 
-  const auto irregular = [this](const char* path, Element element, Stream stream, std::uint64_t chunkRows, bool deflate) {
+  const auto irregular = [this](const char* path, Element element, Stream stream, std::uint64_t chunkRows,
+                                bool deflate) {
     Column c;
     c.path = std::string(path);
     c.element = element;

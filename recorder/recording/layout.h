@@ -32,12 +32,12 @@ struct Column {
   std::string path;
   Element element = Element::f8;
   Stream stream = Stream::ticks;
-  bool vector = false;          ///< shape (N, width) rather than (N)
-  std::uint64_t width = 1;      ///< elements a row; 0: the data set is absent
+  bool vector = false;      ///< shape (N, width) rather than (N)
+  std::uint64_t width = 1;  ///< elements a row; 0: the data set is absent
   std::uint64_t chunkRows = 1;
-  bool deflate = true;          ///< shuffle and deflate below the checksum
-  bool chained = true;          ///< part of the content chain
-  std::string unit;             ///< of the exported values; empty: none
+  bool deflate = true;  ///< shuffle and deflate below the checksum
+  bool chained = true;  ///< part of the content chain
+  std::string unit;     ///< of the exported values; empty: none
 
   [[nodiscard]] std::size_t rowBytes() const { return elementBytes(element) * static_cast<std::size_t>(width); }
 };

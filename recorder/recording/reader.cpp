@@ -34,7 +34,7 @@ struct Recording::Impl {
   std::vector<std::uint64_t> keyframeSteps;
 
   std::unique_ptr<Block> block;
-  std::size_t blockRow = 0;  ///< row of /status whose block is held; 0: none
+  std::size_t blockRow = 0;                ///< row of /status whose block is held; 0: none
   std::vector<std::vector<Event>> events;  ///< of each step of the block
   RecordedStep current;
 
@@ -145,7 +145,8 @@ Keyframe Recording::keyframe(std::size_t index) {
     const hdf5::Session session;
     impl.columns->readRows(impl.layout->keyframeWords, firstWord, endWord - firstWord, words);
   }
-  const auto state = std::span(words).subspan(static_cast<std::size_t>(k.offset % 8), static_cast<std::size_t>(k.stateBytes));
+  const auto state =
+      std::span(words).subspan(static_cast<std::size_t>(k.offset % 8), static_cast<std::size_t>(k.stateBytes));
   const auto haptics = std::span(words).subspan(static_cast<std::size_t>(k.offset % 8 + k.stateBytes),
                                                 static_cast<std::size_t>(k.hapticsBytes));
   return {k.step, {state.begin(), state.end()}, {haptics.begin(), haptics.end()}};
@@ -167,9 +168,10 @@ ChainVerdict Recording::verifyChain() {
     }
     if (chainNext(*impl.layout, before, block, after) != after.chain) {
       return {false, row, before.steps, after.steps,
-              fmt::format("the content chain is broken at flush {} (steps {} to {}, from {:.3f} s on): what was recorded there "
-                          "was changed",
-                          row, before.steps, after.steps - 1, static_cast<double>(before.ticks) * impl.header.tickSeconds)};
+              fmt::format(
+                  "the content chain is broken at flush {} (steps {} to {}, from {:.3f} s on): what was recorded there "
+                  "was changed",
+                  row, before.steps, after.steps - 1, static_cast<double>(before.ticks) * impl.header.tickSeconds)};
     }
   }
   return verdict;
@@ -186,7 +188,8 @@ ChainVerdict probe(const std::filesystem::path& path) {
   std::size_t at = 0;
   const auto number = [&] {
     std::uint64_t value = 0;
-    for (; at < answer.size() && answer[at] != ' '; ++at) value = value * 10 + static_cast<std::uint64_t>(answer[at] - '0');
+    for (; at < answer.size() && answer[at] != ' '; ++at)
+      value = value * 10 + static_cast<std::uint64_t>(answer[at] - '0');
     ++at;
     return value;
   };

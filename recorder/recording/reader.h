@@ -37,10 +37,10 @@ struct RecordedStep {
 /// Does the content chain, computed anew from what the file holds, agree with its /status?
 struct ChainVerdict {
   bool intact = true;
-  std::uint64_t flush = 0;     ///< first row of /status that disagrees; 0: header or scene
-  std::uint64_t firstStep = 0; ///< steps [firstStep, endStep) belong to that flush
+  std::uint64_t flush = 0;      ///< first row of /status that disagrees; 0: header or scene
+  std::uint64_t firstStep = 0;  ///< steps [firstStep, endStep) belong to that flush
   std::uint64_t endStep = 0;
-  std::string what;            ///< one phrase for a message; empty if intact
+  std::string what;  ///< one phrase for a message; empty if intact
 };
 
 enum class Access {

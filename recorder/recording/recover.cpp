@@ -20,14 +20,16 @@ namespace {
 /// headers stand at the front, and chunks and their index follow in the order of time. So a copy is made as long as the
 /// file once was, with nothing (a hole) in place of what is lost. What is read from there fails its checksum or the
 /// chain. @return the copy, or the file itself where it is not cut off or was never closed.
-std::filesystem::path padded(const std::filesystem::path& path, std::uint64_t fileBytes, const std::filesystem::path& scratch) {
+std::filesystem::path padded(const std::filesystem::path& path, std::uint64_t fileBytes,
+                             const std::filesystem::path& scratch) {
   constexpr std::uint64_t longest = std::uint64_t{1} << 40U;
   const Superblock superblock = readSuperblock(path);
   if (superblock.writing || superblock.endOfFile <= fileBytes || superblock.endOfFile > longest) return path;
   std::error_code error;
   std::filesystem::copy_file(path, scratch, std::filesystem::copy_options::overwrite_existing, error);
   if (!error) std::filesystem::resize_file(scratch, superblock.endOfFile, error);
-  if (error) throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", scratch.string(), error.message()));
+  if (error)
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", scratch.string(), error.message()));
   return scratch;
 }
 
@@ -39,7 +41,8 @@ class Salvage {
     const hdf5::Session session;
     const std::uint64_t fileBytes = std::filesystem::file_size(path);
     const std::filesystem::path readable = padded(path, fileBytes, scratch);
-    if (readable != path) cut_ = fmt::format(" (cut off: {} of {} bytes are there)", fileBytes, std::filesystem::file_size(readable));
+    if (readable != path)
+      cut_ = fmt::format(" (cut off: {} of {} bytes are there)", fileBytes, std::filesystem::file_size(readable));
     file_ = openForReading(readable, Access::settled);
     header_ = readHeader(path, file_, fileBytes);
     layout_ = std::make_unique<Layout>(header_);

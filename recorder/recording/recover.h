@@ -9,10 +9,10 @@ namespace calot::recorder {
 
 /// What recover() saved.
 struct Recovered {
-  std::uint64_t steps = 0;     ///< saved
-  std::uint64_t ticks = 0;     ///< saved
-  bool complete = false;       ///< all of a finished attempt was there
-  std::string lost;            ///< why the rest could not be saved; empty if nothing that was vouched for is lost
+  std::uint64_t steps = 0;  ///< saved
+  std::uint64_t ticks = 0;  ///< saved
+  bool complete = false;    ///< all of a finished attempt was there
+  std::string lost;         ///< why the rest could not be saved; empty if nothing that was vouched for is lost
 };
 
 /// Rewrites a recording that was left by a killed writer, or was cut off, as a clean closed file of the same attempt:

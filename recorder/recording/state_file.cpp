@@ -17,7 +17,8 @@ constexpr const char* formatName = "calot-state";
 
 void writeAttribute(hid_t at, const char* name, std::uint64_t value) {
   const hdf5::Id space = hdf5::space(H5Screate(H5S_SCALAR));
-  const hdf5::Id attribute = hdf5::attribute(H5Acreate2(at, name, H5T_STD_U64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT));
+  const hdf5::Id attribute =
+      hdf5::attribute(H5Acreate2(at, name, H5T_STD_U64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT));
   H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &value);
 }
 
@@ -31,12 +32,15 @@ bool writeArray(hid_t at, const char* name, const std::vector<T>& values, hid_t 
     H5Pset_chunk(properties.get(), 1, &chunk);
     H5Pset_fletcher32(properties.get());
   }
-  const hdf5::Id set = hdf5::dataset(H5Dcreate2(at, name, fileType, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
-  return set.valid() && (size == 0 || H5Dwrite(set.get(), memoryType, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  const hdf5::Id set =
+      hdf5::dataset(H5Dcreate2(at, name, fileType, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
+  return set.valid() &&
+         (size == 0 || H5Dwrite(set.get(), memoryType, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
 }
 
 template <class T>
-void readArray(const std::filesystem::path& file, const std::string& place, hid_t set, hid_t memoryType, std::vector<T>& out) {
+void readArray(const std::filesystem::path& file, const std::string& place, hid_t set, hid_t memoryType,
+               std::vector<T>& out) {
   const hdf5::Id space = hdf5::space(H5Dget_space(set));
   hsize_t size = 0;
   if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &size, nullptr) < 0 ||
@@ -75,7 +79,8 @@ StateFile readHere(const std::filesystem::path& path) {
     const std::string group = fmt::format("/{:05}", f);
     const hdf5::Id open = hdf5::group(H5Gopen2(file.get(), group.c_str(), H5P_DEFAULT));
     char name[256] = {};
-    if (!open.valid() || H5Lget_name_by_idx(open.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, name, sizeof name, H5P_DEFAULT) < 0) {
+    if (!open.valid() ||
+        H5Lget_name_by_idx(open.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, name, sizeof name, H5P_DEFAULT) < 0) {
       throw hdf5::damaged(path, group, "is missing");
     }
     const hdf5::Id component = hdf5::group(H5Gopen2(open.get(), name, H5P_DEFAULT));
@@ -130,11 +135,11 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
         const std::string group = fmt::format("/{:05}/{}", f, name.substr(0, slash));
         const hdf5::Id at = hdf5::group(H5Gcreate2(out.get(), group.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT));
         const std::string field = name.substr(slash + 1);
-        good = at.valid() && (fields[f].second.index() == 0
-                                  ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second), H5T_IEEE_F64LE,
-                                               H5T_NATIVE_DOUBLE)
-                                  : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second), H5T_STD_U64LE,
-                                               H5T_NATIVE_UINT64));
+        good = at.valid() &&
+               (fields[f].second.index() == 0 ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second),
+                                                           H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
+                                              : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second),
+                                                           H5T_STD_U64LE, H5T_NATIVE_UINT64));
       }
       good = out.reset() && good;
     }

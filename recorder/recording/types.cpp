@@ -49,16 +49,26 @@ Id statusType() {
 
 Id elementType(Element element) {
   switch (element) {
-    case Element::u1: return type(H5Tcopy(H5T_STD_U8LE));
-    case Element::u2: return type(H5Tcopy(H5T_STD_U16LE));
-    case Element::u4: return type(H5Tcopy(H5T_STD_U32LE));
-    case Element::u8: return type(H5Tcopy(H5T_STD_U64LE));
-    case Element::i8: return type(H5Tcopy(H5T_STD_I64LE));
-    case Element::f4: return type(H5Tcopy(H5T_IEEE_F32LE));
-    case Element::f8: return type(H5Tcopy(H5T_IEEE_F64LE));
-    case Element::event: return eventType();
-    case Element::keyframe: return keyframeType();
-    case Element::status: return statusType();
+    case Element::u1:
+      return type(H5Tcopy(H5T_STD_U8LE));
+    case Element::u2:
+      return type(H5Tcopy(H5T_STD_U16LE));
+    case Element::u4:
+      return type(H5Tcopy(H5T_STD_U32LE));
+    case Element::u8:
+      return type(H5Tcopy(H5T_STD_U64LE));
+    case Element::i8:
+      return type(H5Tcopy(H5T_STD_I64LE));
+    case Element::f4:
+      return type(H5Tcopy(H5T_IEEE_F32LE));
+    case Element::f8:
+      return type(H5Tcopy(H5T_IEEE_F64LE));
+    case Element::event:
+      return eventType();
+    case Element::keyframe:
+      return keyframeType();
+    case Element::status:
+      return statusType();
   }
   return {};
 }

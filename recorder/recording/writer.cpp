@@ -29,7 +29,8 @@ double threadSeconds() {
 }
 
 std::int64_t wallNow() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
@@ -119,7 +120,8 @@ struct RecordingWriter::Impl {
   }
 };
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& target, const AttemptHeader& header, WriterOptions options) {
+RecordingWriter::RecordingWriter(const std::filesystem::path& target, const AttemptHeader& header,
+                                 WriterOptions options) {
   checkHeader(header);
   refuseExisting(target, options.force);
   impl_ = std::make_unique<Impl>(target, header);

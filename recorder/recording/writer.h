@@ -16,11 +16,11 @@ struct WriterOptions {
 
 /// What the writer did; may be read from any thread while it records.
 struct WriterStatistics {
-  std::uint64_t flushes = 0;        ///< rows of /status after the first
-  std::uint64_t steps = 0;          ///< steps that are on disk and vouched for
-  std::uint64_t blocksGrown = 0;    ///< blocks allocated beyond the first ones: the disk was slower than the loop
-  double writerSeconds = 0.0;       ///< CPU time of the writing thread (s)
-  double largestFlushSeconds = 0.0; ///< longest wall time of one flush (s)
+  std::uint64_t flushes = 0;         ///< rows of /status after the first
+  std::uint64_t steps = 0;           ///< steps that are on disk and vouched for
+  std::uint64_t blocksGrown = 0;     ///< blocks allocated beyond the first ones: the disk was slower than the loop
+  double writerSeconds = 0.0;        ///< CPU time of the writing thread (s)
+  double largestFlushSeconds = 0.0;  ///< longest wall time of one flush (s)
 };
 
 /// Writes one attempt to one HDF5 file as schemas/recording.md says, on a thread of its own.

@@ -66,14 +66,13 @@ Model::Built Model::build(SceneDescription scene) {
       built.error = "organ '" + organ.name + "': " + stuffed.error;
       return built;
     }
-    std::vector<Index3> surface;
-    for (const BoundaryTriangle& t : boundaryTriangles(stuffed.mesh)) surface.push_back(t.vertex);
+    Embedding embedding(organ.surface.vertex, stuffed.mesh);
+    ContactSurface contact(organ.surface.vertex, organ.surface.triangle);
     std::vector<Vec3>& nodes = stuffed.mesh.vertex;
     std::vector<bool> fixed = anchoredNodes(organ, nodes, byName);
     const MaterialDescription& m = organ.material;
     const SolidModel::Material material{lameConstants(m.youngModulus, m.poissonRatio), m.density, m.massDamping,
                                         m.stiffnessDamping};
-    ContactSurface contact(nodes, surface);
     SolidModel solid(std::move(nodes), std::move(stuffed.mesh.tetrahedron), std::move(fixed), material);
     if (solid.freeNodes().empty()) {
       built.error = "organ '" + organ.name + "': its anchors hold every node";
@@ -81,7 +80,8 @@ Model::Built Model::build(SceneDescription scene) {
     }
     names.push_back(organ.name);
     model->organs_.push_back(
-        {organ.name, organ.appearance, std::move(solid), std::move(contact), stuffed.cellSize, stuffed.report});
+        {organ.name, organ.appearance, std::move(solid), organ.surface.vertex, std::move(embedding), std::move(contact),
+         stuffed.cellSize, stuffed.report});
   }
   model->layout_ = digestLayout(names);
   model->scene_ = std::move(scene);

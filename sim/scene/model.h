@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/contact/surface_patches.h"
+#include "sim/geometry/embedding.h"
 #include "sim/geometry/mesh_to_count.h"
 #include "sim/scene/description.h"
 #include "sim/scene/digests.h"
@@ -19,7 +20,9 @@ struct OrganModel {
   std::string name;
   std::string appearance;
   SolidModel solid;
-  ContactSurface surface;
+  std::vector<Vec3> skin;    ///< vertices of the organ's surface at rest (m), carried by the solid:
+  Embedding embedding;       ///< contact and pictures see the fine surface, mechanics the tetrahedra
+  ContactSurface surface;    ///< triangles over the skin's vertices
   double cellSize = 0.0;     ///< of the tetrahedral lattice (m)
   StuffingReport meshing;
 };

@@ -32,6 +32,7 @@ struct Row {
   std::size_t hand = 0;
   std::size_t organ = 0;
   ShaftContact contact;
+  SolidSolver::Impulse place;     ///< where and along what the organ is pushed
   Vec3 direction = Vec3::Zero();  ///< row of T: how the tip's displacement opens the gap
   double free = 0.0;              ///< gap without forces, tip moved as far as this step lets it (m)
   double freeFull = 0.0;          ///< the same, tip at its real place
@@ -76,10 +77,25 @@ Vec3 axisOf(const Vec3& port, const Vec3& tip) {
   return length > 1e-6 ? Vec3(reach / length) : Vec3(0.0, 0.0, -1.0);
 }
 
-Vec3 surfacePoint(const ShaftContact& c, const std::vector<Vec3>& values) {
-  return (c.weight[0] * values[static_cast<std::size_t>(c.node[0])] +
-          c.weight[1] * values[static_cast<std::size_t>(c.node[1])]) +
-         c.weight[2] * values[static_cast<std::size_t>(c.node[2])];
+/// The contact's place on the skin in terms of the solid's nodes: corner weights times anchor weights.
+SolidSolver::Impulse influence(const ShaftContact& contact, const Embedding& embedding) {
+  SolidSolver::Impulse out;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const Embedding::Anchor& anchor = embedding.anchors()[static_cast<std::size_t>(contact.node[corner])];
+    for (std::size_t a = 0; a < 4; ++a) {
+      out.node[4 * corner + a] = anchor.node[a];
+      out.weight[4 * corner + a] = contact.weight[static_cast<int>(corner)] * anchor.weight[a];
+    }
+  }
+  out.impulse = contact.normal;
+  return out;
+}
+
+/// A nodal quantity at the contact's place.
+Vec3 atContact(const SolidSolver::Impulse& place, const std::vector<Vec3>& values) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < place.node.size(); ++k) sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
+  return sum;
 }
 
 }  // namespace
@@ -87,6 +103,7 @@ Vec3 surfacePoint(const ShaftContact& c, const std::vector<Vec3>& values) {
 struct Stepper::Workspace {
   Workspace(const Model& model_, Executor& executor_, MakeBroadPhase make) : model(model_), executor(executor_) {
     solver.resize(model.organs().size());
+    skin.resize(model.organs().size());
     for (std::size_t o = 0; o < model.organs().size(); ++o) {
       broad.push_back(make != nullptr ? make() : std::make_unique<SortedGrid>(broadCell));
     }
@@ -107,7 +124,7 @@ struct Stepper::Workspace {
   void readSamples(State& state, std::span<const TickSamples> samples);
   void refreshBounds(const State& state);
   void patchesNear(std::size_t organ, const Box& box, std::vector<std::uint32_t>& out);
-  double gapOf(const State& state, const Shaft& shaft, double reach);
+  double gapOf(const Shaft& shaft, double reach);
   void advanceFreely(State& state, std::size_t hand);
   void detect(const State& state);
   void wakeAndMove(State& state);
@@ -126,6 +143,7 @@ struct Stepper::Workspace {
   std::vector<std::unique_ptr<BroadPhase>> broad;
   std::vector<bool> bounded;                   // per organ: broad phase holds bounds of the current positions
   std::vector<bool> moved;                     // per organ: solved in this step
+  std::vector<std::vector<Vec3>> skin;         // per organ: surface points of the current positions
   std::vector<Box> bounds;
   std::vector<BroadPhase::Pair> pairs;
   std::vector<std::uint32_t> patches;
@@ -198,7 +216,8 @@ void Stepper::Workspace::readSamples(State& state, std::span<const TickSamples> 
 void Stepper::Workspace::refreshBounds(const State& state) {
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     if (bounded[o]) continue;
-    patchBounds(model.organs()[o].surface, state.organ[o].position, 0.0, bounds);
+    model.organs()[o].embedding.map(state.organ[o].position, skin[o]);
+    patchBounds(model.organs()[o].surface, skin[o], 0.0, bounds);
     broad[o]->update(bounds);
     bounded[o] = true;
   }
@@ -210,8 +229,8 @@ void Stepper::Workspace::patchesNear(std::size_t organ, const Box& box, std::vec
   for (const BroadPhase::Pair& p : pairs) out.push_back(p.leaf);
 }
 
-/// Least gap between a shaft and all organs, at most `reach_`.
-double Stepper::Workspace::gapOf(const State& state, const Shaft& shaft, double reach_) {
+/// Least gap between a shaft and all organs, at most `reach_`. @pre refreshBounds() since organs moved
+double Stepper::Workspace::gapOf(const Shaft& shaft, double reach_) {
   double least = reach_;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     for (std::size_t k = 0; k < shaft.pieces(); ++k) {
@@ -222,7 +241,7 @@ double Stepper::Workspace::gapOf(const State& state, const Shaft& shaft, double 
       box.grow(shaft.radius + std::max(least, 0.0) + 1e-6);
       patchesNear(o, box, patches);
       if (patches.empty()) continue;
-      least = leastGap(model.organs()[o].surface, state.organ[o].position, patches, p0, p1, shaft.radius, least);
+      least = leastGap(model.organs()[o].surface, skin[o], patches, p0, p1, shaft.radius, least);
     }
   }
   return least;
@@ -238,7 +257,7 @@ void Stepper::Workspace::advanceFreely(State& state, std::size_t hand) {
     const double left = remaining[hand].norm();
     if (!(left > 0.0)) break;
     const Shaft shaft(description.port, h.simulatedPosition, description.shaftRadius);
-    const double gap = gapOf(state, shaft, left + 2.0 * margin);
+    const double gap = gapOf(shaft, left + 2.0 * margin);
     if (gap >= left + margin) {
       h.simulatedPosition = h.realPosition;
       remaining[hand].setZero();
@@ -272,7 +291,7 @@ void Stepper::Workspace::detect(const State& state) {
         box.include(p1);
         box.grow(shaft.radius + far + 1e-6);
         patchesNear(o, box, patches);
-        shaftContacts(model.organs()[o].surface, state.organ[o].position, patches, p0, p1, shaft.radius, far,
+        shaftContacts(model.organs()[o].surface, skin[o], patches, p0, p1, shaft.radius, far,
                       static_cast<std::uint32_t>(k), found);
       }
       for (const ShaftContact& contact : found) {
@@ -280,6 +299,7 @@ void Stepper::Workspace::detect(const State& state) {
         row.hand = h;
         row.organ = o;
         row.contact = contact;
+        row.place = influence(contact, model.organs()[o].embedding);
         row.contact.key |= static_cast<std::uint64_t>(o) << 52U;
         const double s = (contact.onAxis - shaft.port).dot(shaft.axis);
         row.direction = shaftTranspose(shaft.axis, s, shaft.length, contact.normal);
@@ -319,7 +339,7 @@ void Stepper::Workspace::buildProblem(const State& state) {
   const double h = settings.step;
   for (Row& row : rows) {
     double organMoves = 0.0;
-    if (moved[row.organ]) organMoves = h * row.contact.normal.dot(surfacePoint(row.contact, solver[row.organ].freeVelocity()));
+    if (moved[row.organ]) organMoves = h * row.contact.normal.dot(atContact(row.place, solver[row.organ].freeVelocity()));
     const double toolMoves = row.direction.dot(remaining[row.hand]);
     row.free = row.contact.gap + share[row.hand] * toolMoves - organMoves;
     row.freeFull = row.contact.gap + toolMoves - organMoves;
@@ -336,15 +356,7 @@ void Stepper::Workspace::buildProblem(const State& state) {
     for (std::size_t first = 0; first < mine.size(); first += laneCount) {
       const std::size_t last = std::min(mine.size(), first + laneCount);
       impulses.clear();
-      for (std::size_t k = first; k < last; ++k) {
-        const ShaftContact& c = rows[mine[k]].contact;
-        SolidSolver::Impulse impulse;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-          impulse.node[corner] = c.node[corner];
-          impulse.impulse[corner] = c.weight[static_cast<int>(corner)] * c.normal;
-        }
-        impulses.push_back(impulse);
-      }
+      for (std::size_t k = first; k < last; ++k) impulses.push_back(rows[mine[k]].place);
       const SolveReport report = solver[o].responses(model.organs()[o].solid, impulses, settings, batch, executor);
       result.organ[o].iterations += report.iterations;
       result.organ[o].residual = std::max(result.organ[o].residual, report.residual);
@@ -368,8 +380,8 @@ void Stepper::Workspace::buildProblem(const State& state) {
       double w = 0.0;
       if (rows[i].organ == rows[j].organ) {
         // Both orders of the two solves, so that W is symmetric although each solve stops at its tolerance.
-        const double ij = rows[i].contact.normal.dot(surfacePoint(rows[i].contact, response[j]));
-        const double ji = rows[j].contact.normal.dot(surfacePoint(rows[j].contact, response[i]));
+        const double ij = rows[i].contact.normal.dot(atContact(rows[i].place, response[j]));
+        const double ji = rows[j].contact.normal.dot(atContact(rows[j].place, response[i]));
         w += h * h * (0.5 * (ij + ji));
       }
       if (rows[i].hand == rows[j].hand) {
@@ -497,7 +509,7 @@ void Stepper::Workspace::finishHands(State& state) {
     hand.touching = out.touching;
     if (hand.instrument == InstrumentKind::none) continue;
     const Shaft shaft(description.port, hand.simulatedPosition, description.shaftRadius);
-    result.contact.largestDepth = std::max(result.contact.largestDepth, -gapOf(state, shaft, 0.0));
+    result.contact.largestDepth = std::max(result.contact.largestDepth, -gapOf(shaft, 0.0));
   }
 }
 
@@ -592,16 +604,9 @@ SceneView viewOf(const Model& model, const State& state) {
     SurfaceView surface;
     surface.organ = organ.name;
     surface.appearance = organ.appearance;
-    std::vector<int> number(organ.solid.nodes(), -1);
-    for (const int n : organ.surface.nodes()) {
-      number[static_cast<std::size_t>(n)] = static_cast<int>(surface.position.size());
-      surface.position.push_back(state.organ[o].position[static_cast<std::size_t>(n)]);
-      surface.rest.push_back(organ.solid.rest()[static_cast<std::size_t>(n)]);
-    }
-    for (const Index3& t : organ.surface.triangles()) {
-      surface.triangle.emplace_back(number[static_cast<std::size_t>(t[0])], number[static_cast<std::size_t>(t[1])],
-                                    number[static_cast<std::size_t>(t[2])]);
-    }
+    surface.rest = organ.skin;
+    organ.embedding.map(state.organ[o].position, surface.position);
+    surface.triangle = organ.surface.triangles();
     view.surface.push_back(std::move(surface));
   }
   for (std::size_t h = 0; h < handCount; ++h) {

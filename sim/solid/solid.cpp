@@ -232,13 +232,12 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
   b_.assign(size, 0.0F);
   x_.resize(size);
   for (std::size_t n = 0; n < impulses.size(); ++n) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (impulses[n].node[k] < 0) continue;
+    for (std::size_t k = 0; k < impulses[n].node.size(); ++k) {
       const int r = model.row(static_cast<std::size_t>(impulses[n].node[k]));
       if (r < 0) continue;
       for (int i = 0; i < 3; ++i) {
         b_[static_cast<std::size_t>(r) * laneStride + static_cast<std::size_t>(i) * laneCount + n] +=
-            static_cast<float>(impulses[n].impulse[k][i]);
+            static_cast<float>(impulses[n].weight[k] * impulses[n].impulse[i]);
       }
     }
   }

@@ -2,6 +2,7 @@
 // A deformable solid: what is fixed (SolidModel), what changes (SolidState), and implicit Euler over one step.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -118,8 +119,9 @@ class SolidSolver {
   /// Velocity responses to up to eight unit impulses, each spread over nodes: column k answers impulse[k].
   /// @pre freeMotion() of this step was called.
   struct Impulse {
-    std::array<int, 3> node{-1, -1, -1};
-    std::array<Vec3, 3> impulse;  ///< N s
+    std::array<int, 12> node{};
+    std::array<double, 12> weight{};  ///< share of each node; a node may come more than once
+    Vec3 impulse = Vec3::Zero();      ///< N s
   };
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
                         std::vector<std::vector<Vec3>>& response, Executor& executor);

@@ -53,9 +53,9 @@ TEST(Comparison, QuartilesOfKnownNumbers) {
 }
 
 TEST(Comparison, EveryAttemptIsShownOrCountedOnce) {
-  std::vector<AttemptRow> attempts{attempt("a", "expert"),       attempt("b", "novice"), attempt("c", "novice", "k2"), attempt("d", ""),
-                                   attempt("e", "expert"),       attempt("f", "expert"), attempt("g", "expert"),       attempt("h", "expert"),
-                                   attempt("i", "expert")};
+  std::vector<AttemptRow> attempts{attempt("a", "expert"), attempt("b", "novice"), attempt("c", "novice", "k2"),
+                                   attempt("d", ""),       attempt("e", "expert"), attempt("f", "expert"),
+                                   attempt("g", "expert"), attempt("h", "expert"), attempt("i", "expert")};
   attempts[4].excluded = true;
   attempts[5].verification.verdict = Verdict::diverged;
   attempts[6].verification.verdict = Verdict::damaged;
@@ -75,7 +75,8 @@ TEST(Comparison, EveryAttemptIsShownOrCountedOnce) {
   EXPECT_EQ(result.group[0].name, "(none)");
   EXPECT_EQ(result.group[1].name, "expert");
   EXPECT_EQ(captionOf(result),
-            "3 attempts. Left out: 1 of another comparability key, 1 excluded from studies, 2 diverged or damaged, 1 with another "
+            "3 attempts. Left out: 1 of another comparability key, 1 excluded from studies, 2 diverged or damaged, 1 "
+            "with another "
             "version of the checkpoint, 1 without a value.");
 
   ComparisonRequest people = request;
@@ -98,8 +99,9 @@ TEST(Comparison, ShowsValuesInTheUnitThatTheDefinitionDisplays) {
 }
 
 TEST(Comparison, MostUsedKeyComesFirst) {
-  EXPECT_EQ(comparabilityKeysOf({attempt("a", "", "z"), attempt("b", "", "y"), attempt("c", "", "z"), attempt("d", "", "x")}),
-            (std::vector<std::string>{"z", "x", "y"}));
+  EXPECT_EQ(
+      comparabilityKeysOf({attempt("a", "", "z"), attempt("b", "", "y"), attempt("c", "", "z"), attempt("d", "", "x")}),
+      (std::vector<std::string>{"z", "x", "y"}));
 }
 
 TEST(Comparison, FiguresNeedAValue) {

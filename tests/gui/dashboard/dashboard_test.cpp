@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <QAbstractItemModel>
 #include <QApplication>
 #include <QCheckBox>
@@ -15,9 +18,6 @@
 #include <QLocale>
 #include <QTableView>
 #include <QTest>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 #include "analytics/checkpoints/registry.h"
 #include "gui/dashboard/attempt_filter.h"
@@ -37,7 +37,8 @@ using analytics::Verdict;
 AttemptRecord attemptNumber(int i) {
   AttemptRecord attempt;
   char uuid[40];
-  std::snprintf(uuid, sizeof uuid, "%08x-0000-4000-8000-%012x", static_cast<unsigned>(0x1000 + i), static_cast<unsigned>(i));
+  std::snprintf(uuid, sizeof uuid, "%08x-0000-4000-8000-%012x", static_cast<unsigned>(0x1000 + i),
+                static_cast<unsigned>(i));
   attempt.uuid = uuid;
   attempt.scene = "touch-liver";
   attempt.sceneMajor = 1;
@@ -88,7 +89,8 @@ class Dashboard : public ::testing::Test {
   QString cohort() {
     CohortDatabase database(file("cohort.db").toStdString(), CohortDatabase::Access::create);
     for (int i = 0; i < 8; ++i)
-      database.storeAttempt(attemptNumber(i), {pathLength("left", 0.1 + 0.01 * i), pathLength("right", 0.2 + 0.01 * i)});
+      database.storeAttempt(attemptNumber(i),
+                            {pathLength("left", 0.1 + 0.01 * i), pathLength("right", 0.2 + 0.01 * i)});
     AttemptRecord person = attemptNumber(100);
     person.operatorKind = recorder::OperatorKind::human;
     person.profile.clear();
@@ -97,9 +99,10 @@ class Dashboard : public ::testing::Test {
     person.participant = "P07";
     person.verification = {Verdict::diverged, "step 412, component solid, field velocity", "calot 0.1.0"};
     person.startUtc = "2026-04-02T08:30:00Z";
-    database.storeAttempt(person, {pathLength("left", 0.5),
-                                   analytics::makeMissing(*analytics::findCheckpoint("path-length"), "right", analytics::Origin::samples,
-                                                          analytics::Availability::notApplicable, "no instrument in the right hand")});
+    database.storeAttempt(
+        person, {pathLength("left", 0.5),
+                 analytics::makeMissing(*analytics::findCheckpoint("path-length"), "right", analytics::Origin::samples,
+                                        analytics::Availability::notApplicable, "no instrument in the right hand")});
     return file("cohort.db");
   }
 

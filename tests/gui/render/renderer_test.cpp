@@ -54,8 +54,8 @@ SurfaceView sphere(const Vec3& centre, double radius, const std::string& appeara
   for (int i = 0; i <= rings; ++i)
     for (int j = 0; j < segments; ++j) {
       const double polar = std::numbers::pi * i / rings, around = 2.0 * std::numbers::pi * j / segments;
-      surface.position.push_back(
-          centre + radius * Vec3(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar)));
+      surface.position.push_back(centre + radius * Vec3(std::sin(polar) * std::cos(around),
+                                                        std::sin(polar) * std::sin(around), std::cos(polar)));
     }
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < segments; ++j) {
@@ -191,8 +191,8 @@ TEST(Renderer, OpenJawsCoverMoreThanClosedOnes) {
 
 TEST(Renderer, EveryInstrumentIsDrawnAndDifferent) {
   std::vector<std::vector<std::uint8_t>> seen;
-  for (const InstrumentKind kind :
-       {InstrumentKind::none, InstrumentKind::grasper, InstrumentKind::hook, InstrumentKind::clipApplier, InstrumentKind::scissors}) {
+  for (const InstrumentKind kind : {InstrumentKind::none, InstrumentKind::grasper, InstrumentKind::hook,
+                                    InstrumentKind::clipApplier, InstrumentKind::scissors}) {
     SceneView view = emptyView();
     view.instrument[1].kind = kind;
     view.instrument[1].pose.position = Vec3(0.01, 0.0, 0.06);
@@ -248,7 +248,8 @@ TEST(Renderer, RefusesWhatIsNotFinite) {
 
 TEST(Renderer, RefusesSizesOutsideItsLimits) {
   const SceneView view = emptyView();
-  for (const auto& size : {PictureSize{0, 0}, PictureSize{-5, 100}, PictureSize{8, 100}, PictureSize{100000, 100000}, PictureSize{4096, 4096}})
+  for (const auto& size : {PictureSize{0, 0}, PictureSize{-5, 100}, PictureSize{8, 100}, PictureSize{100000, 100000},
+                           PictureSize{4096, 4096}})
     EXPECT_EQ(codeOf([&] { (void)renderer().render(view, size.width, size.height); }), ExitCode::usage)
         << size.width << "x" << size.height;
 }

@@ -23,9 +23,9 @@
 namespace calot::recorder {
 namespace {
 
+using calot::Random;
 using test::Folder;
 using test::makeHeader;
-using calot::Random;
 
 std::string bytesOfFile(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -33,7 +33,8 @@ std::string bytesOfFile(const std::filesystem::path& path) {
 }
 
 void writeFile(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 /// What opening, reading all, and verifying a file in a child process says.
@@ -54,7 +55,8 @@ Judgement judge(const std::filesystem::path& path) {
 void expectAgrees(const std::filesystem::path& whole, const std::filesystem::path& part) {
   Recording a(whole), b(part);
   ASSERT_LE(b.status().size(), a.status().size());
-  for (std::size_t i = 0; i < b.status().size(); ++i) EXPECT_EQ(a.status()[i].chain, b.status()[i].chain) << "flush " << i;
+  for (std::size_t i = 0; i < b.status().size(); ++i)
+    EXPECT_EQ(a.status()[i].chain, b.status()[i].chain) << "flush " << i;
   EXPECT_EQ(a.header().attempt, b.header().attempt);
   EXPECT_TRUE(b.verifyChain().intact);
 }
@@ -69,7 +71,8 @@ TEST(Cut, AClosedFileCutInHalfIsSavedInPart) {
     EXPECT_EQ(j.code, ExitCode::damaged);
     EXPECT_NE(j.message.find("cut.h5"), std::string::npos) << j.message;
     const Recovered saved = recover(folder / "cut.h5", folder / "saved.h5", true);
-    std::printf("%.3f of the file: %llu of 2000 steps saved; %s\n", part, static_cast<unsigned long long>(saved.steps), saved.lost.c_str());
+    std::printf("%.3f of the file: %llu of 2000 steps saved; %s\n", part, static_cast<unsigned long long>(saved.steps),
+                saved.lost.c_str());
     EXPECT_FALSE(saved.complete);
     EXPECT_FALSE(saved.lost.empty());
     EXPECT_GE(static_cast<double>(saved.steps), 2000 * part * 0.8);
@@ -83,7 +86,8 @@ TEST(Cut, AKilledFileCutInHalfIsSavedInPart) {
   const pid_t child = ::fork();
   if (child == 0) {
     RecordingWriter writer(folder / "r.h5", header);
-    test::feed(writer, header, 1010, [&](std::uint64_t n) { return test::randomStep(header, n, 1); }, 60000);
+    test::feed(
+        writer, header, 1010, [&](std::uint64_t n) { return test::randomStep(header, n, 1); }, 60000);
     while (writer.statistics().steps < 1000) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ::raise(SIGKILL);
   }
@@ -105,7 +109,8 @@ TEST(Cut, WhereNothingIsLeftNothingIsWritten) {
   const Folder folder;
   test::writeRecording(folder / "r.h5", makeHeader(), 100);
   const std::string all = bytesOfFile(folder / "r.h5");
-  for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, std::size_t{20}, std::size_t{100}, std::size_t{3000}}) {
+  for (const std::size_t bytes :
+       {std::size_t{0}, std::size_t{1}, std::size_t{20}, std::size_t{100}, std::size_t{3000}}) {
     writeFile(folder / "cut.h5", all.substr(0, bytes));
     EXPECT_EQ(judge(folder / "cut.h5").code, ExitCode::damaged) << bytes;
     try {
@@ -136,7 +141,8 @@ TEST(Open, WhatIsNoRecordingIsDamaged) {
 }
 
 /// Place of a data set's chunk in the file (bytes).
-std::pair<std::uint64_t, std::uint64_t> chunkPlace(const std::filesystem::path& path, const char* dataset, hsize_t index) {
+std::pair<std::uint64_t, std::uint64_t> chunkPlace(const std::filesystem::path& path, const char* dataset,
+                                                   hsize_t index) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   const hid_t d = H5Dopen2(file, dataset, H5P_DEFAULT);
   const hid_t space = H5Dget_space(d);
@@ -156,9 +162,10 @@ TEST(Flip, AByteOfAChunkIsFoundAndItsDataSetNamed) {
   test::writeRecording(folder / "r.h5", makeHeader(), 300);
   const std::string all = bytesOfFile(folder / "r.h5");
   Random random(20);
-  for (const char* dataset : {"/ticks/left/position", "/ticks/right/orientation", "/ticks/right/force", "/ticks/left/contact_set",
-                              "/camera/position", "/steps/component_digest", "/steps/field_digest", "/events", "/observables/organs/volume",
-                              "/observables/left/tip_real", "/keyframes/bytes", "/keyframes/index", "/status"}) {
+  for (const char* dataset :
+       {"/ticks/left/position", "/ticks/right/orientation", "/ticks/right/force", "/ticks/left/contact_set",
+        "/camera/position", "/steps/component_digest", "/steps/field_digest", "/events", "/observables/organs/volume",
+        "/observables/left/tip_real", "/keyframes/bytes", "/keyframes/index", "/status"}) {
     const auto [at, size] = chunkPlace(folder / "r.h5", dataset, 0);
     ASSERT_GT(size, 0U) << dataset;
     for (int i = 0; i < 5; ++i) {
@@ -277,7 +284,8 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
   const auto head = whole.status().back().chain;
   Random random(424242);
   int refused = 0, broken = 0, unharmed = 0;
-  // The first part holds superblock and object headers, the rest chunks and their index: two thirds of the hits go to the front.
+  // The first part holds superblock and object headers, the rest chunks and their index: two thirds of the hits go to
+  // the front.
   for (int i = 0; i < 400; ++i) {
     std::string bytes = all;
     const std::size_t reach = i % 3 != 0 ? std::min<std::size_t>(all.size(), 40000) : all.size();
@@ -309,7 +317,8 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
     EXPECT_NE(answer, "SILENT") << "bytes from " << at;
     (answer == "refused" ? refused : answer == "broken" ? broken : unharmed) += 1;
   }
-  std::printf("400 overwritten files: %d refused, %d broken chains, %d unharmed (slack, or outside the chain)\n", refused, broken, unharmed);
+  std::printf("400 overwritten files: %d refused, %d broken chains, %d unharmed (slack, or outside the chain)\n",
+              refused, broken, unharmed);
   EXPECT_GT(refused, 100);
 }
 
@@ -322,8 +331,15 @@ TEST(Guarded, ACrashOrAHangBecomesAnError) {
       return e.code();
     }
   };
-  EXPECT_EQ(code([]() -> std::string { ::raise(SIGKILL); return ""; }), ExitCode::damaged);
-  EXPECT_EQ(code([]() -> std::string { for (;;) ::pause(); }), ExitCode::damaged);
+  EXPECT_EQ(code([]() -> std::string {
+              ::raise(SIGKILL);
+              return "";
+            }),
+            ExitCode::damaged);
+  EXPECT_EQ(code([]() -> std::string {
+              for (;;) ::pause();
+            }),
+            ExitCode::damaged);
   EXPECT_EQ(code([]() -> std::string { throw Error(ExitCode::undecided, "x"); }), ExitCode::undecided);
   EXPECT_EQ(code([]() -> std::string { throw std::bad_alloc(); }), ExitCode::failure);
   const std::string large(1000000, 'a');

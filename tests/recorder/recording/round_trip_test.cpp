@@ -24,7 +24,9 @@ bool same(const T& a, const T& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 bool same(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), 3 * sizeof(double)) == 0; }
-bool same(const Quat& a, const Quat& b) { return std::memcmp(a.coeffs().data(), b.coeffs().data(), 4 * sizeof(double)) == 0; }
+bool same(const Quat& a, const Quat& b) {
+  return std::memcmp(a.coeffs().data(), b.coeffs().data(), 4 * sizeof(double)) == 0;
+}
 
 void expectSame(const Step& made, const RecordedStep& read) {
   ASSERT_EQ(made.samples.size(), read.samples.size());
@@ -49,7 +51,8 @@ void expectSame(const Step& made, const RecordedStep& read) {
   ASSERT_EQ(made.result.organ.size(), read.result.organ.size());
   for (std::size_t o = 0; o < made.result.organ.size(); ++o) {
     const OrganResult &a = made.result.organ[o], &b = read.result.organ[o];
-    EXPECT_TRUE(a.volume == b.volume && a.largestDisplacement == b.largestDisplacement && a.largestSpeed == b.largestSpeed);
+    EXPECT_TRUE(a.volume == b.volume && a.largestDisplacement == b.largestDisplacement &&
+                a.largestSpeed == b.largestSpeed);
     EXPECT_TRUE(a.residual == b.residual && a.iterations == b.iterations && a.asleep == b.asleep);
   }
   EXPECT_EQ(made.result.step, read.result.step);
@@ -150,8 +153,9 @@ TEST_P(RoundTrip, KeepsEveryBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, RoundTrip,
-                         testing::Values(Shape{10, 2, 533}, Shape{10, 2, 500}, Shape{10, 0, 60}, Shape{1, 1, 1100}, Shape{7, 3, 200},
-                                         Shape{300, 1, 9}, Shape{10, 2, 1}, Shape{10, 2, 0}, Shape{1000, 32, 3}));
+                         testing::Values(Shape{10, 2, 533}, Shape{10, 2, 500}, Shape{10, 0, 60}, Shape{1, 1, 1100},
+                                         Shape{7, 3, 200}, Shape{300, 1, 9}, Shape{10, 2, 1}, Shape{10, 2, 0},
+                                         Shape{1000, 32, 3}));
 
 TEST(Keyframes, AreKeptAboutEverySecond) {
   const Folder folder;
@@ -208,7 +212,8 @@ TEST(Writer, LeftWithoutAnEndStaysIncomplete) {
   const AttemptHeader header = makeHeader();
   {
     RecordingWriter writer(folder / "r.h5", header);
-    test::feed(writer, header, 30, [&](std::uint64_t n) { return randomStep(header, n, 1); }, 0);
+    test::feed(
+        writer, header, 30, [&](std::uint64_t n) { return randomStep(header, n, 1); }, 0);
   }
   Recording r(folder / "r.h5");
   EXPECT_FALSE(r.complete());

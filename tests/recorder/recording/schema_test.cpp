@@ -13,8 +13,8 @@ namespace {
 /// Exit code of the checker; its lines go to the test's output.
 int check(const std::filesystem::path& recording) {
   const std::string root = CALOT_SOURCE_DIR;
-  const std::string command =
-      "/usr/bin/python3 '" + root + "/tests/command_line/schema_names.py' '" + root + "/schemas' '" + recording.string() + "'";
+  const std::string command = "/usr/bin/python3 '" + root + "/tests/command_line/schema_names.py' '" + root +
+                              "/schemas' '" + recording.string() + "'";
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
@@ -43,7 +43,8 @@ TEST(Schema, CheckerSeesWhatIsTooMuchAndTooLittle) {
   if (const int first = check(r); first == 77 || first == 127) GTEST_SKIP() << "needs /usr/bin/python3 with h5py";
   const auto change = [&](const std::string& statement) {
     test::writeRecording(r, test::makeHeader(), 30);
-    const std::string command = "/usr/bin/python3 -c \"import h5py; f = h5py.File('" + r.string() + "', 'r+'); " + statement + "\"";
+    const std::string command =
+        "/usr/bin/python3 -c \"import h5py; f = h5py.File('" + r.string() + "', 'r+'); " + statement + "\"";
     EXPECT_EQ(std::system(command.c_str()), 0);
     return check(r);
   };

@@ -76,7 +76,11 @@ AttemptHeader makeHeader(std::uint32_t ticksPerStep, std::size_t organs) {
     h.assets.push_back(a);
   }
   h.layout.components = {"clock", "camera", "hand.left", "hand.right"};
-  h.layout.fields = {{0, "clock/step"}, {1, "camera/position"}, {1, "camera/orientation"}, {2, "hand.left/pose"}, {3, "hand.right/pose"}};
+  h.layout.fields = {{0, "clock/step"},
+                     {1, "camera/position"},
+                     {1, "camera/orientation"},
+                     {2, "hand.left/pose"},
+                     {3, "hand.right/pose"}};
   for (std::size_t o = 0; o < organs; ++o) {
     h.organs.push_back("organ" + std::to_string(o));
     h.layout.components.push_back("organ.organ" + std::to_string(o));
@@ -156,7 +160,8 @@ Step plausibleStep(const AttemptHeader& header, std::uint64_t n) {
       // Tremor of a hand: tens of micrometres at about 10 Hz.
       const Vec3 tremor = 3e-5 * Vec3(std::sin(63.0 * time), std::cos(57.0 * time), std::sin(71.0 * time + 1.0));
       InstrumentSample& sample = s.samples[t].hand[h];
-      sample.position = onGrid(Vec3(0.03 * std::sin(phase), 0.02 * std::cos(1.3 * phase), 0.05 * std::sin(0.6 * phase)) + tremor, 1048576.0);
+      sample.position = onGrid(
+          Vec3(0.03 * std::sin(phase), 0.02 * std::cos(1.3 * phase), 0.05 * std::sin(0.6 * phase)) + tremor, 1048576.0);
       Quat q(1.0, 0.2 * std::sin(phase), 0.2 * std::cos(phase), 0.1 * std::sin(2.0 * phase));
       q.normalize();
       sample.orientation = onGrid(q, 65536.0);
@@ -165,7 +170,9 @@ Step plausibleStep(const AttemptHeader& header, std::uint64_t n) {
       sample.buttons = 0;
       sample.valid = true;
       HandTick& tick = s.ticks[t].hand[h];
-      tick.force = touching ? onGrid(Vec3(std::sin(7.0 * time), 1.0 + std::sin(5.0 * time), std::cos(3.0 * time)), 16384.0) : Vec3::Zero();
+      tick.force = touching
+                       ? onGrid(Vec3(std::sin(7.0 * time), 1.0 + std::sin(5.0 * time), std::cos(3.0 * time)), 16384.0)
+                       : Vec3::Zero();
       tick.torque = 0.01 * tick.force;
       tick.contactSet = static_cast<std::int64_t>(n) - 1;
     }
@@ -186,10 +193,15 @@ Step plausibleStep(const AttemptHeader& header, std::uint64_t n) {
     for (double& f : r.organForce) f = touching ? r.contactForce.norm() : 0.0;
   }
   for (OrganResult& o : s.result.organ) {
-    o = {1.2e-3 + (touching ? 1e-7 * std::sin(time) : 0.0), touching ? 1e-3 * std::abs(std::sin(time)) : 0.0,
-         touching ? 1e-2 * std::abs(std::cos(time)) : 0.0, touching ? 1e-7 * (1.0 + std::sin(99.0 * time)) : 0.0, touching ? 17U : 0U, !touching};
+    o = {1.2e-3 + (touching ? 1e-7 * std::sin(time) : 0.0),
+         touching ? 1e-3 * std::abs(std::sin(time)) : 0.0,
+         touching ? 1e-2 * std::abs(std::cos(time)) : 0.0,
+         touching ? 1e-7 * (1.0 + std::sin(99.0 * time)) : 0.0,
+         touching ? 17U : 0U,
+         !touching};
   }
-  s.result.contact = {touching ? 6U : 0U, touching ? 12U : 0U, touching ? 1e-9 * (1.0 + std::cos(31.0 * time)) : 0.0, 0.0};
+  s.result.contact = {touching ? 6U : 0U, touching ? 12U : 0U, touching ? 1e-9 * (1.0 + std::cos(31.0 * time)) : 0.0,
+                      0.0};
   s.result.misses = 0;
   if (n % 300 == 0 || n % 300 == 100) {
     Event event;
@@ -221,18 +233,25 @@ void feed(Observer& observer, const AttemptHeader&, std::uint64_t count, const s
           std::size_t keyframeBytes) {
   for (std::uint64_t n = 0; n < count; ++n) {
     const Step s = make(n);
-    const StepRecord record{n, s.samples, s.ticks, s.result, s.digest, s.lateness,
-                            keyframeBytes > 0 ? std::function<Keyframe()>([n, keyframeBytes] { return makeKeyframe(n, keyframeBytes); })
-                                              : std::function<Keyframe()>(),
-                            {}};
+    const StepRecord record{
+        n,
+        s.samples,
+        s.ticks,
+        s.result,
+        s.digest,
+        s.lateness,
+        keyframeBytes > 0 ? std::function<Keyframe()>([n, keyframeBytes] { return makeKeyframe(n, keyframeBytes); })
+                          : std::function<Keyframe()>(),
+        {}};
     observer.onStep(record);
   }
 }
 
-void writeRecording(const std::filesystem::path& path, const AttemptHeader& header, std::uint64_t steps, std::uint64_t seed,
-                    std::size_t keyframeBytes) {
+void writeRecording(const std::filesystem::path& path, const AttemptHeader& header, std::uint64_t steps,
+                    std::uint64_t seed, std::size_t keyframeBytes) {
   RecordingWriter writer(path, header, {true});
-  feed(writer, header, steps, [&](std::uint64_t n) { return randomStep(header, n, seed); }, keyframeBytes);
+  feed(
+      writer, header, steps, [&](std::uint64_t n) { return randomStep(header, n, seed); }, keyframeBytes);
   writer.onEnd(Outcome::completed);
   writer.finish();
 }

@@ -58,7 +58,7 @@ void feed(Observer& observer, const AttemptHeader& header, std::uint64_t count,
           const std::function<Step(std::uint64_t)>& make, std::size_t keyframeBytes);
 
 /// Writes a whole recording and closes it.
-void writeRecording(const std::filesystem::path& path, const AttemptHeader& header, std::uint64_t steps, std::uint64_t seed = 1,
-                    std::size_t keyframeBytes = 3001);
+void writeRecording(const std::filesystem::path& path, const AttemptHeader& header, std::uint64_t steps,
+                    std::uint64_t seed = 1, std::size_t keyframeBytes = 3001);
 
 }  // namespace calot::recorder::test
