@@ -32,7 +32,7 @@ HEAVY = os.environ.get("CALOT_HEAVY") == "1"
 SCENE = "touch-liver"
 
 # A test that hangs must fail before ctest ends it without a word.
-PATIENCE = 600
+PATIENCE = 240
 
 
 def seeded(name):
@@ -76,8 +76,8 @@ def recording(name, *arguments):
 
 
 def skilled():
-    """Three seconds of a performer: long enough for contact, keyframes and twelve flushes."""
-    return recording("skilled", "--performer", "skilled", "--seed", 7, "--seconds", 3)
+    """Five seconds of a performer: contact, keyframes, twenty flushes."""
+    return recording("skilled", "--performer", "skilled", "--seed", 7, "--seconds", 5)
 
 
 def short():

@@ -18,26 +18,30 @@ def reseal(file):
         file["/status"][k] = row
 
 
+def put_attribute(thing, name, value):
+    """Another value for an attribute, in the very type it has."""
+    attribute = thing.attrs.get_id(name)
+    attribute.write(np.asarray(value, dtype=attribute.dtype))
+
+
 def set_attribute(path, name, value):
-    """A root attribute of the same type with another value, and the chain with it."""
+    """Another value for a root attribute of a file, and the chain made to fit."""
     with h5py.File(path, "r+") as file:
-        file.attrs.modify(name, np.asarray(value, dtype=file.attrs[name].dtype))
+        put_attribute(file, name, value)
         reseal(file)
 
 
 def flip_stored_byte(path, dataset, row):
-    """Turns one bit of the stored (packed, checksummed) chunk that holds a row. Returns the chunk's number."""
+    """Turns one bit in the middle of the stored (packed, checksummed) chunk that holds a row."""
     with h5py.File(path, "r") as file:
-        data = file[dataset]
-        chunk = row // data.chunks[0]
-        info = data.id.get_chunk_info_by_coord((chunk * data.chunks[0],) + (0,) * (len(data.shape) - 1))
-        offset, size = info.byte_offset, info.size
+        data = file[dataset].id
+        chunks = [data.get_chunk_info(i) for i in range(data.get_num_chunks())]
+        chunk = max((c for c in chunks if c.chunk_offset[0] <= row), key=lambda c: c.chunk_offset[0])
     with open(path, "r+b") as raw:
-        raw.seek(offset + size // 2)
+        raw.seek(chunk.byte_offset + chunk.size // 2)
         byte = raw.read(1)[0]
-        raw.seek(offset + size // 2)
+        raw.seek(chunk.byte_offset + chunk.size // 2)
         raw.write(bytes([byte ^ 0x10]))
-    return chunk
 
 
 def last_status(path, swmr=False):

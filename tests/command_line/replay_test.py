@@ -9,6 +9,7 @@ import xml.etree.ElementTree as xml
 import h5py
 import program
 import recording_file
+import schema_names
 from program import calot, recording, short, skilled
 
 
@@ -16,10 +17,10 @@ class Exact(program.ProgramTest):
     def test_performer_with_one_and_two_threads(self):
         for threads in (1, 2):
             answer = self.well("replay", "--threads", threads, skilled())
-            self.assertRegex(answer.out, r"^\S+skilled\.h5: bit-exact, 3\.00 s \(300 steps\), [\d.]+ x real time\n$")
+            self.assertRegex(answer.out, r"^\S+skilled\.h5: bit-exact, 5\.00 s \(500 steps\), [\d.]+ x real time\n$")
 
     def test_recorded_with_two_threads_is_the_same_attempt(self):
-        two = recording("two-threads", "--performer", "skilled", "--seed", 7, "--seconds", 3, "--threads", 2)
+        two = recording("two-threads", "--performer", "skilled", "--seed", 7, "--seconds", 5, "--threads", 2)
         with h5py.File(skilled(), "r") as a, h5py.File(two, "r") as b:
             for name in ("/steps/component_digest", "/ticks/left/force", "/ticks/right/force", "/observables/misses"):
                 self.assertEqual(a[name][:].tobytes(), b[name][:].tobytes(), name)
@@ -44,8 +45,6 @@ class Exact(program.ProgramTest):
 
     def test_every_name_is_in_the_schema(self):
         for r in (skilled(), short()):
-            faults = []
-            import schema_names
             with h5py.File(r, "r") as file:
                 rows = schema_names.names_of(str(program.SOURCE / "schemas"))
                 self.assertGreater(len(rows), 80)
@@ -85,7 +84,7 @@ class Reports(program.ProgramTest):
     def test_junit_and_json(self):
         good, changed, broken, other = (self.copy(short(), f"{n}.h5") for n in ("good", "changed", "broken", "other & <new>"))
         with h5py.File(changed, "r+") as file:
-            file["/ticks/left/position"][100, 1] += 1e-4
+            file["/ticks/left/position"][109, 1] += 1e-4
         recording_file.flip_stored_byte(broken, "/ticks/left/jaw", 0)
         recording_file.set_attribute(other, "simulation_version", 999)
         report = self.path("report.xml")
@@ -113,7 +112,7 @@ class Reports(program.ProgramTest):
     def test_worst_code_first(self):
         good, changed, broken, other = (self.copy(short(), f"{n}.h5") for n in ("good", "changed", "broken", "other"))
         with h5py.File(changed, "r+") as file:
-            file["/ticks/left/position"][100, 1] += 1e-4
+            file["/ticks/left/position"][109, 1] += 1e-4
         broken.write_bytes(b"no recording")
         recording_file.set_attribute(other, "simulation_version", 999)
         for files, code in (((good, other), 5), ((other, changed, good), 3), ((changed, broken, other), 4), ((good, broken), 4),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Recordings that were changed, damaged, cut off or made by another simulation: what each is told to be."""
 
+import hashlib
 import json
 import re
 
@@ -15,7 +16,7 @@ class Changed(program.ProgramTest):
     def test_pose(self):
         r = self.copy(skilled())
         with h5py.File(r, "r+") as file:
-            file["/ticks/right/position"][1234, 2] += 2e-5
+            file["/ticks/right/position"][1239, 2] += 2e-5
         answer = self.refused(3, "replay", r, names=(r, "diverged at step 123", "hand.right", "reproducible", "chain broken"))
         self.assertEqual(answer.out, "")
 
@@ -23,10 +24,19 @@ class Changed(program.ProgramTest):
         # Whoever can compute digests can make the chain fit; the simulation itself still differs.
         r = self.copy(skilled())
         with h5py.File(r, "r+") as file:
-            file["/ticks/right/position"][1234, 2] += 2e-5
+            file["/ticks/right/position"][1239, 2] += 2e-5
             recording_file.reseal(file)
         answer = self.refused(3, "replay", r, names=(r, "step 123", "hand.right"))
         self.assertNotIn("chain", answer.err)
+
+    def test_pose_that_the_step_does_not_use(self):
+        # A step moves to its last tick's pose; those before it are felt by the haptic tick alone, and only in contact. Elsewhere
+        # no re-simulation can miss one: the chain does, to the flush.
+        r = self.copy(skilled())
+        with h5py.File(r, "r+") as file:
+            self.assertFalse(file["/ticks/right/force"][:300].any())
+            file["/ticks/right/position"][234, 2] += 2e-5
+        self.refused(3, "replay", r, names=(r, "chain", "steps 0 to 24"))
 
     def test_force(self):
         r = self.copy(skilled())
@@ -64,7 +74,7 @@ class Changed(program.ProgramTest):
     def test_attribute_and_status(self):
         r = self.copy(short())
         with h5py.File(r, "r+") as file:
-            file.attrs.modify("participant", np.asarray(b"Q", dtype=file.attrs["participant"].dtype))
+            recording_file.put_attribute(file, "participant", b"Q")
         self.refused(3, "replay", r, names=(r, "chain"))
         self.refused(3, "inspect", r, names=(r, "chain"))
         self.assertEqual(json.loads(calot("inspect", "--json", r).out)["chain"], "broken")
@@ -72,7 +82,7 @@ class Changed(program.ProgramTest):
     def test_state_names_index_and_values(self):
         r = self.copy(skilled())
         with h5py.File(r, "r+") as file:
-            file["/ticks/right/position"][1234, 2] += 2e-5
+            file["/ticks/right/position"][1239, 2] += 2e-5
         for name, source in (("a", skilled()), ("b", r)):
             self.well("state", source, "--step", 123, "-o", self.path(name + ".h5"))
         answer = calot("diff", self.path("a.h5"), self.path("b.h5"))
@@ -145,9 +155,7 @@ class Damaged(program.ProgramTest):
         with h5py.File(r, "r+") as file:
             text = file["/scene/description"]
             text[:] = np.frombuffer(text[:].tobytes().replace(b'"tetrahedra"', b'"tetraeders"'), dtype="u1")
-            import hashlib
-            digest = hashlib.sha256(text[:].tobytes()).hexdigest()
-            text.attrs.modify("sha256", np.asarray(digest.encode(), dtype=text.attrs["sha256"].dtype))
+            recording_file.put_attribute(text, "sha256", hashlib.sha256(text[:].tobytes()).hexdigest().encode())
             recording_file.reseal(file)
         self.refused(4, "replay", r, names=(r,))
 
@@ -164,7 +172,7 @@ class Damaged(program.ProgramTest):
                 self.assertIn("incomplete", answer.out)
                 self.assertIn("the rest is lost", answer.out)
                 # Half the bytes are about half the time, and the head of the file is the scene.
-                self.assertGreater(saved, 300 * (share - 0.35), answer)
+                self.assertGreater(saved, 500 * (share - 0.35), answer)
                 self.assertIn(f"bit-exact, incomplete, {saved / 100:.2f} s ({saved} steps)", self.well("replay", out).out)
                 with h5py.File(out, "r") as b, h5py.File(skilled(), "r") as a:
                     self.assertEqual(b.attrs["attempt_uuid"], a.attrs["attempt_uuid"])
@@ -199,14 +207,14 @@ class OtherVersion(program.ProgramTest):
     def test_anyway_reports_the_difference(self):
         r = self.copy(short())
         with h5py.File(r, "r+") as file:
-            file["/ticks/left/position"][100, 1] += 1e-4
+            file["/ticks/left/position"][109, 1] += 1e-4
         recording_file.set_attribute(r, "simulation_version", 999)
         self.refused(5, "replay", "--anyway", r, names=(r, "999", "step 10"))
 
     def test_broken_chain_goes_before(self):
         r = self.copy(short())
         with h5py.File(r, "r+") as file:
-            file.attrs.modify("simulation_version", np.asarray(999, dtype=file.attrs["simulation_version"].dtype))
+            recording_file.put_attribute(file, "simulation_version", 999)
         self.refused(3, "replay", r, names=(r, "chain"))
 
     def test_format_of_the_future(self):
