@@ -27,11 +27,11 @@ struct SurfaceDescription {
 
 /// Isotropic material of a co-rotational solid.
 struct MaterialDescription {
-  double youngModulus = 5000.0;     ///< Pa
-  double poissonRatio = 0.45;       ///< in [0, 0.5)
-  double density = 1060.0;          ///< kg/m^3
-  double massDamping = 0.0;         ///< Rayleigh alpha (1/s)
-  double stiffnessDamping = 0.01;   ///< Rayleigh beta (s)
+  double youngModulus = 5000.0;    ///< Pa
+  double poissonRatio = 0.45;      ///< in [0, 0.5)
+  double density = 1060.0;         ///< kg/m^3
+  double massDamping = 0.0;        ///< Rayleigh alpha (1/s)
+  double stiffnessDamping = 0.01;  ///< Rayleigh beta (s)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -49,7 +49,7 @@ struct AnchorDescription {
   Vec3 centre = Vec3::Zero();  ///< m
   double radius = 0.0;         ///< m
   std::string nearOrgan;
-  double distance = 0.0;       ///< m
+  double distance = 0.0;  ///< m
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -81,12 +81,12 @@ struct OrganDescription {
 
 /// Where a hand's instrument enters, and how it is coupled.
 struct HandDescription {
-  Vec3 port = Vec3::Zero();          ///< p_WP, the trocar's pivot (m)
-  Vec3 home = Vec3::Zero();          ///< p_WI at the start (m)
+  Vec3 port = Vec3::Zero();  ///< p_WP, the trocar's pivot (m)
+  Vec3 home = Vec3::Zero();  ///< p_WI at the start (m)
   InstrumentKind instrument = InstrumentKind::grasper;
-  double shaftRadius = 0.0025;       ///< m
-  double couplingStiffness = 1000.0; ///< of the virtual coupling at the tip (N/m)
-  double largestForce = 8.0;         ///< what the device can do (N)
+  double shaftRadius = 0.0025;        ///< m
+  double couplingStiffness = 1000.0;  ///< of the virtual coupling at the tip (N/m)
+  double largestForce = 8.0;          ///< what the device can do (N)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -100,11 +100,11 @@ struct HandDescription {
 };
 
 struct SolverDescription {
-  double tolerance = 1e-4;              ///< relative residual of the linear solve
-  std::uint32_t iterations = 200;       ///< cap of the linear solve
-  double contactTolerance = 1e-7;       ///< residual of the contact problem (m)
+  double tolerance = 1e-4;         ///< relative residual of the linear solve
+  std::uint32_t iterations = 200;  ///< cap of the linear solve
+  double contactTolerance = 1e-7;  ///< residual of the contact problem (m)
   std::uint32_t contactIterations = 1000;
-  bool sleeping = true;                 ///< untouched organs at rest are not solved
+  bool sleeping = true;  ///< untouched organs at rest are not solved
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -118,16 +118,16 @@ struct SolverDescription {
 
 struct SceneDescription {
   std::string name;
-  std::uint32_t majorVersion = 1;       ///< changes when attempts before and after must not be compared
+  std::uint32_t majorVersion = 1;  ///< changes when attempts before and after must not be compared
   std::uint32_t minorVersion = 0;
-  std::uint32_t ticksPerStep = 10;      ///< a tick is 1 ms
-  Vec3 gravity = Vec3::Zero();          ///< m/s^2; zero: the organs' rest shape is their shape in the body, under gravity
-  double timeLimit = 0.0;               ///< s; 0: none
+  std::uint32_t ticksPerStep = 10;  ///< a tick is 1 ms
+  Vec3 gravity = Vec3::Zero();      ///< m/s^2; zero: the organs' rest shape is their shape in the body, under gravity
+  double timeLimit = 0.0;           ///< s; 0: none
   std::array<Vec3, 2> workspace{Vec3::Constant(-0.5), Vec3::Constant(0.5)};  ///< lower and upper corner for tips (m)
   std::vector<OrganDescription> organs;
   std::array<HandDescription, handCount> hands;
-  CameraSample camera;                  ///< at the start
-  double verticalFieldOfView = 1.0;     ///< rad
+  CameraSample camera;               ///< at the start
+  double verticalFieldOfView = 1.0;  ///< rad
   SolverDescription solver;
 
   template <class Self, class Visitor>

@@ -79,9 +79,8 @@ Model::Built Model::build(SceneDescription scene) {
       return built;
     }
     names.push_back(organ.name);
-    model->organs_.push_back(
-        {organ.name, organ.appearance, std::move(solid), organ.surface.vertex, std::move(embedding), std::move(contact),
-         stuffed.cellSize, stuffed.report});
+    model->organs_.push_back({organ.name, organ.appearance, std::move(solid), organ.surface.vertex,
+                              std::move(embedding), std::move(contact), stuffed.cellSize, stuffed.report});
   }
   model->layout_ = digestLayout(names);
   model->scene_ = std::move(scene);

@@ -20,10 +20,10 @@ struct OrganModel {
   std::string name;
   std::string appearance;
   SolidModel solid;
-  std::vector<Vec3> skin;    ///< vertices of the organ's surface at rest (m), carried by the solid:
-  Embedding embedding;       ///< contact and pictures see the fine surface, mechanics the tetrahedra
-  ContactSurface surface;    ///< triangles over the skin's vertices
-  double cellSize = 0.0;     ///< of the tetrahedral lattice (m)
+  std::vector<Vec3> skin;  ///< vertices of the organ's surface at rest (m), carried by the solid:
+  Embedding embedding;     ///< contact and pictures see the fine surface, mechanics the tetrahedra
+  ContactSurface surface;  ///< triangles over the skin's vertices
+  double cellSize = 0.0;   ///< of the tetrahedral lattice (m)
   StuffingReport meshing;
 };
 

@@ -17,26 +17,26 @@ enum class InstrumentKind : std::uint8_t { none = 0, grasper = 1, hook = 2, clip
 
 /// Bits of InstrumentSample::buttons.
 namespace button {
-inline constexpr std::uint8_t cutPedal = 1U << 0U;         ///< yellow pedal: cut
-inline constexpr std::uint8_t coagulatePedal = 1U << 1U;   ///< blue pedal: coagulation
-inline constexpr std::uint8_t fire = 1U << 2U;             ///< closes a clip
-inline constexpr std::uint8_t lock = 1U << 3U;             ///< ratchet of a grasper
+inline constexpr std::uint8_t cutPedal = 1U << 0U;        ///< yellow pedal: cut
+inline constexpr std::uint8_t coagulatePedal = 1U << 1U;  ///< blue pedal: coagulation
+inline constexpr std::uint8_t fire = 1U << 2U;            ///< closes a clip
+inline constexpr std::uint8_t lock = 1U << 3U;            ///< ratchet of a grasper
 }  // namespace button
 
 /// One hand during one tick (1 ms): the device's real pose, in W, before any constraint.
 struct InstrumentSample {
-  Vec3 position = Vec3::Zero();               ///< p_WI, instrument tip (m)
-  Quat orientation = Quat::Identity();        ///< q_WI; I: z along the shaft towards the tip, x across the jaw's hinge
-  double jaw = 0.0;                           ///< opening angle of the jaws (rad), 0 closed
+  Vec3 position = Vec3::Zero();         ///< p_WI, instrument tip (m)
+  Quat orientation = Quat::Identity();  ///< q_WI; I: z along the shaft towards the tip, x across the jaw's hinge
+  double jaw = 0.0;                     ///< opening angle of the jaws (rad), 0 closed
   InstrumentKind instrument = InstrumentKind::grasper;
   std::uint8_t buttons = 0;
-  bool valid = true;                          ///< false: the source had no measurement; the pose of the last valid tick is held
+  bool valid = true;  ///< false: the source had no measurement; the pose of the last valid tick is held
 };
 
 /// Endoscope pose in W: x right, y down, z forward (along the view). What the operator saw is an input too.
 struct CameraSample {
-  Vec3 position = Vec3::Zero();               ///< p_WC (m)
-  Quat orientation = Quat::Identity();        ///< q_WC
+  Vec3 position = Vec3::Zero();         ///< p_WC (m)
+  Quat orientation = Quat::Identity();  ///< q_WC
 };
 
 /// All inputs of one tick.

@@ -13,29 +13,29 @@ namespace calot {
 
 /// One organ's outer surface, in W. Built only when an observer asks for it.
 struct SurfaceView {
-  std::string organ;                ///< name in the scene: "liver"
-  std::string appearance;           ///< "liver", "gallbladder", ...: which look the renderer gives it
-  std::vector<Vec3> position;       ///< deformed vertices (m)
-  std::vector<Vec3> rest;           ///< the same vertices at rest, for textures that stick to the tissue
-  std::vector<Index3> triangle;     ///< outward (counter-clockwise from outside)
+  std::string organ;             ///< name in the scene: "liver"
+  std::string appearance;        ///< "liver", "gallbladder", ...: which look the renderer gives it
+  std::vector<Vec3> position;    ///< deformed vertices (m)
+  std::vector<Vec3> rest;        ///< the same vertices at rest, for textures that stick to the tissue
+  std::vector<Index3> triangle;  ///< outward (counter-clockwise from outside)
 };
 
 struct InstrumentView {
   InstrumentKind kind = InstrumentKind::none;
-  Pose pose;                        ///< simulated pose in W
-  Vec3 port = Vec3::Zero();         ///< where the shaft passes the abdominal wall, in W (m)
-  double radius = 0.0025;           ///< of the shaft (m)
-  double jaw = 0.0;                 ///< rad
+  Pose pose;                 ///< simulated pose in W
+  Vec3 port = Vec3::Zero();  ///< where the shaft passes the abdominal wall, in W (m)
+  double radius = 0.0025;    ///< of the shaft (m)
+  double jaw = 0.0;          ///< rad
   bool touching = false;
 };
 
 struct SceneView {
   std::uint64_t step = 0;
-  double time = 0.0;                ///< since the attempt's start (s)
+  double time = 0.0;  ///< since the attempt's start (s)
   std::vector<SurfaceView> surface;
   std::array<InstrumentView, handCount> instrument;
   CameraSample camera;
-  double verticalFieldOfView = 1.0; ///< rad
+  double verticalFieldOfView = 1.0;  ///< rad
 };
 
 }  // namespace calot

@@ -40,8 +40,7 @@ struct FiniteVisitor {
   }
   void check(double v) { finite = finite && std::isfinite(v); }
   template <class T>
-    requires(std::is_integral_v<T> || std::is_enum_v<T>)
-  void check(T /*value*/) {}
+  requires(std::is_integral_v<T> || std::is_enum_v<T>) void check(T /*value*/) {}
   void check(const Vec3& v) { finite = finite && v.allFinite(); }
   void check(const Quat& q) { finite = finite && q.coeffs().allFinite(); }
   template <class T, std::size_t N>

@@ -48,13 +48,13 @@ struct HandState {
   Quat simulatedOrientation = Quat::Identity();  ///< unit
   double jaw = 0.0;                              ///< rad
   std::uint8_t buttons = 0;
-  bool valid = true;                             ///< the newest sample was a measurement
-  bool outside = false;                          ///< the newest sample lay outside the workspace
-  std::uint64_t invalidSince = 0;                ///< step in which measurements stopped
-  std::uint32_t touching = 0;                    ///< bit o: organ o
-  std::vector<std::uint64_t> touchingSince;      ///< per organ: step in which the touch began
-  std::vector<std::uint64_t> contactKey;         ///< the last step's contacts: where,
-  std::vector<double> contactForce;              ///< and how strong (N); warm start of the next problem
+  bool valid = true;                         ///< the newest sample was a measurement
+  bool outside = false;                      ///< the newest sample lay outside the workspace
+  std::uint64_t invalidSince = 0;            ///< step in which measurements stopped
+  std::uint32_t touching = 0;                ///< bit o: organ o
+  std::vector<std::uint64_t> touchingSince;  ///< per organ: step in which the touch began
+  std::vector<std::uint64_t> contactKey;     ///< the last step's contacts: where,
+  std::vector<double> contactForce;          ///< and how strong (N); warm start of the next problem
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

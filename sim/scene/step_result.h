@@ -46,24 +46,24 @@ struct Event {
 /// One instrument at the end of a step.
 struct HandResult {
   InstrumentKind instrument = InstrumentKind::none;
-  Vec3 tipReal = Vec3::Zero();                ///< p_WI where the operator holds it, after port and workspace (m)
-  Vec3 tipSimulated = Vec3::Zero();           ///< p_WI where contact lets it be (m)
-  Quat orientation = Quat::Identity();        ///< q_WI of the simulated instrument
-  double jaw = 0.0;                           ///< rad
-  double insertion = 0.0;                     ///< distance from port to simulated tip (m)
-  Vec3 contactForce = Vec3::Zero();           ///< f_W, force of the organs on the instrument, reduced to its tip (N)
-  std::uint32_t touching = 0;                 ///< bit o: a force acts between this instrument and organ o
-  std::vector<double> organForce;             ///< per organ: sum of normal force magnitudes (N)
+  Vec3 tipReal = Vec3::Zero();          ///< p_WI where the operator holds it, after port and workspace (m)
+  Vec3 tipSimulated = Vec3::Zero();     ///< p_WI where contact lets it be (m)
+  Quat orientation = Quat::Identity();  ///< q_WI of the simulated instrument
+  double jaw = 0.0;                     ///< rad
+  double insertion = 0.0;               ///< distance from port to simulated tip (m)
+  Vec3 contactForce = Vec3::Zero();     ///< f_W, force of the organs on the instrument, reduced to its tip (N)
+  std::uint32_t touching = 0;           ///< bit o: a force acts between this instrument and organ o
+  std::vector<double> organForce;       ///< per organ: sum of normal force magnitudes (N)
 };
 
 /// One organ at the end of a step.
 struct OrganResult {
-  double volume = 0.0;              ///< of the deformed tetrahedra (m^3)
-  double largestDisplacement = 0.0; ///< over its nodes, from rest (m)
-  double largestSpeed = 0.0;        ///< over its nodes (m/s)
-  double residual = 0.0;            ///< relative residual of the linear solve; 0 when asleep
-  std::uint32_t iterations = 0;     ///< of the linear solve; 0 when asleep
-  bool asleep = false;              ///< untouched and at rest: not solved in this step
+  double volume = 0.0;               ///< of the deformed tetrahedra (m^3)
+  double largestDisplacement = 0.0;  ///< over its nodes, from rest (m)
+  double largestSpeed = 0.0;         ///< over its nodes (m/s)
+  double residual = 0.0;             ///< relative residual of the linear solve; 0 when asleep
+  std::uint32_t iterations = 0;      ///< of the linear solve; 0 when asleep
+  bool asleep = false;               ///< untouched and at rest: not solved in this step
 };
 
 /// The contact problem of a step.

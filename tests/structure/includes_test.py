@@ -19,7 +19,7 @@ MAY_SEE = {
     "sim/solid": SIM, "sim/contact": SIM, "sim/haptics": SIM, "sim/instruments": SIM, "sim/scene": SIM,
     "recorder contracts": ("sim",),
     "recorder/formats": ("sim", "recorder contracts"),
-    "recorder/recording": ("sim", "recorder contracts"),
+    "recorder/recording": ("sim", "recorder contracts", "recorder/formats"),
     "recorder/sources": ("sim", "recorder contracts", "recorder/formats", "recorder/recording"),
     "recorder/live": ("sim", "recorder contracts"),
     "recorder": ("sim", "recorder contracts", "recorder"),  # the loop and replay, above their folders

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/scene/scene_view.h"
+
+#include <utility>
+
+#include "sim/scene/stepper.h"
+
+namespace calot {
+
+SceneView viewOf(const Model& model, const State& state) {
+  SceneView view;
+  view.step = state.clock.step;
+  view.time = static_cast<double>(state.clock.step) * model.stepSeconds();
+  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    const OrganModel& organ = model.organs()[o];
+    SurfaceView surface;
+    surface.organ = organ.name;
+    surface.appearance = organ.appearance;
+    surface.rest = organ.skin;
+    organ.embedding.map(state.organ[o].position, surface.position);
+    surface.triangle = organ.surface.triangles();
+    view.surface.push_back(std::move(surface));
+  }
+  for (std::size_t h = 0; h < handCount; ++h) {
+    InstrumentView& instrument = view.instrument[h];
+    const HandDescription& description = model.scene().hands[h];
+    instrument.kind = state.hand[h].instrument;
+    instrument.pose = {state.hand[h].simulatedPosition, state.hand[h].simulatedOrientation};
+    instrument.port = description.port;
+    instrument.radius = description.shaftRadius;
+    instrument.jaw = state.hand[h].jaw;
+    instrument.touching = state.hand[h].touching != 0;
+  }
+  view.camera.position = state.camera.position;
+  view.camera.orientation = state.camera.orientation;
+  view.verticalFieldOfView = model.scene().verticalFieldOfView;
+  return view;
+}
+
+}  // namespace calot
