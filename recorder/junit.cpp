@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
+#include "recorder/formats/text_output.h"
 #include "recorder/replay.h"
 
 namespace calot::recorder {
@@ -49,14 +49,7 @@ void writeJunit(const std::filesystem::path& file, const std::vector<ReplayRepor
     xml += "  </testcase>\n";
   }
   xml += "</testsuite>\n";
-  const std::filesystem::path part = file.string() + ".part";
-  {
-    std::ofstream out(part, std::ios::binary);
-    out << xml;
-    out.flush();
-    if (!out) throw Error(ExitCode::failure, fmt::format("{}: cannot be written; is the folder there and the disk not full?", file.string()));
-  }
-  std::filesystem::rename(part, file);
+  writeText(file, xml, true);
 }
 
 }  // namespace calot::recorder

@@ -11,6 +11,7 @@
 
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/formats/text_output.h"
 
 namespace calot::apps {
 
@@ -61,9 +62,7 @@ double parseTime(const std::string& text) {
 }
 
 void refuseExisting(const std::filesystem::path& file, bool force) {
-  if (!force && std::filesystem::exists(file)) {
-    throw Error(ExitCode::usage, fmt::format("{}: is there already; --force replaces it", file.string()));
-  }
+  recorder::refuseOutput(file, force);
 }
 
 }  // namespace calot::apps

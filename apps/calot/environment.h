@@ -32,7 +32,7 @@ class Progress {
 /// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (usage)
 double parseTime(const std::string& text);
 
-/// Refuses a target that is there. @throws Error (usage)
+/// Refuses a target that is there, is a folder, or lies in none. @throws Error (usage)
 void refuseExisting(const std::filesystem::path& file, bool force);
 
 }  // namespace calot::apps

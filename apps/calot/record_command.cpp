@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <iostream>
 #include <memory>
@@ -48,6 +49,7 @@ const char* outcomeText(recorder::Outcome outcome) {
 }
 
 int record(const Options& o) {
+  if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
   refuseExisting(o.output, o.force);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   const Model::Built built = Model::build(scene.description);
@@ -73,6 +75,7 @@ int record(const Options& o) {
   run.stop = &interrupted;
   const double stepSeconds = built.model->stepSeconds();
   run.progress = [&](std::uint64_t step) {
+    if (writer.failed()) interrupted = true;  // nothing more can be kept; finish() says why
     progress.show(static_cast<std::uint64_t>(static_cast<double>(step) * stepSeconds), static_cast<std::uint64_t>(o.seconds));
   };
   std::signal(SIGINT, [](int) { interrupted = true; });

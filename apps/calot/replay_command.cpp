@@ -11,6 +11,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
 #include "apps/calot/replay_report.h"
 #include "recorder/replay.h"
 
@@ -26,6 +27,7 @@ struct Options {
 };
 
 int replay(const Options& o) {
+  if (!o.junit.empty()) recorder::refuseOutput(o.junit, true);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
   Progress progress(single ? "replaying, step" : "replaying, recordings", o.json);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/state_file.h"
 #include "recorder/replay.h"
@@ -56,16 +55,7 @@ int state(const StateOptions& o) {
     flat.ticks.insert(flat.ticks.end(), step.samples.begin(), step.samples.end());
   }
   const std::vector<std::byte> bytes = saveFlat(flat);
-  const std::string part = o.output + ".part";
-  std::ofstream out(part, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be written; is the folder there and the disk not full?", o.output));
-  }
-  std::filesystem::rename(part, o.output);
+  recorder::writeText(o.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, o.force);
   return 0;
 }
 

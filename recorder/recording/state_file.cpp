@@ -5,8 +5,10 @@
 
 #include <system_error>
 
+#include "recorder/formats/text_output.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/hdf5.h"
+#include "recorder/recording/superblock.h"
 #include "sim/math/fields.h"
 
 namespace calot::recorder {
@@ -110,47 +112,46 @@ StateFile readHere(const std::filesystem::path& path) {
 
 void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::uint32_t simulationVersion,
                     const std::vector<NamedNumbers>& fields, bool force) {
-  if (!force && std::filesystem::exists(file)) {
-    throw Error(ExitCode::usage, fmt::format("{}: is there already; --force replaces it", file.string()));
-  }
-  const std::filesystem::path part = file.string() + ".part";
-  bool good = true;
-  std::string why;
+  refuseOutput(file, force);
+  std::string image;
   {
     const hdf5::Session session;
+    const auto need = [&file](bool good) {
+      if (!good) throw Error(ExitCode::failure, fmt::format("{}: cannot be made ({})", file.string(), hdf5::reason()));
+    };
     const hdf5::Id access = hdf5::properties(H5Pcreate(H5P_FILE_ACCESS));
     H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
-    hdf5::Id out = hdf5::file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
-    good = out.valid();
-    if (good) {
-      writeAttribute(out.get(), formatName, 1);
-      writeAttribute(out.get(), "simulation_version", simulationVersion);
-      writeAttribute(out.get(), "step", step);
-      writeAttribute(out.get(), "fields", fields.size());
-      const hdf5::Id links = hdf5::properties(H5Pcreate(H5P_LINK_CREATE));
-      H5Pset_create_intermediate_group(links.get(), 1);
-      for (std::size_t f = 0; f < fields.size() && good; ++f) {
-        const std::string& name = fields[f].first;
-        const std::size_t slash = name.find('/');
-        const std::string group = fmt::format("/{:05}/{}", f, name.substr(0, slash));
-        const hdf5::Id at = hdf5::group(H5Gcreate2(out.get(), group.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT));
-        const std::string field = name.substr(slash + 1);
-        good = at.valid() &&
-               (fields[f].second.index() == 0 ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second),
-                                                           H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
-                                              : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second),
-                                                           H5T_STD_U64LE, H5T_NATIVE_UINT64));
-      }
-      good = out.reset() && good;
+    // In memory until it is whole: HDF5 does not survive every disk that fills up.
+    H5Pset_fapl_core(access.get(), std::size_t{1} << 20U, false);
+    hdf5::Id out = hdf5::file(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
+    need(out.valid());
+    writeAttribute(out.get(), formatName, 1);
+    writeAttribute(out.get(), "simulation_version", simulationVersion);
+    writeAttribute(out.get(), "step", step);
+    writeAttribute(out.get(), "fields", fields.size());
+    const hdf5::Id links = hdf5::properties(H5Pcreate(H5P_LINK_CREATE));
+    H5Pset_create_intermediate_group(links.get(), 1);
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      const std::string& name = fields[f].first;
+      const std::size_t slash = name.find('/');
+      const std::string group = fmt::format("/{:05}/{}", f, name.substr(0, slash));
+      const hdf5::Id at = hdf5::group(H5Gcreate2(out.get(), group.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT));
+      const std::string field = name.substr(slash + 1);
+      need(at.valid() && (fields[f].second.index() == 0
+                              ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second), H5T_IEEE_F64LE,
+                                           H5T_NATIVE_DOUBLE)
+                              : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second), H5T_STD_U64LE,
+                                           H5T_NATIVE_UINT64)));
     }
-    if (!good) why = hdf5::reason();
+    need(H5Fflush(out.get(), H5F_SCOPE_LOCAL) >= 0);
+    const ssize_t size = H5Fget_file_image(out.get(), nullptr, 0);
+    need(size > 0);
+    image.resize(static_cast<std::size_t>(size));
+    need(H5Fget_file_image(out.get(), image.data(), image.size()) == size && out.reset());
+    // The image was taken while the file was open.
+    need(markClosed({reinterpret_cast<unsigned char*>(image.data()), image.size()}));
   }
-  std::error_code ignored;
-  if (!good) {
-    std::filesystem::remove(part, ignored);
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be written ({})", file.string(), why));
-  }
-  std::filesystem::rename(part, file);
+  writeText(file, image, force);
 }
 
 StateFile readStateFile(const std::filesystem::path& file) {

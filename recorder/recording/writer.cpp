@@ -57,6 +57,7 @@ struct RecordingWriter::Impl {
 
   // The writing thread's side; read by others after join.
   std::exception_ptr error;
+  std::atomic<bool> failed{false};
   std::thread thread;
 
   Block* freshBlock() {
@@ -105,6 +106,7 @@ struct RecordingWriter::Impl {
       if (last) file->close();
     } catch (...) {
       error = std::current_exception();
+      failed.store(true, std::memory_order_release);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (seconds > largestFlush.load(std::memory_order_relaxed)) largestFlush.store(seconds, std::memory_order_relaxed);
@@ -175,6 +177,8 @@ void RecordingWriter::finish() {
   impl.file.reset();
   if (impl.error != nullptr) std::rethrow_exception(impl.error);
 }
+
+bool RecordingWriter::failed() const { return impl_->failed.load(std::memory_order_acquire); }
 
 WriterStatistics RecordingWriter::statistics() const {
   WriterStatistics s;

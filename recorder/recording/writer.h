@@ -54,6 +54,9 @@ class RecordingWriter final : public Observer {
   /// what had been flushed before can be read. @pre onEnd was called.
   void finish();
 
+  /// Nothing more is written (disk full); finish() will say why. Any thread may ask.
+  [[nodiscard]] bool failed() const;
+
   [[nodiscard]] WriterStatistics statistics() const;
 
   /// Keyframes are kept after steps n with (n + 1) % keyframeInterval() == 0: about every second.

@@ -99,7 +99,7 @@ class WrongFiles(program.ProgramTest):
             with self.subTest(name):
                 file = self.path("s.obj")
                 file.write_text("\n".join(change.get(i, line) for i, line in enumerate(liver)) + "\n")
-                self.refused(4, "mesh", file, "--unit", "m", "--tetrahedra", 100, "-o", self.path("o.vtk"), names=(file, "line"))
+                self.refused(4, "mesh", file, "--unit", "m", "--tetrahedra", 100, "-o", self.path("o.vtk"), names=(f"{file}:{1 + min(change)}: ",))
 
 
 class WrongMotion(program.ProgramTest):
@@ -251,8 +251,8 @@ class Outputs(program.ProgramTest):
                     answer = calot(*arguments, *force)
                     self.assertIn(answer.code, (1, 2), answer)
                     self.assertOneLine(answer, target)
-                    self.assertNothingHalfWritten()
                     target.rmdir()
+                    self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_where_nothing_can_be_written(self):
         for name, arguments in self.writers("/proc/o").items():
@@ -317,7 +317,7 @@ class FullDisk(program.ProgramTest):
             return o
 
     def test_as_far_as_a_file_may_grow(self):
-        self.check(self.folder, before=file_limit(3000))
+        self.check(self.folder, before=file_limit(100))
         self.assertFalse(self.path("r.h5").exists())
 
     def test_recording_keeps_what_was_flushed(self):
@@ -333,7 +333,7 @@ class FullDisk(program.ProgramTest):
         if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", str(disk)], capture_output=True).returncode:
             self.skipTest("a small disk can be mounted by root alone")
         try:
-            (disk / "fill").write_bytes(b"x" * 12288)
+            (disk / "fill").write_bytes(b"x" * 16384)
             self.check(disk)
         finally:
             subprocess.run(["umount", str(disk)], check=True)
