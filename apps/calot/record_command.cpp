@@ -109,7 +109,7 @@ void addRecord(CLI::App& app, Run& run) {
   source->add_option("--performer", o->performer, "profile of a synthetic operator: skilled, unskilled, or a file");
   source->add_option("--kinematics", o->kinematics, "two-handed motion file, 76 columns at 30 Hz");
   source->require_option(1);
-  command->add_option("--seed", o->seed, "of performer and simulation")->capture_default_str();
+  command->add_option("--seed", o->seed, "of performer and simulation")->check(CLI::NonNegativeNumber)->capture_default_str();
   command->add_option("--seconds", o->seconds, "stop after so much attempt time; 0: when the source ends")
       ->check(CLI::Range(0.0, 36000.0));
   command->add_option("--participant", o->participant, "pseudonym")->check([](const std::string& p) {

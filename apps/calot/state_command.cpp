@@ -97,7 +97,7 @@ void addState(CLI::App& app, Run& run) {
   auto o = std::make_shared<StateOptions>();
   CLI::App* command = app.add_subcommand("state", "Writes the State after a step, as HDF5 or as plain bytes.");
   command->add_option("recording", o->recording, "recording")->required();
-  command->add_option("--step", o->step, "the step after which")->required();
+  command->add_option("--step", o->step, "the step after which")->check(CLI::NonNegativeNumber)->required();
   command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
   command->add_option("-o,--output", o->output, "file to write")->required();
   command->add_flag("--force", o->force, "replace the output if it is there");

@@ -22,7 +22,8 @@ HapticForce hapticTick(const HapticModel& model, HapticState& state, const Conta
   const Vec3 moved = state.tip - set.reference;
   for (std::size_t i = 0; i < rows; ++i) state.lambda[rows + i] = set.free[i] + set.direction[i].dot(moved);
   const std::span<double> all(state.lambda);
-  solveComplementarity(set.compliance, all.subspan(rows, rows), all.first(rows), model.tolerance, model.sweeps);
+  solveComplementarity(set.compliance, all.subspan(rows, rows), all.first(rows), model.tolerance, model.sweeps,
+                       Finish::sweeps);
   for (std::size_t i = 0; i < rows; ++i) out.force += state.lambda[i] * set.direction[i];
   state.lambda.resize(rows);
   const double size = out.force.norm();

@@ -103,7 +103,7 @@ struct SolverDescription {
   double tolerance = 1e-4;         ///< relative residual of the linear solve
   std::uint32_t iterations = 200;  ///< cap of the linear solve
   double contactTolerance = 1e-7;  ///< residual of the contact problem (m)
-  std::uint32_t contactIterations = 1000;
+  std::uint32_t contactIterations = 100;
   bool sleeping = true;  ///< untouched organs at rest are not solved
 
   template <class Self, class Visitor>

@@ -99,7 +99,7 @@ void SolidModel::buildStructure() {
   for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
     for (int a = 0; a < 4; ++a) {
       const auto node = static_cast<std::size_t>(tetrahedra_[e][a]);
-      perNode[node].push_back({static_cast<std::int32_t>(e), static_cast<std::int8_t>(a), 0});
+      perNode[node].push_back({static_cast<std::int32_t>(e), static_cast<std::uint8_t>(a), 0});
       if (row_[node] < 0) continue;
       const auto r = static_cast<std::size_t>(row_[node]);
       for (int b = 0; b < 4; ++b) {
@@ -107,7 +107,7 @@ void SolidModel::buildStructure() {
         if (c < 0) continue;
         const auto k =
             static_cast<std::size_t>(std::lower_bound(columns[r].begin(), columns[r].end(), c) - columns[r].begin());
-        perSlot[r][k].push_back({static_cast<std::int32_t>(e), static_cast<std::int8_t>(a), static_cast<std::int8_t>(b)});
+        perSlot[r][k].push_back({static_cast<std::int32_t>(e), static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)});
       }
     }
   }

@@ -46,8 +46,8 @@ class SolidModel {
   /// A block K_ab of one element that is added into a slot of the matrix, or a force that is added to a node.
   struct Contribution {
     std::int32_t element;
-    std::int8_t a;
-    std::int8_t b;
+    std::uint8_t a;  ///< corners of the element
+    std::uint8_t b;
   };
   struct SlotRange {
     std::size_t slot;           ///< in the matrix values
