@@ -56,8 +56,8 @@ AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Pr
                          const AttemptSettings& settings) {
   AttemptHeader header;
   header.attempt = makeUuid();
-  header.startUtc = fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(
-                                                             std::chrono::system_clock::now())));
+  header.startUtc = fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
+                                fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   header.software = softwareName();
   header.build = buildName();
   header.simulationVersion = simulationVersion;
@@ -120,9 +120,10 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
     }
     if (!open) break;
     // A step is due when the next one's first tick is.
-    const float late =
-        settings.paced ? static_cast<float>(std::max(0.0, seconds(Clock::now() - (origin + static_cast<Clock::rep>(tick) * tickDuration))))
-                       : 0.0F;
+    const float late = settings.paced
+                           ? static_cast<float>(std::max(
+                                 0.0, seconds(Clock::now() - (origin + static_cast<Clock::rep>(tick) * tickDuration))))
+                           : 0.0F;
     session.step(samples, ticks, late);
     if (settings.progress) settings.progress(session.steps());
   }

@@ -34,18 +34,18 @@ std::string softwareName();
 std::string buildName();
 
 struct RunSettings {
-  double seconds = 0.0;     ///< of attempt time after which it is stopped; 0: until the source ends
-  bool paced = false;       ///< tick n runs no earlier than n ms after the start
-  const std::atomic<bool>* stop = nullptr;          ///< asked between steps
-  std::function<void(std::uint64_t step)> progress; ///< called after every step
+  double seconds = 0.0;                     ///< of attempt time after which it is stopped; 0: until the source ends
+  bool paced = false;                       ///< tick n runs no earlier than n ms after the start
+  const std::atomic<bool>* stop = nullptr;  ///< asked between steps
+  std::function<void(std::uint64_t step)> progress;  ///< called after every step
 };
 
 struct RunReport {
   Outcome outcome = Outcome::completed;
   std::uint64_t steps = 0;
-  std::uint64_t lateTicks = 0;        ///< paced: ticks that began more than one tick length after their deadline
-  double largestLateness = 0.0;       ///< s
-  double stretched = 0.0;             ///< by how much the tick clock was stretched: lag beyond 100 ms (s)
+  std::uint64_t lateTicks = 0;   ///< paced: ticks that began more than one tick length after their deadline
+  double largestLateness = 0.0;  ///< s
+  double stretched = 0.0;        ///< by how much the tick clock was stretched: lag beyond 100 ms (s)
   double wallSeconds = 0.0;
 };
 

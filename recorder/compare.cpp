@@ -32,9 +32,12 @@ class Comparison {
   template <class T>
   void whole(const std::string& field, T recorded, T here) {
     if (first_ || recorded == here) return;
-    first_ = Divergence{step_, {}, component_, field,
-                        fmt::format("recorded {}, here {}", static_cast<std::uint64_t>(recorded),
-                                    static_cast<std::uint64_t>(here))};
+    first_ = Divergence{
+        step_,
+        {},
+        component_,
+        field,
+        fmt::format("recorded {}, here {}", static_cast<std::uint64_t>(recorded), static_cast<std::uint64_t>(here))};
   }
   [[nodiscard]] const std::optional<Divergence>& first() const { return first_; }
 
@@ -145,7 +148,8 @@ std::optional<Divergence> compareKeyframe(const Model& model, const Keyframe& re
     }
     if (const auto difference = firstDifference(stateFields(model, a), stateFields(model, b))) {
       d.field = difference->field;
-      d.detail = fmt::format("index {}: recorded {}, here {}", difference->index, difference->first, difference->second);
+      d.detail =
+          fmt::format("index {}: recorded {}, here {}", difference->index, difference->first, difference->second);
     }
     return d;
   }

@@ -18,12 +18,12 @@ enum class Mode : std::uint8_t { practice = 0, assessment = 1 };
 /// What a source says of itself; copied into every recording that it feeds.
 struct Provenance {
   OperatorKind kind = OperatorKind::performer;
-  std::string profile;         ///< performer's profile name, or empty
+  std::string profile;  ///< performer's profile name, or empty
   std::string profileVersion;
-  std::string sourceFile;      ///< kinematics: base name, never a path
-  std::string sourceSha256;    ///< hex, or empty
-  std::string device;          ///< device class, or empty
-  std::string calibration;     ///< identifier and date, or empty
+  std::string sourceFile;    ///< kinematics: base name, never a path
+  std::string sourceSha256;  ///< hex, or empty
+  std::string device;        ///< device class, or empty
+  std::string calibration;   ///< identifier and date, or empty
 };
 
 /// A file that the scene names, byte for byte. The first one is the scene file itself.
@@ -34,26 +34,26 @@ struct Asset {
 
 /// Everything that is known when an attempt starts; the recording's root attributes and /scene.
 struct AttemptHeader {
-  std::string attempt;          ///< uuid, lower case with hyphens
-  std::string parent;           ///< uuid of the recording this one branches from, or empty
-  std::int64_t forkStep = -1;   ///< last step shared with the parent; -1: no branch
-  std::string startUtc;         ///< ISO 8601 with Z
-  std::string software;         ///< "calot 0.1.0"
-  std::string build;            ///< compiler, type, revision
+  std::string attempt;         ///< uuid, lower case with hyphens
+  std::string parent;          ///< uuid of the recording this one branches from, or empty
+  std::int64_t forkStep = -1;  ///< last step shared with the parent; -1: no branch
+  std::string startUtc;        ///< ISO 8601 with Z
+  std::string software;        ///< "calot 0.1.0"
+  std::string build;           ///< compiler, type, revision
   std::uint32_t simulationVersion = 0;
   std::uint32_t stepResultVersion = 0;
-  std::string participant;      ///< pseudonym, or empty
+  std::string participant;  ///< pseudonym, or empty
   Provenance provenance;
   std::string station;
   Mode mode = Mode::practice;
-  std::string purpose;          ///< "training", "study", "golden", "demo"
-  std::string handedness;       ///< "right", "left", "unknown"
+  std::string purpose;     ///< "training", "study", "golden", "demo"
+  std::string handedness;  ///< "right", "left", "unknown"
   std::uint64_t seed = 0;
   double tickSeconds = tickLength;
   std::uint32_t ticksPerStep = 10;
   std::string sceneName;
   std::uint32_t sceneMajor = 0, sceneMinor = 0;
-  std::vector<Asset> assets;    ///< the scene file first
+  std::vector<Asset> assets;        ///< the scene file first
   std::vector<std::string> organs;  ///< names in the Model's order (columns of the observables)
   DigestLayout layout;
 };

@@ -14,11 +14,20 @@ std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }
   }
   return out;
@@ -33,18 +42,27 @@ void writeJunit(const std::filesystem::path& file, const std::vector<ReplayRepor
   double time = 0.0;
   for (const ReplayReport& r : reports) time += r.wallSeconds;
   std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  xml += fmt::format("<testsuite name=\"calot replay\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\">\n",
-                     reports.size(), count(ReplayVerdict::diverged), count(ReplayVerdict::damaged),
-                     count(ReplayVerdict::undecided), time);
+  xml += fmt::format(
+      "<testsuite name=\"calot replay\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\">\n",
+      reports.size(), count(ReplayVerdict::diverged), count(ReplayVerdict::damaged), count(ReplayVerdict::undecided),
+      time);
   for (const ReplayReport& r : reports) {
-    xml += fmt::format("  <testcase classname=\"replay\" name=\"{}\" time=\"{:.3f}\"", escaped(r.path.filename().string()),
-                       r.wallSeconds);
+    xml += fmt::format("  <testcase classname=\"replay\" name=\"{}\" time=\"{:.3f}\"",
+                       escaped(r.path.filename().string()), r.wallSeconds);
     const std::string body = escaped(r.message);
     switch (r.verdict) {
-      case ReplayVerdict::exact: xml += "/>\n"; continue;
-      case ReplayVerdict::diverged: xml += fmt::format(">\n    <failure message=\"diverged\">{}</failure>\n", body); break;
-      case ReplayVerdict::damaged: xml += fmt::format(">\n    <error message=\"damaged\">{}</error>\n", body); break;
-      case ReplayVerdict::undecided: xml += fmt::format(">\n    <skipped message=\"{}\"/>\n", body); break;
+      case ReplayVerdict::exact:
+        xml += "/>\n";
+        continue;
+      case ReplayVerdict::diverged:
+        xml += fmt::format(">\n    <failure message=\"diverged\">{}</failure>\n", body);
+        break;
+      case ReplayVerdict::damaged:
+        xml += fmt::format(">\n    <error message=\"damaged\">{}</error>\n", body);
+        break;
+      case ReplayVerdict::undecided:
+        xml += fmt::format(">\n    <skipped message=\"{}\"/>\n", body);
+        break;
     }
     xml += "  </testcase>\n";
   }

@@ -53,7 +53,14 @@ struct StepRecord {
 };
 
 /// How an attempt ended. Numbers are stored and never reused.
-enum class Outcome : std::uint8_t { running = 0, completed = 1, timeLimit = 2, abandoned = 3, stopped = 4, technicalFailure = 5 };
+enum class Outcome : std::uint8_t {
+  running = 0,
+  completed = 1,
+  timeLimit = 2,
+  abandoned = 3,
+  stopped = 4,
+  technicalFailure = 5
+};
 
 class Observer {
  public:

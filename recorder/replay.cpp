@@ -136,8 +136,9 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   const bool otherVersion = header.simulationVersion != simulationVersion;
   if (otherVersion && !settings.anyway && chain.intact) {
     report.verdict = ReplayVerdict::undecided;
-    report.message = fmt::format("recorded with simulation version {}, this build has {}: cannot decide (--anyway replays and reports)",
-                                 header.simulationVersion, simulationVersion);
+    report.message = fmt::format(
+        "recorded with simulation version {}, this build has {}: cannot decide (--anyway replays and reports)",
+        header.simulationVersion, simulationVersion);
     return;
   }
   const std::unique_ptr<const Model> model = modelOf(recording);
@@ -180,10 +181,14 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
 
 ExitCode ReplayReport::code() const {
   switch (verdict) {
-    case ReplayVerdict::exact: return ExitCode::yes;
-    case ReplayVerdict::diverged: return ExitCode::no;
-    case ReplayVerdict::damaged: return ExitCode::damaged;
-    case ReplayVerdict::undecided: return ExitCode::undecided;
+    case ReplayVerdict::exact:
+      return ExitCode::yes;
+    case ReplayVerdict::diverged:
+      return ExitCode::no;
+    case ReplayVerdict::damaged:
+      return ExitCode::damaged;
+    case ReplayVerdict::undecided:
+      return ExitCode::undecided;
   }
   return ExitCode::failure;
 }
@@ -227,8 +232,9 @@ void Seeker::seek(std::uint64_t step) {
     if (nearest) {
       const Keyframe keyframe = recording_.keyframe(*nearest);
       if (!session_->restore(keyframe)) {
-        throw Error(ExitCode::damaged, fmt::format("{}: /keyframes: the one of step {} is no State of the scene's model",
-                                                   recording_.path().string(), keyframe.step));
+        throw Error(ExitCode::damaged,
+                    fmt::format("{}: /keyframes: the one of step {} is no State of the scene's model",
+                                recording_.path().string(), keyframe.step));
       }
     }
   }
@@ -240,7 +246,8 @@ void Seeker::advance() {
   const SetNumbers sets = setsOf(recorded);
   std::vector<TickOutcome> ticks;
   try {
-    for (std::size_t i = 0; i < recorded.samples.size(); ++i) ticks.push_back(session_->tick(recorded.samples[i], sets[i]));
+    for (std::size_t i = 0; i < recorded.samples.size(); ++i)
+      ticks.push_back(session_->tick(recorded.samples[i], sets[i]));
   } catch (const std::out_of_range& e) {
     throw Error(ExitCode::damaged, fmt::format("{}: /ticks: {}", recording_.path().string(), e.what()));
   }

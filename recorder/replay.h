@@ -20,10 +20,10 @@ namespace calot::recorder {
 /// Where a replay first differs from its recording.
 struct Divergence {
   std::uint64_t step = 0;
-  std::optional<std::uint64_t> tick;   ///< of the attempt, where it is a tick's value
-  std::string component;               ///< "hand.left", "organ.liver", "force", "observables", "events", "keyframe"
-  std::string field;                   ///< "realPosition"; what of the component
-  std::string detail;                  ///< index and both values where the recording holds them; or empty
+  std::optional<std::uint64_t> tick;  ///< of the attempt, where it is a tick's value
+  std::string component;              ///< "hand.left", "organ.liver", "force", "observables", "events", "keyframe"
+  std::string field;                  ///< "realPosition"; what of the component
+  std::string detail;                 ///< index and both values where the recording holds them; or empty
   bool operator==(const Divergence&) const = default;
 };
 
@@ -32,16 +32,16 @@ enum class ReplayVerdict : std::uint8_t { exact, diverged, damaged, undecided };
 struct ReplayReport {
   std::filesystem::path path;
   ReplayVerdict verdict = ReplayVerdict::damaged;
-  std::string attempt;               ///< uuid, as far as it could be read
+  std::string attempt;  ///< uuid, as far as it could be read
   bool complete = false;
   Outcome outcome = Outcome::running;
-  std::uint64_t steps = 0;           ///< recorded
-  double seconds = 0.0;              ///< of simulated time
-  double wallSeconds = 0.0;          ///< of the whole check
+  std::uint64_t steps = 0;              ///< recorded
+  double seconds = 0.0;                 ///< of simulated time
+  double wallSeconds = 0.0;             ///< of the whole check
   std::uint32_t simulationVersion = 0;  ///< of the recording
   std::array<std::byte, 32> chainHead{};
   bool chainIntact = false;
-  std::string chainFault;            ///< where the chain breaks, or empty
+  std::string chainFault;  ///< where the chain breaks, or empty
   std::optional<Divergence> divergence;
   std::optional<bool> reproducible;  ///< a second run differed at the same place in the same way
   std::string message;               ///< one line for people
@@ -51,7 +51,7 @@ struct ReplayReport {
 
 struct ReplaySettings {
   unsigned threads = 1;
-  bool anyway = false;               ///< re-simulate a recording of another simulation version too
+  bool anyway = false;  ///< re-simulate a recording of another simulation version too
   /// Makes observers of the re-simulation once header and model are known; they see every step that was computed.
   std::function<std::vector<Observer*>(const AttemptHeader&, const Model&)> observers;
   std::function<void(std::uint64_t step, std::uint64_t of)> progress;

@@ -16,8 +16,7 @@ Session::Session(const Model& model, std::uint64_t seed, Executor& executor)
   }
 }
 
-TickOutcome Session::tick(const TickSamples& samples,
-                          const std::optional<std::array<std::int64_t, handCount>>& sets) {
+TickOutcome Session::tick(const TickSamples& samples, const std::optional<std::array<std::int64_t, handCount>>& sets) {
   TickOutcome outcome;
   for (std::size_t h = 0; h < handCount; ++h) {
     const ContactSet* set = &sets_.back()[h];
@@ -41,8 +40,8 @@ void Session::step(std::span<const TickSamples> samples, std::span<const TickOut
   if (sets_.size() == keptSets) sets_.pop_front();
   sets_.push_back({stepper_.contactSet(0), stepper_.contactSet(1)});
   const StateDigest& digest = stepper_.digest(state_);
-  const StepRecord record{result.step, samples, ticks, result, digest, lateness, [this] { return keyframe(); },
-                          [this] { return view(); }};
+  const StepRecord record{
+      result.step, samples, ticks, result, digest, lateness, [this] { return keyframe(); }, [this] { return view(); }};
   for (Observer* observer : observers_) observer->onStep(record);
 }
 

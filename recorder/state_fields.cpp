@@ -21,8 +21,7 @@ struct Flatten {
     reals.push_back(v);
   }
   template <class T>
-    requires(std::is_integral_v<T> || std::is_enum_v<T>)
-  void add(T v) {
+  requires(std::is_integral_v<T> || std::is_enum_v<T>) void add(T v) {
     wholes.push_back(static_cast<std::uint64_t>(v));
   }
   void add(const Vec3& v) {

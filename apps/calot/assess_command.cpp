@@ -9,9 +9,9 @@
 #include "analytics/checkpoints/collector.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "recorder/errors.h"
 #include "apps/calot/replay_report.h"
 #include "recorder/attempt.h"
+#include "recorder/errors.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
@@ -27,19 +27,26 @@ struct Options {
 
 analytics::Verdict verdictOf(recorder::ReplayVerdict verdict) {
   switch (verdict) {
-    case recorder::ReplayVerdict::exact: return analytics::Verdict::verified;
-    case recorder::ReplayVerdict::diverged: return analytics::Verdict::diverged;
-    case recorder::ReplayVerdict::damaged: return analytics::Verdict::damaged;
-    case recorder::ReplayVerdict::undecided: return analytics::Verdict::notCheckableHere;
+    case recorder::ReplayVerdict::exact:
+      return analytics::Verdict::verified;
+    case recorder::ReplayVerdict::diverged:
+      return analytics::Verdict::diverged;
+    case recorder::ReplayVerdict::damaged:
+      return analytics::Verdict::damaged;
+    case recorder::ReplayVerdict::undecided:
+      return analytics::Verdict::notCheckableHere;
   }
   return analytics::Verdict::notChecked;
 }
 
 const char* importedName(analytics::Imported imported) {
   switch (imported) {
-    case analytics::Imported::added: return "added";
-    case analytics::Imported::unchanged: return "unchanged";
-    case analytics::Imported::extended: return "extended";
+    case analytics::Imported::added:
+      return "added";
+    case analytics::Imported::unchanged:
+      return "unchanged";
+    case analytics::Imported::extended:
+      return "extended";
   }
   return "";
 }
@@ -67,7 +74,8 @@ recorder::ReplayReport assessOne(const std::string& file, const Options& o, anal
   assessed.steps = report.steps;
   assessed.chainHead = report.chainHead;
   assessed.verification = {verdictOf(report.verdict),
-                           report.verdict == recorder::ReplayVerdict::exact ? "" : report.message, recorder::softwareName()};
+                           report.verdict == recorder::ReplayVerdict::exact ? "" : report.message,
+                           recorder::softwareName()};
   if (report.verdict == recorder::ReplayVerdict::exact) assessed.values = collector->values();
   assessed.fileName = std::filesystem::path(file).filename().string();
   stored = importedName(analytics::store(database, assessed));
@@ -119,7 +127,9 @@ void addAssess(CLI::App& app, Run& run) {
       app.add_subcommand("assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.");
   command->add_option("recordings", o->files, "recordings")->required();
   command->add_option("--cohort", o->cohort, "cohort database; made where there is none")->required();
-  command->add_option("--threads", o->threads, "of the simulation; 0: all")->check(CLI::Range(0U, 64U))->capture_default_str();
+  command->add_option("--threads", o->threads, "of the simulation; 0: all")
+      ->check(CLI::Range(0U, 64U))
+      ->capture_default_str();
   command->add_flag("--json", o->json, "print the result as JSON");
   command->callback([o, &run] { run = [o] { return assess(*o); }; });
 }

@@ -21,7 +21,8 @@ std::vector<std::filesystem::path> assetFolders() {
   return recorder::assetRoots(program.parent_path(), CALOT_ASSETS);
 }
 
-Progress::Progress(std::string what, bool quiet) : what_(std::move(what)), terminal_(!quiet && isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::string what, bool quiet)
+    : what_(std::move(what)), terminal_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
   if (drawn_) std::fputs("\r\033[K", stderr);
@@ -30,7 +31,8 @@ Progress::~Progress() {
 void Progress::show(std::uint64_t done, std::uint64_t of) {
   if (!terminal_) return;
   const std::int64_t now =
-      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
+          .count();
   if (now - last_ < 100) return;
   last_ = now;
   drawn_ = true;
@@ -39,6 +41,14 @@ void Progress::show(std::uint64_t done, std::uint64_t of) {
                                   : fmt::format("\r\033[K{}: {}", what_, done);
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
+}
+
+std::string wholeNumber(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size()
+             ? ""
+             : fmt::format("'{}' is no whole number below 2^64", text);
 }
 
 double parseTime(const std::string& text) {
@@ -57,12 +67,12 @@ double parseTime(const std::string& text) {
     rest = rest.substr(colon + 1);
   }
   good = good && number(rest, seconds);
-  if (!good) throw Error(ExitCode::usage, fmt::format("'{}' is no time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
+  if (!good)
+    throw Error(ExitCode::usage,
+                fmt::format("'{}' is no time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
   return 60.0 * minutes + seconds;
 }
 
-void refuseExisting(const std::filesystem::path& file, bool force) {
-  recorder::refuseOutput(file, force);
-}
+void refuseExisting(const std::filesystem::path& file, bool force) { recorder::refuseOutput(file, force); }
 
 }  // namespace calot::apps

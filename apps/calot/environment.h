@@ -29,6 +29,10 @@ class Progress {
   std::int64_t last_ = 0;
 };
 
+/// For CLI::Option::check: digits that fit 64 bits. The parser alone would wrap "-1" and saturate what is too large.
+/// @return empty, or the fault
+std::string wholeNumber(const std::string& text);
+
 /// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (usage)
 double parseTime(const std::string& text);
 

@@ -10,8 +10,8 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "recorder/errors.h"
 #include "recorder/attempt.h"
+#include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/writer.h"
@@ -35,16 +35,21 @@ std::atomic<bool> interrupted{false};
 
 std::unique_ptr<recorder::SampleSource> makeSource(const Options& o, const SceneDescription& scene) {
   if (!o.kinematics.empty()) return std::make_unique<recorder::KinematicsSource>(o.kinematics, scene);
-  const recorder::PerformerProfile profile = recorder::loadPerformer(recorder::findPerformer(o.performer, assetFolders()));
+  const recorder::PerformerProfile profile =
+      recorder::loadPerformer(recorder::findPerformer(o.performer, assetFolders()));
   return std::make_unique<recorder::PerformerSource>(profile, scene, o.seed);
 }
 
 const char* outcomeText(recorder::Outcome outcome) {
   switch (outcome) {
-    case recorder::Outcome::completed: return "completed";
-    case recorder::Outcome::timeLimit: return "time limit";
-    case recorder::Outcome::stopped: return "stopped";
-    default: return "running";
+    case recorder::Outcome::completed:
+      return "completed";
+    case recorder::Outcome::timeLimit:
+      return "time limit";
+    case recorder::Outcome::stopped:
+      return "stopped";
+    default:
+      return "running";
   }
 }
 
@@ -76,22 +81,28 @@ int record(const Options& o) {
   const double stepSeconds = built.model->stepSeconds();
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) interrupted = true;  // nothing more can be kept; finish() says why
-    progress.show(static_cast<std::uint64_t>(static_cast<double>(step) * stepSeconds), static_cast<std::uint64_t>(o.seconds));
+    progress.show(static_cast<std::uint64_t>(static_cast<double>(step) * stepSeconds),
+                  static_cast<std::uint64_t>(o.seconds));
   };
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const recorder::RunReport report = recorder::runAttempt(session, *source, run);
   writer.finish();
   if (o.json) {
-    const nlohmann::json out{{"attempt", header.attempt}, {"file", o.output}, {"outcome", outcomeText(report.outcome)},
-                             {"steps", report.steps}, {"seconds", static_cast<double>(report.steps) * stepSeconds},
-                             {"wall_seconds", report.wallSeconds}, {"late_ticks", report.lateTicks},
-                             {"largest_lateness_s", report.largestLateness}, {"clock_stretched_s", report.stretched}};
+    const nlohmann::json out{{"attempt", header.attempt},
+                             {"file", o.output},
+                             {"outcome", outcomeText(report.outcome)},
+                             {"steps", report.steps},
+                             {"seconds", static_cast<double>(report.steps) * stepSeconds},
+                             {"wall_seconds", report.wallSeconds},
+                             {"late_ticks", report.lateTicks},
+                             {"largest_lateness_s", report.largestLateness},
+                             {"clock_stretched_s", report.stretched}};
     std::cout << out.dump(2) << '\n';
     return 0;
   }
-  fmt::print("{}: attempt {}, {:.2f} s, {}\n", o.output, header.attempt, static_cast<double>(report.steps) * stepSeconds,
-             outcomeText(report.outcome));
+  fmt::print("{}: attempt {}, {:.2f} s, {}\n", o.output, header.attempt,
+             static_cast<double>(report.steps) * stepSeconds, outcomeText(report.outcome));
   if (o.paced) {
     fmt::print("paced: {} late ticks, at most {:.1f} ms late, clock stretched by {:.3f} s\n", report.lateTicks,
                1e3 * report.largestLateness, report.stretched);
@@ -109,7 +120,7 @@ void addRecord(CLI::App& app, Run& run) {
   source->add_option("--performer", o->performer, "profile of a synthetic operator: skilled, unskilled, or a file");
   source->add_option("--kinematics", o->kinematics, "two-handed motion file, 76 columns at 30 Hz");
   source->require_option(1);
-  command->add_option("--seed", o->seed, "of performer and simulation")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--seed", o->seed, "of performer and simulation")->check(wholeNumber)->capture_default_str();
   command->add_option("--seconds", o->seconds, "stop after so much attempt time; 0: when the source ends")
       ->check(CLI::Range(0.0, 36000.0));
   command->add_option("--participant", o->participant, "pseudonym")->check([](const std::string& p) {
@@ -126,7 +137,9 @@ void addRecord(CLI::App& app, Run& run) {
       ->check(CLI::IsMember({"practice", "assessment"}))
       ->capture_default_str();
   command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
-  command->add_option("--threads", o->threads, "of the simulation; 0: all")->check(CLI::Range(0U, 64U))->capture_default_str();
+  command->add_option("--threads", o->threads, "of the simulation; 0: all")
+      ->check(CLI::Range(0U, 64U))
+      ->capture_default_str();
   command->add_option("-o,--output", o->output, "the recording")->required();
   command->add_flag("--force", o->force, "replace the output if it is there");
   command->add_flag("--json", o->json, "print the result as JSON");

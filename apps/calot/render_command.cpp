@@ -5,8 +5,8 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "recorder/errors.h"
 #include "gui/render/picture.h"
+#include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/replay.h"
 
@@ -32,7 +32,8 @@ int render(const Options& o) {
   if (recording.stepCount() == 0) throw Error(ExitCode::damaged, fmt::format("{}: holds no step to draw", o.recording));
   const double seconds = recording.seconds();
   if (time > seconds) {
-    throw Error(ExitCode::usage, fmt::format("{}: is {:.2f} s long, there is nothing at {:.2f} s", o.recording, seconds, time));
+    throw Error(ExitCode::usage,
+                fmt::format("{}: is {:.2f} s long, there is nothing at {:.2f} s", o.recording, seconds, time));
   }
   const double step = seconds / static_cast<double>(recording.stepCount());
   const auto n = std::min(static_cast<std::uint64_t>(std::floor(time / step)), recording.stepCount() - 1);

@@ -10,9 +10,9 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/replay_report.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
-#include "apps/calot/replay_report.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
@@ -54,7 +54,8 @@ int replay(const Options& o) {
       if (!single) progress.show(done, o.files.size());
     }
   };
-  const std::size_t jobs = std::min<std::size_t>(o.jobs == 0 ? std::thread::hardware_concurrency() : o.jobs, o.files.size());
+  const std::size_t jobs =
+      std::min<std::size_t>(o.jobs == 0 ? std::thread::hardware_concurrency() : o.jobs, o.files.size());
   std::vector<std::thread> threads;
   for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back(work);
   work();
@@ -81,8 +82,12 @@ void addReplay(CLI::App& app, Run& run) {
   auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("replay", "Re-simulates recordings and compares every digest and force.");
   command->add_option("recordings", o->files, "recordings")->required();
-  command->add_option("--threads", o->threads, "of each simulation; 0: all")->check(CLI::Range(0U, 64U))->capture_default_str();
-  command->add_option("--jobs", o->jobs, "recordings at a time; 0: one a processor")->check(CLI::Range(0U, 64U))->capture_default_str();
+  command->add_option("--threads", o->threads, "of each simulation; 0: all")
+      ->check(CLI::Range(0U, 64U))
+      ->capture_default_str();
+  command->add_option("--jobs", o->jobs, "recordings at a time; 0: one a processor")
+      ->check(CLI::Range(0U, 64U))
+      ->capture_default_str();
   command->add_option("--junit", o->junit, "write the result as JUnit XML");
   command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
   command->add_flag("--json", o->json, "print the result as JSON");

@@ -11,10 +11,14 @@ namespace {
 
 const char* verdictName(recorder::ReplayVerdict verdict) {
   switch (verdict) {
-    case recorder::ReplayVerdict::exact: return "bit-exact";
-    case recorder::ReplayVerdict::diverged: return "diverged";
-    case recorder::ReplayVerdict::damaged: return "damaged";
-    case recorder::ReplayVerdict::undecided: return "undecided";
+    case recorder::ReplayVerdict::exact:
+      return "bit-exact";
+    case recorder::ReplayVerdict::diverged:
+      return "diverged";
+    case recorder::ReplayVerdict::damaged:
+      return "damaged";
+    case recorder::ReplayVerdict::undecided:
+      return "undecided";
   }
   return "";
 }
@@ -23,8 +27,9 @@ const char* verdictName(recorder::ReplayVerdict verdict) {
 
 void printReport(const recorder::ReplayReport& r) {
   if (r.verdict == recorder::ReplayVerdict::exact) {
-    fmt::print("{}: bit-exact{}, {:.2f} s ({} steps), {:.1f} x real time\n", r.path.string(), r.complete ? "" : ", incomplete",
-               r.seconds, r.steps, r.wallSeconds > 0.0 ? r.seconds / r.wallSeconds : 0.0);
+    fmt::print("{}: bit-exact{}, {:.2f} s ({} steps), {:.1f} x real time\n", r.path.string(),
+               r.complete ? "" : ", incomplete", r.seconds, r.steps,
+               r.wallSeconds > 0.0 ? r.seconds / r.wallSeconds : 0.0);
     return;
   }
   // A damaged file's message names the file already.
@@ -34,13 +39,21 @@ void printReport(const recorder::ReplayReport& r) {
 }
 
 nlohmann::json reportJson(const recorder::ReplayReport& r) {
-  nlohmann::json json{{"file", r.path.string()},       {"verdict", verdictName(r.verdict)}, {"attempt", r.attempt},
-                      {"complete", r.complete},        {"steps", r.steps},                  {"seconds", r.seconds},
-                      {"wall_seconds", r.wallSeconds}, {"simulation_version", r.simulationVersion},
-                      {"chain_intact", r.chainIntact}, {"message", r.message},
+  nlohmann::json json{{"file", r.path.string()},
+                      {"verdict", verdictName(r.verdict)},
+                      {"attempt", r.attempt},
+                      {"complete", r.complete},
+                      {"steps", r.steps},
+                      {"seconds", r.seconds},
+                      {"wall_seconds", r.wallSeconds},
+                      {"simulation_version", r.simulationVersion},
+                      {"chain_intact", r.chainIntact},
+                      {"message", r.message},
                       {"exit_code", static_cast<int>(r.code())}};
   if (r.divergence) {
-    nlohmann::json d{{"step", r.divergence->step}, {"component", r.divergence->component}, {"field", r.divergence->field},
+    nlohmann::json d{{"step", r.divergence->step},
+                     {"component", r.divergence->component},
+                     {"field", r.divergence->field},
                      {"detail", r.divergence->detail}};
     if (r.divergence->tick) d["tick"] = *r.divergence->tick;
     if (r.reproducible) d["reproducible"] = *r.reproducible;
@@ -51,7 +64,8 @@ nlohmann::json reportJson(const recorder::ReplayReport& r) {
 
 ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports) {
   for (const ExitCode code : {ExitCode::failure, ExitCode::damaged, ExitCode::no, ExitCode::undecided}) {
-    if (std::any_of(reports.begin(), reports.end(), [code](const recorder::ReplayReport& r) { return r.code() == code; })) {
+    if (std::any_of(reports.begin(), reports.end(),
+                    [code](const recorder::ReplayReport& r) { return r.code() == code; })) {
       return code;
     }
   }

@@ -97,7 +97,7 @@ void addState(CLI::App& app, Run& run) {
   auto o = std::make_shared<StateOptions>();
   CLI::App* command = app.add_subcommand("state", "Writes the State after a step, as HDF5 or as plain bytes.");
   command->add_option("recording", o->recording, "recording")->required();
-  command->add_option("--step", o->step, "the step after which")->check(CLI::NonNegativeNumber)->required();
+  command->add_option("--step", o->step, "the step after which")->check(wholeNumber)->required();
   command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
   command->add_option("-o,--output", o->output, "file to write")->required();
   command->add_flag("--force", o->force, "replace the output if it is there");
@@ -106,7 +106,8 @@ void addState(CLI::App& app, Run& run) {
 
 void addDiff(CLI::App& app, Run& run) {
   auto o = std::make_shared<DiffOptions>();
-  CLI::App* command = app.add_subcommand("diff", "First field, index and both values that differ between two State files.");
+  CLI::App* command =
+      app.add_subcommand("diff", "First field, index and both values that differ between two State files.");
   command->add_option("first", o->first, "file of `calot state`")->required();
   command->add_option("second", o->second, "file of `calot state`")->required();
   command->add_flag("--json", o->json, "print the result as JSON");

@@ -137,11 +137,11 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
       const std::string group = fmt::format("/{:05}/{}", f, name.substr(0, slash));
       const hdf5::Id at = hdf5::group(H5Gcreate2(out.get(), group.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT));
       const std::string field = name.substr(slash + 1);
-      need(at.valid() && (fields[f].second.index() == 0
-                              ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second), H5T_IEEE_F64LE,
-                                           H5T_NATIVE_DOUBLE)
-                              : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second), H5T_STD_U64LE,
-                                           H5T_NATIVE_UINT64)));
+      need(
+          at.valid() &&
+          (fields[f].second.index() == 0
+               ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
+               : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second), H5T_STD_U64LE, H5T_NATIVE_UINT64)));
     }
     need(H5Fflush(out.get(), H5F_SCOPE_LOCAL) >= 0);
     const ssize_t size = H5Fget_file_image(out.get(), nullptr, 0);

@@ -38,9 +38,9 @@ bool isLocalMinimum(const ContactSurface& surface, std::span<const Vec3> positio
 
 }  // namespace
 
-void shaftContacts(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
-                   const Vec3& p0, const Vec3& p1, double radius, double reach, std::uint32_t piece,
-                   std::vector<ShaftContact>& out) {
+void shaftContacts(const ContactSurface& surface, std::span<const Vec3> position,
+                   std::span<const std::uint32_t> patches, const Vec3& p0, const Vec3& p1, double radius, double reach,
+                   std::uint32_t piece, std::vector<ShaftContact>& out) {
   const std::size_t start = out.size();
   Box sweep;
   sweep.include(p0);

@@ -14,7 +14,8 @@ constexpr std::int64_t mostCells = 512;
 /// Cell index along one axis, clamped; 21 bits each make one key.
 std::int64_t cellOf(double x, double cell) {
   const double scaled = std::floor(x / cell);
-  return static_cast<std::int64_t>(std::clamp(scaled, -static_cast<double>(largestCell), static_cast<double>(largestCell - 1)));
+  return static_cast<std::int64_t>(
+      std::clamp(scaled, -static_cast<double>(largestCell), static_cast<double>(largestCell - 1)));
 }
 
 std::uint64_t key(std::int64_t i, std::int64_t j, std::int64_t k) {
@@ -82,7 +83,8 @@ void SortedGrid::pairs(std::span<const Box> queries, std::vector<Pair>& out) con
     }
     for (const std::uint32_t l : large_) offer(l);
     forEachCell(range, [&](std::uint64_t c) {
-      for (auto e = std::lower_bound(entry_.begin(), entry_.end(), Entry{c, 0}); e != entry_.end() && e->cell == c; ++e) {
+      for (auto e = std::lower_bound(entry_.begin(), entry_.end(), Entry{c, 0}); e != entry_.end() && e->cell == c;
+           ++e) {
         offer(e->leaf);
       }
     });

@@ -24,7 +24,8 @@ class TetrahedronGrid {
     cell_ = std::max(std::sqrt(std::sqrt(volume / static_cast<double>(mesh.tetrahedron.size()) * size.maxCoeff())),
                      size.maxCoeff() / 64.0);
     for (int a = 0; a < 3; ++a) count_[a] = static_cast<int>(size[a] / cell_) + 1;
-    cells_.resize(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) * static_cast<std::size_t>(count_[2]));
+    cells_.resize(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
+                  static_cast<std::size_t>(count_[2]));
     for (std::size_t t = 0; t < mesh.tetrahedron.size(); ++t) {
       Box box;
       for (int a = 0; a < 4; ++a) box.include(mesh.vertex[slot(mesh.tetrahedron[t][a])]);
@@ -43,7 +44,8 @@ class TetrahedronGrid {
   [[nodiscard]] Index3 cellOf(const Vec3& p) const {
     Index3 c;
     for (int a = 0; a < 3; ++a) {
-      c[a] = static_cast<int>(std::clamp(std::floor((p[a] - lower_[a]) / cell_), 0.0, static_cast<double>(count_[a] - 1)));
+      c[a] =
+          static_cast<int>(std::clamp(std::floor((p[a] - lower_[a]) / cell_), 0.0, static_cast<double>(count_[a] - 1)));
     }
     return c;
   }

@@ -42,13 +42,11 @@ inline constexpr bool isPlain = IsPlain<T>::value;
 
 /// The bytes of one plain value.
 template <class T>
-  requires isPlain<T>
-std::span<const std::byte> bytesOf(const T& value) {
+requires isPlain<T> std::span<const std::byte> bytesOf(const T& value) {
   return {reinterpret_cast<const std::byte*>(&value), sizeof(T)};
 }
 template <class T>
-  requires isPlain<T>
-std::span<const std::byte> bytesOf(const std::vector<T>& values) {
+requires isPlain<T> std::span<const std::byte> bytesOf(const std::vector<T>& values) {
   return {reinterpret_cast<const std::byte*>(values.data()), values.size() * sizeof(T)};
 }
 
@@ -62,10 +60,8 @@ class ByteWriter {
     write(value);
   }
   template <class T>
-    requires isPlain<T>
-  void write(const T& value) {
-    append(bytesOf(value));
-  }
+  requires isPlain<T>
+  void write(const T& value) { append(bytesOf(value)); }
   template <class T>
   void write(const std::vector<T>& values) {
     write(static_cast<std::uint64_t>(values.size()));
@@ -76,8 +72,7 @@ class ByteWriter {
     }
   }
   template <class T, std::size_t N>
-    requires(!isPlain<T>)
-  void write(const std::array<T, N>& parts) {
+  requires(!isPlain<T>) void write(const std::array<T, N>& parts) {
     for (const T& part : parts) write(part);
   }
   void write(const std::string& text) {
@@ -85,8 +80,7 @@ class ByteWriter {
     append({reinterpret_cast<const std::byte*>(text.data()), text.size()});
   }
   template <class T>
-    requires(!isPlain<T> && requires(const T& t, ByteWriter& w) { T::fields(t, w); })
-  void write(const T& part) {
+  requires(!isPlain<T> && requires(const T& t, ByteWriter& w) { T::fields(t, w); }) void write(const T& part) {
     T::fields(part, *this);
   }
 
@@ -111,9 +105,10 @@ class ByteReader {
     read(value);
   }
   template <class T>
-    requires isPlain<T>
+  requires isPlain<T>
   void read(T& value) {
-    if (std::span<const std::byte> b = take(sizeof(T)); ok_) std::memcpy(static_cast<void*>(&value), b.data(), sizeof(T));
+    if (std::span<const std::byte> b = take(sizeof(T)); ok_)
+      std::memcpy(static_cast<void*>(&value), b.data(), sizeof(T));
   }
   template <class T>
   void read(std::vector<T>& values) {
@@ -131,8 +126,7 @@ class ByteReader {
     }
   }
   template <class T, std::size_t N>
-    requires(!isPlain<T>)
-  void read(std::array<T, N>& parts) {
+  requires(!isPlain<T>) void read(std::array<T, N>& parts) {
     for (T& part : parts) read(part);
   }
   void read(std::string& text) {
@@ -144,8 +138,7 @@ class ByteReader {
     text.assign(reinterpret_cast<const char*>(b.data()), b.size());
   }
   template <class T>
-    requires(!isPlain<T> && requires(T& t, ByteReader& r) { T::fields(t, r); })
-  void read(T& part) {
+  requires(!isPlain<T> && requires(T & t, ByteReader& r) { T::fields(t, r); }) void read(T& part) {
     T::fields(part, *this);
   }
 

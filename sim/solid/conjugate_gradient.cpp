@@ -28,8 +28,8 @@ CALOT_LANE_KERNEL void preconditionSlice(const float* inverse, const float* r, f
 
 }  // namespace
 
-void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values,
-                                std::span<const int> diagonal, Executor& executor) {
+void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values, std::span<const int> diagonal,
+                                Executor& executor) {
   const std::size_t size = matrix.vectorSize();
   inverse_.resize(matrix.slices() * 9 * laneCount);
   for (std::vector<float>* v : {&r_, &p_, &y_, &z_}) v->resize(size * laneCount);
@@ -62,9 +62,8 @@ void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float
   });
 }
 
-SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values,
-                                     std::span<const float> b, std::span<float> x, double tolerance, std::uint32_t cap,
-                                     Executor& executor) {
+SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
+                                     std::span<float> x, double tolerance, std::uint32_t cap, Executor& executor) {
   const std::size_t tasks = taskCount(matrix);
   const std::size_t slices = matrix.slices();
   const auto reduce = [&](std::size_t which) {

@@ -87,8 +87,8 @@ void SolidModel::buildStructure() {
       if (row_[static_cast<std::size_t>(n)] >= 0) columns[r].push_back(row_[static_cast<std::size_t>(n)]);
     }
     std::sort(columns[r].begin(), columns[r].end());
-    diagonal_[r] = static_cast<int>(
-        std::lower_bound(columns[r].begin(), columns[r].end(), static_cast<int>(r)) - columns[r].begin());
+    diagonal_[r] = static_cast<int>(std::lower_bound(columns[r].begin(), columns[r].end(), static_cast<int>(r)) -
+                                    columns[r].begin());
   }
   matrix_ = BlockMatrix(columns);
 
@@ -107,7 +107,8 @@ void SolidModel::buildStructure() {
         if (c < 0) continue;
         const auto k =
             static_cast<std::size_t>(std::lower_bound(columns[r].begin(), columns[r].end(), c) - columns[r].begin());
-        perSlot[r][k].push_back({static_cast<std::int32_t>(e), static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)});
+        perSlot[r][k].push_back(
+            {static_cast<std::int32_t>(e), static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)});
       }
     }
   }
@@ -225,9 +226,8 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
   return report;
 }
 
-SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impulse> impulses,
-                                   const Settings& settings, std::vector<std::vector<Vec3>>& response,
-                                   Executor& executor) {
+SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
+                                   std::vector<std::vector<Vec3>>& response, Executor& executor) {
   const std::size_t size = model.matrix_.vectorSize() * laneCount;
   b_.assign(size, 0.0F);
   x_.resize(size);

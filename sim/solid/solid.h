@@ -50,10 +50,10 @@ class SolidModel {
     std::uint8_t b;
   };
   struct SlotRange {
-    std::size_t slot;           ///< in the matrix values
+    std::size_t slot;  ///< in the matrix values
     std::int32_t row;
     bool diagonal;
-    std::size_t first, last;    ///< in contributions
+    std::size_t first, last;  ///< in contributions
   };
 
   void buildStructure();
@@ -65,10 +65,10 @@ class SolidModel {
   TetrahedralElements elements_;
   std::vector<double> mass_;
   std::vector<int> row_;
-  std::vector<int> freeNode_;             ///< row -> node
+  std::vector<int> freeNode_;  ///< row -> node
   BlockMatrix matrix_;
-  std::vector<int> diagonal_;             ///< per row: which of its columns is the diagonal
-  std::vector<SlotRange> slot_;           ///< in row order
+  std::vector<int> diagonal_;    ///< per row: which of its columns is the diagonal
+  std::vector<SlotRange> slot_;  ///< in row order
   std::vector<Contribution> contribution_;
   std::vector<std::size_t> incidentStart_;  ///< per node
   std::vector<Contribution> incident_;      ///< element and corner of each incident tetrahedron
@@ -103,7 +103,7 @@ SolidState restState(const SolidModel& model);
 class SolidSolver {
  public:
   struct Settings {
-    double step = 0.01;        ///< h (s)
+    double step = 0.01;  ///< h (s)
     double tolerance = 1e-4;
     std::uint32_t cap = 200;
     int rotationSweeps = 2;

@@ -25,15 +25,15 @@ LameConstants lameConstants(double youngModulus, double poissonRatio);
 
 /// Eight tetrahedra side by side. Lanes past the last element repeat it with volume 0: they add nothing.
 struct ElementGroup {
-  std::array<std::array<int, laneCount>, 4> node;                           ///< node indices
-  std::array<std::array<std::array<double, laneCount>, 3>, 4> gradient;     ///< of the shape functions at rest (1/m)
-  std::array<double, laneCount> volume;                                     ///< at rest (m^3)
+  std::array<std::array<int, laneCount>, 4> node;                        ///< node indices
+  std::array<std::array<std::array<double, laneCount>, 3>, 4> gradient;  ///< of the shape functions at rest (1/m)
+  std::array<double, laneCount> volume;                                  ///< at rest (m^3)
 };
 
 /// What one pass over an element group leaves for the assembly.
 struct ElementResult {
-  std::array<std::array<std::array<double, laneCount>, 3>, 4> force;        ///< on the nodes (N)
-  std::array<std::array<std::array<float, laneCount>, 3>, 4> gradient;      ///< rotated: R grad N_a (1/m)
+  std::array<std::array<std::array<double, laneCount>, 3>, 4> force;    ///< on the nodes (N)
+  std::array<std::array<std::array<float, laneCount>, 3>, 4> gradient;  ///< rotated: R grad N_a (1/m)
 };
 
 /// Unit quaternions (w, x, y, z) of eight elements.
@@ -54,10 +54,12 @@ class TetrahedralElements {
   /// For each group: turns `rotation` towards the polar rotation of F(position) by `sweeps` Newton steps, then the
   /// forces of the linear law in the rotated frame, evaluated at position + lookAhead * velocity:
   ///   F = sum_a x_a grad_a^T,  eps = sym(R^T F) - I,  sigma = 2 mu eps + lambda tr(eps) I,  f_a = -V R sigma grad_a.
-  /// With lookAhead = dt + beta this is the elastic part of the right-hand side of implicit Euler with stiffness damping.
+  /// With lookAhead = dt + beta this is the elastic part of the right-hand side of implicit Euler with stiffness
+  /// damping.
   /// @param rotation in: last step's; out: this step's (unit). It is part of State.
-  void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead, LameConstants material,
-                int sweeps, std::span<RotationGroup> rotation, std::span<ElementResult> result, Executor& executor) const;
+  void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
+                LameConstants material, int sweeps, std::span<RotationGroup> rotation, std::span<ElementResult> result,
+                Executor& executor) const;
 
   /// Sum of signed volumes of the deformed tetrahedra (m^3), in element order.
   [[nodiscard]] double volume(std::span<const Vec3> position) const;

@@ -26,7 +26,8 @@ SolidModel clampedBox(const KuhnBox& box, double young, double poisson, double m
 }
 
 /// Steps until nothing moves. @returns the largest speed of the last step.
-double settle(const SolidModel& model, SolidState& state, const Vec3& gravity, std::span<const Vec3> external, int steps) {
+double settle(const SolidModel& model, SolidState& state, const Vec3& gravity, std::span<const Vec3> external,
+              int steps) {
   SerialExecutor executor;
   SolidSolver solver;
   SolidSolver::Settings settings;

@@ -37,8 +37,8 @@ Vec3 reaction(const OrganModel& organ, const SolidState& state) {
   std::vector<RotationGroup> rotation = state.rotation;
   std::vector<ElementResult> result(organ.solid.elements().groups().size());
   SerialExecutor executor;
-  organ.solid.elements().evaluate(state.position, state.velocity, 0.0, organ.solid.material().lame, 10, rotation, result,
-                                  executor);
+  organ.solid.elements().evaluate(state.position, state.velocity, 0.0, organ.solid.material().lame, 10, rotation,
+                                  result, executor);
   Vec3 sum = Vec3::Zero();
   for (std::size_t e = 0; e < organ.solid.tetrahedra().size(); ++e) {
     for (std::size_t a = 0; a < 4; ++a) {
@@ -116,7 +116,8 @@ TEST(Press, FinerMeshesAreSofter) {
     Stepper stepper(*model, executor);
     const double force =
         press(*model, state, stepper, Vec3(0.0011, 0.0023, test::blockTop - 0.004), away).hand[0].contactForce[2];
-    forces += " " + std::to_string(force) + " N";
+    forces += std::to_string(force);
+    forces += " N ";
     EXPECT_LT(force, previous) << forces;
     if (previous < 1e299) {
       EXPECT_LT(previous - force, previousDrop) << forces;
@@ -124,7 +125,7 @@ TEST(Press, FinerMeshesAreSofter) {
     }
     previous = force;
   }
-  std::printf("press of 4 mm:%s\n", forces.c_str());
+  std::printf("press of 4 mm: %s\n", forces.c_str());
 }
 
 /// With a coupling that hardly yields, the force of a given displacement is proportional to Young's modulus.
@@ -140,7 +141,8 @@ TEST(Press, ForceIsProportionalToStiffness) {
     SerialExecutor executor;
     State state = initialState(*model, 1);
     Stepper stepper(*model, executor);
-    force[k] = press(*model, state, stepper, Vec3(0.0011, 0.0023, test::blockTop - 0.003), away).hand[0].contactForce[2];
+    force[k] =
+        press(*model, state, stepper, Vec3(0.0011, 0.0023, test::blockTop - 0.003), away).hand[0].contactForce[2];
   }
   EXPECT_NEAR(force[1] / force[0], 2.0, 0.02);
 }
@@ -167,7 +169,8 @@ TEST(Press, HandsAreEqual) {
   }
   for (std::size_t h = 0; h < 2; ++h) {
     const Vec3& one = result[0].hand[h].contactForce;
-    EXPECT_LT((one - result[1].hand[1 - h].contactForce).norm(), 1e-3 * one.norm()) << "the hands' numbers do not matter";
+    EXPECT_LT((one - result[1].hand[1 - h].contactForce).norm(), 1e-3 * one.norm())
+        << "the hands' numbers do not matter";
   }
 }
 

@@ -174,8 +174,11 @@ class WrongUse(program.ProgramTest):
                           ["mesh", "x.stl", "--unit", "m", "--tetrahedra", "100", "-o", "x.vtk"],
                           ["mesh", "x.obj", "--unit", "m", "--tetrahedra", "100", "-o", "x.obj"], ["scenes", "x"], ["checkpoints", "--no"]):
             with self.subTest(" ".join(map(str, arguments))):
-                self.refused(2, *arguments)
-                self.assertEqual(list(self.folder.iterdir()), [])
+                try:
+                    self.refused(2, *arguments)
+                    self.assertEqual(list(self.folder.iterdir()), [])
+                finally:
+                    o.unlink(missing_ok=True)
 
     def test_unknown_names_tell_the_known(self):
         o = self.path("o.h5")

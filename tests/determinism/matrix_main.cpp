@@ -25,7 +25,8 @@ std::vector<std::byte> readFile(const char* path) {
   std::FILE* file = std::fopen(path, "rb");
   if (file == nullptr) return bytes;
   std::byte buffer[65536];
-  for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) bytes.insert(bytes.end(), buffer, buffer + n);
+  for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+    bytes.insert(bytes.end(), buffer, buffer + n);
   std::fclose(file);
   return bytes;
 }

@@ -61,7 +61,8 @@ struct Shaking {
   std::array<double, handCount> phase;
   explicit Shaking(Random& random) {
     for (std::size_t h = 0; h < handCount; ++h) {
-      centre[h] = Vec3((h == 0 ? -0.012 : 0.012) + 0.004 * random.normal(), 0.008 * random.normal(), test::blockTop + 0.004);
+      centre[h] =
+          Vec3((h == 0 ? -0.012 : 0.012) + 0.004 * random.normal(), 0.008 * random.normal(), test::blockTop + 0.004);
       direction[h] = Vec3(random.normal(), random.normal(), random.normal()).normalized();
       phase[h] = random.uniform() * 2.0 * std::numbers::pi;
     }
@@ -157,7 +158,7 @@ TEST(ViolentHands, TamperedStates) {
     EXPECT_EQ(saveState(other.state), turned) << "trial " << trial;
     for (int i = 0; i < 2; ++i) {
       other.step(Vec3(-0.005, 0.0, 0.014));
-      ASSERT_TRUE(test::allFinite(other.state)) << "trial " << trial;
+      EXPECT_TRUE(test::allFinite(other.state)) << "trial " << trial;
     }
   }
   EXPECT_GT(restored, 50);

@@ -2,10 +2,10 @@
 // Block matrix and conjugate gradients against dense algebra in double.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <Eigen/Dense>
 #include <set>
 #include <vector>
 
@@ -69,7 +69,8 @@ struct System {
     std::vector<float> out(matrix.vectorSize(), 0.0F);
     for (int r = 0; r < rows(); ++r) {
       for (int i = 0; i < 3; ++i) {
-        out[laneOffset(static_cast<std::size_t>(r)) + 8 * static_cast<std::size_t>(i)] = static_cast<float>(v[3 * r + i]);
+        out[laneOffset(static_cast<std::size_t>(r)) + 8 * static_cast<std::size_t>(i)] =
+            static_cast<float>(v[3 * r + i]);
       }
     }
     return out;
@@ -127,7 +128,8 @@ TEST(BlockMatrix, MultipliesAsTheDenseMatrix) {
     std::vector<float> y(matrix.vectorSize(), 9.0F);
     // Slice by slice, as tasks do: the parts add up.
     double dot = 0.0;
-    for (std::size_t s = 0; s < matrix.slices(); ++s) dot += matrix.multiply(system.values, packed.data(), y.data(), s, s + 1);
+    for (std::size_t s = 0; s < matrix.slices(); ++s)
+      dot += matrix.multiply(system.values, packed.data(), y.data(), s, s + 1);
     const Eigen::VectorXd expected = system.dense * x;
     const double scale = expected.cwiseAbs().maxCoeff();
     EXPECT_LT((system.unpacked(y) - expected).cwiseAbs().maxCoeff(), 2e-6 * scale) << rows << " rows";
@@ -174,8 +176,7 @@ TEST(ConjugateGradient, AgreesWithDenseFactorisation) {
     std::vector<float> x(system.matrix.vectorSize(), 7.0F);
     cg.prepare(system.matrix, system.values, system.diagonal, executor);
     constexpr double tolerance = 1e-5;
-    const SolveReport report =
-        cg.solve(system.matrix, system.values, system.packed(b), x, tolerance, 1000, executor);
+    const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, tolerance, 1000, executor);
     EXPECT_TRUE(report.converged) << rows << " rows";
     EXPECT_LE(report.residual, tolerance);
     EXPECT_GT(report.iterations, 0U);
@@ -246,7 +247,8 @@ TEST(ConjugateGradient, ACapThatBindsIsReported) {
   std::vector<float> many(x.size() * laneCount);
   Eigen::MatrixXd eight = Eigen::MatrixXd::Zero(3 * 140, laneCount);
   eight.col(5) = b;
-  const SolveReport column = cg.solveMany(system.matrix, system.values, system.packedMany(eight), many, 1e-6, 2, executor);
+  const SolveReport column =
+      cg.solveMany(system.matrix, system.values, system.packedMany(eight), many, 1e-6, 2, executor);
   EXPECT_FALSE(column.converged);
   EXPECT_EQ(column.iterations, 2U);
   EXPECT_NEAR(column.residual, one.residual, 1e-5);

@@ -19,7 +19,7 @@ Box randomBox(Random& random) {
   const double spread = kind < 0.9 ? 0.1 : (kind < 0.97 ? 10.0 : 1e6);
   for (int a = 0; a < 3; ++a) {
     centre[a] = spread * random.normal();
-    half[a] = 0.01 * random.uniform();
+    half[a] = 0.04 * random.uniform();
     if (random.uniform() < 0.1) half[a] = 0.0;
     if (random.uniform() < 0.03) half[a] = 1e3;
     // On the borders of cells, where rounding down decides.

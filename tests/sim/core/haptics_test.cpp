@@ -80,7 +80,8 @@ TEST_F(HapticRun, ReproducesTheStepsForceAtTheStepsPose) {
       Vec3 expected = result.hand[h].contactForce;
       if (expected.norm() > model.largestForce) expected *= model.largestForce / expected.norm();
       const double rows = static_cast<double>(rig.stepper.contactSet(h).free.size());
-      EXPECT_LE((force.force - expected).norm(), (1.0 + rows) * model.tolerance * 1000.0) << "step " << i << " hand " << h;
+      EXPECT_LE((force.force - expected).norm(), (1.0 + rows) * model.tolerance * 1000.0)
+          << "step " << i << " hand " << h;
       if (result.hand[h].touching != 0) ++touched;
       EXPECT_TRUE(rows > 0.0 || force.force.isZero(0.0)) << "no contacts, no force";
     }

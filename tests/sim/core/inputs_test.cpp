@@ -54,7 +54,7 @@ TEST_F(InputsTest, WhatIsNoMeasurementHoldsThePose) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.what);
     test::Rig rig(*model_);
-    const Vec3 pressing(-0.005, 0.002, test::blockTop + 0.001);
+    const Vec3 pressing(-0.005, 0.002, test::blockTop - 0.001);
     for (int i = 0; i < 20; ++i) rig.step(pressing);
     const HandState before = rig.state.hand[0];
     ASSERT_NE(before.touching, 0U);

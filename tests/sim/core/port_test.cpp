@@ -94,7 +94,8 @@ TEST(Port, ShaftTransposeIsTheTransposedJacobian) {
     const auto point = [&](const Vec3& at) -> Vec3 { return at - (length - s) * (at - port).normalized(); };
     Mat3 jacobian;
     constexpr double h = 1e-6;
-    for (int k = 0; k < 3; ++k) jacobian.col(k) = (point(tip + h * Vec3::Unit(k)) - point(tip - h * Vec3::Unit(k))) / (2.0 * h);
+    for (int k = 0; k < 3; ++k)
+      jacobian.col(k) = (point(tip + h * Vec3::Unit(k)) - point(tip - h * Vec3::Unit(k))) / (2.0 * h);
     const Vec3 force = randomVector(random);
     EXPECT_LT((shaftTranspose(axis, s, length, force) - jacobian.transpose() * force).norm(), 1e-7 * force.norm());
   }

@@ -53,7 +53,7 @@ struct Flip {
     flip(value);
   }
   template <class T>
-    requires isPlain<T>
+  requires isPlain<T>
   void flip(T& value) {
     auto* byte = reinterpret_cast<unsigned char*>(&value);
     *byte = static_cast<unsigned char>(*byte ^ 1U);
@@ -63,7 +63,9 @@ struct Flip {
     if (element < values.size()) {
       flip(values[element]);
     } else {
-      values.push_back(T{});
+      T zero;
+      std::memset(static_cast<void*>(&zero), 0, sizeof zero);
+      values.push_back(zero);
     }
   }
 };
@@ -82,7 +84,8 @@ TEST_F(StateTest, ChangingAFieldChangesItsDigestAndNoOther) {
       EXPECT_EQ(layout.fields[f].name, layout.components[layout.fields[f].component] + "/" + flip.name);
       const StateDigest after = digestOf(changed);
       for (std::size_t g = 0; g < after.field.size(); ++g) {
-        EXPECT_EQ(after.field[g] != before.field[g], g == f) << layout.fields[f].name << " and " << layout.fields[g].name;
+        EXPECT_EQ(after.field[g] != before.field[g], g == f)
+            << layout.fields[f].name << " and " << layout.fields[g].name;
       }
       for (std::size_t c = 0; c < after.component.size(); ++c) {
         EXPECT_EQ(after.component[c] != before.component[c], c == layout.fields[f].component) << layout.fields[f].name;
@@ -92,8 +95,8 @@ TEST_F(StateTest, ChangingAFieldChangesItsDigestAndNoOther) {
 }
 
 TEST_F(StateTest, ComponentsAreNamedInOrder) {
-  EXPECT_EQ(model_->layout().components, (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right",
-                                                                   "organ.block", "organ.ball"}));
+  EXPECT_EQ(model_->layout().components,
+            (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right", "organ.block", "organ.ball"}));
 }
 
 /// An unwritten component keeps its digest, so a component that is written and not marked would be seen here.

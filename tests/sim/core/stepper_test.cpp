@@ -32,9 +32,9 @@ class StepperTest : public testing::Test {
     reference_.reset();
     model_.reset();
   }
-  static std::vector<StateDigest> digestsOf(test::Rig& rig, int first = 0) {
+  static std::vector<StateDigest> digestsOf(test::Rig& rig, int first = 0, int last = runLength) {
     std::vector<StateDigest> digests;
-    for (int i = first; i < runLength; ++i) {
+    for (int i = first; i < last; ++i) {
       const test::TipPair tips = test::contactRun(i);
       rig.step(tips.left, tips.right);
       digests.push_back(rig.stepper.digest(rig.state));
@@ -42,7 +42,8 @@ class StepperTest : public testing::Test {
     return digests;
   }
   static void expectReference(const std::vector<StateDigest>& digests, std::size_t first = 0) {
-    ASSERT_EQ(digests.size() + first, reference_->size());
+    ASSERT_FALSE(digests.empty());
+    ASSERT_LE(digests.size() + first, reference_->size());
     for (std::size_t i = 0; i < digests.size(); ++i) {
       for (std::size_t f = 0; f < digests[i].field.size(); ++f) {
         ASSERT_EQ(digests[i].field[f], (*reference_)[first + i].field[f])
@@ -107,13 +108,13 @@ TEST_F(StepperTest, RestoredStateGoesOnBitForBit) {
     // A new stepper, and one that has seen quite another history.
     test::Rig fresh(*model_);
     ASSERT_TRUE(restoreState(*model_, bytes, fresh.state));
-    expectReference(digestsOf(fresh, at), static_cast<std::size_t>(at));
+    expectReference(digestsOf(fresh, at, at + 10), static_cast<std::size_t>(at));
     test::Rig used(*model_);
     for (int i = 0; i < 12; ++i) used.step(Vec3(0.01, 0.01, 0.012), Vec3(-0.01, 0.0, 0.014));
     used.stepper.digest(used.state);
     ASSERT_TRUE(restoreState(*model_, bytes, used.state));
     used.stepper.invalidate();
-    expectReference(digestsOf(used, at), static_cast<std::size_t>(at));
+    expectReference(digestsOf(used, at, at + 10), static_cast<std::size_t>(at));
   }
 }
 
@@ -122,7 +123,8 @@ TEST_F(StepperTest, AnyNumberOfThreadsGivesTheSameBits) {
     SCOPED_TRACE(std::to_string(threads) + " threads");
     ThreadExecutor executor(threads);
     test::Rig rig(*model_, &executor);
-    expectReference(digestsOf(rig));
+    // Into the contact of both hands; threads that start anew for every batch take their time.
+    expectReference(digestsOf(rig, 0, 40));
   }
 }
 

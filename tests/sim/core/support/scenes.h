@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -163,16 +164,18 @@ inline TipPair contactRun(int step) {
   return {Vec3(-0.012 + 0.004 * t, 0.003 * t, height(t)), Vec3(0.014, -0.004 * t, height(t - 0.15))};
 }
 
+/// Looks at every number, and remembers the first field with one that is not finite.
 struct FiniteCheck {
   bool finite = true;
+  std::string field;
   template <class T>
-  void operator()(const char* /*name*/, const T& value) {
+  void operator()(const char* name, const T& value) {
     look(value);
+    if (!finite && field.empty()) field = name;
   }
   void look(double v) { finite = finite && v - v == 0.0; }
   template <class T>
-    requires(std::is_integral_v<T> || std::is_enum_v<T>)
-  void look(T /*value*/) {}
+  requires(std::is_integral_v<T> || std::is_enum_v<T>) void look(T /*value*/) {}
   void look(const Vec3& v) { finite = finite && v.allFinite(); }
   void look(const Quat& q) { finite = finite && q.coeffs().allFinite(); }
   template <class T, std::size_t N>
@@ -188,8 +191,7 @@ struct FiniteCheck {
 /// True when every number of the state is finite.
 inline bool allFinite(const State& state) {
   FiniteCheck check;
-  State::components(state,
-                    [&](const auto& part) { std::remove_cvref_t<decltype(part)>::fields(part, check); });
+  State::components(state, [&](const auto& part) { std::remove_cvref_t<decltype(part)>::fields(part, check); });
   return check.finite;
 }
 
