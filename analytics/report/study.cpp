@@ -67,6 +67,7 @@ std::string joined(const std::vector<std::string>& parts) {
 std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
                                         const StudyOptions& options, const std::string& path, const Study& study) {
   std::vector<std::string> names;
+  names.reserve(present.size());
   for (const auto& item : present) names.push_back(item.first);
   std::sort(names.begin(), names.end(), before);
   if (!options.groups.empty()) {

@@ -14,9 +14,9 @@ template <class T>
 class Answer {
  public:
   Answer(T value) : value_(std::move(value)) {}  // NOLINT: implicit on purpose, a result is an answer
-  static Answer none(std::string reason) {
+  static Answer none(const std::string& reason) {
     Answer answer;
-    answer.reason_ = std::move(reason);
+    answer.reason_ = reason;
     return answer;
   }
 

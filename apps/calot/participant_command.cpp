@@ -49,8 +49,10 @@ void addOptions(CLI::App* command, const std::shared_ptr<Options>& options) {
   command->add_option("--group", options->group, "Study group");
   command->add_option("--arm", options->arm, "Study arm");
   command->add_option("--site", options->site, "Site");
-  command->add_option("--experience", options->experience, "Recorded criterion, CRITERION=VALUE; may be repeated");
-  command->add_option("--consent", options->consent, "Consent given, PURPOSE:YYYY-MM-DD; may be repeated");
+  command->add_option("--experience", options->experience, "Recorded criterion, CRITERION=VALUE; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--consent", options->consent, "Consent given, PURPOSE:YYYY-MM-DD; may be repeated")
+      ->allow_extra_args(false);
 }
 
 }  // namespace

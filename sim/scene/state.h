@@ -32,11 +32,13 @@ struct ClockState {
 struct CameraState {
   Vec3 position = Vec3::Zero();         ///< p_WC (m)
   Quat orientation = Quat::Identity();  ///< q_WC, unit
+  std::uint64_t inputs = 0;             ///< XXH3-64 of the last step's camera samples, as they came
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("position", self.position);
     visit("orientation", self.orientation);
+    visit("inputs", self.inputs);
   }
 };
 
@@ -55,6 +57,9 @@ struct HandState {
   std::vector<std::uint64_t> touchingSince;  ///< per organ: step in which the touch began
   std::vector<std::uint64_t> contactKey;     ///< the last step's contacts: where,
   std::vector<double> contactForce;          ///< and how strong (N); warm start of the next problem
+  /// XXH3-64 of the last step's samples of this hand, as they came: a changed sample shows in its own step even where
+  /// it moves nothing.
+  std::uint64_t inputs = 0;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -72,6 +77,7 @@ struct HandState {
     visit("touchingSince", self.touchingSince);
     visit("contactKey", self.contactKey);
     visit("contactForce", self.contactForce);
+    visit("inputs", self.inputs);
   }
 };
 

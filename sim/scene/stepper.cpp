@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/instruments/port.h"
+#include "sim/math/fields.h"
 #include "sim/math/floating_point.h"
 #include "sim/scene/stepper_workspace.h"
 
@@ -19,6 +20,32 @@ namespace {
 bool isMeasurement(const InstrumentSample& s) {
   return s.valid && s.position.allFinite() && s.orientation.coeffs().allFinite() && std::isfinite(s.jaw) &&
          s.orientation.coeffs().norm() > 0.5;
+}
+
+/// Digest of one hand's samples over a step, field by field: no padding enters it.
+std::uint64_t handInputs(std::span<const TickSamples> samples, std::size_t hand) {
+  std::vector<std::byte> bytes;
+  ByteWriter writer(bytes);
+  for (const TickSamples& tick : samples) {
+    const InstrumentSample& s = tick.hand[hand];
+    writer.write(s.position);
+    writer.write(s.orientation);
+    writer.write(s.jaw);
+    writer.write(s.instrument);
+    writer.write(s.buttons);
+    writer.write(s.valid);
+  }
+  return digest64(bytes);
+}
+
+std::uint64_t cameraInputs(std::span<const TickSamples> samples) {
+  std::vector<std::byte> bytes;
+  ByteWriter writer(bytes);
+  for (const TickSamples& tick : samples) {
+    writer.write(tick.camera.position);
+    writer.write(tick.camera.orientation);
+  }
+  return digest64(bytes);
 }
 
 Vec3 clampedToWorkspace(const SceneDescription& scene, const Vec3& p) {
@@ -43,6 +70,7 @@ void Stepper::Workspace::readSamples(State& state, std::span<const TickSamples> 
   const SceneDescription& scene = model.scene();
   for (std::size_t h = 0; h < handCount; ++h) {
     HandState& hand = state.hand[h];
+    hand.inputs = handInputs(samples, h);
     const InstrumentSample* newest = nullptr;
     for (const TickSamples& tick : samples) {
       if (isMeasurement(tick.hand[h])) newest = &tick.hand[h];
@@ -75,6 +103,7 @@ void Stepper::Workspace::readSamples(State& state, std::span<const TickSamples> 
     hand.jaw = std::clamp(newest->jaw, 0.0, 1.6);
     hand.buttons = newest->buttons;
   }
+  state.camera.inputs = cameraInputs(samples);
   const CameraSample& camera = samples.back().camera;
   const double size = camera.orientation.coeffs().norm();
   if (camera.position.allFinite() && std::isfinite(size) && size > 0.5) {

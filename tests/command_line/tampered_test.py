@@ -29,14 +29,14 @@ class Changed(program.ProgramTest):
         answer = self.refused(3, "replay", r, names=(r, "step 123", "hand.right"))
         self.assertNotIn("chain", answer.err)
 
-    def test_pose_that_the_step_does_not_use(self):
-        # A step moves to its last tick's pose; those before it are felt by the haptic tick alone, and only in contact. Elsewhere
-        # no re-simulation can miss one: the chain does, to the flush.
+    def test_pose_at_a_tick_that_moves_nothing(self):
+        # A step moves to its last tick's pose; those before it are felt by the haptic tick alone, and only in contact. The
+        # digest of the step's inputs shows them all the same.
         r = self.copy(skilled())
         with h5py.File(r, "r+") as file:
             self.assertFalse(file["/ticks/right/force"][:300].any())
             file["/ticks/right/position"][234, 2] += 2e-5
-        self.refused(3, "replay", r, names=(r, "chain", "steps 0 to 24"))
+        self.refused(3, "replay", r, names=(r, "diverged at step 23", "hand.right inputs", "chain broken"))
 
     def test_force(self):
         r = self.copy(skilled())

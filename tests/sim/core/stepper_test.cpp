@@ -61,7 +61,6 @@ TEST_F(StepperTest, TheRunTouchesWithBothHandsAndLeaves) {
   int left = 0;
   int right = 0;
   int both = 0;
-  int shared = 0;
   bool ballMoved = false;
   for (int i = 0; i < runLength; ++i) {
     const test::TipPair tips = test::contactRun(i);
@@ -71,7 +70,6 @@ TEST_F(StepperTest, TheRunTouchesWithBothHandsAndLeaves) {
     left += l ? 1 : 0;
     right += r ? 1 : 0;
     both += l && r ? 1 : 0;
-    shared += result.contact.rows > 2 ? 1 : 0;
     ballMoved = ballMoved || !result.organ[1].asleep;
     EXPECT_EQ(result.misses, 0U) << "step " << i;
     EXPECT_EQ(result.step, static_cast<std::uint64_t>(i));

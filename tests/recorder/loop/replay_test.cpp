@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/replay.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "recorder/attempt.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/live/worker_pool.h"
+#include "recorder/recording/writer.h"
+#include "recorder/sources/performer_source.h"
+#include "recorder/state_fields.h"
+
+namespace calot::recorder {
+namespace {
+
+const std::filesystem::path assets = std::filesystem::path(CALOT_SOURCE_DIR) / "assets";
+
+/// Stands between the loop and the writer and tells it something else: a recording whose chain is intact but whose
+/// content the simulation does not give.
+class Liar final : public Observer {
+ public:
+  enum class About { force, digest, volume, keyframe };
+  Liar(Observer& writer, About about, std::uint64_t step) : writer_(writer), about_(about), step_(step) {}
+
+  void onStep(const StepRecord& record) override {
+    if (record.step != step_) return writer_.onStep(record);
+    std::vector<TickOutcome> ticks(record.ticks.begin(), record.ticks.end());
+    StepResult result = record.result;
+    StateDigest digest = record.digest;
+    std::function<Keyframe()> keyframe = record.keyframe;
+    switch (about_) {
+      case About::force:
+        ticks[4].hand[1].force[2] += 1e-9;
+        break;
+      case About::digest:
+        digest.component[4] ^= 1U;
+        digest.field[3 + 3 + 2 * 15] ^= 1U;  // after clock, camera and two hands: organ.liver/position
+        break;
+      case About::volume:
+        result.organ[0].volume *= 1.0 + 1e-15;
+        break;
+      case About::keyframe:
+        keyframe = [&] {
+          Keyframe k = record.keyframe();
+          k.state[200] ^= std::byte{1};
+          return k;
+        };
+        break;
+    }
+    writer_.onStep({record.step, record.samples, ticks, result, digest, record.lateness, keyframe, record.view});
+  }
+  void onEnd(Outcome outcome) override { writer_.onEnd(outcome); }
+
+ private:
+  Observer& writer_;
+  About about_;
+  std::uint64_t step_;
+};
+
+class Replay : public ::testing::Test {
+ protected:
+  Replay() : folder_(std::filesystem::temp_directory_path() / ("calot-replay-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~Replay() override { std::filesystem::remove_all(folder_); }
+
+  /// Two seconds of a performer, on coarser organs than the scene's own.
+  std::filesystem::path record(const std::string& name, std::optional<std::pair<Liar::About, std::uint64_t>> lie = {}) {
+    const std::filesystem::path file = folder_ / name;
+    std::vector<Asset> files = loadScene(assets / "scenes" / "touch-liver.json").assets;
+    std::string text(reinterpret_cast<const char*>(files[0].bytes.data()), files[0].bytes.size());
+    text.replace(text.find("1489"), 4, "300");
+    files[0].bytes.assign(reinterpret_cast<const std::byte*>(text.data()),
+                          reinterpret_cast<const std::byte*>(text.data()) + text.size());
+    const LoadedScene scene = sceneFromAssets(files);
+    const Model::Built built = Model::build(scene.description);
+    EXPECT_TRUE(built.model) << built.error;
+    PerformerSource source(loadPerformer(assets / "performers" / "skilled.json"), scene.description, 3);
+    AttemptSettings settings;
+    settings.seed = 3;
+    RecordingWriter writer(file, makeHeader(*built.model, scene.assets, source.provenance(), settings));
+    SerialExecutor executor;
+    Session session(*built.model, 3, executor);
+    Liar liar(writer, lie ? lie->first : Liar::About::force, lie ? lie->second : ~std::uint64_t{0});
+    session.join(liar);
+    RunSettings run;
+    run.seconds = 2.1;
+    EXPECT_EQ(runAttempt(session, source, run).outcome, Outcome::stopped);
+    writer.finish();
+    return file;
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(Replay, IsExactWithOneAndTwoThreads) {
+  const std::filesystem::path file = record("r.h5");
+  for (const unsigned threads : {1U, 2U}) {
+    ReplaySettings settings;
+    settings.threads = threads;
+    const ReplayReport report = replayRecording(file, settings);
+    EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.message;
+    EXPECT_EQ(report.steps, 210U);
+    EXPECT_TRUE(report.complete);
+    EXPECT_EQ(report.outcome, Outcome::stopped);
+    EXPECT_EQ(report.code(), ExitCode::yes);
+  }
+}
+
+TEST_F(Replay, NamesStepTickComponentAndBothValues) {
+  const ReplayReport force = replayRecording(record("f.h5", {{Liar::About::force, 150}}), {});
+  ASSERT_EQ(force.verdict, ReplayVerdict::diverged) << force.message;
+  EXPECT_TRUE(force.chainIntact);
+  ASSERT_TRUE(force.divergence);
+  EXPECT_EQ(force.divergence->step, 150U);
+  EXPECT_EQ(force.divergence->tick, 1504U);
+  EXPECT_EQ(force.divergence->component, "force.right");
+  EXPECT_EQ(force.divergence->field, "force[2]");
+  EXPECT_NE(force.divergence->detail.find("recorded"), std::string::npos);
+  EXPECT_EQ(force.reproducible, true);
+  EXPECT_EQ(force.code(), ExitCode::no);
+
+  const ReplayReport digest = replayRecording(record("d.h5", {{Liar::About::digest, 151}}), {});
+  ASSERT_TRUE(digest.divergence) << digest.message;
+  EXPECT_EQ(digest.divergence->step, 151U);
+  EXPECT_EQ(digest.divergence->component, "organ.liver");
+  EXPECT_EQ(digest.divergence->field, "position");
+
+  const ReplayReport volume = replayRecording(record("v.h5", {{Liar::About::volume, 152}}), {});
+  ASSERT_TRUE(volume.divergence) << volume.message;
+  EXPECT_EQ(volume.divergence->component, "observables");
+  EXPECT_EQ(volume.divergence->field, "organ[0]/volume");
+
+  const ReplayReport keyframe = replayRecording(record("k.h5", {{Liar::About::keyframe, 199}}), {});
+  ASSERT_TRUE(keyframe.divergence) << keyframe.message;
+  EXPECT_EQ(keyframe.divergence->step, 199U);
+  EXPECT_EQ(keyframe.divergence->component, "keyframe");
+}
+
+TEST_F(Replay, SeekingGivesTheStateOfRunningThere) {
+  Recording recording(record("s.h5"));
+  ASSERT_EQ(recording.keyframeSteps(), (std::vector<std::uint64_t>{99, 199}));
+  SerialExecutor executor;
+  const std::unique_ptr<const Model> model = modelOf(recording);
+  Session straight(*model, recording.header().seed, executor);
+  std::vector<StateDigest> digests;
+  std::vector<std::vector<std::byte>> states;
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    const RecordedStep recorded = recording.step(n);
+    std::vector<TickOutcome> ticks;
+    for (const TickSamples& tick : recorded.samples) ticks.push_back(straight.tick(tick));
+    straight.step(recorded.samples, ticks, 0.0F);
+    states.push_back(saveState(straight.state()));
+  }
+  Seeker seeker(recording, executor);
+  // Forwards, backwards, onto keyframes, around them, and twice the same.
+  for (const std::uint64_t step : {207U, 5U, 99U, 100U, 101U, 180U, 199U, 199U, 0U, 209U}) {
+    seeker.seek(step);
+    EXPECT_EQ(seeker.session().steps(), step + 1);
+    EXPECT_EQ(saveState(seeker.session().state()), states[step]) << "step " << step;
+  }
+}
+
+TEST_F(Replay, ASessionRefusesAKeyframeThatIsNotItsOwn) {
+  Recording recording(record("o.h5"));
+  SerialExecutor executor;
+  const std::unique_ptr<const Model> model = modelOf(recording);
+  Session session(*model, 1, executor);
+  const Keyframe good = recording.keyframe(0);
+  Keyframe cut = good;
+  cut.state.resize(cut.state.size() - 8);
+  EXPECT_FALSE(session.restore(cut));
+  Keyframe grown = good;
+  grown.haptics.push_back(std::byte{0});
+  EXPECT_FALSE(session.restore(grown));
+  Keyframe elsewhere = good;
+  ++elsewhere.step;
+  EXPECT_FALSE(session.restore(elsewhere));
+  EXPECT_EQ(session.steps(), 0U);
+  EXPECT_TRUE(session.restore(good));
+  EXPECT_EQ(session.steps(), good.step + 1);
+}
+
+TEST_F(Replay, ATickThatNamesAnUnknownContactSetIsRefused) {
+  Recording recording(record("c.h5"));
+  SerialExecutor executor;
+  const std::unique_ptr<const Model> model = modelOf(recording);
+  Session session(*model, 3, executor);
+  const TickSamples tick = recording.step(0).samples[0];
+  EXPECT_NO_THROW(session.tick(tick, std::array<std::int64_t, 2>{-1, -1}));
+  EXPECT_THROW(session.tick(tick, std::array<std::int64_t, 2>{0, -1}), std::out_of_range);
+  EXPECT_THROW(session.tick(tick, std::array<std::int64_t, 2>{-1, -2}), std::out_of_range);
+}
+
+TEST_F(Replay, JunitSaysWhatHappened) {
+  std::vector<ReplayReport> reports(4);
+  reports[0].verdict = ReplayVerdict::exact;
+  reports[0].path = "a.h5";
+  reports[1].verdict = ReplayVerdict::diverged;
+  reports[1].path = "b<&>.h5";
+  reports[1].message = "diverged at step 7: \"hand.left\" realPosition";
+  reports[2].verdict = ReplayVerdict::damaged;
+  reports[3].verdict = ReplayVerdict::undecided;
+  writeJunit(folder_ / "j.xml", reports);
+  std::stringstream text;
+  text << std::ifstream(folder_ / "j.xml").rdbuf();
+  const std::string xml = text.str();
+  EXPECT_NE(xml.find("tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("b&lt;&amp;&gt;.h5"), std::string::npos);
+  EXPECT_NE(xml.find("<failure message=\"diverged\">diverged at step 7: &quot;hand.left&quot; realPosition</failure>"),
+            std::string::npos);
+}
+
+TEST(StateFields, TheFirstDifferenceIsNamed) {
+  const std::vector<StateField> a{{"x/a", std::vector<std::uint64_t>{1, 2}}, {"x/b", std::vector<double>{0.5, -0.0}}};
+  std::vector<StateField> b = a;
+  EXPECT_FALSE(firstDifference(a, b));
+  std::get<0>(b[1].values)[1] = 0.0;  // equal as numbers, other bits
+  const auto sign = firstDifference(a, b);
+  ASSERT_TRUE(sign);
+  EXPECT_EQ(sign->field, "x/b");
+  EXPECT_EQ(sign->index, 1U);
+  EXPECT_EQ(sign->first, "-0");
+  EXPECT_EQ(sign->second, "0");
+  std::get<1>(b[0].values).push_back(9);
+  const auto longer = firstDifference(a, b);
+  ASSERT_TRUE(longer);
+  EXPECT_EQ(longer->field, "x/a");
+  EXPECT_EQ(longer->index, 2U);
+  EXPECT_EQ(longer->first, "absent");
+}
+
+}  // namespace
+}  // namespace calot::recorder
