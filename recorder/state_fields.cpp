@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 #include <type_traits>
 
 namespace calot::recorder {
@@ -61,7 +61,7 @@ template <class T>
 std::optional<std::uint64_t> firstIndex(const std::vector<T>& a, const std::vector<T>& b) {
   const std::size_t n = std::min(a.size(), b.size());
   for (std::size_t i = 0; i < n; ++i) {
-    if (std::memcmp(&a[i], &b[i], sizeof(T)) != 0) return i;
+    if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i])) return i;
   }
   if (a.size() != b.size()) return n;
   return std::nullopt;

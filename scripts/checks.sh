@@ -35,7 +35,14 @@ for stage in "${stages[@]}"; do
       "$root/scripts/lint-determinism.sh"
       shellcheck --external-sources --source-path="$root/scripts" "$root"/scripts/*.sh "$root/.ci/run"
       ;;
-    clang) fast clang all ;;
+    clang)
+      fast clang all
+      # Recordings of either compiler's program replay in the other's.
+      configure release
+      build release calot
+      configure clang "-DCALOT_OTHER=$root/build/release/bin/calot"
+      ctest --test-dir "$root/build/clang" --tests-regex '^command_line\.builds$' --output-on-failure --no-tests=error
+      ;;
     asan-ubsan)
       export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1
       fast asan-ubsan "${fastTests[@]}"

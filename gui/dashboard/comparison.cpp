@@ -28,6 +28,7 @@ std::vector<std::string> comparabilityKeysOf(const std::vector<AttemptRow>& atte
   std::map<std::string, int> count;
   for (const AttemptRow& a : attempts) ++count[a.comparabilityKey];
   std::vector<std::string> keys;
+  keys.reserve(count.size());
   for (const auto& entry : count) keys.push_back(entry.first);
   std::stable_sort(keys.begin(), keys.end(),
                    [&](const std::string& a, const std::string& b) { return count[a] > count[b]; });

@@ -25,6 +25,7 @@ std::vector<fs::path> listScenes(const std::vector<fs::path>& roots) {
     }
   }
   std::vector<fs::path> files;
+  files.reserve(byName.size());
   for (const auto& entry : byName) files.push_back(entry.second);
   return files;
 }

@@ -15,9 +15,9 @@ namespace calot {
 class BroadPhase {
  public:
   struct Pair {
-    std::uint32_t query = 0;  ///< index into the queries
-    std::uint32_t leaf = 0;   ///< index into the leaves
-    auto operator<=>(const Pair&) const = default;
+    std::uint32_t query = 0;                        ///< index into the queries
+    std::uint32_t leaf = 0;                         ///< index into the leaves
+    auto operator<=>(const Pair&) const = default;  // NOLINT(modernize-use-nullptr): the check's own fault
   };
 
   virtual ~BroadPhase() = default;
@@ -42,7 +42,7 @@ class SortedGrid final : public BroadPhase {
   struct Entry {
     std::uint64_t cell = 0;
     std::uint32_t leaf = 0;
-    auto operator<=>(const Entry&) const = default;
+    auto operator<=>(const Entry&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   double cell_;
   std::vector<Entry> entry_;

@@ -122,7 +122,8 @@ class Search {
     const Vec3 shifts[5] = {Vec3(0.25, 0.25, 0.25), Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.5, 0.0), Vec3(0.0, 0.0, 0.5),
                             Vec3::Zero()};
     for (int i = 0; i < 60; ++i) {
-      const double share = 0.012 * static_cast<double>(i / 10);
+      const int ring = i / 10;
+      const double share = 0.012 * static_cast<double>(ring);
       const double tried = middle * (i / 5 % 2 == 0 ? 1.0 + share : 1.0 - share);
       if (BccLattice::around(box_, tried).points() > largestLattice_) continue;
       Candidate now = at(tried, shifts[i % 5]);

@@ -123,7 +123,7 @@ class IncrementalDigest {
 std::vector<std::byte> saveState(const State& state);
 
 /// Takes bytes of saveState(). @returns false, leaving `state` as it was, when they are not a State of this model
-/// (missing or surplus bytes, other numbers of organs, nodes or elements, values that are not finite).
+/// (missing or surplus bytes, other numbers of organs, nodes or elements, numbers that are not finite or above 1e6).
 bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state);
 
 }  // namespace calot
