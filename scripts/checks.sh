@@ -21,7 +21,7 @@ fast() {
   build "$preset" "$@"
   say "test $preset"
   ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording' --label-exclude heavy --parallel "$jobs" \
-    --output-on-failure --no-tests=error --quiet
+    --output-on-failure --no-tests=error
 }
 
 for stage in "${stages[@]}"; do

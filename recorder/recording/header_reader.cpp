@@ -266,11 +266,12 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
 ColumnReader::ColumnReader(std::filesystem::path path, const hdf5::Id& file, const Layout& layout,
                            std::uint64_t fileBytes)
     : path_(std::move(path)), layout_(layout), fileBytes_(fileBytes) {
-  for (const Column& column : layout.columns) source_.push_back(open(file, column));
+  // /status first: of a file that is being written, what is opened later holds at least what its rows vouch for.
   statusColumn_.path = "/status";
   statusColumn_.element = Element::status;
   statusColumn_.deflate = false;
   status_ = open(file, statusColumn_);
+  for (const Column& column : layout.columns) source_.push_back(open(file, column));
   statusRows_ = status_.rows;
   if (statusRows_ < 1) throw damaged(path_, "/status", "is empty");
   if (statusRows_ > fileBytes) throw damaged(path_, "/status", "claims more rows than the file can hold");
