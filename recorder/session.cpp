@@ -12,7 +12,7 @@ Session::Session(const Model& model, std::uint64_t seed, Executor& executor)
     : model_(model), state_(initialState(model, seed)), stepper_(model, executor), sets_(1) {
   for (std::size_t h = 0; h < handCount; ++h) {
     hapticModel_[h] = hapticModel(model, h);
-    haptic_[h].tip = state_.hand[h].realPosition;
+    haptic_[h] = initialHaptics(model_, state_, h);
   }
 }
 
@@ -28,7 +28,7 @@ TickOutcome Session::tick(const TickSamples& samples, const std::optional<std::a
       }
       set = &sets_[sets_.size() - 1 - static_cast<std::size_t>(back)][h];
     }
-    haptic_[h].tip = realTip(model_, h, samples.hand[h], haptic_[h].tip);
+    takeSample(model_, h, samples.hand[h], haptic_[h]);
     const HapticForce force = hapticTick(hapticModel_[h], haptic_[h], *set);
     outcome.hand[h] = {force.force, force.torque, set->step};
   }
@@ -70,12 +70,10 @@ bool Session::restore(const Keyframe& keyframe) {
   for (ContactSet& set : sets) reader.read(set);
   if (!reader.complete()) return false;
   for (const ContactSet& set : sets) {
-    const std::size_t rows = set.free.size();
-    if (set.direction.size() != rows || set.lambda.size() != rows || set.compliance.size() != rows * rows) return false;
-    if (set.step != static_cast<std::int64_t>(keyframe.step)) return false;
+    if (!isConsistent(set) || set.step != static_cast<std::int64_t>(keyframe.step)) return false;
   }
   for (std::size_t h = 0; h < handCount; ++h) {
-    if (haptic[h].set == sets[h].step && haptic[h].lambda.size() != sets[h].free.size()) return false;
+    if (!isConsistent(haptic[h], sets[h])) return false;
   }
   state_ = std::move(state);
   haptic_ = haptic;

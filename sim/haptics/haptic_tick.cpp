@@ -8,6 +8,15 @@
 
 namespace calot {
 
+bool isConsistent(const ContactSet& set) {
+  const std::size_t rows = set.free.size();
+  return set.direction.size() == rows && set.lambda.size() == rows && set.compliance.size() == rows * rows;
+}
+
+bool isConsistent(const HapticState& state, const ContactSet& set) {
+  return state.set != set.step || state.lambda.size() == set.free.size();
+}
+
 HapticForce hapticTick(const HapticModel& model, HapticState& state, const ContactSet& set) {
   const FloatingPointScope scope;
   const std::size_t rows = set.free.size();

@@ -50,6 +50,11 @@ struct HapticState {
   }
 };
 
+/// Do the sizes of a set's rows fit each other? (For what was read from a file.)
+bool isConsistent(const ContactSet& set);
+/// Can these states meet in a tick?
+bool isConsistent(const HapticState& state, const ContactSet& set);
+
 /// What the tick needs to know of a hand.
 struct HapticModel {
   double largestForce = 8.0;  ///< what the device can do (N)
@@ -63,7 +68,7 @@ struct HapticForce {
 };
 
 /// One tick. Allocates only where a contact set has more rows than any before it (HapticState's capacity).
-/// @pre state.tip is this tick's real tip, after port and workspace
+/// @pre takeSample() took this tick's sample
 HapticForce hapticTick(const HapticModel& model, HapticState& state, const ContactSet& set);
 
 }  // namespace calot

@@ -189,11 +189,18 @@ const StateDigest& Stepper::digest(const State& state) {
 
 void Stepper::invalidate() { w_->invalidate(); }
 
-Vec3 realTip(const Model& model, std::size_t hand, const InstrumentSample& sample, const Vec3& held) {
-  if (!isMeasurement(sample)) return held;
+HapticState initialHaptics(const Model&, const State& state, std::size_t hand) {
+  HapticState haptics;
+  haptics.tip = state.hand[hand].realPosition;
+  return haptics;
+}
+
+void takeSample(const Model& model, std::size_t hand, const InstrumentSample& sample, HapticState& haptics) {
+  if (!isMeasurement(sample)) return;
   const Vec3& port = model.scene().hands[hand].port;
-  return throughPort(port, clampedToWorkspace(model.scene(), sample.position), Quat::Identity(), axisOf(port, held))
-      .position;
+  haptics.tip = throughPort(port, clampedToWorkspace(model.scene(), sample.position), Quat::Identity(),
+                            axisOf(port, haptics.tip))
+                    .position;
 }
 
 HapticModel hapticModel(const Model& model, std::size_t hand) {

@@ -48,8 +48,12 @@ class Stepper {
   std::unique_ptr<Workspace> w_;
 };
 
-/// Real tip of a hand for one tick: the sample through workspace and port; `held` where the sample is no measurement.
-Vec3 realTip(const Model& model, std::size_t hand, const InstrumentSample& sample, const Vec3& held);
+/// Haptic state of a hand before the first tick.
+HapticState initialHaptics(const Model& model, const State& state, std::size_t hand);
+
+/// Takes one tick's sample: the real pose is the sample through workspace and port; held where the sample is no
+/// measurement.
+void takeSample(const Model& model, std::size_t hand, const InstrumentSample& sample, HapticState& haptics);
 
 /// What the haptic tick needs of a hand of this model.
 HapticModel hapticModel(const Model& model, std::size_t hand);

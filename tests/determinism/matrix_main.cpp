@@ -62,14 +62,14 @@ int run(const char* path, unsigned threads) {
   const std::size_t perStep = flat.scene.ticksPerStep;
   std::array<HapticState, handCount> haptic;
   std::array<HapticModel, handCount> hapticOf{hapticModel(*built.model, 0), hapticModel(*built.model, 1)};
-  for (std::size_t h = 0; h < handCount; ++h) haptic[h].tip = state.hand[h].realPosition;
+  for (std::size_t h = 0; h < handCount; ++h) haptic[h] = initialHaptics(*built.model, state, h);
   std::printf("simulation %u\n", simulationVersion);
   const std::span<const TickSamples> all(flat.ticks);
   for (std::size_t at = 0; at + perStep <= all.size(); at += perStep) {
     DigestStream forces;
     for (std::size_t i = 0; i < perStep; ++i) {
       for (std::size_t h = 0; h < handCount; ++h) {
-        haptic[h].tip = realTip(*built.model, h, all[at + i].hand[h], haptic[h].tip);
+        takeSample(*built.model, h, all[at + i].hand[h], haptic[h]);
         const HapticForce force = hapticTick(hapticOf[h], haptic[h], stepper.contactSet(h));
         forces.append(force.force.data(), sizeof force.force);
       }

@@ -92,7 +92,7 @@ TEST(ViolentHands, ShakingAtTwentyHertz) {
       for (std::size_t k = 0; k < ticks.size(); ++k) {
         for (std::size_t h = 0; h < handCount; ++h) {
           ticks[k].hand[h].position = shaking.at(h, 0.01 * step + 0.001 * static_cast<double>(k));
-          haptic[h].tip = realTip(*model, h, ticks[k].hand[h], haptic[h].tip);
+          takeSample(*model, h, ticks[k].hand[h], haptic[h]);
           const Vec3 force = hapticTick(hapticModel(*model, h), haptic[h], rig.stepper.contactSet(h)).force;
           ASSERT_TRUE(force.allFinite());
           ASSERT_LE(force.norm(), model->scene().hands[h].largestForce * (1.0 + 1e-12));
