@@ -6,7 +6,6 @@
 #include <sodium.h>
 
 #include <chrono>
-#include <thread>
 
 #include "sim/scene/version.h"
 
@@ -17,9 +16,6 @@
 namespace calot::recorder {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-constexpr auto longestLag = std::chrono::milliseconds(100);
 
 /// Random uuid (RFC 4122, version 4).
 std::string makeUuid() {
@@ -35,8 +31,6 @@ std::string makeUuid() {
   }
   return text;
 }
-
-double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
 }  // namespace
 
@@ -77,60 +71,6 @@ AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Pr
   for (const OrganModel& organ : model.organs()) header.organs.push_back(organ.name);
   header.layout = model.layout();
   return header;
-}
-
-RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& settings) {
-  const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
-  const double timeLimit = session.model().scene().timeLimit;
-  std::vector<TickSamples> samples(ticksPerStep);
-  std::vector<TickOutcome> ticks(ticksPerStep);
-  RunReport report;
-  const Clock::time_point begin = Clock::now();
-  Clock::time_point origin = begin;  // when tick 0 was due
-  constexpr auto tickDuration = std::chrono::milliseconds(1);
-  bool open = true;
-  for (std::uint64_t tick = 0; open;) {
-    const double time = static_cast<double>(session.steps()) * session.model().stepSeconds();
-    if (timeLimit > 0.0 && time >= timeLimit) {
-      report.outcome = Outcome::timeLimit;
-      break;
-    }
-    if ((settings.seconds > 0.0 && time >= settings.seconds) || (settings.stop != nullptr && settings.stop->load())) {
-      report.outcome = Outcome::stopped;
-      break;
-    }
-    for (std::uint32_t i = 0; i < ticksPerStep && open; ++i, ++tick) {
-      open = source.next(tick, samples[i]);
-      if (!open) break;
-      float lateness = 0.0F;
-      if (settings.paced) {
-        const Clock::time_point due = origin + static_cast<Clock::rep>(tick) * tickDuration;
-        std::this_thread::sleep_until(due);
-        const auto late = Clock::now() - due;
-        lateness = static_cast<float>(seconds(late));
-        report.largestLateness = std::max(report.largestLateness, seconds(late));
-        if (late > tickDuration) ++report.lateTicks;
-        if (late > longestLag) {
-          origin += late;
-          report.stretched += seconds(late);
-        }
-      }
-      ticks[i] = session.tick(samples[i]);
-      ticks[i].lateness = lateness;
-    }
-    if (!open) break;
-    // A step is due when the next one's first tick is.
-    const float late = settings.paced
-                           ? static_cast<float>(std::max(
-                                 0.0, seconds(Clock::now() - (origin + static_cast<Clock::rep>(tick) * tickDuration))))
-                           : 0.0F;
-    session.step(samples, ticks, late);
-    if (settings.progress) settings.progress(session.steps());
-  }
-  report.steps = session.steps();
-  session.end(report.outcome);
-  report.wallSeconds = seconds(Clock::now() - begin);
-  return report;
 }
 
 }  // namespace calot::recorder

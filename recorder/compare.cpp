@@ -96,7 +96,10 @@ std::optional<Divergence> compareResult(const StepResult& recorded, const StepRe
     c.number(name + "jaw", a.jaw, b.jaw);
     c.number(name + "insertion", a.insertion, b.insertion);
     c.vector(name + "contactForce", a.contactForce, b.contactForce);
+    c.number(name + "contactTorque", a.contactTorque, b.contactTorque);
     c.whole(name + "touching", a.touching, b.touching);
+    c.whole(name + "grasping", a.grasping, b.grasping);
+    c.number(name + "graspForce", a.graspForce, b.graspForce);
     c.whole(name + "organForce.size", a.organForce.size(), b.organForce.size());
     for (std::size_t o = 0; !c.first() && o < b.organForce.size(); ++o) {
       c.number(fmt::format("{}organForce[{}]", name, o), a.organForce[o], b.organForce[o]);
@@ -114,10 +117,17 @@ std::optional<Divergence> compareResult(const StepResult& recorded, const StepRe
     c.whole(name + "iterations", a.iterations, b.iterations);
     c.whole(name + "asleep", a.asleep, b.asleep);
   }
+  c.whole("contact/blocks", recorded.contact.blocks, here.contact.blocks);
   c.whole("contact/rows", recorded.contact.rows, here.contact.rows);
   c.whole("contact/iterations", recorded.contact.iterations, here.contact.iterations);
+  c.whole("contact/newtonSteps", recorded.contact.newtonSteps, here.contact.newtonSteps);
   c.number("contact/residual", recorded.contact.residual, here.contact.residual);
+  c.whole("contact/passes", recorded.contact.passes, here.contact.passes);
+  c.number("contact/error", recorded.contact.error, here.contact.error);
+  c.number("contact/violation", recorded.contact.violation, here.contact.violation);
   c.number("contact/largestDepth", recorded.contact.largestDepth, here.contact.largestDepth);
+  c.number("contact/pinchedDepth", recorded.contact.pinchedDepth, here.contact.pinchedDepth);
+  c.number("contact/tissueDepth", recorded.contact.tissueDepth, here.contact.tissueDepth);
   c.whole("misses", recorded.misses, here.misses);
   if (c.first()) return c.first();
 

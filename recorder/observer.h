@@ -25,10 +25,18 @@ struct HandTick {
   std::int64_t contactSet = -1;  ///< step whose contact set the tick used; -1 before the first
 };
 
+/// A tick is over when the next one is due (s): one that is later missed its deadline.
+inline constexpr float tickDeadline = 0.001F;
+/// How far a run at real time may lag behind the tick clock (s). What exceeds it stretches the clock.
+inline constexpr float longestLag = 0.1F;
+
 /// One tick: both hands, and how late it ran.
 struct TickOutcome {
   std::array<HandTick, handCount> hand;
-  float lateness = 0.0F;  ///< s after its deadline; 0 when the run is not paced
+  /// From when the tick was due until its force was ready (s); 0 when the run is not paced. Above tickDeadline the
+  /// deadline was missed. Above longestLag the tick clock was stretched before this tick, by what exceeds it: an event
+  /// of the step (EventKind::clockStretched).
+  float lateness = 0.0F;
 };
 
 /// Full state after a step, as bytes: enough to go on from the next step.
@@ -45,7 +53,7 @@ struct StepRecord {
   std::span<const TickOutcome> ticks;    ///< as many
   const StepResult& result;
   const StateDigest& digest;
-  float lateness = 0.0F;  ///< s after the step's deadline; 0 when not paced
+  float lateness = 0.0F;  ///< how long after the step was due it began (s); 0 when not paced
   /// Makes the keyframe of this step; costs a copy of the State, so it is called only where one is kept.
   std::function<Keyframe()> keyframe;
   /// Makes the scene view of this step; costs surfaces, so it is called only by what draws.

@@ -76,41 +76,49 @@ class Comparer final : public Observer {
   bool resolved_ = false;
 };
 
-SetNumbers setsOf(const RecordedStep& recorded) {
-  SetNumbers sets;
-  for (const TickOutcome& tick : recorded.ticks) sets.push_back({tick.hand[0].contactSet, tick.hand[1].contactSet});
-  return sets;
-}
-
 std::optional<Divergence> runOnce(Recording& recording, const Model& model, const ReplaySettings& settings,
                                   const std::vector<Observer*>& observers) {
   WorkerPool pool(settings.threads);
   Session session(model, recording.header().seed, pool);
-  Comparer comparer(recording, model);
-  session.join(comparer);
   for (Observer* observer : observers) session.join(*observer);
-  std::vector<TickSamples> samples;
-  std::vector<TickOutcome> ticks;
-  for (std::uint64_t n = 0; n < recording.stepCount() && !comparer.done(); ++n) {
-    const RecordedStep& recorded = recording.step(n);
-    samples = recorded.samples;
-    const SetNumbers sets = setsOf(recorded);
-    const float lateness = recorded.lateness;
-    ticks = recorded.ticks;
+  const std::optional<Divergence> first = follow(recording, session, recording.stepCount(), settings.progress);
+  session.end(recording.outcome());
+  return first;
+}
+
+}  // namespace
+
+void rerun(Session& session, const RecordedStep& recorded) {
+  const std::vector<TickSamples> samples = recorded.samples;  // an observer may read on in the recording
+  std::vector<TickOutcome> ticks(samples.size());
+  const float lateness = recorded.lateness;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const TickOutcome& logged = recorded.ticks[i];
+    ticks[i] = session.tick(samples[i], std::array{logged.hand[0].contactSet, logged.hand[1].contactSet});
+    ticks[i].lateness = logged.lateness;
+  }
+  session.step(samples, ticks, lateness);
+}
+
+std::optional<Divergence> follow(Recording& recording, Session& session, std::uint64_t end,
+                                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+  Comparer comparer(recording, session.model());
+  session.join(comparer);
+  struct Joined {
+    Session& session;
+    Comparer& comparer;
+    ~Joined() { session.leave(comparer); }
+  } const joined{session, comparer};
+  while (session.steps() < end && !comparer.done()) {
+    const std::uint64_t n = session.steps();
     try {
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const float late = ticks[i].lateness;
-        ticks[i] = session.tick(samples[i], sets[i]);
-        ticks[i].lateness = late;
-      }
+      rerun(session, recording.step(n));
     } catch (const std::out_of_range& e) {
-      comparer.fail({n, n * samples.size(), "force", "contact set", e.what()});
+      comparer.fail({n, n * recording.header().ticksPerStep, "force", "contact set", e.what()});
       break;
     }
-    session.step(samples, ticks, lateness);
-    if (settings.progress) settings.progress(n + 1, recording.stepCount());
+    if (progress) progress(n + 1, end);
   }
-  session.end(recording.outcome());
   return comparer.first();
 }
 
@@ -121,6 +129,8 @@ std::string describe(const Divergence& d) {
   if (!d.detail.empty()) text += fmt::format(" ({})", d.detail);
   return text;
 }
+
+namespace {
 
 void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings& settings, ReplayReport& report) {
   const AttemptHeader& header = recording.header();
@@ -242,16 +252,11 @@ void Seeker::seek(std::uint64_t step) {
 }
 
 void Seeker::advance() {
-  const RecordedStep& recorded = recording_.step(session_->steps());
-  const SetNumbers sets = setsOf(recorded);
-  std::vector<TickOutcome> ticks;
   try {
-    for (std::size_t i = 0; i < recorded.samples.size(); ++i)
-      ticks.push_back(session_->tick(recorded.samples[i], sets[i]));
+    rerun(*session_, recording_.step(session_->steps()));
   } catch (const std::out_of_range& e) {
     throw Error(ExitCode::damaged, fmt::format("{}: /ticks: {}", recording_.path().string(), e.what()));
   }
-  session_->step(recorded.samples, ticks, recorded.lateness);
 }
 
 }  // namespace calot::recorder

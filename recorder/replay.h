@@ -60,6 +60,18 @@ struct ReplaySettings {
 /// Judges one recording. Does not throw for the recording's faults: they are in the report.
 ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySettings& settings);
 
+/// Does the session's next step as it was recorded: its samples, each with the contact sets that its tick names.
+/// @throws std::out_of_range where a tick names a contact set that is not there.
+void rerun(Session& session, const RecordedStep& recorded);
+
+/// Re-simulates steps until the session has done `end` of them, or nothing more can be learned, and compares each with
+/// the recording. @returns the first difference. @pre the session is at one of the recording's own States
+std::optional<Divergence> follow(Recording& recording, Session& session, std::uint64_t end,
+                                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
+
+/// "diverged at step 13: hand.right realPosition (...)".
+std::string describe(const Divergence& divergence);
+
 /// Model and scene of a recording. @throws Error (damaged) where the scene in it cannot be built.
 std::unique_ptr<const Model> modelOf(const Recording& recording);
 

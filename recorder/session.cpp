@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/session.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -9,7 +10,7 @@
 namespace calot::recorder {
 
 Session::Session(const Model& model, std::uint64_t seed, Executor& executor)
-    : model_(model), state_(initialState(model, seed)), stepper_(model, executor), sets_(1) {
+    : model_(model), state_(initialState(model, seed)), stepper_(model, executor), sets_(keptSets) {
   for (std::size_t h = 0; h < handCount; ++h) {
     hapticModel_[h] = hapticModel(model, h);
     haptic_[h] = initialHaptics(model_, state_, h);
@@ -19,26 +20,45 @@ Session::Session(const Model& model, std::uint64_t seed, Executor& executor)
 TickOutcome Session::tick(const TickSamples& samples, const std::optional<std::array<std::int64_t, handCount>>& sets) {
   TickOutcome outcome;
   for (std::size_t h = 0; h < handCount; ++h) {
-    const ContactSet* set = &sets_.back()[h];
-    if (sets) {
-      const std::int64_t back = set->step - (*sets)[h];
-      if (back < 0 || back >= static_cast<std::int64_t>(sets_.size())) {
-        throw std::out_of_range("contact set of step " + std::to_string((*sets)[h]) + " is not at hand in step " +
-                                std::to_string(steps()));
-      }
-      set = &sets_[sets_.size() - 1 - static_cast<std::size_t>(back)][h];
+    const std::int64_t named = sets ? (*sets)[h] : newest_;
+    if (named < oldest_ || named > newest_) {
+      throw std::out_of_range("contact set of step " + std::to_string(named) + " is not at hand in step " +
+                              std::to_string(steps()));
     }
+    if (named < named_[h]) {
+      throw std::out_of_range("contact set of step " + std::to_string(named) + " is named after that of step " +
+                              std::to_string(named_[h]) + " in step " + std::to_string(steps()));
+    }
+    named_[h] = named;
     takeSample(model_, h, samples.hand[h], haptic_[h]);
-    const HapticForce force = hapticTick(hapticModel_[h], haptic_[h], *set);
-    outcome.hand[h] = {force.force, force.torque, set->step};
+    const HapticForce force = hapticTick(hapticModel_[h], haptic_[h], setsOf(named)[h]);
+    outcome.hand[h] = {force.force, force.torque, named};
   }
   return outcome;
 }
 
+const StepResult& Session::withStretch(const StepResult& result, std::span<const TickOutcome> ticks) {
+  double stretched = 0.0;
+  for (const TickOutcome& tick : ticks) {
+    if (tick.lateness > longestLag) stretched += static_cast<double>(tick.lateness) - static_cast<double>(longestLag);
+  }
+  if (stretched <= 0.0) return result;
+  flagged_ = result;
+  Event event;
+  event.step = result.step;
+  event.kind = EventKind::clockStretched;
+  event.value = stretched;
+  flagged_.events.push_back(event);
+  return flagged_;
+}
+
 void Session::step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness) {
-  const StepResult& result = stepper_.step(state_, samples);
-  if (sets_.size() == keptSets) sets_.pop_front();
-  sets_.push_back({stepper_.contactSet(0), stepper_.contactSet(1)});
+  const StepResult& result = withStretch(stepper_.step(state_, samples), ticks);
+  newest_ = static_cast<std::int64_t>(result.step);
+  oldest_ = std::max(oldest_, newest_ + 1 - static_cast<std::int64_t>(keptSets));
+  ContactSets& made = setsOf(newest_);
+  for (std::size_t h = 0; h < handCount; ++h) made[h] = stepper_.contactSet(h);
+  if (tell_) tell_(made);
   const StateDigest& digest = stepper_.digest(state_);
   const StepRecord record{
       result.step, samples, ticks, result, digest, lateness, [this] { return keyframe(); }, [this] { return view(); }};
@@ -55,29 +75,41 @@ Keyframe Session::keyframe() const {
   frame.state = saveState(state_);
   ByteWriter writer(frame.haptics);
   for (const HapticState& haptic : haptic_) writer.write(haptic);
-  // Ticks name the newest set.
-  for (const ContactSet& set : sets_.back()) writer.write(set);
+  const std::int64_t first = std::max(oldest_, *std::min_element(named_.begin(), named_.end()));
+  writer.write(static_cast<std::uint64_t>(newest_ - first + 1));
+  for (std::int64_t n = first; n <= newest_; ++n) {
+    for (const ContactSet& set : setsOf(n)) writer.write(set);
+  }
   return frame;
 }
 
 bool Session::restore(const Keyframe& keyframe) {
   State state;
   if (!restoreState(model_, keyframe.state, state) || state.clock.step != keyframe.step + 1) return false;
-  std::array<HapticState, handCount> haptic;
-  SetPair sets;
+  HapticStates haptic;
   ByteReader reader(keyframe.haptics);
   for (HapticState& h : haptic) reader.read(h);
-  for (ContactSet& set : sets) reader.read(set);
+  std::uint64_t count = 0;
+  reader.read(count);
+  const auto newest = static_cast<std::int64_t>(keyframe.step);
+  if (!reader.ok() || count < 1 || count > keptSets || static_cast<std::int64_t>(count) > newest + 2) return false;
+  const std::int64_t oldest = newest + 1 - static_cast<std::int64_t>(count);
+  std::vector<ContactSets> sets(count);
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    for (std::size_t h = 0; h < handCount; ++h) {
+      ContactSet& set = sets[i][h];
+      reader.read(set);
+      if (!reader.ok() || !isConsistent(set) || set.step != oldest + static_cast<std::int64_t>(i)) return false;
+      if (!isConsistent(haptic[h], set)) return false;
+    }
+  }
   if (!reader.complete()) return false;
-  for (const ContactSet& set : sets) {
-    if (!isConsistent(set) || set.step != static_cast<std::int64_t>(keyframe.step)) return false;
-  }
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (!isConsistent(haptic[h], sets[h])) return false;
-  }
   state_ = std::move(state);
   haptic_ = haptic;
-  sets_.assign(1, sets);
+  oldest_ = oldest;
+  newest_ = newest;
+  named_.fill(oldest);
+  for (std::size_t i = 0; i < sets.size(); ++i) setsOf(oldest + static_cast<std::int64_t>(i)) = std::move(sets[i]);
   stepper_.invalidate();
   return true;
 }

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,22 +21,37 @@ namespace calot::recorder {
 
 /// Step numbers of the contact sets that the ticks of a step used, per tick and hand.
 using SetNumbers = std::vector<std::array<std::int64_t, handCount>>;
+using ContactSets = std::array<ContactSet, handCount>;
+using HapticStates = std::array<HapticState, handCount>;
 
 class Session {
  public:
+  /// How many steps' contact sets are at hand: more than a live run's ticks can lag behind (longestLag, in the shortest
+  /// steps there are, of one tick).
+  static constexpr std::size_t keptSets = 128;
+
   /// @param model, executor outlive the session.
   Session(const Model& model, std::uint64_t seed, Executor& executor);
 
   /// Observers are told of every step from here on, in the order of joining.
   void join(Observer& observer) { observers_.push_back(&observer); }
 
+  /// Is told of nothing more. Nothing happens where it never joined.
+  void leave(Observer& observer) { std::erase(observers_, &observer); }
+
+  /// Is told of the contact sets as soon as a step has made them, before any observer is told of the step.
+  void onContactSets(std::function<void(const ContactSets&)> tell) { tell_ = std::move(tell); }
+
   /// Haptic tick of both hands for the i-th tick of the coming step.
-  /// @param sets which contact sets to use; none: the newest (the previous step's).
-  /// @throws std::out_of_range where a named set is not known any more, or not yet.
+  /// @param sets which contact sets to use; none: the newest (the previous step's). Live, older ones come where the
+  /// simulation was behind; a hand's numbers never fall from tick to tick.
+  /// @throws std::out_of_range where a named set is not known any more, or not yet, or older than the tick before's.
   TickOutcome tick(const TickSamples& samples,
                    const std::optional<std::array<std::int64_t, handCount>>& sets = std::nullopt);
 
-  /// The step after its ticks; then tells the observers.
+  /// The step after its ticks; then tells the observers. Where the ticks' lateness says that the tick clock was
+  /// stretched, the step's events end with one EventKind::clockStretched: sum over its ticks of what exceeds
+  /// longestLag.
   void step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness);
 
   void end(Outcome outcome);
@@ -46,24 +61,37 @@ class Session {
   /// Steps done; the next step's number.
   [[nodiscard]] std::uint64_t steps() const { return state_.clock.step; }
 
-  /// State, haptic states and contact sets after the last step. @pre steps() > 0
+  /// State and haptic states after the last step, and the contact sets that later ticks may name: those from the one
+  /// that the step's last tick used on, since numbers never fall. @pre steps() > 0
   [[nodiscard]] Keyframe keyframe() const;
 
   /// Goes on from a keyframe. @returns false, leaving all as it was, when its bytes do not fit the model.
   bool restore(const Keyframe& keyframe);
 
+  /// Haptic states after the last tick, and the newest contact sets: what a haptic thread begins with.
+  [[nodiscard]] const HapticStates& haptics() const { return haptic_; }
+  [[nodiscard]] const ContactSets& contactSets() const { return setsOf(newest_); }
+
   [[nodiscard]] SceneView view() const { return viewOf(model_, state_); }
 
  private:
-  static constexpr std::size_t keptSets = 64;
-  using SetPair = std::array<ContactSet, handCount>;
+  [[nodiscard]] const ContactSets& setsOf(std::int64_t step) const {
+    return sets_[static_cast<std::size_t>(step + 1) % keptSets];
+  }
+  [[nodiscard]] ContactSets& setsOf(std::int64_t step) { return sets_[static_cast<std::size_t>(step + 1) % keptSets]; }
+  const StepResult& withStretch(const StepResult& result, std::span<const TickOutcome> ticks);
 
   const Model& model_;
   State state_;
   Stepper stepper_;
   std::array<HapticModel, handCount> hapticModel_;
-  std::array<HapticState, handCount> haptic_;
-  std::deque<SetPair> sets_;  ///< newest last
+  HapticStates haptic_;
+  std::vector<ContactSets> sets_;  ///< of step n at (n + 1) % keptSets: slots keep their memory
+  std::int64_t oldest_ = -1;       ///< steps whose sets are at hand
+  std::int64_t newest_ = -1;
+  std::array<std::int64_t, handCount> named_{-1, -1};  ///< by the last tick
+  StepResult flagged_;
+  std::function<void(const ContactSets&)> tell_;
   std::vector<Observer*> observers_;
 };
 

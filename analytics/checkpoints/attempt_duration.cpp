@@ -32,7 +32,8 @@ class AttemptDuration final : public Checkpoint {
       : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {}
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    return {makeValue(definition(), "", end.origin, static_cast<double>(end.steps * ticksPerStep_) * tickSeconds_)};
+    return {makeValue(definition(), "", end.origin, static_cast<double>(end.steps * ticksPerStep_) * tickSeconds_,
+                      stretchNote(end))};
   }
 
  private:

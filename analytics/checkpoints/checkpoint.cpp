@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/checkpoints/checkpoint.h"
 
+#include <fmt/format.h>
+
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -46,6 +48,10 @@ std::string nameOf(Aggregation aggregation) {
 std::string nameOf(Finality finality) { return finality == Finality::running ? "running" : "final"; }
 
 void Checkpoint::onStep(const recorder::StepRecord& /*record*/) {}
+
+std::string stretchNote(const AttemptEnd& end) {
+  return end.stretched > 0.0 ? fmt::format("tick clock stretched by {:.3f} s", end.stretched) : std::string();
+}
 
 CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
                             Availability availability, std::string reason) {

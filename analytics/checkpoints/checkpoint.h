@@ -90,6 +90,7 @@ class ForceTrack;
 /// What is known after the last step (or, for provisional values, after the newest one).
 struct AttemptEnd {
   std::uint64_t steps = 0;
+  double stretched = 0.0;  ///< by how much lag stretched the tick clock (s): more wall time passed than ticks say
   recorder::Outcome outcome = recorder::Outcome::running;
   Origin origin = Origin::resimulated;            ///< of forces and contacts; motion is always `samples`
   std::array<const Motion*, handCount> motion{};  ///< both hands' motion, never null (checkpoints/motion.h)
@@ -112,6 +113,9 @@ struct CheckpointEntry {
   CheckpointDefinition definition;
   std::unique_ptr<Checkpoint> (*make)(const AttemptContext& context);
 };
+
+/// What a reader of a time must know where the tick clock was stretched ("tick clock stretched by 0.340 s"), or empty.
+std::string stretchNote(const AttemptEnd& end);
 
 /// Builders of values, with name, version, unit and filter taken from the definition.
 CheckpointValue makeValue(const CheckpointDefinition& definition, std::string subject, Origin origin, double value,

@@ -21,6 +21,7 @@ struct CheckpointCollector::Storage {
   ForceTrack force;
   std::vector<std::unique_ptr<Checkpoint>> checkpoint;
   std::uint64_t steps = 0;
+  double stretched = 0.0;
   recorder::Outcome outcome = recorder::Outcome::running;
   bool ended = false;
 };
@@ -38,6 +39,9 @@ void CheckpointCollector::onStep(const recorder::StepRecord& record) {
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
   }
   storage_->force.add(record);
+  for (const Event& event : record.result.events) {
+    if (event.kind == EventKind::clockStretched) storage_->stretched += event.value;
+  }
   for (const auto& checkpoint : storage_->checkpoint) checkpoint->onStep(record);
   ++storage_->steps;
 }
@@ -51,6 +55,7 @@ std::vector<CheckpointValue> CheckpointCollector::values() const {
   std::array<Motion, handCount> motion;
   AttemptEnd end;
   end.steps = storage_->steps;
+  end.stretched = storage_->stretched;
   end.outcome = storage_->outcome;
   end.origin = storage_->origin;
   end.force = &storage_->force;

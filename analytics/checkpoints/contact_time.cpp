@@ -80,8 +80,8 @@ class ContactTime final : public Checkpoint {
                                      "contact is reported for the first 32 organs of a scene"));
         continue;
       }
-      result.push_back(
-          makeValue(d, organs_[o], end.origin, static_cast<double>(steps_[o] * ticksPerStep_) * tickSeconds_));
+      result.push_back(makeValue(d, organs_[o], end.origin,
+                                 static_cast<double>(steps_[o] * ticksPerStep_) * tickSeconds_, stretchNote(end)));
     }
     return result;
   }

@@ -40,7 +40,7 @@ class ElapsedTime final : public Checkpoint {
     };
     switch (end.outcome) {
       case recorder::Outcome::completed:
-        return {makeValue(definition(), "", end.origin, seconds)};
+        return {makeValue(definition(), "", end.origin, seconds, stretchNote(end))};
       case recorder::Outcome::timeLimit:
         return {missing(Availability::notAvailable, "not completed: time limit reached")};
       case recorder::Outcome::abandoned:

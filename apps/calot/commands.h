@@ -12,6 +12,7 @@ using Run = std::function<int()>;
 
 void addRecord(CLI::App& app, Run& run);
 void addReplay(CLI::App& app, Run& run);
+void addBranch(CLI::App& app, Run& run);
 void addInspect(CLI::App& app, Run& run);
 void addRecover(CLI::App& app, Run& run);
 void addExport(CLI::App& app, Run& run);
@@ -24,5 +25,6 @@ void addStudy(CLI::App& app, Run& run);
 void addParticipant(CLI::App& app, Run& run);
 void addScenes(CLI::App& app, Run& run);
 void addCheckpoints(CLI::App& app, Run& run);
+void addDevices(CLI::App& app, Run& run);
 
 }  // namespace calot::apps

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -33,7 +34,27 @@ struct Attributes {
   }
 };
 
-ordered_json describe(const recorder::Recording& recording, const recorder::ChainVerdict& chain) {
+/// How a run at real time kept its deadlines, by the lateness of its ticks and steps' events.
+void describeDeadlines(recorder::Recording& recording, ordered_json& out) {
+  std::uint64_t missed = 0;
+  float worst = 0.0F;
+  double stretched = 0.0;
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    const recorder::RecordedStep& step = recording.step(n);
+    for (const recorder::TickOutcome& tick : step.ticks) {
+      if (tick.lateness > recorder::tickDeadline) ++missed;
+      worst = std::max(worst, tick.lateness);
+    }
+    for (const Event& event : step.result.events) {
+      if (event.kind == EventKind::clockStretched) stretched += event.value;
+    }
+  }
+  out["missed_deadlines"] = missed;
+  out["largest_lateness_s"] = worst;
+  out["clock_stretched_s"] = stretched;
+}
+
+ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdict& chain) {
   const recorder::AttemptHeader& header = recording.header();
   ordered_json out;
   out["file"] = recording.path().string();
@@ -44,6 +65,7 @@ ordered_json describe(const recorder::Recording& recording, const recorder::Chai
   out["ticks"] = recording.tickCount();
   out["events"] = recording.eventCount();
   out["keyframes"] = recording.keyframeSteps().size();
+  describeDeadlines(recording, out);
   out["flushes"] = recording.status().size() - 1;
   out["chain"] = chain.intact ? "intact" : "broken";
   if (!chain.intact) out["chain_broken_at_flush"] = chain.flush;
@@ -98,7 +120,7 @@ void addInspect(CLI::App& app, Run& run) {
   command->callback([options, &run] {
     run = [options] {
       const recorder::ChainVerdict chain = recorder::probe(options->file);
-      const recorder::Recording recording(options->file);
+      recorder::Recording recording(options->file);
       const ordered_json d = describe(recording, chain);
       if (options->json) {
         fmt::print("{}\n", d.dump(2, ' ', false, ordered_json::error_handler_t::replace));

@@ -4,54 +4,33 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
-#include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/run_report.h"
+#include "apps/calot/source_options.h"
 #include "recorder/attempt.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/writer.h"
-#include "recorder/sources/kinematics_source.h"
-#include "recorder/sources/performer_source.h"
 
 namespace calot::apps {
 
 namespace {
 
 struct Options {
-  std::string scene, performer, kinematics, participant, station, purpose = "training", handedness = "unknown", output;
+  SourceOptions source;
+  std::string scene, participant, station, purpose = "training", handedness = "unknown", output;
   std::string mode = "practice";
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
-  bool paced = false, force = false, json = false;
+  bool paced = false, live = false, force = false, json = false;
 };
 
 std::atomic<bool> interrupted{false};
-
-std::unique_ptr<recorder::SampleSource> makeSource(const Options& o, const SceneDescription& scene) {
-  if (!o.kinematics.empty()) return std::make_unique<recorder::KinematicsSource>(o.kinematics, scene);
-  const recorder::PerformerProfile profile =
-      recorder::loadPerformer(recorder::findPerformer(o.performer, assetFolders()));
-  return std::make_unique<recorder::PerformerSource>(profile, scene, o.seed);
-}
-
-const char* outcomeText(recorder::Outcome outcome) {
-  switch (outcome) {
-    case recorder::Outcome::completed:
-      return "completed";
-    case recorder::Outcome::timeLimit:
-      return "time limit";
-    case recorder::Outcome::stopped:
-      return "stopped";
-    default:
-      return "running";
-  }
-}
 
 int record(const Options& o) {
   if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
@@ -59,13 +38,15 @@ int record(const Options& o) {
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   const Model::Built built = Model::build(scene.description);
   if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", o.scene, built.error));
-  const std::unique_ptr<recorder::SampleSource> source = makeSource(o, built.model->scene());
+  SourceOptions who = o.source;
+  who.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
+  const std::unique_ptr<recorder::SampleSource> source = makeSource(who, built.model->scene(), o.seed);
   recorder::AttemptSettings settings;
   settings.participant = o.participant;
   settings.station = o.station;
   settings.purpose = o.purpose;
   settings.handedness = o.handedness;
-  settings.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
+  settings.mode = who.mode;
   settings.seed = o.seed;
   const recorder::AttemptHeader header =
       recorder::makeHeader(*built.model, std::move(scene.assets), source->provenance(), settings);
@@ -77,6 +58,8 @@ int record(const Options& o) {
   recorder::RunSettings run;
   run.seconds = o.seconds;
   run.paced = o.paced;
+  run.live = o.live;
+  driveDevice(*source, run);
   run.stop = &interrupted;
   const double stepSeconds = built.model->stepSeconds();
   run.progress = [&](std::uint64_t step) {
@@ -88,26 +71,8 @@ int record(const Options& o) {
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const recorder::RunReport report = recorder::runAttempt(session, *source, run);
   writer.finish();
-  if (o.json) {
-    const nlohmann::json out{{"attempt", header.attempt},
-                             {"file", o.output},
-                             {"outcome", outcomeText(report.outcome)},
-                             {"steps", report.steps},
-                             {"seconds", static_cast<double>(report.steps) * stepSeconds},
-                             {"wall_seconds", report.wallSeconds},
-                             {"late_ticks", report.lateTicks},
-                             {"largest_lateness_s", report.largestLateness},
-                             {"clock_stretched_s", report.stretched}};
-    std::cout << out.dump(2) << '\n';
-    return 0;
-  }
-  fmt::print("{}: attempt {}, {:.2f} s, {}\n", o.output, header.attempt,
-             static_cast<double>(report.steps) * stepSeconds, outcomeText(report.outcome));
-  if (o.paced) {
-    fmt::print("paced: {} late ticks, at most {:.1f} ms late, clock stretched by {:.3f} s\n", report.lateTicks,
-               1e3 * report.largestLateness, report.stretched);
-  }
-  return 0;
+  if (!o.json) tellDevice(*source);
+  return tell({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
 }
 
 }  // namespace
@@ -116,10 +81,7 @@ void addRecord(CLI::App& app, Run& run) {
   auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("record", "Runs an attempt and records it.");
   command->add_option("--scene", o->scene, "name of a scene (calot scenes), or a scene file")->required();
-  auto* source = command->add_option_group("source", "who acts");
-  source->add_option("--performer", o->performer, "profile of a synthetic operator: skilled, unskilled, or a file");
-  source->add_option("--kinematics", o->kinematics, "two-handed motion file, 76 columns at 30 Hz");
-  source->require_option(1);
+  addSource(*command, o->source);
   command->add_option("--seed", o->seed, "of performer and simulation")->check(wholeNumber)->capture_default_str();
   command->add_option("--seconds", o->seconds, "stop after so much attempt time; 0: when the source ends")
       ->check(CLI::Range(0.0, 36000.0));
@@ -137,6 +99,7 @@ void addRecord(CLI::App& app, Run& run) {
       ->check(CLI::IsMember({"practice", "assessment"}))
       ->capture_default_str();
   command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
+  command->add_flag("--live", o->live, "run at real time with the haptic ticks on a thread of their own, 1 kHz");
   command->add_option("--threads", o->threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();

@@ -120,7 +120,10 @@ HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& work
                                               {"scissors", InstrumentKind::scissors}});
   object.read("shaftRadius", hand.shaftRadius);
   object.read("couplingStiffness", hand.couplingStiffness);
+  object.read("rollStiffness", hand.rollStiffness);
   object.read("largestForce", hand.largestForce);
+  object.read("slipForce", hand.slipForce);
+  object.read("tearForce", hand.tearForce);
   if ((hand.home.array() < workspace[0].array()).any() || (hand.home.array() > workspace[1].array()).any()) {
     object.at("home").fail("outside the workspace");
   }
@@ -152,6 +155,7 @@ OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
   organ.name = readName(object, "name");
   organ.appearance = readName(object, "appearance");
   object.read("tetrahedra", organ.tetrahedra);
+  object.read("friction", organ.friction);
   const JsonObject material = object.at("material").object(sceneRule("material"));
   material.read("youngModulus", organ.material.youngModulus);
   material.read("poissonRatio", organ.material.poissonRatio);
@@ -228,7 +232,9 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
     const JsonObject solver = object.at("solver").object(sceneRule("solver"));
     solver.read("tolerance", scene.solver.tolerance);
     solver.read("iterations", scene.solver.iterations);
+    solver.read("responseTolerance", scene.solver.responseTolerance);
     solver.read("contactTolerance", scene.solver.contactTolerance);
+    solver.read("contactPasses", scene.solver.contactPasses);
     solver.read("contactIterations", scene.solver.contactIterations);
     solver.read("sleeping", scene.solver.sleeping);
   }

@@ -40,10 +40,11 @@ std::vector<ObjectRule> makeRules() {
       {"hand",
        {required("port", -reach, reach), required("home", -reach, reach), required("instrument"),
         optional("shaftRadius", 0.0005, 0.01), openBelow(optional("couplingStiffness", 0, 100000)),
-        openBelow(optional("largestForce", 0, 100))}},
+        openBelow(optional("rollStiffness", 0, 100)), openBelow(optional("largestForce", 0, 100)),
+        openBelow(optional("slipForce", 0, 100)), openBelow(optional("tearForce", 0, 100))}},
       {"organ",
        {required("name"), required("appearance"), required("mesh"), required("tetrahedra", 10, 1000000),
-        required("material"), required("anchors")}},
+        required("material"), optional("friction", 0, 2), required("anchors")}},
       {"mesh", {required("file"), required("unit")}},
       {"material",
        {required("youngModulus", 10, 1e9), openAbove(required("poissonRatio", 0, 0.5)), required("density", 100, 20000),
@@ -53,7 +54,7 @@ std::vector<ObjectRule> makeRules() {
       {"nearOrgan", {required("organ"), openBelow(required("distance", 0, 0.1))}},
       {"solver",
        {openBelow(optional("tolerance", 0, 0.1)), optional("iterations", 1, 100000),
-        openBelow(optional("contactTolerance", 0, 0.001)), optional("contactIterations", 1, 100000),
+        openBelow(optional("responseTolerance", 0, 0.1)), openBelow(optional("contactTolerance", 0, 0.001)), optional("contactPasses", 1, 100), optional("contactIterations", 1, 100000),
         optional("sleeping")}},
   };
 }

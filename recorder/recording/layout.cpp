@@ -119,7 +119,8 @@ Layout::Layout(const AttemptHeader& header)
     : ticksPerStep(header.ticksPerStep),
       organs(header.organs.size()),
       components(header.layout.components.size()),
-      fields(header.layout.fields.size()) {
+      fields(header.layout.fields.size()),
+      resultVersion(header.stepResultVersion) {
   stepsPerBlock = std::max<std::uint64_t>(1, 250 / ticksPerStep);
   ticksPerBlock = stepsPerBlock * ticksPerStep;
   // About a second, and at the end of a block.

@@ -57,6 +57,7 @@ struct Layout {
   std::uint64_t ticksPerBlock = 250;
   std::uint64_t keyframeInterval = 100;  ///< steps
   std::size_t organs = 0, components = 0, fields = 0;
+  std::uint32_t resultVersion = 1;  ///< of StepResult: which columns there are
 
   explicit Layout(const AttemptHeader& header);
 };
@@ -113,6 +114,19 @@ void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
   visit(contact, "residual", "m", r.contact.residual);
   visit(contact, "largest_depth", "m", r.contact.largestDepth);
   visit("/observables", "misses", "", r.misses);
+  if (visit.layout.resultVersion < 2) return;
+  for (std::size_t h = 0; h < folder.size(); ++h) {
+    visit(folder[h], "contact_torque", "N m", r.hand[h].contactTorque);
+    visit(folder[h], "grasping", "", r.hand[h].grasping);
+    visit(folder[h], "grasp_force", "N", r.hand[h].graspForce);
+  }
+  visit(contact, "blocks", "", r.contact.blocks);
+  visit(contact, "newton_steps", "", r.contact.newtonSteps);
+  visit(contact, "passes", "", r.contact.passes);
+  visit(contact, "error", "m", r.contact.error);
+  visit(contact, "violation", "m", r.contact.violation);
+  visit(contact, "pinched_depth", "m", r.contact.pinchedDepth);
+  visit(contact, "tissue_depth", "m", r.contact.tissueDepth);
 }
 
 }  // namespace calot::recorder

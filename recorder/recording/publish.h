@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// New files get a temporary name until they are whole. Internal to this folder.
+// New files get a temporary name until they are whole. Internal to recorder/.
 #pragma once
 
 #include <filesystem>

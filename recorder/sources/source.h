@@ -2,11 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "recorder/identity.h"
 #include "sim/scene/samples.h"
 
 namespace calot::recorder {
+
+/// Whether a source can give ticks now. Only a source with a device behind it is ever other than ok.
+enum class SourceStatus : std::uint8_t {
+  ok,
+  paused,  ///< the device is gone and may come back
+  failed,  ///< the device is gone and the attempt ends with it
+};
 
 /// Where instrument samples come from: a kinematics file, a performer, a recording, a device. Live, scripted and
 /// replayed runs differ in nothing else.
@@ -24,6 +32,19 @@ class SampleSource {
   /// @param out what the hands and the camera do during the tick, on the recording's grid; left alone at the end.
   /// @returns false when the source has ended; from then on always false.
   virtual bool next(std::uint64_t tick, TickSamples& out) = 0;
+
+  /// Asked before the first tick of every step, by the thread that calls next(). What the loop owes:
+  /// - ok: go on.
+  /// - paused: ask for no tick and advance nothing; ask again every few milliseconds, and ask `stop` as well, until it is
+  ///   something else. Then go on with the next tick's number; a paced clock is moved by the time that was waited, which
+  ///   counts neither as lateness nor as stretching. Pauses and their length are counted in the report.
+  /// - failed: end the attempt with Outcome::technicalFailure; the steps so far are whole and stay.
+  /// A device that goes in mid-step does not stop it: next() then hands out invalid samples (the last pose held) until
+  /// the step has its ticks.
+  virtual SourceStatus status() { return SourceStatus::ok; }
+
+  /// One line on why the status is not ok; empty when it is.
+  [[nodiscard]] virtual std::string statusText() const { return {}; }
 };
 
 }  // namespace calot::recorder

@@ -25,17 +25,25 @@ class BroadPhase {
   /// Takes new bounds of all leaves.
   virtual void update(std::span<const Box> leaves) = 0;
 
+  /// Takes new bounds of the leaves named in `changed` (indices, ascending, each once); what the others' boxes are is
+  /// not looked at. @pre leaves.size() is that of the last update()
+  virtual void refit(std::span<const Box> leaves, std::span<const std::uint32_t> changed) {
+    if (!changed.empty()) update(leaves);
+  }
+
   /// Pairs (query, leaf), sorted, each once. @pre boxes are finite
   virtual void pairs(std::span<const Box> queries, std::vector<Pair>& out) const = 0;
 };
 
 /// Cells of a fixed size; each leaf enters the cells that it covers, entries are sorted by cell. A leaf that covers too
-/// many cells is kept in a list of its own and offered to every query.
+/// many cells is kept in a list of its own and offered to every query. A refit touches only leaves that came to cover
+/// other cells.
 class SortedGrid final : public BroadPhase {
  public:
   /// @param cell edge of a cell (m)
   explicit SortedGrid(double cell) : cell_(cell) {}
   void update(std::span<const Box> leaves) override;
+  void refit(std::span<const Box> leaves, std::span<const std::uint32_t> changed) override;
   void pairs(std::span<const Box> queries, std::vector<Pair>& out) const override;
 
  private:
@@ -48,6 +56,9 @@ class SortedGrid final : public BroadPhase {
   std::vector<Entry> entry_;
   std::vector<std::uint32_t> large_;
   std::vector<Box> leaf_;
+  std::vector<Entry> added_;
+  std::vector<Entry> merged_;
+  std::vector<bool> left_;
 };
 
 }  // namespace calot

@@ -69,6 +69,38 @@ void SortedGrid::update(std::span<const Box> leaves) {
   std::sort(entry_.begin(), entry_.end());
 }
 
+void SortedGrid::refit(std::span<const Box> leaves, std::span<const std::uint32_t> changed) {
+  added_.clear();
+  left_.assign(leaf_.size(), false);
+  for (const std::uint32_t l : changed) {
+    const CellRange before = cellsOf(leaf_[l], cell_);
+    const CellRange after = cellsOf(leaves[l], cell_);
+    leaf_[l] = leaves[l];
+    if (std::equal(before.lower, before.lower + 3, after.lower) &&
+        std::equal(before.upper, before.upper + 3, after.upper)) {
+      continue;
+    }
+    left_[l] = true;
+    if (before.count() > mostCells) large_.erase(std::lower_bound(large_.begin(), large_.end(), l));
+    if (after.count() > mostCells) {
+      large_.insert(std::lower_bound(large_.begin(), large_.end(), l), l);
+    } else {
+      forEachCell(after, [&](std::uint64_t c) { added_.push_back({c, l}); });
+    }
+  }
+  if (std::find(left_.begin(), left_.end(), true) == left_.end()) return;
+  std::sort(added_.begin(), added_.end());
+  merged_.clear();
+  auto next = added_.begin();
+  for (const Entry& e : entry_) {
+    if (left_[e.leaf]) continue;
+    for (; next != added_.end() && *next < e; ++next) merged_.push_back(*next);
+    merged_.push_back(e);
+  }
+  merged_.insert(merged_.end(), next, added_.end());
+  entry_.swap(merged_);
+}
+
 void SortedGrid::pairs(std::span<const Box> queries, std::vector<Pair>& out) const {
   out.clear();
   for (std::uint32_t q = 0; q < queries.size(); ++q) {

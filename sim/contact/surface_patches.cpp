@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "sim/contact/float_bounds.h"
+
 namespace calot {
 
 namespace {
@@ -45,24 +47,61 @@ ContactSurface::ContactSurface(std::span<const Vec3> rest, std::span<const Index
   triangle_.reserve(items.size());
   for (const auto& item : items) triangle_.push_back(item.second);
 
-  std::map<std::pair<int, int>, int> opposite;  // directed edge -> third corner
+  struct Side {
+    int third;
+    int triangle;
+  };
+  std::map<std::pair<int, int>, Side> opposite;  // by directed edge
   std::vector<std::vector<int>> neighbours(rest.size());
-  for (const Index3& t : triangle_) {
+  std::vector<std::vector<std::uint32_t>> around(rest.size());
+  for (std::size_t i = 0; i < triangle_.size(); ++i) {
+    const Index3& t = triangle_[i];
     for (int k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
-      opposite[{a, b}] = t[(k + 2) % 3];
+      opposite[{a, b}] = {t[(k + 2) % 3], static_cast<int>(i)};
+      around[static_cast<std::size_t>(a)].push_back(static_cast<std::uint32_t>(i));
       neighbours[static_cast<std::size_t>(a)].push_back(b);
       neighbours[static_cast<std::size_t>(b)].push_back(a);
     }
   }
   for (const Index3& t : triangle_) {
     Index3 o;
+    Index3 beyond;
     for (int k = 0; k < 3; ++k) {
       const auto found = opposite.find({t[(k + 1) % 3], t[k]});
-      o[k] = found == opposite.end() ? -1 : found->second;
+      o[k] = found == opposite.end() ? -1 : found->second.third;
+      beyond[k] = found == opposite.end() ? -1 : found->second.triangle;
     }
     opposite_.push_back(o);
+    beyond_.push_back(beyond);
+  }
+  aroundStart_.push_back(0);
+  for (const std::vector<std::uint32_t>& list : around) {
+    around_.insert(around_.end(), list.begin(), list.end());
+    aroundStart_.push_back(around_.size());
+  }
+  patchOf_.resize(triangle_.size());
+  patchNodeStart_.push_back(0);
+  patchCornerStart_.push_back(0);
+  std::vector<bool> taken(rest.size(), false);
+  for (std::size_t p = 0; p < patch_.size(); ++p) {
+    const auto start = static_cast<std::ptrdiff_t>(patchNode_.size());
+    const auto cornerStart = static_cast<std::ptrdiff_t>(patchCorner_.size());
+    for (std::size_t i = patch_[p].first; i < patch_[p].last; ++i) {
+      patchOf_[i] = static_cast<std::uint32_t>(p);
+      for (int k = 0; k < 3; ++k) {
+        const auto n = static_cast<std::size_t>(triangle_[i][k]);
+        patchCorner_.push_back(triangle_[i][k]);
+        if (!taken[n]) patchNode_.push_back(triangle_[i][k]);
+        taken[n] = true;
+      }
+    }
+    std::sort(patchNode_.begin() + start, patchNode_.end());
+    patchNodeStart_.push_back(patchNode_.size());
+    std::sort(patchCorner_.begin() + cornerStart, patchCorner_.end());
+    patchCorner_.erase(std::unique(patchCorner_.begin() + cornerStart, patchCorner_.end()), patchCorner_.end());
+    patchCornerStart_.push_back(patchCorner_.size());
   }
   neighbourStart_.push_back(0);
   for (std::size_t n = 0; n < neighbours.size(); ++n) {
@@ -79,12 +118,21 @@ void patchBounds(const ContactSurface& surface, std::span<const Vec3> position, 
   out.resize(surface.patches().size());
   for (std::size_t p = 0; p < out.size(); ++p) {
     Box box;
-    for (std::size_t t = surface.patches()[p].first; t < surface.patches()[p].last; ++t) {
-      for (int k = 0; k < 3; ++k) box.include(position[static_cast<std::size_t>(surface.triangles()[t][k])]);
+    for (const int n : surface.patchCorners(static_cast<std::uint32_t>(p))) {
+      box.include(position[static_cast<std::size_t>(n)]);
     }
-    // Coordinates are below 8 m: 1e-6 m is more than one unit in the last place of float there.
-    box.grow(margin + 1e-6);
-    out[p] = box;
+    box.grow(margin);
+    out[p] = outwardBox(box);
+  }
+}
+
+void changedBounds(std::span<const Box> before, std::span<const Box> after, std::vector<std::uint32_t>& changed) {
+  changed.clear();
+  for (std::size_t p = 0; p < after.size(); ++p) {
+    if ((before[p].lower.array() != after[p].lower.array()).any() ||
+        (before[p].upper.array() != after[p].upper.array()).any()) {
+      changed.push_back(static_cast<std::uint32_t>(p));
+    }
   }
 }
 

@@ -1,43 +1,93 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/haptics/haptic_tick.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "sim/contact/complementarity.h"
 #include "sim/math/floating_point.h"
 
 namespace calot {
 
+namespace {
+
+constexpr double letGo = 0.9;           ///< share of the difference that is left after each tick
+constexpr double tickSeconds = 0.001;
+
+bool finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+}  // namespace
+
 bool isConsistent(const ContactSet& set) {
-  const std::size_t rows = set.free.size();
-  return set.direction.size() == rows && set.lambda.size() == rows && set.compliance.size() == rows * rows;
+  std::size_t rows = 0;
+  for (const BlockKind kind : set.kind) {
+    if (kind > BlockKind::ball) return false;
+    rows += blockRows(kind);
+  }
+  if (set.limit.size() != set.kind.size() || set.direction.size() != rows || set.free.size() != rows ||
+      set.rate.size() != rows || set.lambda.size() != rows || set.compliance.size() != rows * rows) {
+    return false;
+  }
+  for (const ToolRow& row : set.direction) {
+    if (!row.allFinite()) return false;
+  }
+  for (std::size_t i = 0; i < rows; ++i) {
+    if (!(set.compliance[i * rows + i] > 0.0)) return false;
+  }
+  return finite(set.limit) && finite(set.free) && finite(set.rate) && finite(set.lambda) && finite(set.compliance) &&
+         set.reference.position.allFinite() && set.reference.orientation.coeffs().allFinite();
 }
 
 bool isConsistent(const HapticState& state, const ContactSet& set) {
   return state.set != set.step || state.lambda.size() == set.free.size();
 }
 
+ToolRow couplingStretch(const Pose& simulated, const Pose& real, double largestStretch) {
+  ToolRow q;
+  Vec3 way = real.position - simulated.position;
+  const double size = way.norm();
+  if (size > largestStretch) way *= largestStretch / size;
+  q.head<3>() = way;
+  q[3] = std::clamp(rollBetween(simulated.orientation, real.orientation), -largestRollStretch, largestRollStretch);
+  return q;
+}
+
 HapticForce hapticTick(const HapticModel& model, HapticState& state, const ContactSet& set) {
   const FloatingPointScope scope;
   const std::size_t rows = set.free.size();
-  if (state.set != set.step) {
+  const bool changed = state.set != set.step;
+  if (changed) {
     state.set = set.step;
+    state.age = 0;
     state.lambda.assign(set.lambda.begin(), set.lambda.end());
   }
-  HapticForce out;
-  if (rows == 0) return out;
-  // The free gaps at this tick's pose stand behind the forces in one array, which keeps its capacity.
-  state.lambda.resize(2 * rows);
-  const Vec3 moved = state.tip - set.reference;
-  for (std::size_t i = 0; i < rows; ++i) state.lambda[rows + i] = set.free[i] + set.direction[i].dot(moved);
-  const std::span<double> all(state.lambda);
-  solveComplementarity(set.compliance, all.subspan(rows, rows), all.first(rows), model.tolerance, model.sweeps,
-                       Finish::sweeps);
-  for (std::size_t i = 0; i < rows; ++i) out.force += state.lambda[i] * set.direction[i];
-  state.lambda.resize(rows);
-  const double size = out.force.norm();
-  if (size > model.largestForce) out.force *= model.largestForce / size;
-  return out;
+  const Vec3 axis = state.orientation.toRotationMatrix().col(2);
+  ToolRow out = ToolRow::Zero();
+  if (rows > 0) {
+    // Free and final gaps at this tick's pose stand behind the forces in one array, which keeps its capacity.
+    state.lambda.resize(3 * rows);
+    const std::span<double> all(state.lambda);
+    const ToolRow q = couplingStretch(set.reference, {state.tip, state.orientation}, model.largestStretch);
+    const double since = tickSeconds * std::min(state.age + 1, model.ticksPerStep);
+    for (std::size_t i = 0; i < rows; ++i) all[rows + i] = set.free[i] + since * set.rate[i] + set.direction[i].dot(q);
+    sweepContacts({set.kind, set.limit, set.compliance, all.subspan(rows, rows)}, all.first(rows),
+                  all.subspan(2 * rows, rows), model.tolerance, model.sweeps);
+    for (std::size_t i = 0; i < rows; ++i) out += state.lambda[i] * set.direction[i];
+    state.lambda.resize(rows);
+  }
+  if (state.age < model.ticksPerStep) ++state.age;
+  if (changed) {
+    state.forceRest = state.force - out.head<3>();
+    state.torqueRest = state.torque - out[3];
+  }
+  state.forceRest *= letGo;
+  state.torqueRest *= letGo;
+  state.force = out.head<3>() + state.forceRest;
+  state.torque = out[3] + state.torqueRest;
+  const double size = state.force.norm();
+  if (size > model.largestForce) state.force *= model.largestForce / size;
+  return {state.force, state.torque * axis};
 }
 
 }  // namespace calot

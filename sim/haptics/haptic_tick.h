@@ -7,67 +7,97 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/contact/contact_solver.h"
+#include "sim/instruments/port.h"
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
 
 namespace calot {
 
-/// The contact problem of one hand as a step left it, reduced to the instrument's tip: gaps are
-///   gap = free + T (p - reference) + W lambda,  force on the tip = T^T lambda,
-/// with p the tip's real place, T one row per contact, W the compliance of organs and virtual coupling together.
+/// The contact problem of one hand as a step left it, reduced to the instrument (frame I: tip and roll). With q the
+/// stretch of the virtual coupling, from the simulated instrument to the real one,
+///   gap = free + t rate + T q + W lambda,  force on the instrument = T^T lambda,
+/// T one row of four for each constraint, W the compliance of organs and coupling together, t the time since the step.
 struct ContactSet {
   std::int64_t step = -1;          ///< the step that made it; -1: before the first
-  Vec3 reference = Vec3::Zero();   ///< real tip for which `free` holds (m)
-  std::vector<Vec3> direction;     ///< rows of T
+  Pose reference;                  ///< simulated instrument from which the stretch is measured
+  std::vector<BlockKind> kind;     ///< blocks of rows
+  std::vector<double> limit;       ///< of each block
+  std::vector<ToolRow> direction;  ///< rows of T
   std::vector<double> free;        ///< m
+  std::vector<double> rate;        ///< how the tissue's own motion opens the gaps (m/s)
   std::vector<double> compliance;  ///< W, row-major (m/N)
-  std::vector<std::uint64_t> key;  ///< which place each row is
   std::vector<double> lambda;      ///< the step's own solution (N), warm start
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("step", self.step);
-    visit("reference", self.reference);
+    visit("reference.position", self.reference.position);
+    visit("reference.orientation", self.reference.orientation);
+    visit("kind", self.kind);
+    visit("limit", self.limit);
     visit("direction", self.direction);
     visit("free", self.free);
+    visit("rate", self.rate);
     visit("compliance", self.compliance);
-    visit("key", self.key);
     visit("lambda", self.lambda);
   }
 };
 
 /// What the tick carries from one to the next. Never part of State.
 struct HapticState {
-  Vec3 tip = Vec3::Zero();     ///< real tip of the newest measurement, held while there is none (m)
-  std::int64_t set = -1;       ///< step of the contact set that `lambda` belongs to
-  std::vector<double> lambda;  ///< N
+  Vec3 tip = Vec3::Zero();               ///< real tip of the newest measurement, held while there is none (m)
+  Quat orientation = Quat::Identity();   ///< of the real instrument
+  std::int64_t set = -1;                 ///< step of the contact set that `lambda` belongs to
+  std::uint32_t age = 0;                 ///< ticks that used this set so far
+  std::vector<double> lambda;            ///< N
+  Vec3 force = Vec3::Zero();             ///< what the last tick gave out (N)
+  double torque = 0.0;                   ///< about the axis (N m)
+  Vec3 forceRest = Vec3::Zero();         ///< what is left of the difference at the last change of sets (N)
+  double torqueRest = 0.0;               ///< N m
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("tip", self.tip);
+    visit("orientation", self.orientation);
     visit("set", self.set);
+    visit("age", self.age);
     visit("lambda", self.lambda);
+    visit("force", self.force);
+    visit("torque", self.torque);
+    visit("forceRest", self.forceRest);
+    visit("torqueRest", self.torqueRest);
   }
 };
 
-/// Do the sizes of a set's rows fit each other? (For what was read from a file.)
+/// Do the sizes of a set's rows fit each other, and are its numbers finite? (For what was read from a file.)
 bool isConsistent(const ContactSet& set);
 /// Can these states meet in a tick?
 bool isConsistent(const HapticState& state, const ContactSet& set);
 
 /// What the tick needs to know of a hand.
 struct HapticModel {
-  double largestForce = 8.0;  ///< what the device can do (N)
-  std::uint32_t sweeps = 20;  ///< of the reduced problem
-  double tolerance = 1e-7;    ///< m
+  double largestForce = 8.0;      ///< what the device can do (N)
+  double largestStretch = 0.008;  ///< of the coupling at the tip: largest force over stiffness (m)
+  std::uint32_t ticksPerStep = 10;
+  std::uint32_t sweeps = 4;   ///< of the reduced problem, from the last tick's forces
+  double tolerance = 1e-6;    ///< m
 };
+
+/// Largest stretch of the coupling about the shaft (rad).
+inline constexpr double largestRollStretch = 0.5;
+
+/// Stretch of the virtual coupling, bounded: from a simulated instrument to a real one.
+ToolRow couplingStretch(const Pose& simulated, const Pose& real, double largestStretch);
 
 struct HapticForce {
   Vec3 force = Vec3::Zero();   ///< f_W on the hand (N)
-  Vec3 torque = Vec3::Zero();  ///< about the tip, in W (N m); contact without friction turns nothing about the shaft
+  Vec3 torque = Vec3::Zero();  ///< about the tip, in W, along the shaft's axis (N m)
 };
 
-/// One tick. Allocates only where a contact set has more rows than any before it (HapticState's capacity).
+/// One tick. Where the set changes, the difference between what the old and the new one say is let go over the ticks
+/// that follow, so that the force has no steps. Allocates only where a contact set has more rows than any before it
+/// (HapticState's capacity).
 /// @pre takeSample() took this tick's sample
 HapticForce hapticTick(const HapticModel& model, HapticState& state, const ContactSet& set);
 

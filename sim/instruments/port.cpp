@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sim/math/elementary.h"
+
 namespace calot {
 
 Quat alongAxis(const Vec3& axis, const Vec3& roll) {
@@ -33,9 +35,29 @@ Pose throughPort(const Vec3& port, const Vec3& tip, const Quat& orientation, con
   return pose;
 }
 
-Vec3 shaftTranspose(const Vec3& axis, double s, double length, const Vec3& f) {
-  const double along = axis.dot(f);
-  return (s / length) * (f - along * axis) + along * axis;
+ToolRow toolRow(const Vec3& port, const Pose& tool, const Vec3& point, const Vec3& direction) {
+  const Vec3 reach = tool.position - port;
+  const double length = reach.norm();
+  const Vec3 axis = reach / length;
+  const Vec3 r = point - port;
+  ToolRow row;
+  row.head<3>() = r.cross(direction).cross(axis) / length + direction.dot(axis) * axis;
+  row[3] = axis.dot((point - tool.position).cross(direction));
+  return row;
+}
+
+double rollBetween(const Quat& from, const Quat& to) {
+  const Mat3 r = to.toRotationMatrix();
+  const Mat3 f = alongAxis(r.col(2), from.toRotationMatrix().col(0)).toRotationMatrix();
+  return arctangent2(r.col(0).dot(f.col(1)), r.col(0).dot(f.col(0)));
+}
+
+Pose movedTool(const Vec3& port, const Pose& tool, const Vec3& displacement, double roll) {
+  const Mat3 before = tool.orientation.toRotationMatrix();
+  const Pose pose = throughPort(port, tool.position + displacement, tool.orientation, before.col(2));
+  if (roll == 0.0) return pose;
+  const Mat3 r = pose.orientation.toRotationMatrix();
+  return {pose.position, alongAxis(r.col(2), cosine(roll) * r.col(0) + sine(roll) * r.col(1))};
 }
 
 }  // namespace calot

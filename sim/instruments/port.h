@@ -19,9 +19,21 @@ Quat alongAxis(const Vec3& axis, const Vec3& roll);
 /// undefined. @param previousAxis unit, from port to tip
 Pose throughPort(const Vec3& port, const Vec3& tip, const Quat& orientation, const Vec3& previousAxis);
 
-/// How a displacement of the tip moves points of the shaft: a point at distance s from the port, tip at distance L, is
-/// moved by (s / L) (I - a a^T) + a a^T. For a force f on that point this returns the force on the tip that does the
-/// same work (the transpose, which is the same matrix).
-Vec3 shaftTranspose(const Vec3& axis, double s, double length, const Vec3& f);
+/// How a tool moves a point of itself: displacement of the tip (m), then roll about its axis (rad). The shaft turns
+/// about the port, so the point at r from the port follows a displacement d of the tip by
+///   ((a x d) / L) x r + a (a . d),   L the tip's distance from the port, a the axis,
+/// and a roll by t about the axis by t a x (point - tip).
+using ToolRow = Eigen::Matrix<double, 4, 1>;
+
+/// The row that gives the point's displacement along `direction`; its transpose takes a force along `direction` to the
+/// force on the tip (N) and the torque about the axis (N m) that do the same work.
+/// @param tool pose of frame I; @pre the tip is at least leastInsertion from the port
+ToolRow toolRow(const Vec3& port, const Pose& tool, const Vec3& point, const Vec3& direction);
+
+/// Angle about the axis of `to` by which the x axis of `from`, made perpendicular to it, meets that of `to` (rad).
+double rollBetween(const Quat& from, const Quat& to);
+
+/// The tool after a displacement of its tip and a roll, still through the port.
+Pose movedTool(const Vec3& port, const Pose& tool, const Vec3& displacement, double roll);
 
 }  // namespace calot

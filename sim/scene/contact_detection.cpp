@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The part of a step that finds where instruments and organs may touch.
+#include <algorithm>
 #include <cmath>
 
-#include "sim/instruments/port.h"
 #include "sim/scene/stepper_workspace.h"
 
 namespace calot {
@@ -11,116 +11,251 @@ using namespace stepping;
 
 namespace {
 
-constexpr int largestAdvances = 16;  ///< conservative advancements a step
-
-/// The contact's place on the skin in terms of the solid's nodes: corner weights times anchor weights.
-SolidSolver::Impulse influence(const ShaftContact& contact, const Embedding& embedding) {
-  SolidSolver::Impulse out;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    const Embedding::Anchor& anchor = embedding.anchors()[static_cast<std::size_t>(contact.node[corner])];
-    for (std::size_t a = 0; a < 4; ++a) {
-      out.node[4 * corner + a] = anchor.node[a];
-      out.weight[4 * corner + a] = contact.weight[static_cast<int>(corner)] * anchor.weight[a];
-    }
-  }
-  out.impulse = contact.normal;
-  return out;
-}
+constexpr int largestAdvances = 16;       ///< conservative advancements a step
+constexpr double near = 0.003;             ///< of two contacts that may be one (m)
+constexpr double sameWay = 0.8;            ///< cosine of the angle between their normals
+constexpr double tissueSlop = 2e-5;       ///< overlap that organs are left (m)
+constexpr double foldDisplacement = 0.01;  ///< an organ that moved less from rest has not folded onto itself (m)
 
 }  // namespace
+
+SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight, const Embedding& embedding) {
+  SolidSolver::Impulse out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Embedding::Anchor& anchor = embedding.anchors()[static_cast<std::size_t>(corner[c])];
+    for (std::size_t a = 0; a < 4; ++a) {
+      const double share = weight[static_cast<int>(c)] * anchor.weight[a];
+      if (share == 0.0) continue;
+      std::size_t k = 0;
+      while (k < out.count && out.node[k] != anchor.node[a]) ++k;
+      if (k == out.count) out.node[out.count++] = anchor.node[a];
+      out.weight[k] += share;
+    }
+  }
+  return out;
+}
 
 void Stepper::Workspace::refreshBounds(const State& state) {
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     if (bounded[o]) continue;
     model.organs()[o].embedding.map(state.organ[o].position, skin[o]);
-    patchBounds(model.organs()[o].surface, skin[o], 0.0, bounds);
-    broad[o]->update(bounds);
+    earlierBounds.swap(bounds[o]);
+    patchBounds(model.organs()[o].surface, skin[o], 0.0, bounds[o]);
+    if (earlierBounds.size() == bounds[o].size() && refittable[o]) {
+      changedBounds(earlierBounds, bounds[o], patches);
+      broad[o]->refit(bounds[o], patches);
+    } else {
+      broad[o]->update(bounds[o]);
+    }
+    refittable[o] = true;
     bounded[o] = true;
   }
 }
 
-void Stepper::Workspace::patchesNear(std::size_t organ, const Box& box, std::vector<std::uint32_t>& out) {
+std::span<const std::uint32_t> Stepper::Workspace::patchesNear(std::size_t organ, const Box& box) {
   broad[organ]->pairs({&box, 1}, pairs);
-  out.clear();
-  for (const BroadPhase::Pair& p : pairs) out.push_back(p.leaf);
+  patches.clear();
+  for (const BroadPhase::Pair& p : pairs) patches.push_back(p.leaf);
+  return patches;
 }
 
-/// Least gap between a shaft and all organs, at most `reach_`. @pre refreshBounds() since organs moved
-double Stepper::Workspace::gapOf(const Shaft& shaft, double reach_) {
+void Stepper::Workspace::shapeAt(const State& state, std::size_t hand, const Pose& pose, double jaw) {
+  const HandDescription& description = model.scene().hands[hand];
+  const double length = (pose.position - description.port).norm();
+  local = instrumentShape(state.hand[hand].instrument, jaw, description.shaftRadius, length);
+  const InstrumentShape world = placed(local, pose);
+  shape.assign(world.capsules().begin(), world.capsules().end());
+}
+
+bool Stepper::Workspace::ignores(const HandState& hand, const Capsule& capsule, std::size_t organ) const {
+  return hand.grasped == organ && (capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw);
+}
+
+/// Least gap between the instrument in `shape` and all organs, at most `reach_`. @pre refreshBounds() since organs moved
+double Stepper::Workspace::gapOf(const HandState& hand, double reach_) {
   double least = reach_;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
-    for (std::size_t k = 0; k < shaft.pieces(); ++k) {
-      const auto [p0, p1] = shaft.piece(k);
+    for (const Capsule& c : shape) {
+      if (ignores(hand, c, o)) continue;
       Box box;
-      box.include(p0);
-      box.include(p1);
-      box.grow(shaft.radius + std::max(least, 0.0) + 1e-6);
-      patchesNear(o, box, patches);
-      if (patches.empty()) continue;
-      least = leastGap(model.organs()[o].surface, skin[o], patches, p0, p1, shaft.radius, least);
+      box.include(c.p0);
+      box.include(c.p1);
+      box.grow(capsuleSearch(c.radius, std::max(least, 0.0)));
+      const std::span<const std::uint32_t> near = patchesNear(o, box);
+      if (near.empty()) continue;
+      least = leastGap(model.organs()[o].surface, skin[o], near, c.p0, c.p1, c.radius, least);
     }
   }
   return least;
 }
 
-/// Conservative advancement (Mirtich 1996): the simulated tip goes towards the real one as far as free space reaches,
-/// so that nothing is passed through on the way. A displacement d of the tip moves no point of the shaft by more.
+/// Conservative advancement (Mirtich 1996): the simulated instrument goes towards the real one as far as free space
+/// reaches, so that nothing is passed through on the way. What is left is the stretch of the virtual coupling; the jaws
+/// go on by a little whether there is room or not, since a hand closes them.
 void Stepper::Workspace::advanceFreely(State& state, std::size_t hand) {
   HandState& h = state.hand[hand];
   const HandDescription& description = model.scene().hands[hand];
-  remaining[hand] = h.realPosition - h.simulatedPosition;
-  for (int i = 0; i < largestAdvances; ++i) {
-    const double left = remaining[hand].norm();
+  const Pose real{h.realPosition, h.realOrientation};
+  double left = 0.0;
+  for (int i = 0;; ++i) {
+    const Pose now = simulated(state, hand);
+    const Vec3 way = real.position - now.position;
+    const double roll = rollBetween(now.orientation, real.orientation);
+    const double turn = h.realJaw - h.jaw;
+    shapeAt(state, hand, now, std::max(h.jaw, h.realJaw));
+    // No point of the instrument moves farther: turning about the port, it moves with the tip, and what stands off the
+    // axis a little more.
+    const double length = (now.position - description.port).norm();
+    left = way.norm() * (1.0 + local.lateralReach() / length) + std::abs(roll) * local.lateralReach() +
+           0.5 * std::abs(turn) * local.jawReach();
     if (!(left > 0.0)) break;
-    const Shaft shaft(description.port, h.simulatedPosition, description.shaftRadius);
-    const double gap = gapOf(shaft, left + 2.0 * margin);
-    if (gap >= left + margin) {
-      h.simulatedPosition = h.realPosition;
-      remaining[hand].setZero();
+    shapeAt(state, hand, now, h.jaw);
+    const double room = gapOf(h, left + 2.0 * margin);
+    double share = 0.0;
+    if (room >= left + margin) {
+      share = 1.0;
+    } else if (room > 1.05 * margin && i < largestAdvances) {
+      share = (room - margin) / left;
+    } else {
+      h.jaw += std::clamp(turn, -largestJawStep, largestJawStep);
       break;
     }
-    if (gap <= 1.05 * margin) break;
-    h.simulatedPosition += remaining[hand] * ((gap - margin) / left);
-    remaining[hand] = h.realPosition - h.simulatedPosition;
+    const Pose next = share == 1.0 ? throughPort(description.port, real.position, real.orientation,
+                                                 now.orientation.toRotationMatrix().col(2))
+                                   : movedTool(description.port, now, share * way, share * roll);
+    h.simulatedPosition = next.position;
+    h.simulatedOrientation = next.orientation;
+    h.jaw = share == 1.0 ? h.realJaw : h.jaw + share * turn;
+    if (share == 1.0) {
+      left = 0.0;
+      break;
+    }
   }
-  const double left = remaining[hand].norm();
-  share[hand] = left > largestSlide ? largestSlide / left : 1.0;
+  stretch[hand] = couplingStretch(simulated(state, hand), real, hapticModel(model, hand).largestStretch);
   reach[hand] = margin + std::min(left, largestSlide);
+  contactSet[hand].reference = simulated(state, hand);
 }
 
-/// Rows of every shaft near every organ, in order of hand, organ and place.
-void Stepper::Workspace::detect(const State& state) {
-  rows.clear();
+void Stepper::Workspace::addInstrumentBlock(const State& state, std::size_t hand, std::size_t organ,
+                                            const SurfaceContact& contact) {
+  const OrganDescription& description = model.scene().organs[organ];
+  const Pose tool = simulated(state, hand);
+  ContactBlock block;
+  block.kind = description.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
+  block.limit = description.friction;
+  block.hand = hand;
+  block.organ = organ;
+  block.place = influence(contact.node, contact.weight, model.organs()[organ].embedding);
+  block.key = contact.key | static_cast<std::uint64_t>(organ) << 52U;
+  // Slip along and across the shaft, as far as the surface allows.
+  const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
+  block.direction = {contact.normal, frame.col(0), frame.col(1)};
+  block.gap = {contact.gap, 0.0, 0.0};
+  for (std::size_t k = 0; k < block.rows(); ++k) {
+    block.tool[k] = toolRow(model.scene().hands[hand].port, tool, contact.onAxis, block.direction[k]);
+  }
+  blocks.push_back(block);
+}
+
+/// Capsules that overlap find the same place more than once: of contacts that are near each other and face the same way
+/// one is kept, first those that carried a force in the last step, then the deepest.
+void Stepper::Workspace::condense(const HandState& hand, std::size_t organ) {
+  const auto carries = [&](const SurfaceContact& contact) {
+    const std::uint64_t key = contact.key | static_cast<std::uint64_t>(organ) << 52U;
+    for (std::size_t k = 0; k < hand.contactKey.size(); ++k) {
+      if (hand.contactKey[k] == key) return !hand.contactForce[k].isZero(0.0);
+    }
+    return false;
+  };
+  std::vector<std::size_t> order(found.size());
+  std::vector<bool> first(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    order[i] = i;
+    first[i] = carries(found[i]);
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (first[a] != first[b]) return static_cast<bool>(first[a]);
+    if (found[a].gap != found[b].gap) return found[a].gap < found[b].gap;
+    return a < b;
+  });
+  std::vector<bool> kept(found.size(), false);
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const SurfaceContact& contact = found[order[n]];
+    bool fresh = true;
+    for (std::size_t m = 0; m < n && fresh; ++m) {
+      const SurfaceContact& other = found[order[m]];
+      fresh = !kept[order[m]] || (contact.onAxis - other.onAxis).squaredNorm() > near * near ||
+              contact.normal.dot(other.normal) < sameWay;
+    }
+    kept[order[n]] = fresh;
+  }
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (kept[i]) found[to++] = found[i];
+  }
+  found.resize(to);
+}
+
+/// Blocks of every instrument near every organ, in order of hand, organ and place.
+void Stepper::Workspace::detectInstruments(const State& state) {
+  blocks.clear();
   for (std::size_t h = 0; h < handCount; ++h) {
-    if (state.hand[h].instrument == InstrumentKind::none) continue;
-    const HandDescription& description = model.scene().hands[h];
-    const Shaft shaft(description.port, state.hand[h].simulatedPosition, description.shaftRadius);
+    shapeAt(state, h, simulated(state, h), state.hand[h].jaw);
     for (std::size_t o = 0; o < model.organs().size(); ++o) {
       double speed = 0.0;
       for (const Vec3& v : state.organ[o].velocity) speed = std::max(speed, v.squaredNorm());
       const double far = reach[h] + std::min(std::sqrt(speed) * settings.step, largestSlide);
       found.clear();
-      for (std::size_t k = 0; k < shaft.pieces(); ++k) {
-        const auto [p0, p1] = shaft.piece(k);
+      for (const Capsule& c : shape) {
+        if (ignores(state.hand[h], c, o)) continue;
         Box box;
-        box.include(p0);
-        box.include(p1);
-        box.grow(shaft.radius + far + 1e-6);
-        patchesNear(o, box, patches);
-        shaftContacts(model.organs()[o].surface, skin[o], patches, p0, p1, shaft.radius, far,
-                      static_cast<std::uint32_t>(k), found);
+        box.include(c.p0);
+        box.include(c.p1);
+        box.grow(capsuleSearch(c.radius, far));
+        capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, far, c.piece,
+                        found);
       }
-      for (const ShaftContact& contact : found) {
-        ContactRow row;
-        row.hand = h;
-        row.organ = o;
-        row.contact = contact;
-        row.place = influence(contact, model.organs()[o].embedding);
-        row.contact.key |= static_cast<std::uint64_t>(o) << 52U;
-        const double s = (contact.onAxis - shaft.port).dot(shaft.axis);
-        row.direction = shaftTranspose(shaft.axis, s, shaft.length, contact.normal);
-        rows.push_back(row);
-      }
+      condense(state.hand[h], o);
+      for (const SurfaceContact& contact : found) addInstrumentBlock(state, h, o, contact);
+    }
+  }
+}
+
+/// Blocks among organs that are awake; wet tissue on wet tissue slides without friction.
+void Stepper::Workspace::detectTissue(const State& state) {
+  result.contact.tissueDepth = 0.0;
+  for (std::size_t i = 0; i < model.tissuePairs().size(); ++i) {
+    const TissuePair& pair = model.tissuePairs()[i];
+    if (!moved[pair.a] && !moved[pair.b]) continue;
+    if (pair.a == pair.b && state.organ[pair.a].largestDisplacement < foldDisplacement) continue;
+    const double far = 2.0 * tissueSlop;
+    const ContactSurface& a = model.organs()[pair.a].surface;
+    const ContactSurface& b = model.organs()[pair.b].surface;
+    patchesInPlay(pair.rest, a, skin[pair.a], b, skin[pair.b], far, patches);
+    if (patches.empty()) continue;
+    queries.clear();
+    for (const std::uint32_t p : patches) {
+      queries.push_back(bounds[pair.a][p]);
+      queries.back().grow(pair.rest.search(p, far));
+    }
+    broad[pair.b]->pairs(queries, pairs);
+    for (BroadPhase::Pair& p : pairs) p.query = patches[p.query];
+    foundVertices.clear();
+    surfaceContacts(pair.rest, a, skin[pair.a], b, skin[pair.b], pairs, far, foundVertices);
+    for (const VertexContact& contact : foundVertices) {
+      result.contact.tissueDepth = std::max(result.contact.tissueDepth, -contact.gap);
+      ContactBlock block;
+      block.kind = BlockKind::unilateral;
+      block.organ = pair.b;
+      block.other = pair.a;
+      block.direction[0] = contact.normal;
+      block.place = influence(contact.node, contact.weight, model.organs()[pair.b].embedding);
+      block.otherPlace = influence({contact.vertex, contact.vertex, contact.vertex}, Vec3(1.0, 0.0, 0.0),
+                                   model.organs()[pair.a].embedding);
+      // Deep overlaps part over several steps, or they would be thrown apart.
+      block.gap[0] = std::max(contact.gap + tissueSlop, -largestRecovery);
+      block.key = contact.key | static_cast<std::uint64_t>(i) << 40U;
+      blocks.push_back(block);
     }
   }
 }

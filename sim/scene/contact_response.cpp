@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The part of a step that solves contact: compliance, complementarity, correction, and the problem that is published.
+// The part of a step that carries out what contact decided: correction of organs and instruments, and the problem that
+// is published for the haptic ticks.
 #include <algorithm>
+#include <cmath>
 
-#include "sim/contact/complementarity.h"
-#include "sim/instruments/port.h"
 #include "sim/scene/stepper_workspace.h"
 
 namespace calot {
@@ -12,111 +12,51 @@ using namespace stepping;
 
 namespace {
 
-/// A nodal quantity at the contact's place.
-Vec3 atContact(const SolidSolver::Impulse& place, const std::vector<Vec3>& values) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < place.node.size(); ++k)
-    sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
-  return sum;
-}
+constexpr int largestWithdrawals = 6;       ///< passes of withdraw()
+constexpr double wantedDepth = 2e-5;        ///< m; deeper is worth another pass
+constexpr double largestWithdrawal = 0.01;  ///< of a tip, by all passes of one step (m)
 
 }  // namespace
 
-/// Free gaps, and the compliance of organs and virtual couplings between all rows that take part.
-void Stepper::Workspace::buildProblem(const State& state) {
-  const double h = settings.step;
-  for (ContactRow& row : rows) {
-    double organMoves = 0.0;
-    if (moved[row.organ])
-      organMoves = h * row.contact.normal.dot(atContact(row.place, solver[row.organ].freeVelocity()));
-    const double toolMoves = row.direction.dot(remaining[row.hand]);
-    row.free = row.contact.gap + share[row.hand] * toolMoves - organMoves;
-    row.freeFull = row.contact.gap + toolMoves - organMoves;
-  }
-  std::erase_if(rows,
-                [&](const ContactRow& row) { return std::min(row.free, row.freeFull) > slack || !moved[row.organ]; });
-
-  const std::size_t n = rows.size();
-  response.resize(n);
-  for (std::size_t o = 0; o < model.organs().size(); ++o) {
-    std::vector<std::size_t> mine;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (rows[i].organ == o) mine.push_back(i);
-    }
-    for (std::size_t first = 0; first < mine.size(); first += laneCount) {
-      const std::size_t last = std::min(mine.size(), first + laneCount);
-      impulses.clear();
-      for (std::size_t k = first; k < last; ++k) impulses.push_back(rows[mine[k]].place);
-      const SolveReport report = solver[o].responses(model.organs()[o].solid, impulses, settings, batch, executor);
-      result.organ[o].iterations += report.iterations;
-      result.organ[o].residual = std::max(result.organ[o].residual, report.residual);
-      if (!report.converged) {
-        result.misses |= miss::solver;
-        emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), report.residual);
+/// Adds what forces do to an organ's nodes; leaves `nodal_` empty where that is nothing.
+void Stepper::Workspace::addForces(std::size_t organ, std::span<const double> forces, double scale,
+                                   std::vector<Vec3>& nodal_) const {
+  for (const ContactBlock& block : blocks) {
+    for (const bool other : {false, true}) {
+      if ((other ? block.other : block.organ) != organ) continue;
+      Vec3 force = Vec3::Zero();
+      for (std::size_t k = 0; k < block.rows(); ++k) force += forces[block.row + k] * block.direction[k];
+      if (force.isZero(0.0)) continue;
+      if (nodal_.empty()) nodal_.assign(model.organs()[organ].solid.nodes(), Vec3::Zero());
+      const SolidSolver::Impulse& place = other ? block.otherPlace : block.place;
+      const double sign = other ? scale : -scale;
+      for (std::size_t k = 0; k < place.count; ++k) {
+        nodal_[static_cast<std::size_t>(place.node[k])] += sign * place.weight[k] * force;
       }
-      for (std::size_t k = first; k < last; ++k) response[mine[k]].swap(batch[k - first]);
-    }
-  }
-  compliance.assign(n * n, 0.0);
-  freeGap.resize(n);
-  lambda.assign(n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    freeGap[i] = rows[i].free;
-    const HandState& hand = state.hand[rows[i].hand];
-    for (std::size_t k = 0; k < hand.contactKey.size(); ++k) {
-      if (hand.contactKey[k] == rows[i].contact.key) lambda[i] = hand.contactForce[k];
-    }
-    for (std::size_t j = 0; j < n; ++j) {
-      double w = 0.0;
-      if (rows[i].organ == rows[j].organ) {
-        // Both orders of the two solves, so that W is symmetric although each solve stops at its tolerance.
-        const double ij = rows[i].contact.normal.dot(atContact(rows[i].place, response[j]));
-        const double ji = rows[j].contact.normal.dot(atContact(rows[j].place, response[i]));
-        w += h * h * (0.5 * (ij + ji));
-      }
-      if (rows[i].hand == rows[j].hand) {
-        w += rows[i].direction.dot(rows[j].direction) / model.scene().hands[rows[i].hand].couplingStiffness;
-      }
-      compliance[i * n + j] = w;
     }
   }
 }
 
-void Stepper::Workspace::solveContacts(State& state) {
-  const SolverDescription& solverSettings = model.scene().solver;
-  const ComplementarityReport report = solveComplementarity(
-      compliance, freeGap, lambda, solverSettings.contactTolerance, solverSettings.contactIterations);
-  result.contact.rows = static_cast<std::uint32_t>(rows.size());
-  result.contact.iterations = report.sweeps;
-  result.contact.residual = report.residual;
-  if (!report.converged) {
-    result.misses |= miss::contact;
-    emit(EventKind::contactMiss, 255, 0, Vec3::Zero(), report.residual);
-  }
-  for (HandState& hand : state.hand) {
-    hand.contactKey.clear();
-    hand.contactForce.clear();
-  }
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    state.hand[rows[i].hand].contactKey.push_back(rows[i].contact.key);
-    state.hand[rows[i].hand].contactForce.push_back(lambda[i]);
-  }
-}
-
-/// Moves organs and instruments by what the contact forces do to them.
-void Stepper::Workspace::applyForces(State& state) {
-  const double h = settings.step;
-  correction.resize(model.organs().size());
+/// Lets the organs follow a change of forces, all rows at once.
+void Stepper::Workspace::carryOut(std::span<const double> change_) {
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
-    correction[o].clear();
     if (!moved[o]) continue;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (rows[i].organ != o || !(lambda[i] > 0.0)) continue;
-      if (correction[o].empty()) correction[o].assign(model.organs()[o].solid.nodes(), Vec3::Zero());
-      const double impulse = -h * lambda[i];
-      for (std::size_t n = 0; n < correction[o].size(); ++n) correction[o][n] += impulse * response[i][n];
+    nodal[o].clear();
+    addForces(o, change_, settings.step, nodal[o]);
+    if (nodal[o].empty()) continue;
+    const SolveReport report = solver[o].push(model.organs()[o].solid, nodal[o], responseSettings, executor);
+    if (!report.converged && (result.misses & miss::solver) == 0) {
+      result.misses |= miss::solver;
+      emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), report.residual);
     }
-    if (!solver[o].advance(model.organs()[o].solid, state.organ[o], correction[o], h)) {
+  }
+}
+
+/// Organs and instruments go where the step leads them.
+void Stepper::Workspace::move(State& state) {
+  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    if (!moved[o]) continue;
+    if (!solver[o].advance(model.organs()[o].solid, state.organ[o], {}, settings.step)) {
       result.misses |= miss::solver;
       emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), 1e300);
     }
@@ -125,45 +65,159 @@ void Stepper::Workspace::applyForces(State& state) {
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     HandState& s = state.hand[hand];
     const HandDescription& description = model.scene().hands[hand];
-    Vec3 push = Vec3::Zero();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (rows[i].hand == hand) push += lambda[i] * rows[i].direction;
+    ToolRow push = ToolRow::Zero();
+    for (const ContactBlock& block : blocks) {
+      if (block.hand != hand) continue;
+      for (std::size_t k = 0; k < block.rows(); ++k) push += lambda[block.row + k] * block.tool[k];
     }
-    const Vec3 goal = s.simulatedPosition + share[hand] * remaining[hand] + push / description.couplingStiffness;
-    const Pose pose =
-        throughPort(description.port, goal, s.realOrientation, axisOf(description.port, s.simulatedPosition));
+    Vec3 way = stretch[hand].head<3>() + push.head<3>() / description.couplingStiffness;
+    const double size = way.norm();
+    if (size > largestSlide) way *= largestSlide / size;
+    const double roll = std::clamp(stretch[hand][3] + push[3] / description.rollStiffness, -largestRollStretch,
+                                   largestRollStretch);
+    const Pose pose = movedTool(description.port, simulated(state, hand), way, roll);
     s.simulatedPosition = pose.position;
     s.simulatedOrientation = pose.orientation;
-    result.hand[hand].contactForce = push;
+    result.hand[hand].contactForce = push.head<3>();
+    result.hand[hand].contactTorque = push[3];
   }
 }
 
-/// The problem of this step, reduced to each hand, for the ticks to come. The other hand's forces stay as they are.
+/// Rows are linear, tissue is not: what an instrument is still inside of after the step, it leaves by the shortest
+/// motion of its own (a small complementarity problem without organs). Where tissue presses from two sides there may be
+/// no way out: that depth is told as pinched.
+void Stepper::Workspace::withdraw(State& state, std::size_t hand) {
+  HandState& s = state.hand[hand];
+  if (s.instrument == InstrumentKind::none) return;
+  const HandDescription& description = model.scene().hands[hand];
+  struct Inside {
+    ToolRow row;
+    Vec3 normal;
+    double gap;
+  };
+  std::vector<Inside> inside;
+  std::vector<double> w;
+  std::vector<double> free;
+  std::vector<double> force;
+  std::vector<double> gaps;
+  std::vector<BlockKind> kind;
+  std::vector<double> none;
+  double gone = 0.0;
+  // What is kept is the best place met: folds and pinches may lead a pass astray.
+  Pose best = simulated(state, hand);
+  double least = 1e300;
+  bool bestPinched = false;
+  for (int pass = 0;; ++pass) {
+    const Pose pose = simulated(state, hand);
+    shapeAt(state, hand, pose, s.jaw);
+    inside.clear();
+    double depth = 0.0;
+    for (std::size_t o = 0; o < model.organs().size(); ++o) {
+      found.clear();
+      for (const Capsule& c : shape) {
+        if (ignores(s, c, o)) continue;
+        Box box;
+        box.include(c.p0);
+        box.include(c.p1);
+        box.grow(capsuleSearch(c.radius, 0.0));
+        capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece,
+                        found);
+      }
+      for (const SurfaceContact& contact : found) {
+        if (!(contact.gap < 0.0)) continue;
+        inside.push_back(
+            {toolRow(description.port, pose, contact.onAxis, contact.normal), contact.normal, contact.gap});
+        depth = std::max(depth, -contact.gap);
+      }
+    }
+    bool pinched = false;
+    for (const Inside& a : inside) {
+      for (const Inside& b : inside) pinched = pinched || a.normal.dot(b.normal) < -0.25;
+    }
+    if (depth < least) {
+      least = depth;
+      best = pose;
+      bestPinched = pinched;
+    }
+    if (depth <= wantedDepth || pass >= largestWithdrawals || gone >= largestWithdrawal) {
+      s.simulatedPosition = best.position;
+      s.simulatedOrientation = best.orientation;
+      double& told = bestPinched ? result.contact.pinchedDepth : result.contact.largestDepth;
+      told = std::max(told, least);
+      return;
+    }
+    const std::size_t n = inside.size();
+    // Tip motion costs as its square; a roll as the motion of a point 5 mm from the axis.
+    constexpr double arm2 = 0.005 * 0.005;
+    w.assign(n * n, 0.0);
+    free.resize(n);
+    gaps.resize(n);
+    force.assign(n, 0.0);
+    kind.assign(n, BlockKind::unilateral);
+    none.assign(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      free[i] = inside[i].gap;
+      for (std::size_t j = 0; j < n; ++j) {
+        w[i * n + j] = inside[i].row.head<3>().dot(inside[j].row.head<3>()) + inside[i].row[3] * inside[j].row[3] / arm2;
+      }
+      w[i * n + i] *= 1.01;
+    }
+    sweepContacts({kind, none, w, free}, force, gaps, 0.1 * wantedDepth, 50);
+    ToolRow q = ToolRow::Zero();
+    for (std::size_t i = 0; i < n; ++i) q += force[i] * inside[i].row;
+    Vec3 way = q.head<3>();
+    const double size = way.norm();
+    const double most = std::min(largestWithdrawal - gone, 3.0 * depth);
+    if (size > most) way *= most / size;
+    gone += std::min(size, most);
+    const Pose next = movedTool(description.port, pose, way, std::clamp(q[3] / arm2, -0.2, 0.2));
+    s.simulatedPosition = next.position;
+    s.simulatedOrientation = next.orientation;
+  }
+}
+
+/// The problem of this step, reduced to each hand, for the ticks to come. The other hand's forces, and those among
+/// organs, stay as they are.
 void Stepper::Workspace::publish(const State& state) {
-  const std::size_t n = rows.size();
+  const auto velocityAt = [&](std::size_t organ, const SolidSolver::Impulse& place) {
+    Vec3 v = Vec3::Zero();
+    if (organ == ContactBlock::nobody) return v;
+    for (std::size_t k = 0; k < place.count; ++k)
+      v += place.weight[k] * state.organ[organ].velocity[static_cast<std::size_t>(place.node[k])];
+    return v;
+  };
   for (std::size_t h = 0; h < handCount; ++h) {
     ContactSet& set = contactSet[h];
     set.step = static_cast<std::int64_t>(result.step);
-    set.reference = state.hand[h].realPosition;
+    set.kind.clear();
+    set.limit.clear();
     set.direction.clear();
     set.free.clear();
+    set.rate.clear();
     set.compliance.clear();
-    set.key.clear();
     set.lambda.clear();
-    for (std::size_t i = 0; i < n; ++i) {
-      if (rows[i].hand != h) continue;
-      double free = rows[i].freeFull;
-      for (std::size_t j = 0; j < n; ++j) {
-        if (rows[j].hand != h) {
-          free += compliance[i * n + j] * lambda[j];
-        } else {
-          set.compliance.push_back(compliance[i * n + j]);
+    for (const ContactBlock& block : blocks) {
+      if (block.hand != h) continue;
+      set.kind.push_back(block.kind);
+      set.limit.push_back(block.limit);
+      const Vec3 velocity = velocityAt(block.organ, block.place);
+      for (std::size_t k = 0; k < block.rows(); ++k) {
+        const std::size_t i = block.row + k;
+        double free = freeGap[i] - block.tool[k].dot(stretch[h]);
+        for (const ContactBlock& b : blocks) {
+          for (std::size_t j = b.row; j < b.row + b.rows(); ++j) {
+            if (b.hand == h) {
+              set.compliance.push_back(compliance[i * rows + j]);
+            } else {
+              free += compliance[i * rows + j] * lambda[j];
+            }
+          }
         }
+        set.direction.push_back(block.tool[k]);
+        set.free.push_back(free);
+        set.rate.push_back(-block.direction[k].dot(velocity));
+        set.lambda.push_back(lambda[i]);
       }
-      set.direction.push_back(rows[i].direction);
-      set.free.push_back(free);
-      set.key.push_back(rows[i].contact.key);
-      set.lambda.push_back(lambda[i]);
     }
   }
 }

@@ -66,6 +66,7 @@ struct OrganDescription {
   SurfaceDescription surface;
   std::uint32_t tetrahedra = 0;  ///< requested number
   MaterialDescription material;
+  double friction = 0.1;  ///< Coulomb coefficient of an instrument on this organ
   std::vector<AnchorDescription> anchors;
 
   template <class Self, class Visitor>
@@ -75,6 +76,7 @@ struct OrganDescription {
     visit("surface", self.surface);
     visit("tetrahedra", self.tetrahedra);
     visit("material", self.material);
+    visit("friction", self.friction);
     visit("anchors", self.anchors);
   }
 };
@@ -86,7 +88,10 @@ struct HandDescription {
   InstrumentKind instrument = InstrumentKind::grasper;
   double shaftRadius = 0.0025;        ///< m
   double couplingStiffness = 1000.0;  ///< of the virtual coupling at the tip (N/m)
-  double largestForce = 8.0;          ///< what the device can do (N)
+  double rollStiffness = 0.2;         ///< of the virtual coupling about the shaft (N m/rad)
+  double largestForce = 8.0;          ///< what the device, and so the virtual coupling, can do (N)
+  double slipForce = 4.0;             ///< pull at which closed jaws begin to lose tissue (N)
+  double tearForce = 6.0;             ///< pull at which tissue tears that is held faster (locked jaws) (N)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -95,14 +100,19 @@ struct HandDescription {
     visit("instrument", self.instrument);
     visit("shaftRadius", self.shaftRadius);
     visit("couplingStiffness", self.couplingStiffness);
+    visit("rollStiffness", self.rollStiffness);
     visit("largestForce", self.largestForce);
+    visit("slipForce", self.slipForce);
+    visit("tearForce", self.tearForce);
   }
 };
 
 struct SolverDescription {
   double tolerance = 1e-4;         ///< relative residual of the linear solve
   std::uint32_t iterations = 200;  ///< cap of the linear solve
-  double contactTolerance = 1e-7;  ///< residual of the contact problem (m)
+  double responseTolerance = 1e-3;  ///< relative residual of the solves that carry out changes of contact forces
+  double contactTolerance = 1e-8;   ///< residual of the contact problem (m)
+  std::uint32_t contactPasses = 3;  ///< at most so often is it posed anew with the gaps that its forces left
   std::uint32_t contactIterations = 100;
   bool sleeping = true;  ///< untouched organs at rest are not solved
 
@@ -110,7 +120,9 @@ struct SolverDescription {
   static void fields(Self& self, Visitor& visit) {
     visit("tolerance", self.tolerance);
     visit("iterations", self.iterations);
+    visit("responseTolerance", self.responseTolerance);
     visit("contactTolerance", self.contactTolerance);
+    visit("contactPasses", self.contactPasses);
     visit("contactIterations", self.contactIterations);
     visit("sleeping", self.sleeping);
   }

@@ -82,6 +82,17 @@ Model::Built Model::build(SceneDescription scene) {
     model->organs_.push_back({organ.name, organ.appearance, std::move(solid), organ.surface.vertex,
                               std::move(embedding), std::move(contact), stuffed.cellSize, stuffed.report});
   }
+  const std::vector<OrganModel>& organs = model->organs_;
+  for (std::size_t a = 0; a < organs.size(); ++a) {
+    for (std::size_t b = 0; b < organs.size(); ++b) {
+      if (a == b) continue;
+      model->tissuePairs_.push_back(
+          {a, b, SurfacePair(organs[a].surface, organs[a].skin, organs[b].surface, organs[b].skin)});
+    }
+  }
+  for (std::size_t o = 0; o < organs.size(); ++o) {
+    model->tissuePairs_.push_back({o, o, SurfacePair(organs[o].surface, organs[o].skin)});
+  }
   model->layout_ = digestLayout(names);
   model->scene_ = std::move(scene);
   built.model = std::move(model);

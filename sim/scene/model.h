@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/contact/surface_patches.h"
+#include "sim/contact/surface_surface.h"
 #include "sim/geometry/embedding.h"
 #include "sim/geometry/mesh_to_count.h"
 #include "sim/scene/description.h"
@@ -27,6 +28,13 @@ struct OrganModel {
   StuffingReport meshing;
 };
 
+/// Two organs that may touch each other, or one that may touch itself: vertices of `a` against triangles of `b`.
+struct TissuePair {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  SurfacePair rest;
+};
+
 /// Everything that is built from the scene and never changes afterwards: a pure function of the description.
 class Model {
  public:
@@ -39,6 +47,8 @@ class Model {
 
   [[nodiscard]] const SceneDescription& scene() const { return scene_; }
   [[nodiscard]] const std::vector<OrganModel>& organs() const { return organs_; }
+  /// Every ordered pair of organs, then each organ with itself.
+  [[nodiscard]] const std::vector<TissuePair>& tissuePairs() const { return tissuePairs_; }
   [[nodiscard]] const DigestLayout& layout() const { return layout_; }
   [[nodiscard]] double stepSeconds() const { return tickLength * scene_.ticksPerStep; }
 
@@ -46,6 +56,7 @@ class Model {
   Model() = default;
   SceneDescription scene_;
   std::vector<OrganModel> organs_;
+  std::vector<TissuePair> tissuePairs_;
   DigestLayout layout_;
 };
 

@@ -11,26 +11,43 @@ using namespace stepping;
 
 namespace {
 
-constexpr double quietSpeed = 1e-5;  ///< m/s
+constexpr double quietSpeed = 1e-5;   ///< m/s
+constexpr double wakingForce = 1e-3;  ///< of one organ on another (N)
 
 }  // namespace
 
-/// Wakes the organs that a shaft is about to touch, and computes the free motion of all that are awake.
-void Stepper::Workspace::wakeAndMove(State& state) {
-  for (const ContactRow& row : rows) {
-    const double approach = share[row.hand] * row.direction.dot(remaining[row.hand]);
-    if (row.contact.gap + std::min(approach, 0.0) < slack) state.organ[row.organ].quietSteps = 0;
+/// Wakes the organs that an instrument is about to touch or holds, and those that another organ pressed in the last
+/// step.
+void Stepper::Workspace::wake(State& state) {
+  for (const ContactBlock& block : blocks) {
+    const double approach = block.tool[0].dot(stretch[block.hand]);
+    if (block.kind == BlockKind::ball || block.gap[0] + std::min(approach, 0.0) < slack) {
+      state.organ[block.organ].quietSteps = 0;
+    }
   }
-  moved.assign(model.organs().size(), false);
+  for (std::size_t i = 0; i < state.tissue.key.size(); ++i) {
+    const std::uint64_t pair = state.tissue.key[i] >> 40U;
+    if (!(state.tissue.force[i] > wakingForce) || pair >= model.tissuePairs().size()) continue;
+    state.organ[model.tissuePairs()[pair].a].quietSteps = 0;
+    state.organ[model.tissuePairs()[pair].b].quietSteps = 0;
+  }
+  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    moved[o] = !(model.scene().solver.sleeping && state.organ[o].quietSteps >= quietSteps);
+  }
+}
+
+/// Free motion of all organs that are awake, under the contact forces that the last step left.
+void Stepper::Workspace::moveFreely(State& state) {
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     OrganResult& out = result.organ[o];
-    out.asleep = model.scene().solver.sleeping && state.organ[o].quietSteps >= quietSteps;
+    out.asleep = !moved[o];
     out.residual = 0.0;
     out.iterations = 0;
     if (out.asleep) continue;
-    moved[o] = true;
-    const SolveReport report =
-        solver[o].freeMotion(model.organs()[o].solid, state.organ[o], model.scene().gravity, {}, settings, executor);
+    nodal[o].clear();
+    addForces(o, carried, 1.0, nodal[o]);
+    const SolveReport report = solver[o].freeMotion(model.organs()[o].solid, state.organ[o], model.scene().gravity,
+                                                    nodal[o], settings, executor);
     out.residual = report.residual;
     out.iterations = report.iterations;
     if (!report.converged) {
@@ -57,7 +74,9 @@ void Stepper::Workspace::finishOrgans(State& state) {
       organ.largestDisplacement = std::sqrt(displacement);
       organ.volume = fixed.solid.elements().volume(organ.position);
       bool touched = false;
-      for (const ContactRow& row : rows) touched = touched || row.organ == o;
+      for (const ContactBlock& block : blocks) {
+        touched = touched || (block.hand != ContactBlock::nobody && block.organ == o);
+      }
       organ.quietSteps = !touched && out.largestSpeed < quietSpeed ? organ.quietSteps + 1 : 0;
       if (model.scene().solver.sleeping && organ.quietSteps >= quietSteps) {
         std::fill(organ.velocity.begin(), organ.velocity.end(), Vec3::Zero());

@@ -113,7 +113,7 @@ State initialState(const Model& model, std::uint64_t seed) {
 
 DigestLayout digestLayout(const std::vector<std::string>& organNames) {
   DigestLayout layout;
-  layout.components = {"clock", "camera", "hand.left", "hand.right"};
+  layout.components = {"clock", "camera", "hand.left", "hand.right", "tissue"};
   for (const std::string& name : organNames) layout.components.push_back("organ." + name);
   State state;
   state.organ.resize(organNames.size());
@@ -169,7 +169,18 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
   for (const HandState& hand : read.hand) {
     if (hand.touchingSince.size() != model.organs().size()) return false;
     if (hand.contactKey.size() != hand.contactForce.size()) return false;
+    const std::size_t held = hand.graspNode.size();
+    if (hand.graspWeight.size() != held || hand.graspPlace.size() != held || hand.graspForce.size() != held) return false;
+    if ((hand.grasped == noOrgan) != (held == 0)) return false;
+    if (held == 0) continue;
+    if (hand.grasped >= model.organs().size()) return false;
+    for (const std::array<std::uint32_t, 3>& corners : hand.graspNode) {
+      for (const std::uint32_t corner : corners) {
+        if (corner >= model.organs()[hand.grasped].skin.size()) return false;
+      }
+    }
   }
+  if (read.tissue.key.size() != read.tissue.force.size()) return false;
   for (std::size_t o = 0; o < read.organ.size(); ++o) {
     const SolidModel& solid = model.organs()[o].solid;
     if (read.organ[o].position.size() != solid.nodes() || read.organ[o].velocity.size() != solid.nodes()) return false;

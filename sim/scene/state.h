@@ -42,13 +42,17 @@ struct CameraState {
   }
 };
 
+/// HandState::grasped of jaws that hold nothing.
+inline constexpr std::uint32_t noOrgan = 0xFFFFFFFFU;
+
 struct HandState {
   InstrumentKind instrument = InstrumentKind::none;
   Vec3 realPosition = Vec3::Zero();              ///< tip after port and workspace (m)
   Quat realOrientation = Quat::Identity();       ///< unit
   Vec3 simulatedPosition = Vec3::Zero();         ///< tip where contact lets it be (m)
   Quat simulatedOrientation = Quat::Identity();  ///< unit
-  double jaw = 0.0;                              ///< rad
+  double jaw = 0.0;                              ///< of the simulated instrument (rad)
+  double realJaw = 0.0;                          ///< as the operator holds it (rad)
   std::uint8_t buttons = 0;
   bool valid = true;                         ///< the newest sample was a measurement
   bool outside = false;                      ///< the newest sample lay outside the workspace
@@ -56,7 +60,16 @@ struct HandState {
   std::uint32_t touching = 0;                ///< bit o: organ o
   std::vector<std::uint64_t> touchingSince;  ///< per organ: step in which the touch began
   std::vector<std::uint64_t> contactKey;     ///< the last step's contacts: where,
-  std::vector<double> contactForce;          ///< and how strong (N); warm start of the next problem
+  std::vector<Vec3> contactForce;  ///< its normal and tangential parts (N); warm start of the next problem
+  std::uint32_t grasped = noOrgan;       ///< organ that the jaws hold
+  bool jawsOpened = false;               ///< since they last closed: only then do they grasp when they close
+  /// Places of its skin that the jaws hold: corners of a triangle and barycentric coordinates,
+  std::vector<std::array<std::uint32_t, 3>> graspNode;
+  std::vector<Vec3> graspWeight;
+  std::vector<Vec3> graspPlace;  ///< where they are in frame I (m),
+  std::vector<Vec3> graspForce;  ///< and f_W on the instrument there (N); warm start
+  bool slipping = false;                 ///< held tissue is being pulled through the jaws
+  std::uint64_t graspSince = 0;          ///< step in which the hold began
   /// XXH3-64 of the last step's samples of this hand, as they came: a changed sample shows in its own step even where
   /// it moves nothing.
   std::uint64_t inputs = 0;
@@ -69,6 +82,7 @@ struct HandState {
     visit("simulatedPosition", self.simulatedPosition);
     visit("simulatedOrientation", self.simulatedOrientation);
     visit("jaw", self.jaw);
+    visit("realJaw", self.realJaw);
     visit("buttons", self.buttons);
     visit("valid", self.valid);
     visit("outside", self.outside);
@@ -77,14 +91,38 @@ struct HandState {
     visit("touchingSince", self.touchingSince);
     visit("contactKey", self.contactKey);
     visit("contactForce", self.contactForce);
+    visit("grasped", self.grasped);
+    visit("jawsOpened", self.jawsOpened);
+    visit("graspNode", self.graspNode);
+    visit("graspWeight", self.graspWeight);
+    visit("graspPlace", self.graspPlace);
+    visit("graspForce", self.graspForce);
+    visit("slipping", self.slipping);
+    visit("graspSince", self.graspSince);
     visit("inputs", self.inputs);
   }
 };
 
+/// Contact among organs: the last step's places and forces, warm start of the next problem.
+struct TissueContactState {
+  std::vector<std::uint64_t> key;
+  std::vector<double> force;  ///< N
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("key", self.key);
+    visit("force", self.force);
+  }
+};
+
 struct State {
+  /// Components that are written in every step stand before the organs.
+  static constexpr std::size_t organsFrom = 5;
+
   ClockState clock;
   CameraState camera;
   std::array<HandState, handCount> hand;
+  TissueContactState tissue;
   std::vector<SolidState> organ;
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
@@ -93,6 +131,7 @@ struct State {
     visit(self.clock);
     visit(self.camera);
     for (auto& h : self.hand) visit(h);
+    visit(self.tissue);
     for (auto& o : self.organ) visit(o);
   }
 };

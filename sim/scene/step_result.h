@@ -21,6 +21,11 @@ enum class EventKind : std::uint16_t {
   sampleValid = 6,         ///< measurements are back; value: how long they were missing (s)
   solverMiss = 7,          ///< subject: organ index; value: relative residual above the scene's tolerance
   contactMiss = 8,         ///< value: residual of the contact problem above the scene's tolerance
+  graspBegin = 9,          ///< jaws closed on tissue; subject: organ index; value: jaw opening (rad)
+  graspEnd = 10,           ///< tissue let go; subject: organ index; value: how long it was held (s)
+  graspSlip = 11,          ///< held tissue begins to slip; subject: organ index; value: pull (N)
+  tissueTear = 12,         ///< held tissue tore out of the jaws; subject: organ index; value: pull (N)
+  clockStretched = 16,     ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
 };
 
 /// A fixed-size event. `hand` is 0, 1 or 255 (none).
@@ -52,8 +57,11 @@ struct HandResult {
   double jaw = 0.0;                     ///< rad
   double insertion = 0.0;               ///< distance from port to simulated tip (m)
   Vec3 contactForce = Vec3::Zero();     ///< f_W, force of the organs on the instrument, reduced to its tip (N)
+  double contactTorque = 0.0;           ///< of the organs about the shaft's axis (N m)
   std::uint32_t touching = 0;           ///< bit o: a force acts between this instrument and organ o
-  std::vector<double> organForce;       ///< per organ: sum of normal force magnitudes (N)
+  std::vector<double> organForce;       ///< per organ: sum of normal contact force magnitudes (N)
+  std::uint32_t grasping = 0;           ///< bit o: the jaws hold organ o
+  double graspForce = 0.0;              ///< pull on what the jaws hold (N)
 };
 
 /// One organ at the end of a step.
@@ -68,10 +76,17 @@ struct OrganResult {
 
 /// The contact problem of a step.
 struct ContactResult {
-  std::uint32_t rows = 0;        ///< unilateral constraints
-  std::uint32_t iterations = 0;  ///< sweeps used
-  double residual = 0.0;         ///< natural residual |min(lambda W_ii, gap)|, largest row (m)
-  double largestDepth = 0.0;     ///< deepest point of an instrument inside an organ after the step (m), 0 if outside
+  std::uint32_t blocks = 0;       ///< places of contact and of hold
+  std::uint32_t rows = 0;         ///< scalar constraints
+  std::uint32_t iterations = 0;   ///< sweeps used
+  std::uint32_t newtonSteps = 0;  ///< used where sweeps did not converge
+  std::uint32_t passes = 0;       ///< how often the problem was posed
+  double residual = 0.0;          ///< of its last solution: largest natural residual (m), sim/contact/contact_solver.h
+  double error = 0.0;             ///< the same with the gaps that the forces really left (m)
+  double violation = 0.0;         ///< largest violation that the forces had to undo (m)
+  double largestDepth = 0.0;      ///< deepest point of an instrument inside an organ after the step (m), 0 if outside
+  double pinchedDepth = 0.0;      ///< the same where tissue presses from two sides and leaves no room (m)
+  double tissueDepth = 0.0;       ///< deepest overlap of organs, beyond that at rest, as the step found it (m)
 };
 
 /// Bits of StepResult::misses: a step that misses a tolerance says so.

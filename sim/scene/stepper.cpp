@@ -100,7 +100,7 @@ void Stepper::Workspace::readSamples(State& state, std::span<const TickSamples> 
         throughPort(port, clampedToWorkspace(scene, newest->position), orientation, axisOf(port, hand.realPosition));
     hand.realPosition = pose.position;
     hand.realOrientation = pose.orientation;
-    hand.jaw = std::clamp(newest->jaw, 0.0, 1.6);
+    hand.realJaw = std::clamp(newest->jaw, 0.0, 1.6);
     hand.buttons = newest->buttons;
   }
   state.camera.inputs = cameraInputs(samples);
@@ -114,8 +114,6 @@ void Stepper::Workspace::readSamples(State& state, std::span<const TickSamples> 
 }
 
 void Stepper::Workspace::finishHands(State& state) {
-  refreshBounds(state);
-  result.contact.largestDepth = 0.0;
   for (std::size_t h = 0; h < handCount; ++h) {
     HandState& hand = state.hand[h];
     HandResult& out = result.hand[h];
@@ -127,28 +125,57 @@ void Stepper::Workspace::finishHands(State& state) {
     out.jaw = hand.jaw;
     out.insertion = (hand.simulatedPosition - description.port).norm();
     std::fill(out.organForce.begin(), out.organForce.end(), 0.0);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (rows[i].hand == h) out.organForce[rows[i].organ] += lambda[i];
+    for (const ContactBlock& block : blocks) {
+      if (block.hand == h && block.kind != BlockKind::ball) out.organForce[block.organ] += lambda[block.row];
     }
     out.touching = 0;
     for (std::size_t o = 0; o < model.organs().size(); ++o) {
       const std::uint32_t bit = 1U << o;
-      const bool before = (hand.touching & bit) != 0;
+      const bool touched = (hand.touching & bit) != 0;
       const bool now = out.organForce[o] > leastForce;
       if (now) out.touching |= bit;
-      if (now && !before) {
+      if (now && !touched) {
         hand.touchingSince[o] = state.clock.step;
         emit(EventKind::contactBegin, h, static_cast<std::uint16_t>(o), hand.simulatedPosition, out.organForce[o]);
-      } else if (before && !now) {
+      } else if (touched && !now) {
         emit(EventKind::contactEnd, h, static_cast<std::uint16_t>(o), hand.simulatedPosition,
              static_cast<double>(state.clock.step - hand.touchingSince[o]) * settings.step);
       }
     }
     hand.touching = out.touching;
-    if (hand.instrument == InstrumentKind::none) continue;
-    const Shaft shaft(description.port, hand.simulatedPosition, description.shaftRadius);
-    result.contact.largestDepth = std::max(result.contact.largestDepth, -gapOf(shaft, 0.0));
   }
+}
+
+Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroadPhase make)
+    : model(model_), executor(executor_) {
+  const std::size_t organs = model.organs().size();
+  solver.resize(organs);
+  skin.resize(organs);
+  bounds.resize(organs);
+  nodal.resize(organs);
+  rest.resize(organs);
+  moved.assign(organs, false);
+  for (std::size_t o = 0; o < organs; ++o) {
+    broad.push_back(make != nullptr ? make() : std::make_unique<SortedGrid>(broadCell));
+  }
+  settings.step = model.stepSeconds();
+  settings.tolerance = model.scene().solver.tolerance;
+  settings.cap = model.scene().solver.iterations;
+  responseSettings = settings;
+  responseSettings.tolerance = model.scene().solver.responseTolerance;
+  for (std::size_t o = 0; o < organs; ++o) {
+    rest[o] = std::make_unique<RestCompliance>(model.organs()[o].solid, settings, executor);
+  }
+  result.organ.resize(organs);
+  for (HandResult& hand : result.hand) hand.organForce.resize(organs);
+  invalidate();
+}
+
+void Stepper::Workspace::invalidate() {
+  bounded.assign(model.organs().size(), false);
+  refittable.assign(model.organs().size(), false);
+  digest.reset();
+  for (ContactSet& set : contactSet) set = {};
 }
 
 Stepper::Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase)
@@ -162,17 +189,27 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.result.step = state.clock.step;
   w.result.misses = 0;
   w.result.events.clear();
+  w.result.contact = {};
   w.readSamples(state, samples);
   w.refreshBounds(state);
   for (std::size_t h = 0; h < handCount; ++h) w.advanceFreely(state, h);
-  w.detect(state);
-  w.wakeAndMove(state);
-  w.buildProblem(state);
-  w.solveContacts(state);
-  w.applyForces(state);
-  w.finishOrgans(state);
-  w.finishHands(state);
+  for (std::size_t h = 0; h < handCount; ++h) w.closeJaws(state, h);
+  w.detectInstruments(state);
+  w.addHolds(state);
+  w.wake(state);
+  w.detectTissue(state);
+  w.recallForces(state);
+  w.moveFreely(state);
+  w.poseProblem(state);
+  w.solveContacts();
+  w.keepForces(state);
+  w.move(state);
   w.publish(state);
+  w.refreshBounds(state);
+  for (std::size_t h = 0; h < handCount; ++h) w.withdraw(state, h);
+  w.finishOrgans(state);
+  w.finishHolds(state);
+  w.finishHands(state);
   ++state.clock.step;
   return w.result;
 }
@@ -180,7 +217,7 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
 const ContactSet& Stepper::contactSet(std::size_t hand) const { return w_->contactSet[hand]; }
 
 const StateDigest& Stepper::digest(const State& state) {
-  std::vector<bool> written(4, true);
+  std::vector<bool> written(State::organsFrom, true);
   written.insert(written.end(), w_->moved.begin(), w_->moved.end());
   const StateDigest& digest = w_->digest.update(state, written);
   assert(digest == digestOf(state));
@@ -192,22 +229,27 @@ void Stepper::invalidate() { w_->invalidate(); }
 HapticState initialHaptics(const Model&, const State& state, std::size_t hand) {
   HapticState haptics;
   haptics.tip = state.hand[hand].realPosition;
+  haptics.orientation = state.hand[hand].realOrientation;
   return haptics;
 }
 
 void takeSample(const Model& model, std::size_t hand, const InstrumentSample& sample, HapticState& haptics) {
   if (!isMeasurement(sample)) return;
   const Vec3& port = model.scene().hands[hand].port;
-  haptics.tip = throughPort(port, clampedToWorkspace(model.scene(), sample.position), Quat::Identity(),
-                            axisOf(port, haptics.tip))
-                    .position;
+  Quat orientation = sample.orientation;
+  orientation.coeffs() /= orientation.coeffs().norm();
+  const Pose pose =
+      throughPort(port, clampedToWorkspace(model.scene(), sample.position), orientation, axisOf(port, haptics.tip));
+  haptics.tip = pose.position;
+  haptics.orientation = pose.orientation;
 }
 
 HapticModel hapticModel(const Model& model, std::size_t hand) {
   const HandDescription& description = model.scene().hands[hand];
   HapticModel haptics;
   haptics.largestForce = description.largestForce;
-  haptics.tolerance = model.scene().solver.contactTolerance;
+  haptics.largestStretch = description.largestForce / description.couplingStiffness;
+  haptics.ticksPerStep = model.scene().ticksPerStep;
   return haptics;
 }
 

@@ -232,7 +232,7 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
   b_.assign(size, 0.0F);
   x_.resize(size);
   for (std::size_t n = 0; n < impulses.size(); ++n) {
-    for (std::size_t k = 0; k < impulses[n].node.size(); ++k) {
+    for (std::size_t k = 0; k < impulses[n].count; ++k) {
       const int r = model.row(static_cast<std::size_t>(impulses[n].node[k]));
       if (r < 0) continue;
       for (int i = 0; i < 3; ++i) {
@@ -252,6 +252,31 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
     }
   }
   return report;
+}
+
+SolveReport SolidSolver::push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings,
+                              Executor& executor) {
+  b_.assign(model.matrix_.vectorSize(), 0.0F);
+  x_.resize(model.matrix_.vectorSize());
+  for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
+    const Vec3& p = impulse[static_cast<std::size_t>(model.freeNode_[r])];
+    for (int i = 0; i < 3; ++i) {
+      b_[laneOffset(r) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(p[i]);
+    }
+  }
+  const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
+  for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
+    const std::size_t at = laneOffset(r);
+    freeVelocity_[static_cast<std::size_t>(model.freeNode_[r])] +=
+        Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
+  }
+  return report;
+}
+
+std::vector<std::int32_t> SolidModel::elementsAt(std::size_t node) const {
+  std::vector<std::int32_t> out;
+  for (std::size_t k = incidentStart_[node]; k < incidentStart_[node + 1]; ++k) out.push_back(incident_[k].element);
+  return out;
 }
 
 bool SolidSolver::advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step) {

@@ -40,6 +40,8 @@ class SolidModel {
   [[nodiscard]] int row(std::size_t node) const { return row_[node]; }
   [[nodiscard]] const std::vector<int>& freeNodes() const { return freeNode_; }
   [[nodiscard]] const BlockMatrix& matrix() const { return matrix_; }
+  /// Elements at a node, ascending.
+  [[nodiscard]] std::vector<std::int32_t> elementsAt(std::size_t node) const;
 
  private:
   friend class SolidSolver;
@@ -114,19 +116,27 @@ class SolidSolver {
   SolveReport freeMotion(const SolidModel& model, SolidState& state, const Vec3& gravity,
                          std::span<const Vec3> external, const Settings& settings, Executor& executor);
 
+  /// Velocities that the step ends with, as far as they are known: free motion and what push() added since.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
+
+  /// Adds the answer to impulses on the nodes to freeVelocity(): dv = A^-1 impulse. @pre freeMotion() of this step was
+  /// called. @param impulse per node (N s)
+  SolveReport push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings,
+                   Executor& executor);
 
   /// Velocity responses to up to eight unit impulses, each spread over nodes: column k answers impulse[k].
   /// @pre freeMotion() of this step was called.
   struct Impulse {
     std::array<int, 12> node{};
-    std::array<double, 12> weight{};  ///< share of each node; a node may come more than once
+    std::array<double, 12> weight{};  ///< share of each node
+    std::size_t count = 0;            ///< how many of them count
     Vec3 impulse = Vec3::Zero();      ///< N s
   };
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
                         std::vector<std::vector<Vec3>>& response, Executor& executor);
 
-  /// v = freeVelocity + correction, x += h v. Values that are not finite stop the node instead of entering State.
+  /// v = freeVelocity() + correction (or nothing), x += h v. Values that are not finite stop the node instead of
+  /// entering State.
   /// @return false when that happened.
   bool advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step);
 

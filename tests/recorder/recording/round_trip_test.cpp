@@ -56,6 +56,17 @@ void expectSame(const Step& made, const RecordedStep& read) {
     EXPECT_TRUE(a.residual == b.residual && a.iterations == b.iterations && a.asleep == b.asleep);
   }
   EXPECT_EQ(made.result.step, read.result.step);
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const HandResult &a = made.result.hand[h], &b = read.result.hand[h];
+    EXPECT_TRUE(same(a.contactTorque, b.contactTorque) && a.grasping == b.grasping && same(a.graspForce, b.graspForce));
+  }
+  EXPECT_EQ(made.result.contact.blocks, read.result.contact.blocks);
+  EXPECT_EQ(made.result.contact.newtonSteps, read.result.contact.newtonSteps);
+  EXPECT_EQ(made.result.contact.passes, read.result.contact.passes);
+  EXPECT_EQ(made.result.contact.error, read.result.contact.error);
+  EXPECT_EQ(made.result.contact.violation, read.result.contact.violation);
+  EXPECT_EQ(made.result.contact.pinchedDepth, read.result.contact.pinchedDepth);
+  EXPECT_EQ(made.result.contact.tissueDepth, read.result.contact.tissueDepth);
   EXPECT_EQ(made.result.contact.rows, read.result.contact.rows);
   EXPECT_EQ(made.result.contact.iterations, read.result.contact.iterations);
   EXPECT_EQ(made.result.contact.residual, read.result.contact.residual);

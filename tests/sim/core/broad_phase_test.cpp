@@ -3,76 +3,83 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
-#include "sim/math/random.h"
+#include "sim/contact/float_bounds.h"
+#include "sim/contact/surface_patches.h"
+#include "tests/sim/core/support/broad_phase_checks.h"
 
 namespace calot {
 namespace {
 
-/// Boxes of all kinds: points, sheets, small, larger than the world, far away, beyond the range of cell numbers.
-Box randomBox(Random& random) {
-  Vec3 centre;
-  Vec3 half;
-  const double kind = random.uniform();
-  const double spread = kind < 0.9 ? 0.1 : (kind < 0.97 ? 10.0 : 1e6);
-  for (int a = 0; a < 3; ++a) {
-    centre[a] = spread * random.normal();
-    half[a] = 0.04 * random.uniform();
-    if (random.uniform() < 0.1) half[a] = 0.0;
-    if (random.uniform() < 0.03) half[a] = 1e3;
-    // On the borders of cells, where rounding down decides.
-    if (random.uniform() < 0.2) centre[a] = 0.02 * static_cast<double>(static_cast<int>(centre[a] / 0.02));
-  }
-  Box box;
-  box.include(centre - half);
-  box.include(centre + half);
-  return box;
-}
-
 TEST(SortedGrid, FindsEveryOverlapSortedAndOnce) {
   SCOPED_TRACE("seed 51");
-  Random random(51);
-  SortedGrid grid(0.02);  // one for all: an update forgets what was before
-  std::vector<BroadPhase::Pair> found{{7, 7}};
-  std::size_t overlaps = 0;
-  for (int trial = 0; trial < 40; ++trial) {
-    std::vector<Box> leaves(trial == 0 ? 0 : 1 + random.next() % 300);
-    std::vector<Box> queries(random.next() % 30);
-    for (Box& box : leaves) box = randomBox(random);
-    for (Box& box : queries) box = randomBox(random);
-    grid.update(leaves);
-    grid.pairs(queries, found);
-    ASSERT_TRUE(std::is_sorted(found.begin(), found.end()));
-    ASSERT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
-    for (const BroadPhase::Pair& p : found) {
-      ASSERT_LT(p.query, queries.size());
-      ASSERT_LT(p.leaf, leaves.size());
-    }
-    for (std::uint32_t q = 0; q < queries.size(); ++q) {
-      for (std::uint32_t l = 0; l < leaves.size(); ++l) {
-        if (!queries[q].overlaps(leaves[l])) continue;
-        ++overlaps;
-        ASSERT_TRUE(std::binary_search(found.begin(), found.end(), BroadPhase::Pair{q, l}))
-            << "trial " << trial << " query " << q << " leaf " << l;
-      }
-    }
-  }
-  EXPECT_GT(overlaps, 500U) << "too few overlaps to tell anything";
+  SortedGrid grid(0.02);
+  test::checkUpdates(grid, 51);
+}
+
+TEST(SortedGrid, RefitsWhatMoved) {
+  SCOPED_TRACE("seed 52");
+  SortedGrid grid(0.02);
+  test::checkRefits(grid, 52);
 }
 
 TEST(SortedGrid, BoxesThatOnlyTouchOverlap) {
-  Box leaf;
-  leaf.include(Vec3(-0.02, -0.02, -0.02));
-  leaf.include(Vec3::Zero());
-  Box query;
-  query.include(Vec3::Zero());
+  SCOPED_TRACE("seed 53");
   SortedGrid grid(0.02);
-  grid.update({&leaf, 1});
-  std::vector<BroadPhase::Pair> found;
-  grid.pairs({&query, 1}, found);
-  EXPECT_EQ(found.size(), 1U);
+  test::checkTightBoxes(grid, 53);
+}
+
+TEST(SortedGrid, ARefitGivesWhatAnUpdateGives) {
+  SCOPED_TRACE("seed 54");
+  Random random(54);
+  SortedGrid refitted(0.02);
+  std::vector<Box> leaves(150);
+  for (Box& box : leaves) box = test::randomBox(random);
+  refitted.update(leaves);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Box> before = leaves;
+    for (int k = 0; k < 20; ++k) leaves[random.next() % leaves.size()] = test::randomBox(random);
+    std::vector<std::uint32_t> changed;
+    changedBounds(before, leaves, changed);
+    EXPECT_LE(changed.size(), 20U);
+    EXPECT_GE(changed.size(), 10U);
+    refitted.refit(leaves, changed);
+    SortedGrid fresh(0.02);
+    fresh.update(leaves);
+    std::vector<Box> queries(30);
+    for (Box& box : queries) box = test::randomBox(random);
+    std::vector<BroadPhase::Pair> a;
+    std::vector<BroadPhase::Pair> b;
+    refitted.pairs(queries, a);
+    fresh.pairs(queries, b);
+    ASSERT_EQ(a, b) << trial;
+  }
+}
+
+TEST(FloatBounds, RoundOutwardAndNoFurther) {
+  SCOPED_TRACE("seed 55");
+  Random random(55);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double scales[] = {1.0, 1e-3, 1e-40, 1e-46, 1e30, 1e38, 1e39, 1e300};
+    double x = scales[random.next() % 8] * random.normal();
+    if (trial % 10 == 0) x = static_cast<double>(static_cast<float>(random.normal()));
+    if (trial == 1) x = 0.0;
+    const float below = floatBelow(x);
+    const float above = floatAbove(x);
+    ASSERT_LE(static_cast<double>(below), x);
+    ASSERT_GE(static_cast<double>(above), x);
+    const auto exact = static_cast<float>(x);
+    if (static_cast<double>(exact) == x) {
+      ASSERT_EQ(below, exact);
+      ASSERT_EQ(above, exact);
+    } else if (below > -infinity) {
+      ASSERT_EQ(std::nextafter(below, infinity), above) << "neighbours";
+    }
+  }
 }
 
 }  // namespace

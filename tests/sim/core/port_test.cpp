@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "sim/instruments/shaft.h"
 #include "sim/math/random.h"
 
 namespace calot {
@@ -81,59 +80,93 @@ TEST(Port, RollAlongTheAxisTakesAFixedPerpendicular) {
   }
 }
 
-/// A point of the pivoting shaft keeps its distance from the tip; its motion by finite differences of the tip's.
-TEST(Port, ShaftTransposeIsTheTransposedJacobian) {
-  SCOPED_TRACE("seed 43");
-  Random random(43);
-  for (int trial = 0; trial < 100; ++trial) {
-    const Vec3 port = 0.1 * randomVector(random);
-    const double length = random.uniform(0.02, 0.25);
-    const Vec3 axis = randomVector(random).normalized();
-    const Vec3 tip = port + length * axis;
-    const double s = random.uniform() * length;
-    const auto point = [&](const Vec3& at) -> Vec3 { return at - (length - s) * (at - port).normalized(); };
-    Mat3 jacobian;
-    constexpr double h = 1e-6;
-    for (int k = 0; k < 3; ++k)
-      jacobian.col(k) = (point(tip + h * Vec3::Unit(k)) - point(tip - h * Vec3::Unit(k))) / (2.0 * h);
-    const Vec3 force = randomVector(random);
-    EXPECT_LT((shaftTranspose(axis, s, length, force) - jacobian.transpose() * force).norm(), 1e-7 * force.norm());
-  }
-  // At the tip nothing is levered, at the port only the pull along the shaft is felt.
-  const Vec3 force(1.0, 2.0, 3.0);
-  EXPECT_EQ(shaftTranspose(Vec3::UnitZ(), 0.1, 0.1, force), force);
-  EXPECT_EQ(shaftTranspose(Vec3::UnitZ(), 0.0, 0.1, force), Vec3(0.0, 0.0, 3.0));
+/// A pose through a port, with whatever roll.
+Pose randomTool(Random& random, const Vec3& port) {
+  const Vec3 tip = port + random.uniform(0.02, 0.25) * randomVector(random).normalized();
+  return throughPort(port, tip, randomTurn(random), Vec3::UnitZ());
 }
 
-/// Conservative advancement and the reduction to the tip both stand on this: no point moves farther than the tip.
+/// A point fixed to the tool, by finite differences of the tool's own motion: three ways of the tip and the roll.
+TEST(Port, ToolRowIsTheMotionOfAPointOfTheTool) {
+  SCOPED_TRACE("seed 43");
+  Random random(43);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 port = 0.1 * randomVector(random);
+    const Pose tool = randomTool(random, port);
+    // On the shaft or up to 15 mm off its axis, as jaws and a hook are.
+    const Vec3 local(0.015 * random.normal(), 0.015 * random.normal(), -random.uniform(0.0, 0.1));
+    const Vec3 direction = randomVector(random).normalized();
+    const ToolRow row = toolRow(port, tool, tool.position + tool.orientation * local, direction);
+    constexpr double h = 1e-6;
+    for (int k = 0; k < 4; ++k) {
+      const auto moved = [&](double by) -> Vec3 {
+        const Pose pose = movedTool(port, tool, k < 3 ? Vec3(by * Vec3::Unit(k)) : Vec3::Zero(), k < 3 ? 0.0 : by);
+        return pose.position + pose.orientation * local;
+      };
+      EXPECT_NEAR(row[k], direction.dot(moved(h) - moved(-h)) / (2.0 * h), 2e-7) << "trial " << trial << " part " << k;
+    }
+  }
+  // At the tip nothing is levered and nothing rolls, at the port only motion along the shaft is felt.
+  const Pose tool = throughPort(Vec3::Zero(), Vec3(0.0, 0.0, 0.1), Quat::Identity(), Vec3::UnitZ());
+  const Vec3 d = Vec3(1.0, 2.0, 2.0) / 3.0;
+  EXPECT_LT((toolRow(Vec3::Zero(), tool, tool.position, d) - ToolRow(d[0], d[1], d[2], 0.0)).norm(), 1e-15);
+  EXPECT_LT((toolRow(Vec3::Zero(), tool, Vec3::Zero(), d) - ToolRow(0.0, 0.0, d[2], 0.0)).norm(), 1e-15);
+}
+
+/// The transpose takes a force to the tip: the work of a small motion is the same by either.
+TEST(Port, ToolRowTransposedDoesTheSameWork) {
+  SCOPED_TRACE("seed 46");
+  Random random(46);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Vec3 port = 0.1 * randomVector(random);
+    const Pose tool = randomTool(random, port);
+    const Vec3 local(0.01 * random.normal(), 0.01 * random.normal(), -random.uniform(0.0, 0.1));
+    const Vec3 point = tool.position + tool.orientation * local;
+    const Vec3 force = randomVector(random);
+    ToolRow onTip = ToolRow::Zero();
+    for (int k = 0; k < 3; ++k) onTip += force[k] * toolRow(port, tool, point, Vec3::Unit(k));
+    constexpr double h = 1e-6;
+    const Vec3 way = h * randomVector(random);
+    const double roll = 10.0 * h * random.normal();
+    const Pose after = movedTool(port, tool, way, roll);
+    const double work = force.dot(after.position + after.orientation * local - point);
+    EXPECT_NEAR(onTip.head<3>().dot(way) + onTip[3] * roll, work, 1e-9 * h / 1e-6);
+  }
+}
+
+/// Conservative advancement and the reduction to the tip both stand on this: no point of the axis moves farther than
+/// the tip.
 TEST(Port, NoPointOfTheShaftMovesFartherThanTheTip) {
   SCOPED_TRACE("seed 44");
   Random random(44);
   for (int trial = 0; trial < 200; ++trial) {
-    const Vec3 axis = randomVector(random).normalized();
-    const double length = random.uniform(0.02, 0.25);
-    const Vec3 move = randomVector(random);
-    EXPECT_LE(shaftTranspose(axis, random.uniform() * length, length, move).norm(), move.norm() * (1.0 + 1e-12));
+    const Vec3 port = 0.1 * randomVector(random);
+    const Pose tool = randomTool(random, port);
+    const Vec3 point = port + random.uniform() * (tool.position - port);
+    const Vec3 direction = randomVector(random).normalized();
+    const ToolRow row = toolRow(port, tool, point, direction);
+    EXPECT_LE(row.head<3>().norm(), 1.0 + 1e-12);
+    EXPECT_NEAR(row[3], 0.0, 1e-12) << "a roll moves nothing on the axis";
   }
 }
 
-TEST(Shaft, PiecesCoverItFromTipToPort) {
-  SCOPED_TRACE("seed 45");
-  Random random(45);
+TEST(Port, RollBetweenIsWhatMovedToolRolls) {
+  SCOPED_TRACE("seed 47");
+  Random random(47);
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 port = 0.1 * randomVector(random);
-    const double length = trial == 0 ? 1.5 : random.uniform(0.001, 0.4);
-    const Vec3 tip = port + length * randomVector(random).normalized();
-    const Shaft shaft(port, tip, 0.0025);
-    ASSERT_GE(shaft.pieces(), 1U);
-    ASSERT_LE(shaft.pieces(), Shaft::mostPieces);
-    const double cap = std::min(0.0025, length);
-    EXPECT_NEAR((shaft.piece(0).first - tip).norm(), cap, 1e-12) << "the cap ends at the tip";
-    for (std::size_t k = 0; k + 1 < shaft.pieces(); ++k) {
-      EXPECT_LT((shaft.piece(k).second - shaft.piece(k + 1).first).norm(), 1e-12);
-      EXPECT_NEAR((shaft.piece(k).second - shaft.piece(k).first).norm(), Shaft::pieceLength, 1e-12);
-    }
-    EXPECT_LT((shaft.piece(shaft.pieces() - 1).second - port).norm(), 1e-12);
+    const Pose tool = randomTool(random, port);
+    EXPECT_NEAR(rollBetween(tool.orientation, tool.orientation), 0.0, 1e-12);
+    const double roll = random.uniform(-3.1, 3.1);
+    const Pose rolled = movedTool(port, tool, Vec3::Zero(), roll);
+    EXPECT_NEAR(rollBetween(tool.orientation, rolled.orientation), roll, 1e-9);
+    EXPECT_LT((rolled.position - tool.position).norm(), 1e-15);
+    // A moved tip is where it was sent, the shaft still passes through the port, and nothing has rolled.
+    const Vec3 way = 0.004 * randomVector(random);
+    const Pose moved = movedTool(port, tool, way, 0.0);
+    EXPECT_LT((moved.position - tool.position - way).norm(), 1e-15);
+    EXPECT_LT((moved.orientation * Vec3::UnitZ()).cross(moved.position - port).norm(), 1e-12);
+    EXPECT_NEAR(rollBetween(tool.orientation, moved.orientation), 0.0, 1e-9);
   }
 }
 

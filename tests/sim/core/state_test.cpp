@@ -95,8 +95,8 @@ TEST_F(StateTest, ChangingAFieldChangesItsDigestAndNoOther) {
 }
 
 TEST_F(StateTest, ComponentsAreNamedInOrder) {
-  EXPECT_EQ(model_->layout().components,
-            (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right", "organ.block", "organ.ball"}));
+  EXPECT_EQ(model_->layout().components, (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right",
+                                                                   "tissue", "organ.block", "organ.ball"}));
 }
 
 /// An unwritten component keeps its digest, so a component that is written and not marked would be seen here.
@@ -153,7 +153,7 @@ TEST_F(StateTest, RefusesBytesThatAreNoStateOfThisModel) {
     state.hand[1].realOrientation.x() = bad;
     refuses(saveState(state), "orientation");
     state = *state_;
-    state.hand[0].contactForce[0] = bad;
+    state.hand[0].contactForce[0][1] = bad;
     refuses(saveState(state), "contact force");
   }
   State state = *state_;
@@ -166,8 +166,37 @@ TEST_F(StateTest, RefusesBytesThatAreNoStateOfThisModel) {
   state.hand[0].touchingSince.push_back(0);
   refuses(saveState(state), "an organ more");
   state = *state_;
-  state.hand[0].contactForce.push_back(0.0);
+  state.hand[0].contactForce.emplace_back(Vec3::Zero());
   refuses(saveState(state), "a force without a place");
+  state = *state_;
+  state.tissue.force.push_back(0.0);
+  refuses(saveState(state), "a force among organs without a place");
+  state = *state_;
+  state.hand[1].grasped = 0;
+  refuses(saveState(state), "a hold of nothing");
+  state = *state_;
+  const auto hold = [&](std::uint32_t organ, std::uint32_t corner) {
+    state = *state_;
+    HandState& hand = state.hand[1];
+    hand.grasped = organ;
+    hand.graspNode = {{0, 1, corner}};
+    hand.graspWeight = {Vec3(0.2, 0.3, 0.5)};
+    hand.graspPlace = {Vec3::Zero()};
+    hand.graspForce = {Vec3::Zero()};
+  };
+  const auto corners = static_cast<std::uint32_t>(model_->organs()[0].skin.size());
+  hold(0, corners - 1);
+  State taken = start;
+  EXPECT_TRUE(restoreState(*model_, saveState(state), taken)) << "the last corner there is";
+  hold(0, corners);
+  refuses(saveState(state), "a held corner that the organ does not have");
+  hold(2, 0);
+  refuses(saveState(state), "a held organ that there is not");
+  hold(noOrgan, 0);
+  refuses(saveState(state), "a held place of no organ");
+  hold(0, 0);
+  state.hand[1].graspForce.clear();
+  refuses(saveState(state), "a held place without a force");
   state = *state_;
   state.organ.pop_back();
   refuses(saveState(state), "an organ less");

@@ -126,16 +126,20 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
     h.contactForce = randomVector(r);
     h.touching = r.next();
     for (std::size_t o = 0; o < organs; ++o) h.organForce.push_back(r.uniform());
+    h.contactTorque = r.uniform();
+    h.grasping = r.next();
+    h.graspForce = r.uniform();
   }
   for (std::size_t o = 0; o < organs; ++o) {
     s.result.organ.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next(), r.next() % 2 == 0});
   }
-  s.result.contact = {r.next(), r.next(), r.uniform(), r.uniform()};
+  s.result.contact = {r.next(),    r.next(),    r.next(),    r.next(),    r.next(),   r.uniform(),
+                      r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform()};
   s.result.misses = r.next();
   for (std::uint32_t e = r.next() % 3; e > 0; --e) {
     Event event;
     event.step = n;
-    event.kind = static_cast<EventKind>(1 + r.next() % 8);
+    event.kind = static_cast<EventKind>(1 + r.next() % 12);
     event.hand = static_cast<std::uint8_t>(r.next());
     event.subject = static_cast<std::uint16_t>(r.next());
     event.position = randomVector(r);
@@ -189,6 +193,9 @@ Step plausibleStep(const AttemptHeader& header, std::uint64_t n) {
     r.jaw = s.samples[0].hand[h].jaw;
     r.insertion = r.tipReal.norm();
     r.contactForce = s.ticks[0].hand[h].force;
+    r.contactTorque = 1e-3 * r.contactForce[0];
+    r.grasping = 0;
+    r.graspForce = 0.0;
     r.touching = touching ? 1 : 0;
     for (double& f : r.organForce) f = touching ? r.contactForce.norm() : 0.0;
   }
@@ -200,8 +207,14 @@ Step plausibleStep(const AttemptHeader& header, std::uint64_t n) {
          touching ? 17U : 0U,
          !touching};
   }
-  s.result.contact = {touching ? 6U : 0U, touching ? 12U : 0U, touching ? 1e-9 * (1.0 + std::cos(31.0 * time)) : 0.0,
-                      0.0};
+  s.result.contact = {};
+  if (touching) {
+    s.result.contact.blocks = 2;
+    s.result.contact.rows = 6;
+    s.result.contact.iterations = 12;
+    s.result.contact.residual = 1e-9 * (1.0 + std::cos(31.0 * time));
+    s.result.contact.violation = 1e-4 * (1.0 + std::sin(29.0 * time));
+  }
   s.result.misses = 0;
   if (n % 300 == 0 || n % 300 == 100) {
     Event event;

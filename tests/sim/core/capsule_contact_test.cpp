@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/contact/shaft_contact.h"
+#include "sim/contact/capsule_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -28,12 +28,12 @@ struct Slab {
     patches.resize(surface.patches().size());
     std::iota(patches.begin(), patches.end(), 0U);
   }
-  [[nodiscard]] std::vector<ShaftContact> contacts(const Vec3& p0, const Vec3& p1, double reach) const {
-    std::vector<ShaftContact> out;
-    shaftContacts(surface, skin.vertex, patches, p0, p1, radius, reach, 3, out);
+  [[nodiscard]] std::vector<SurfaceContact> contacts(const Vec3& p0, const Vec3& p1, double reach) const {
+    std::vector<SurfaceContact> out;
+    capsuleContacts(surface, skin.vertex, patches, p0, p1, radius, reach, 3, out);
     return out;
   }
-  [[nodiscard]] Vec3 pointOf(const ShaftContact& c) const {
+  [[nodiscard]] Vec3 pointOf(const SurfaceContact& c) const {
     Vec3 p = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k)
       p += c.weight[static_cast<int>(k)] * skin.vertex[static_cast<std::size_t>(c.node[k])];
@@ -41,7 +41,7 @@ struct Slab {
   }
 };
 
-TEST(ShaftContact, AFlatRegionGivesExactlyOneRow) {
+TEST(CapsuleContact, AFlatRegionGivesExactlyOneRow) {
   const Slab slab;
   SCOPED_TRACE("seed 61");
   Random random(61);
@@ -54,15 +54,9 @@ TEST(ShaftContact, AFlatRegionGivesExactlyOneRow) {
     const double height = random.uniform(1e-4, 0.006);
     const Vec3 p0 = foot + height * Vec3::UnitZ();
     const Vec3 lean(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.2, 1.0));
-    const std::vector<ShaftContact> found = slab.contacts(p0, p0 + 0.02 * lean.normalized(), 0.005);
-    // On an edge to the last bit, rounding may give the face's inside to one triangle and the edge to the other: the
-    // same row twice, which the complementarity problem bears.
-    if (trial % 4 == 0) {
-      ASSERT_EQ(found.size(), 1U) << "trial " << trial;
-    } else {
-      ASSERT_GE(found.size(), 1U) << "trial " << trial;
-    }
-    for (const ShaftContact& c : found) {
+    const std::vector<SurfaceContact> found = slab.contacts(p0, p0 + 0.02 * lean.normalized(), 0.005);
+    ASSERT_EQ(found.size(), 1U) << "trial " << trial << ": one place is one row, on an edge or a corner too";
+    for (const SurfaceContact& c : found) {
       EXPECT_NEAR(c.gap, height - radius, 1e-12);
       EXPECT_LT((c.normal - Vec3::UnitZ()).norm(), 1e-9);
       EXPECT_LT((c.onAxis - p0).norm(), 1e-12);
@@ -74,21 +68,21 @@ TEST(ShaftContact, AFlatRegionGivesExactlyOneRow) {
   }
 }
 
-TEST(ShaftContact, BeyondReachThereIsNone) {
+TEST(CapsuleContact, BeyondReachThereIsNone) {
   const Slab slab;
   const Vec3 p0(0.003, 0.004, top + radius + 0.002);
   EXPECT_EQ(slab.contacts(p0, p0 + 0.02 * Vec3::UnitZ(), 0.00199).size(), 0U);
   EXPECT_EQ(slab.contacts(p0, p0 + 0.02 * Vec3::UnitZ(), 0.00201).size(), 1U);
 }
 
-TEST(ShaftContact, AConvexEdgeGivesOneRowAcrossIt) {
+TEST(CapsuleContact, AConvexEdgeGivesOneRowAcrossIt) {
   const Slab slab;
   const Vec3 out = Vec3(1.0, 0.0, 1.0).normalized();
   const Vec3 along = Vec3(1.0, 0.0, -1.0).normalized();
   for (const double distance : {0.001, 0.0025, 0.004}) {
     for (const double y : {0.003, 0.0125, -0.0444}) {
       const Vec3 centre = Vec3(half, y, top) + distance * out;
-      const std::vector<ShaftContact> found = slab.contacts(centre - 0.01 * along, centre + 0.01 * along, 0.003);
+      const std::vector<SurfaceContact> found = slab.contacts(centre - 0.01 * along, centre + 0.01 * along, 0.003);
       ASSERT_EQ(found.size(), 1U) << distance << " " << y;
       EXPECT_NEAR(found[0].gap, distance - radius, 1e-12);
       EXPECT_LT((found[0].normal - out).norm(), 1e-9);
@@ -97,14 +91,14 @@ TEST(ShaftContact, AConvexEdgeGivesOneRowAcrossIt) {
   }
 }
 
-TEST(ShaftContact, ACornerGivesOneRowAwayFromIt) {
+TEST(CapsuleContact, ACornerGivesOneRowAwayFromIt) {
   const Slab slab;
   for (const double sx : {-1.0, 1.0}) {
     for (const double sy : {-1.0, 1.0}) {
       for (const double sz : {-1.0, 1.0}) {
         const Vec3 out = Vec3(sx, sy, sz).normalized();
         const Vec3 corner(sx * half, sy * half, sz * top);
-        const std::vector<ShaftContact> found = slab.contacts(corner + 0.003 * out, corner + 0.02 * out, 0.003);
+        const std::vector<SurfaceContact> found = slab.contacts(corner + 0.003 * out, corner + 0.02 * out, 0.003);
         ASSERT_EQ(found.size(), 1U);
         EXPECT_NEAR(found[0].gap, 0.003 - radius, 1e-12);
         EXPECT_LT((found[0].normal - out).norm(), 1e-9);
@@ -113,17 +107,17 @@ TEST(ShaftContact, ACornerGivesOneRowAwayFromIt) {
   }
 }
 
-TEST(ShaftContact, PenetrationPointsOutOfTheFace) {
+TEST(CapsuleContact, PenetrationPointsOutOfTheFace) {
   const Slab slab;
   const Vec3 foot(0.0031, 0.0017, top);
   // The axis still outside, the shaft already in.
-  std::vector<ShaftContact> found = slab.contacts(foot + 0.001 * Vec3::UnitZ(), foot + 0.03 * Vec3::UnitZ(), 0.003);
+  std::vector<SurfaceContact> found = slab.contacts(foot + 0.001 * Vec3::UnitZ(), foot + 0.03 * Vec3::UnitZ(), 0.003);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].gap, 0.001 - radius, 1e-12);
   // The end of the axis 1 mm below the face: the axis passes through it.
   found = slab.contacts(foot - 0.001 * Vec3::UnitZ(), foot + 0.03 * Vec3::UnitZ(), 0.003);
   ASSERT_GE(found.size(), 1U);
-  for (const ShaftContact& c : found) {
+  for (const SurfaceContact& c : found) {
     EXPECT_LT((c.normal - Vec3::UnitZ()).norm(), 1e-12);
     EXPECT_LE(c.gap, 0.0);
   }
@@ -133,7 +127,7 @@ TEST(ShaftContact, PenetrationPointsOutOfTheFace) {
   // The whole axis 2 mm below the face and parallel to it: still on this side of the slab.
   found = slab.contacts(Vec3(0.0031, 0.0017, top - 0.002), Vec3(0.0231, 0.0057, top - 0.002), 0.003);
   ASSERT_GE(found.size(), 1U);
-  for (const ShaftContact& c : found) {
+  for (const SurfaceContact& c : found) {
     EXPECT_LT((c.normal - Vec3::UnitZ()).norm(), 1e-12);
     EXPECT_NEAR(c.gap, -0.002 - radius, 1e-12);
   }
@@ -141,25 +135,25 @@ TEST(ShaftContact, PenetrationPointsOutOfTheFace) {
 
 /// A shaft that passes beside the slab, within reach of its side: one row, sideways; nothing that would stop it from
 /// going on along itself.
-TEST(ShaftContact, PassingByIsNotStopped) {
+TEST(CapsuleContact, PassingByIsNotStopped) {
   const Slab slab;
   const double x = half + radius + 0.0005;
-  const std::vector<ShaftContact> found = slab.contacts(Vec3(x, 0.0031, -0.03), Vec3(x, 0.0031, 0.03), 0.001);
+  const std::vector<SurfaceContact> found = slab.contacts(Vec3(x, 0.0031, -0.03), Vec3(x, 0.0031, 0.03), 0.001);
   ASSERT_GE(found.size(), 1U);
-  for (const ShaftContact& c : found) {
+  for (const SurfaceContact& c : found) {
     EXPECT_LT((c.normal - Vec3::UnitX()).norm(), 1e-9);
     EXPECT_NEAR(c.gap, 0.0005, 1e-12);
   }
   EXPECT_TRUE(slab.contacts(Vec3(x + 0.001, 0.0031, -0.03), Vec3(x + 0.001, 0.0031, 0.03), 0.001).empty());
 }
 
-TEST(ShaftContact, AppendsInOrderOfKeysEachOnce) {
+TEST(CapsuleContact, AppendsInOrderOfKeysEachOnce) {
   const Slab slab;
-  ShaftContact before;
+  SurfaceContact before;
   before.key = ~std::uint64_t{0};
-  std::vector<ShaftContact> out{before};
-  shaftContacts(slab.surface, slab.skin.vertex, slab.patches, Vec3(-0.04, 0.0031, top + 0.002),
-                Vec3(0.04, 0.0057, top + 0.002), radius, 0.003, 0, out);
+  std::vector<SurfaceContact> out{before};
+  capsuleContacts(slab.surface, slab.skin.vertex, slab.patches, Vec3(-0.04, 0.0031, top + 0.002),
+                  Vec3(0.04, 0.0057, top + 0.002), radius, 0.003, 0, out);
   ASSERT_GT(out.size(), 3U) << "a shaft that lies on a plane is carried along its length";
   EXPECT_EQ(out.front().key, before.key) << "what was there stays";
   for (std::size_t i = 2; i < out.size(); ++i) EXPECT_LT(out[i - 1].key, out[i].key);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/calot/source_options.h"
+
+#include "apps/calot/environment.h"
+#include "recorder/sources/kinematics_source.h"
+#include "recorder/sources/performer_source.h"
+
+namespace calot::apps {
+
+CLI::Option_group* addSource(CLI::App& command, SourceOptions& options) {
+  auto* source = command.add_option_group("source", "who acts");
+  source->add_option("--performer", options.performer,
+                     "profile of a synthetic operator: skilled, unskilled, or a file");
+  source->add_option("--kinematics", options.kinematics, "two-handed motion file, 76 columns at 30 Hz");
+  source->add_option("--device", options.device.name,
+                     "gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE or null (docs/devices.md)");
+  source->require_option(1);
+  addTools(command, options.device);
+  command.add_option("--calibration", options.device.calibration, "of the device; an assessment needs one");
+  return source;
+}
+
+std::unique_ptr<recorder::SampleSource> makeSource(const SourceOptions& options, const SceneDescription& scene,
+                                                   std::uint64_t seed) {
+  if (!options.device.name.empty()) return makeDeviceSource(options.device, scene, options.mode, nullptr);
+  if (!options.kinematics.empty()) return std::make_unique<recorder::KinematicsSource>(options.kinematics, scene);
+  const recorder::PerformerProfile profile =
+      recorder::loadPerformer(recorder::findPerformer(options.performer, assetFolders()));
+  return std::make_unique<recorder::PerformerSource>(profile, scene, seed);
+}
+
+}  // namespace calot::apps

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/live/haptic_thread.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/prctl.h>
+
+#include <cassert>
+#include <cerrno>
+
+#include "sim/scene/stepper.h"
+
+namespace calot::recorder {
+
+namespace {
+
+constexpr Nanoseconds askAgain = std::chrono::milliseconds(2);
+constexpr std::size_t ticksOfLag = 100;  // longestLag
+
+/// Before all ordinary threads, where the system permits it; and woken when it asked to be.
+bool becomePrompt() {
+  ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  sched_param parameters{};
+  parameters.sched_priority = ::sched_get_priority_min(SCHED_FIFO) + 10;
+  return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
+
+}  // namespace
+
+HapticThread::HapticThread(const Model& model, SampleSource& source, const HapticStates& states,
+                           const ContactSets& sets, Settings settings)
+    : model_(model),
+      source_(source),
+      settings_(std::move(settings)),
+      ticksPerStep_(model.scene().ticksPerStep),
+      exchange_(model, states, sets),
+      // A tick begins only while the next step's ticks are at most ticksOfLag old.
+      ring_(ticksOfLag + 2 * static_cast<std::size_t>(ticksPerStep_) + 2),
+      clock_(monotonicNow()) {
+  for (std::size_t h = 0; h < handCount; ++h) hapticModel_[h] = hapticModel(model, h);
+  ::sem_init(&steps_, 0, 0);
+  thread_ = std::thread([this] { run(); });
+}
+
+HapticThread::~HapticThread() {
+  abandoned_ = true;
+  if (thread_.joinable()) thread_.join();
+  ::sem_destroy(&steps_);
+}
+
+void HapticThread::run() {
+  report_.realTime = becomePrompt();
+  try {
+    ticks();
+  } catch (...) {
+    fault_ = std::current_exception();
+  }
+  report_.missedDeadlines = clock_.missed();
+  report_.largestLateness = seconds(clock_.largestLateness());
+  report_.stretched = seconds(clock_.stretched());
+  ::sem_post(&steps_);
+}
+
+void HapticThread::ticks() {
+  Tick tick;
+  for (std::uint64_t t = 0;; ++t) {
+    if (t % ticksPerStep_ == 0) {
+      if (!waitForSource()) return;
+      report_.outcome = settings_.gate ? settings_.gate(t / ticksPerStep_) : Outcome::running;
+      if (report_.outcome != Outcome::running) return;
+    }
+    if (!waitForTurn(t)) return;
+    if (!source_.next(t, tick.samples)) {
+      report_.outcome = Outcome::completed;
+      return;
+    }
+    exchange_.refresh();
+    const Nanoseconds before = threadCpuTime();
+    for (std::size_t h = 0; h < handCount; ++h) {
+      HapticState& state = exchange_.states()[h];
+      const ContactSet& set = exchange_.sets()[h];
+      takeSample(model_, h, tick.samples.hand[h], state);
+      const HapticForce force = hapticTick(hapticModel_[h], state, set);
+      tick.outcome.hand[h] = {force.force, force.torque, set.step};
+    }
+    report_.cost.add(threadCpuTime() - before);
+    if (settings_.feedback) settings_.feedback(tick.outcome);
+    tick.due = clock_.due(t);
+    tick.outcome.lateness = clock_.finish(t, monotonicNow());
+    ++report_.ticks;
+    [[maybe_unused]] const bool taken = ring_.push(tick);
+    assert(taken);
+    if ((t + 1) % ticksPerStep_ == 0) ::sem_post(&steps_);
+  }
+}
+
+/// Asks the source before a step. @returns false where the run ends here.
+bool HapticThread::waitForSource() {
+  SourceStatus status = source_.status();
+  if (status == SourceStatus::paused) {
+    ++report_.pauses;
+    const Nanoseconds began = monotonicNow();
+    while (status == SourceStatus::paused && !abandoned_ && !(settings_.stop != nullptr && settings_.stop->load())) {
+      sleepUntil(monotonicNow() + askAgain);
+      status = source_.status();
+    }
+    const Nanoseconds length = monotonicNow() - began;
+    clock_.pause(length);
+    report_.paused += seconds(length);
+  }
+  if (status == SourceStatus::failed) report_.outcome = Outcome::technicalFailure;
+  return status != SourceStatus::failed && !abandoned_;
+}
+
+/// Sleeps until tick t is due and may begin. @returns false where the simulation has left.
+bool HapticThread::waitForTurn(std::uint64_t t) {
+  do {
+    sleepUntil(clock_.due(t));
+    if (abandoned_.load(std::memory_order_relaxed)) return false;
+  } while (!clock_.mayBegin(
+      t, monotonicNow(),
+      static_cast<std::int64_t>(t) -
+          static_cast<std::int64_t>((stepsDone_.load(std::memory_order_acquire) + 1) * ticksPerStep_)));
+  return true;
+}
+
+bool HapticThread::takeStep(std::span<TickSamples> samples, std::span<TickOutcome> outcomes, Nanoseconds& due) {
+  while (::sem_wait(&steps_) != 0 && errno == EINTR) {
+  }
+  // The end's own signal comes after those of all whole steps; what an unfinished step left in the ring is dropped.
+  Tick tick;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!ring_.pop(tick)) return false;
+    samples[i] = tick.samples;
+    outcomes[i] = tick.outcome;
+  }
+  due = tick.due + PacedClock::tick;
+  return true;
+}
+
+void HapticThread::stepDone(const ContactSets& sets) {
+  exchange_.publish(sets);
+  stepsDone_.fetch_add(1, std::memory_order_release);
+}
+
+const HapticReport& HapticThread::finish() {
+  thread_.join();
+  if (fault_) std::rethrow_exception(fault_);
+  return report_;
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/live/paced_clock.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "recorder/observer.h"
+
+namespace calot::recorder {
+
+namespace {
+
+constexpr Nanoseconds lagAllowed = std::chrono::milliseconds(100);  // longestLag
+
+Nanoseconds read(clockid_t clock) {
+  timespec t{};
+  ::clock_gettime(clock, &t);
+  return std::chrono::seconds(t.tv_sec) + Nanoseconds(t.tv_nsec);
+}
+
+float seconds(Nanoseconds t) { return static_cast<float>(std::chrono::duration<double>(t).count()); }
+
+}  // namespace
+
+Nanoseconds monotonicNow() { return read(CLOCK_MONOTONIC); }
+
+Nanoseconds threadCpuTime() { return read(CLOCK_THREAD_CPUTIME_ID); }
+
+void sleepUntil(Nanoseconds time) {
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time);
+  timespec t{};
+  t.tv_sec = whole.count();
+  t.tv_nsec = (time - whole).count();
+  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+}
+
+bool PacedClock::mayBegin(std::uint64_t t, Nanoseconds now, std::int64_t backlog) {
+  const Nanoseconds lag = now - due(t) + std::max<std::int64_t>(backlog, 0) * tick;
+  if (lag <= lagAllowed) return true;
+  const Nanoseconds excess = lag - lagAllowed;
+  origin_ += excess;
+  stretched_ += excess;
+  stretchedHere_ += excess;
+  // Waiting helps only where it is the simulation that is behind.
+  return backlog * tick <= lagAllowed;
+}
+
+float PacedClock::finish(std::uint64_t t, Nanoseconds ready) {
+  const bool waited = stretchedHere_ > Nanoseconds(0);
+  const Nanoseconds late = waited ? lagAllowed + stretchedHere_ : std::max(ready - due(t), Nanoseconds(0));
+  largest_ = std::max(largest_, late);
+  stretchedHere_ = Nanoseconds(0);
+  // Only a tick before which the clock was stretched may say so.
+  const float lateness = waited ? seconds(late) : std::min(seconds(late), longestLag);
+  if (lateness > tickDeadline) ++missed_;
+  return lateness;
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/calibration.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/json_reader.h"
+
+namespace calot::recorder {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t mostBytes = 1U << 20U;
+constexpr double large = 1e6;
+
+const ObjectRule rootRule{"",
+                          {{"format"},
+                           {"formatVersion", true, 1, 1},
+                           {"device"},
+                           {"identity"},
+                           {"date"},
+                           {"validDays", true, 1, 3650},
+                           {"passed"},
+                           {"shortcomings"},
+                           {"hands"},
+                           {"latency"},
+                           {"force"},
+                           {"limits"}}};
+const ObjectRule handsRule{"hands", {{"left", false}, {"right", false}}};
+const ObjectRule handRule{"hand",
+                          {{"tipOffset", false, -2, 2},
+                           {"pivotResidual", false, 0, large},
+                           {"scale", false, 0, 1000, true, false},
+                           {"scaleSpread", false, 0, large},
+                           {"axes", false, -1, 1},
+                           {"axesResidual", false, 0, 4},
+                           {"noise", true, 0, large},
+                           {"rate", true, 0, large},
+                           {"jitter", true, 0, large},
+                           {"longInterval", true, 0, large},
+                           {"invalidShare", true, 0, 1}}};
+const ObjectRule limitsRule{"limits",
+                            {{"pivotResidual", true, 0, large},
+                             {"scaleSpread", true, 0, large},
+                             {"axesResidual", true, 0, 4},
+                             {"noise", true, 0, large},
+                             {"rate", true, 0, large},
+                             {"longInterval", true, 0, large},
+                             {"invalidShare", true, 0, 1}}};
+
+// Each pair of key and value once, for writing and for reading.
+template <class Limits, class Visitor>
+void visitLimits(Limits& l, const Visitor& visit) {
+  visit("pivotResidual", l.pivotResidual);
+  visit("scaleSpread", l.scaleSpread);
+  visit("axesResidual", l.axesResidual);
+  visit("noise", l.noise);
+  visit("rate", l.rate);
+  visit("longInterval", l.longInterval);
+  visit("invalidShare", l.invalidShare);
+}
+
+template <class HandValues, class Visitor>
+void visitHand(HandValues& h, const Visitor& visit) {
+  visit("pivotResidual", h.pivotResidual);
+  visit("scale", h.scale);
+  visit("scaleSpread", h.scaleSpread);
+  visit("axesResidual", h.axesResidual);
+  visit("rate", h.rate);
+  visit("jitter", h.jitter);
+  visit("longInterval", h.longInterval);
+  visit("invalidShare", h.invalidShare);
+}
+
+Json jsonOf(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+struct WriteValues {
+  Json& out;
+  void operator()(const char* key, double v) const { out[key] = v; }
+  void operator()(const char* key, const std::optional<double>& v) const {
+    if (v) out[key] = *v;
+  }
+};
+
+struct ReadValues {
+  const JsonObject& in;
+  void operator()(const char* key, double& v) const { in.read(key, v); }
+  void operator()(const char* key, std::optional<double>& v) const {
+    double value = 0.0;
+    if (in.has(key)) {
+      in.read(key, value);
+      v = value;
+    }
+  }
+};
+
+Json jsonOf(const HandCalibration& h) {
+  Json out = Json::object();
+  if (h.tipOffset) out["tipOffset"] = jsonOf(*h.tipOffset);
+  visitHand(h, WriteValues{out});
+  if (h.axes) out["axes"] = Json::array({h.axes->w(), h.axes->x(), h.axes->y(), h.axes->z()});
+  out["noise"] = jsonOf(h.noise);
+  return out;
+}
+
+HandCalibration handOf(const JsonPlace& place) {
+  const JsonObject o = place.object(handRule);
+  HandCalibration h;
+  visitHand(h, ReadValues{o});
+  o.read("noise", h.noise);
+  if (o.has("tipOffset")) {
+    Vec3 offset;
+    o.read("tipOffset", offset);
+    h.tipOffset = offset;
+  }
+  if (o.has("axes")) {
+    const std::vector<JsonPlace> q = o.at("axes").list(4, 4);
+    const KeyRule unit{"", true, -1, 1};
+    const Quat axes(q[0].number(unit), q[1].number(unit), q[2].number(unit), q[3].number(unit));
+    if (!(std::abs(axes.norm() - 1.0) <= 1e-6)) o.at("axes").fail("is no unit quaternion w x y z");
+    h.axes = axes.normalized();
+  }
+  return h;
+}
+
+std::int64_t secondsOf(const std::string& date) {
+  const auto number = [&](std::size_t at, std::size_t length) { return std::stoi(date.substr(at, length)); };
+  const std::chrono::sys_days day = std::chrono::year(number(0, 4)) /
+                                    std::chrono::month(static_cast<unsigned>(number(5, 2))) /
+                                    std::chrono::day(static_cast<unsigned>(number(8, 2)));
+  return std::int64_t{day.time_since_epoch().count()} * 86400 + number(11, 2) * 3600 + number(14, 2) * 60 +
+         number(17, 2);
+}
+
+}  // namespace
+
+bool isDate(const std::string& text) {
+  static const std::string form = "0000-00-00T00:00:00Z";
+  if (text.size() != form.size()) return false;
+  for (std::size_t i = 0; i < form.size(); ++i) {
+    if (form[i] == '0' ? text[i] < '0' || text[i] > '9' : text[i] != form[i]) return false;
+  }
+  const int month = std::stoi(text.substr(5, 2)), day = std::stoi(text.substr(8, 2));
+  return month >= 1 && month <= 12 && day >= 1 && day <= 31 && text.substr(11, 2) < "24" && text[14] < '6' &&
+         text[17] < '6';
+}
+
+std::string presentDate() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+}
+
+std::int64_t ageInDays(const Calibration& calibration, const std::string& now) {
+  const std::int64_t seconds = secondsOf(now) - secondsOf(calibration.date);
+  return seconds >= 0 ? seconds / 86400 : -((-seconds + 86399) / 86400);
+}
+
+std::vector<std::string> shortcomings(const Calibration& calibration) {
+  std::vector<std::string> out;
+  const CalibrationLimits& limit = calibration.limits;
+  bool any = false;
+  for (std::size_t i = 0; i < handCount; ++i) {
+    if (!calibration.hand[i]) continue;
+    any = true;
+    const HandCalibration& h = *calibration.hand[i];
+    const auto above = [&](const char* what, double value, double most, double unit, const char* name) {
+      if (!(value <= most))
+        out.push_back(
+            fmt::format("{} {}: {:.3g} {}, at most {:.3g}", handNames[i], what, value * unit, name, most * unit));
+    };
+    if (h.pivotResidual) above("pivot residual", *h.pivotResidual, limit.pivotResidual, 1e3, "mm");
+    if (h.scaleSpread) above("spread of the strokes' scale", *h.scaleSpread, limit.scaleSpread, 100.0, "%");
+    if (h.axesResidual)
+      above("angle of a stroke to its axis", *h.axesResidual, limit.axesResidual, 57.29577951308232, "deg");
+    above("noise", h.noise.maxCoeff(), limit.noise, 1e3, "mm");
+    above("99th percentile of the intervals", h.longInterval, limit.longInterval, 1e3, "ms");
+    above("invalid samples", h.invalidShare, limit.invalidShare, 100.0, "%");
+    if (!(h.rate >= limit.rate))
+      out.push_back(fmt::format("{} rate: {:.3g} a second, at least {:.3g}", handNames[i], h.rate, limit.rate));
+  }
+  if (!any) out.emplace_back("no hand was measured");
+  return out;
+}
+
+std::string calibrationText(const Calibration& c, bool compact) {
+  const std::vector<std::string> faults = shortcomings(c);
+  Json out{{"format", "calot-calibration"}, {"formatVersion", 1},    {"device", c.device},
+           {"identity", c.identity},        {"date", c.date},        {"validDays", c.validDays},
+           {"passed", faults.empty()},      {"shortcomings", faults}};
+  Json hands = Json::object();
+  for (std::size_t i = 0; i < handCount; ++i) {
+    if (c.hand[i]) hands[handNames[i]] = jsonOf(*c.hand[i]);
+  }
+  out["hands"] = hands;
+  out["latency"] = c.latency;
+  out["force"] = c.force;
+  Json limits = Json::object();
+  visitLimits(c.limits, WriteValues{limits});
+  out["limits"] = limits;
+  return compact ? out.dump() : out.dump(2) + "\n";
+}
+
+Calibration parseCalibration(std::span<const std::byte> bytes, const std::string& file) {
+  const nlohmann::json document = parseStrictJson(bytes, file);
+  const JsonObject root = JsonPlace(document, file).object(rootRule);
+  if (root.at("format").text(64) != "calot-calibration") root.at("format").fail("is not \"calot-calibration\"");
+  std::uint32_t version = 0;
+  root.read("formatVersion", version);
+  Calibration c;
+  root.read("device", c.device, 64);
+  root.read("identity", c.identity, 256);
+  root.read("date", c.date, 32);
+  if (!isDate(c.date)) root.at("date").fail("is no date like 2026-01-31T23:59:59Z");
+  root.read("validDays", c.validDays);
+  root.read("latency", c.latency, 64);
+  root.read("force", c.force, 64);
+  for (const JsonPlace& place : root.at("shortcomings").list(0, 64)) (void)place.text(200);
+  const JsonObject hands = root.at("hands").object(handsRule);
+  for (std::size_t i = 0; i < handCount; ++i) {
+    if (hands.has(handNames[i])) c.hand[i] = handOf(hands.at(handNames[i]));
+  }
+  const JsonObject limits = root.at("limits").object(limitsRule);
+  visitLimits(c.limits, ReadValues{limits});
+  if (root.at("passed").boolean() != shortcomings(c).empty())
+    root.at("passed").fail("does not agree with the values and the limits");
+  return c;
+}
+
+Calibration readCalibration(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return parseCalibration(readFileBytes(file, name, mostBytes), name);
+}
+
+void checkCalibration(const Calibration& c, const DeviceInfo& device, Mode mode, const std::string& now,
+                      const std::string& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ExitCode::no, fmt::format("{}: {}; measure again: calot devices calibrate", file, why));
+  };
+  if (c.device != device.name || c.identity != device.identity)
+    refuse(fmt::format("is of another device ({}, not {})", c.identity, device.identity));
+  if (mode != Mode::assessment) return;
+  const std::vector<std::string> faults = shortcomings(c);
+  if (!faults.empty()) refuse("failed: " + faults.front());
+  const std::int64_t age = ageInDays(c, now);
+  if (age < 0) refuse("is dated in the future");
+  if (age >= std::int64_t{c.validDays}) refuse(fmt::format("expired: {} days old, valid for {}", age, c.validDays));
+  const int measured = static_cast<int>(c.hand[0].has_value()) + static_cast<int>(c.hand[1].has_value());
+  if (measured < device.capabilities.hands)
+    refuse(fmt::format("measured {} of the {} hands that the device drives", measured, device.capabilities.hands));
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was measured of a device, when, and whether that is good enough (schemas/calibration.schema.json).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "recorder/identity.h"
+#include "recorder/sources/devices/device.h"
+
+namespace calot::recorder {
+
+/// Of one hand's tool. What could not be measured with this device is absent.
+struct HandCalibration {
+  std::optional<Vec3> tipOffset;        ///< p_IT: the tool's tip in its sensor's frame (m)
+  std::optional<double> pivotResidual;  ///< root mean square distance of the tip from its dimple (m)
+  std::optional<double> scale;          ///< true length per measured length
+  std::optional<double> scaleSpread;    ///< largest deviation of a stroke's own scale from it, relative
+  std::optional<Quat> axes;             ///< q_CD: D's coordinates to right, down, away
+  std::optional<double> axesResidual;   ///< largest angle between a stroke and its axis (rad)
+  Vec3 noise = Vec3::Zero();            ///< root mean square at rest, each axis of D (m)
+  double rate = 0.0;                    ///< samples a second
+  double jitter = 0.0;                  ///< standard deviation of the intervals (s)
+  double longInterval = 0.0;            ///< their 99th percentile, nearest rank (s)
+  double invalidShare = 0.0;            ///< of all samples
+};
+
+/// What a calibration must reach; stored in it, as limits change.
+struct CalibrationLimits {
+  double pivotResidual = 0.0015;  ///< m
+  double scaleSpread = 0.03;
+  double axesResidual = 0.1;  ///< rad
+  double noise = 0.0005;      ///< m, each axis
+  double rate = 20.0;         ///< samples a second, at least
+  double longInterval = 0.1;  ///< s
+  double invalidShare = 0.02;
+};
+
+struct Calibration {
+  std::string device;    ///< class
+  std::string identity;  ///< DeviceInfo::identity that it belongs to
+  std::string date;      ///< ISO 8601 with Z
+  std::uint32_t validDays = 30;
+  std::array<std::optional<HandCalibration>, handCount> hand;
+  std::string latency = "not measured";  ///< or a time with its unit
+  std::string force = "not applicable";  ///< or the largest error with its unit
+  CalibrationLimits limits;
+};
+
+/// What falls short of the limits, one phrase each; empty: passed. Rate, noise, intervals and invalid share must be
+/// there for one hand at least; what is absent does not count against it.
+std::vector<std::string> shortcomings(const Calibration& calibration);
+
+/// Whole days from its date to `now` (ISO 8601 with Z); negative where it lies in the future.
+/// @pre both are dates as isDate() takes them.
+std::int64_t ageInDays(const Calibration& calibration, const std::string& now);
+/// "2026-01-31T23:59:59Z".
+bool isDate(const std::string& text);
+std::string presentDate();
+
+/// The file's text; what is copied into each recording is its compact form, on one line.
+std::string calibrationText(const Calibration& calibration, bool compact);
+
+/// @throws Error (damaged) with file and JSON pointer.
+Calibration readCalibration(const std::filesystem::path& file);
+Calibration parseCalibration(std::span<const std::byte> bytes, const std::string& file);
+
+/// Whether an attempt may use it. Another device's is never used. Assessment mode also refuses one that fell short, is
+/// out of date or dated in the future, or lacks a hand that the device drives at the same time as others.
+/// @throws Error (no) naming the file and why.
+void checkCalibration(const Calibration& calibration, const DeviceInfo& device, Mode mode, const std::string& now,
+                      const std::string& file);
+
+}  // namespace calot::recorder

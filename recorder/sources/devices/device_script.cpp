@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/device_script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/json_reader.h"
+#include "recorder/sources/kinematics_file.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr std::size_t mostBytes = std::size_t{1} << 28U;
+constexpr std::size_t mostSamples = 1000000;
+constexpr double longest = 36000.0;     // s
+constexpr double farthest = 10.0;       // m
+constexpr double unitTolerance = 1e-3;  // of a quaternion's norm
+constexpr std::size_t sampleNumbers = 12;
+constexpr double nanosecondsPerSecond = 1e9;
+
+const ObjectRule rootRule{"",
+                          {{"format"},
+                           {"formatVersion", true, 1, 1},
+                           {"name"},
+                           {"rate", false, 0, 10000},
+                           {"largestForce", false, 0, 100},
+                           {"samples"},
+                           {"unplug", false},
+                           {"phases", false}}};
+const ObjectRule unplugRule{"unplug", {{"at", true, 0, longest}, {"for", true, 0, longest}}};
+const ObjectRule phaseRule{"phase", {{"name"}, {"from", true, 0, longest}, {"to", true, 0, longest}}};
+
+std::int64_t nanoseconds(double seconds) {
+  return static_cast<std::int64_t>(std::floor(seconds * nanosecondsPerSecond + 0.5));
+}
+
+double seconds(std::int64_t time) { return static_cast<double>(time) / nanosecondsPerSecond; }
+
+DeviceSample sampleAt(const JsonPlace& place, std::array<std::uint64_t, handCount>& sequence) {
+  const std::vector<JsonPlace> item = place.list(sampleNumbers, sampleNumbers);
+  const auto number = [&](std::size_t i, double lower, double upper) {
+    return item[i].number({"", true, lower, upper});
+  };
+  const auto integer = [&](std::size_t i, double upper) { return item[i].integer({"", true, 0, upper}); };
+  DeviceSample s;
+  s.hostTime = s.deviceTime = nanoseconds(number(0, 0, longest));
+  s.hand = static_cast<Hand>(integer(1, handCount - 1));
+  s.sequence = sequence[static_cast<std::size_t>(s.hand)]++;
+  for (int i = 0; i < 3; ++i) s.position[i] = number(2 + static_cast<std::size_t>(i), -farthest, farthest);
+  Quat q(number(5, -2, 2), number(6, -2, 2), number(7, -2, 2), number(8, -2, 2));
+  if (!(std::abs(q.norm() - 1.0) <= unitTolerance)) {
+    place.fail(fmt::format("numbers 6 to 9 are no unit quaternion (norm {:.4g})", q.norm()));
+  }
+  s.orientation = q.normalized();
+  s.gripper = number(9, -4, 4);
+  s.buttons = static_cast<std::uint8_t>(integer(10, 255));
+  s.valid = integer(11, 1) == 1;
+  return s;
+}
+
+DeviceScript parseJson(std::span<const std::byte> bytes, const std::string& file) {
+  const nlohmann::json document = parseStrictJson(bytes, file);
+  const JsonObject root = JsonPlace(document, file).object(rootRule);
+  if (root.at("format").text(64) != "calot-device-script") root.at("format").fail("is not \"calot-device-script\"");
+  std::uint32_t version = 0;
+  root.read("formatVersion", version);
+  DeviceScript script;
+  root.read("name", script.name, 64);
+  root.read("rate", script.rate);
+  root.read("largestForce", script.largestForce);
+  std::array<std::uint64_t, handCount> sequence{};
+  for (const JsonPlace& place : root.at("samples").list(1, mostSamples)) {
+    script.samples.push_back(sampleAt(place, sequence));
+    if (script.samples.size() > 1 &&
+        script.samples.back().hostTime < script.samples[script.samples.size() - 2].hostTime)
+      place.fail("the time lies before that of the sample before it");
+  }
+  if (root.has("unplug")) {
+    for (const JsonPlace& place : root.at("unplug").list(0, 1000)) {
+      const JsonObject o = place.object(unplugRule);
+      double at = 0.0, length = 0.0;
+      o.read("at", at);
+      o.read("for", length);
+      script.unpluggings.push_back({nanoseconds(at), nanoseconds(length)});
+    }
+  }
+  if (root.has("phases")) {
+    for (const JsonPlace& place : root.at("phases").list(0, 100)) {
+      const JsonObject o = place.object(phaseRule);
+      DeviceScript::Phase phase;
+      o.read("name", phase.name, 64);
+      double from = 0.0, to = 0.0;
+      o.read("from", from);
+      o.read("to", to);
+      if (!(from < to)) o.fail("\"to\" is not after \"from\"");
+      phase.from = nanoseconds(from);
+      phase.to = nanoseconds(to);
+      script.phases.push_back(phase);
+    }
+  }
+  return script;
+}
+
+DeviceScript fromMotion(const KinematicsMotion& motion) {
+  DeviceScript script;
+  script.name = "motion";
+  script.motionFile = true;
+  script.rate = kinematicsRowsPerSecond;
+  for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+    for (std::size_t h = 0; h < handCount; ++h) {
+      DeviceSample s;
+      s.hostTime = s.deviceTime = static_cast<std::int64_t>(i) * 1'000'000'000 / kinematicsRowsPerSecond;
+      s.sequence = i;
+      s.hand = static_cast<Hand>(h);
+      s.position = motion.rows[i][h].position;
+      s.orientation = motion.rows[i][h].orientation;
+      s.gripper = std::max(0.0, motion.rows[i][h].gripper);  // below zero is a closed gripper that presses
+      script.samples.push_back(s);
+    }
+  }
+  return script;
+}
+
+}  // namespace
+
+DeviceScript readDeviceScript(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return parseDeviceScript(readFileBytes(file, name, mostBytes), name);
+}
+
+DeviceScript parseDeviceScript(std::span<const std::byte> bytes, const std::string& file) {
+  const auto first = std::find_if(bytes.begin(), bytes.end(), [](std::byte b) {
+    const auto c = static_cast<char>(b);
+    return c != ' ' && c != '\n' && c != '\r' && c != '\t';
+  });
+  if (first == bytes.end()) throw Error(ExitCode::damaged, file + ": the file is empty");
+  DeviceScript script = *first == std::byte{'{'} ? parseJson(bytes, file) : fromMotion(parseKinematics(bytes, file));
+  script.file = file;
+  script.sha256 = sha256Hex(bytes);
+  return script;
+}
+
+std::string deviceScriptText(const DeviceScript& script) {
+  nlohmann::ordered_json out{{"format", "calot-device-script"}, {"formatVersion", 1}, {"name", script.name}};
+  out["rate"] = script.rate;
+  out["largestForce"] = script.largestForce;
+  for (const DeviceScript::Phase& p : script.phases) {
+    out["phases"].push_back({{"name", p.name}, {"from", seconds(p.from)}, {"to", seconds(p.to)}});
+  }
+  for (const DeviceScript::Unplugging& u : script.unpluggings) {
+    out["unplug"].push_back({{"at", seconds(u.at)}, {"for", seconds(u.length)}});
+  }
+  std::string text = out.dump(2);
+  text.resize(text.rfind('\n'));  // without the closing brace: the samples follow, one to a line
+  text += ",\n  \"samples\": [";
+  bool first = true;
+  for (const DeviceSample& s : script.samples) {
+    text += fmt::format("{}\n    [{:.9f}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}]", first ? "" : ",",
+                        seconds(s.hostTime), static_cast<int>(s.hand), s.position.x(), s.position.y(), s.position.z(),
+                        s.orientation.w(), s.orientation.x(), s.orientation.y(), s.orientation.z(), s.gripper,
+                        s.buttons, s.valid ? 1 : 0);
+    first = false;
+  }
+  return text + "\n  ]\n}\n";
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/device_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "recorder/errors.h"
+#include "recorder/sources/pointing.h"
+#include "sim/math/floating_point.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr std::int64_t tickNanoseconds = 1'000'000;
+constexpr std::int64_t secondHand = 500'000'000;  // ns that the other hand is waited for
+constexpr std::size_t mostRaw = 1000000;
+constexpr std::size_t mostTold = 100;
+
+}  // namespace
+
+DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescription& scene, DeviceSourceSettings settings)
+    : settings_(std::move(settings)), camera_(scene.camera), device_(std::move(device)) {
+  const DeviceInfo& info = device_->info();
+  provenance_.kind = info.operatorKind;
+  provenance_.device = info.name;
+  if (info.operatorKind == OperatorKind::performer) {
+    provenance_.profile = info.name;
+    provenance_.profileVersion = std::string("1");
+  }
+  provenance_.sourceFile = info.sourceFile;
+  provenance_.sourceSha256 = info.sourceSha256;
+  if (settings_.calibration) provenance_.calibration = calibrationText(*settings_.calibration, true);
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const auto of = [&](std::size_t which) {
+      return settings_.calibration && settings_.calibration->hand[which] ? &*settings_.calibration->hand[which]
+                                                                         : nullptr;
+    };
+    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false};
+    state.held.position = scene.hands[h].home;
+    state.held.orientation = pointing(scene.hands[h].port, scene.hands[h].home);
+    state.held.instrument = InstrumentKind::none;
+    state.held.valid = false;
+    hand_.push_back(state);
+  }
+  if (!settings_.tickClock) pump_ = std::make_unique<DevicePump>(*device_);
+}
+
+DeviceSource::~DeviceSource() {
+  pump_.reset();
+  device_->close();
+}
+
+std::int64_t DeviceSource::now() const {
+  return settings_.tickClock ? settings_.tickClock->now : monotonicNanoseconds();
+}
+
+void DeviceSource::gather() {
+  input_.samples.clear();
+  input_.events.clear();
+  if (pump_) {
+    pump_->drain(input_);
+  } else {
+    device_->poll(std::chrono::nanoseconds(0), input_);
+  }
+  ended_ = pump_ ? pump_->ended() : device_->ended();
+  for (const DeviceEvent& event : input_.events) {
+    if (counts_.told.size() < mostTold) counts_.told.push_back(event.text);
+    if (event.kind == DeviceEvent::Kind::disconnected) {
+      if (lost_.empty() && begun_) {
+        ++counts_.losses;
+        failed_ = failed_ || settings_.mode == Mode::assessment;
+        for (HandState& hand : hand_) hand.anchorAgain = hand.mapping.anchored();
+      }
+      lost_ = event.text;
+    } else if (event.kind == DeviceEvent::Kind::connected) {
+      // What failed stays failed, and keeps its reason.
+      if (!failed_) lost_.clear();
+    }
+  }
+  for (const DeviceSample& sample : input_.samples) {
+    ++counts_.samples;
+    if (!sample.valid)
+      ++counts_.invalid;
+    else
+      hand_[static_cast<std::size_t>(sample.hand)].newest = sample;
+  }
+  // What came before the attempt is no part of it.
+  if (begun_) raw_.insert(raw_.end(), input_.samples.begin(), input_.samples.end());
+  if (raw_.size() > mostRaw) raw_.erase(raw_.begin(), raw_.end() - static_cast<std::ptrdiff_t>(mostRaw));
+}
+
+void DeviceSource::waitForFirst(double seconds, const std::atomic<bool>* stop) {
+  const std::int64_t begin = now();
+  std::int64_t first = -1;
+  for (;;) {
+    gather();
+    const auto seen =
+        std::count_if(hand_.begin(), hand_.end(), [](const HandState& h) { return h.newest.has_value(); });
+    if (seen >= device_->info().capabilities.hands) return;
+    const std::int64_t t = now();
+    if (seen > 0 && first < 0) first = t;
+    if (first >= 0 && t - first >= secondHand) return;
+    if (stop != nullptr && *stop)
+      throw Error(ExitCode::failure, fmt::format("{}: stopped before the first sample", provenance_.device));
+    if (ended_ || static_cast<double>(t - begin) >= 1e9 * seconds) {
+      throw Error(ExitCode::failure, fmt::format("{}: no valid sample of any hand{}: {}", provenance_.device,
+                                                 ended_ ? "" : fmt::format(" within {:g} s", seconds),
+                                                 lost_.empty() ? device_->info().detail : lost_));
+    }
+    if (settings_.tickClock)
+      settings_.tickClock->now += tickNanoseconds;
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+void DeviceSource::fill(HandState& hand, InstrumentSample& out) {
+  if (hand.newest) {
+    const DeviceSample& sample = *hand.newest;
+    const bool fresh = lost_.empty() && static_cast<double>(now() - sample.hostTime) <= 1e9 * settings_.staleAfter;
+    const bool clutch = (sample.buttons & clutchButton) != 0;
+    if (fresh) {
+      if (!hand.mapping.anchored()) {
+        hand.mapping.anchorAtHome(sample);
+      } else if (hand.anchorAgain || (hand.clutched && !clutch)) {
+        hand.mapping.anchor(sample, hand.held.position, hand.held.orientation);
+      }
+      hand.anchorAgain = false;
+      hand.clutched = clutch;
+      if (!clutch) hand.held = hand.mapping.map(sample);
+    }
+    hand.held.valid = fresh;
+  }
+  out = hand.held;
+}
+
+bool DeviceSource::next(std::uint64_t, TickSamples& out) {
+  const FloatingPointScope environment;
+  begun_ = true;
+  gather();
+  if (ended_ && input_.samples.empty()) return false;
+  TickSamples samples;
+  for (std::size_t h = 0; h < handCount; ++h) fill(hand_[h], samples.hand[h]);
+  samples.camera = camera_;
+  out = roundedToGrid(samples);
+  if (settings_.tickClock) settings_.tickClock->now += tickNanoseconds;
+  return true;
+}
+
+SourceStatus DeviceSource::status() {
+  if (!lost_.empty() && settings_.mode == Mode::assessment) failed_ = true;
+  if (!lost_.empty() && !failed_) {
+    if (settings_.tickClock) settings_.tickClock->now += tickNanoseconds;
+    gather();
+  }
+  if (failed_) return SourceStatus::failed;
+  return lost_.empty() ? SourceStatus::ok : SourceStatus::paused;
+}
+
+void DeviceSource::feedback(const std::array<Wrench, handCount>& inWorld) {
+  if (device_->info().capabilities.actuated == 0) return;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const Wrench wrench{hand_[h].mapping.inDevice(inWorld[h].force), hand_[h].mapping.inDevice(inWorld[h].torque)};
+    if (pump_)
+      pump_->setWrench(static_cast<Hand>(h), wrench);
+    else
+      device_->setWrench(static_cast<Hand>(h), wrench);
+  }
+}
+
+std::vector<DeviceSample> DeviceSource::rawSamples() { return std::exchange(raw_, {}); }
+
+}  // namespace calot::recorder

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recorder/sources/devices/device_mapping.h"
+#include "recorder/sources/devices/device_pump.h"
+#include "recorder/sources/source.h"
+
+namespace calot::recorder {
+
+/// The clock of a device without real time: a tick is a millisecond of it.
+struct TickClock {
+  std::int64_t now = 0;  ///< ns
+};
+
+struct DeviceSourceSettings {
+  std::optional<Calibration> calibration;
+  Mode mode = Mode::practice;
+  double staleAfter = 0.1;  ///< s; a hand whose newest valid sample is older is not measured
+  /// Set: the device is polled by next() itself, on this clock. Not set: on a thread of its own, on the host's clock.
+  std::shared_ptr<TickClock> tickClock;
+};
+
+/// What came from the device; for the report.
+struct DeviceCounts {
+  std::uint64_t samples = 0;
+  std::uint64_t invalid = 0;
+  std::uint64_t losses = 0;       ///< how often it was gone
+  std::vector<std::string> told;  ///< its events, one line each, the first 100
+};
+
+/// An attempt by a device. Each tick takes the newest valid sample of each hand, mapped into the scene (DeviceMapping)
+/// and held until a newer one comes; the tick says that the hand is not measured where that sample is older than
+/// `staleAfter`, or the device is gone. Each hand is anchored when the attempt begins, so that its instrument starts at
+/// the scene's home; when a clutch is let go; and when the device was gone, so that nothing jumps.
+///
+/// A hand that the device has not driven yet has no instrument: checkpoints of it, and of both hands, are not
+/// applicable.
+///
+/// The device gone: practice pauses until it is back; an assessment fails (SourceStatus).
+class DeviceSource final : public SampleSource {
+ public:
+  /// The calibration must be one that checkCalibration accepts.
+  DeviceSource(std::unique_ptr<Device> device, const SceneDescription& scene, DeviceSourceSettings settings);
+  ~DeviceSource() override;
+
+  /// Waits until every hand that the device drives at once was seen, or half a second has passed since the first was.
+  /// @param stop ends the waiting. @throws Error (failure) where no hand was seen after `seconds`, naming the device
+  /// and why.
+  void waitForFirst(double seconds, const std::atomic<bool>* stop = nullptr);
+
+  [[nodiscard]] const Provenance& provenance() const override { return provenance_; }
+  bool next(std::uint64_t tick, TickSamples& out) override;
+  SourceStatus status() override;
+  [[nodiscard]] std::string statusText() const override { return lost_; }
+  /// What the hands shall feel; for devices with motors.
+  void feedback(const std::array<Wrench, handCount>& inWorld);
+
+  /// Raw samples since the last call, in the order of arrival: provenance for the recording. Of a source that has run
+  /// long without being asked, the newest million.
+  std::vector<DeviceSample> rawSamples();
+
+  [[nodiscard]] const DeviceCounts& counts() const { return counts_; }
+  [[nodiscard]] const Device& device() const { return *device_; }
+
+ private:
+  struct HandState {
+    DeviceMapping mapping;
+    std::optional<DeviceSample> newest;  ///< valid
+    InstrumentSample held;
+    bool anchorAgain = false;
+    bool clutched = false;
+  };
+  void gather();
+  [[nodiscard]] std::int64_t now() const;
+  void fill(HandState& hand, InstrumentSample& out);
+
+  DeviceSourceSettings settings_;
+  Provenance provenance_;
+  CameraSample camera_;
+  std::vector<HandState> hand_;
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<DevicePump> pump_;  ///< after the device: it ends first
+  std::vector<DeviceSample> raw_;
+  DeviceCounts counts_;
+  DeviceInput input_;
+  std::string lost_;     ///< why the device is gone; empty: it is there
+  bool failed_ = false;  ///< an assessment lost its device
+  bool begun_ = false, ended_ = false;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "recorder/sources/devices/device.h"
+
+namespace calot::recorder {
+
+/// A gamepad as one pointer: its sticks are speeds, so that an instrument stands where they are let go.
+///
+/// D is x right, y down, z away. Left stick: x and y. Right trigger or right stick up: away; left trigger or right
+/// stick down: back. Shoulders or right stick across: roll. Hat up and down: the jaw opens and closes. A fires, B
+/// locks, X cuts, Y coagulates. Start passes the pointer to the other hand; the hand it leaves stands still and is not
+/// measured. Full deflection is 60 mm/s, 1.5 rad/s, 1.2 rad/s; speed grows with the square of the deflection beyond a
+/// dead zone of 12 %.
+class GamepadDevice final : public Device {
+ public:
+  /// Takes the first gamepad whose name contains `name` (empty: any).
+  /// @throws Error (failure) where there is none, or where the system's gamepads cannot be asked.
+  explicit GamepadDevice(const std::string& name = "", DeviceClock clock = monotonicNanoseconds);
+  ~GamepadDevice() override;
+
+  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
+  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
+  [[nodiscard]] bool connected() const override;
+  void close() override;
+
+ private:
+  struct Sdl;
+  struct Pointer {
+    Vec3 position = Vec3::Zero();
+    double roll = 0.0, jaw = 0.0;
+  };
+  void emit(std::int64_t now, double seconds, DeviceInput& out);
+
+  std::unique_ptr<Sdl> sdl_;
+  DeviceInfo info_;
+  DeviceClock clock_;
+  std::array<Pointer, handCount> pointer_;
+  std::array<std::uint64_t, handCount> sequence_{};
+  Hand hand_ = Hand::right;
+  bool switching_ = false;        ///< Start was held at the last sample
+  std::int64_t last_ = 0;         ///< time of the last sample (ns)
+  std::int64_t nextAttempt_ = 0;  ///< to find it again (ns)
+  bool greeted_ = false;
+};
+
+/// Names of the gamepads that are attached. @throws Error (failure) where the system cannot be asked.
+std::vector<std::string> listGamepads();
+
+}  // namespace calot::recorder

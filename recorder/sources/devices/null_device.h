@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "recorder/sources/devices/device.h"
+
+namespace calot::recorder {
+
+/// A device that never moves: both hands rest at D's origin, a sample a millisecond of the tick clock. It measures what
+/// a run costs, and what the simulation does untouched.
+class NullDevice final : public Device {
+ public:
+  /// @param clock of its samples (ns).
+  explicit NullDevice(DeviceClock clock);
+
+  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
+  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
+  [[nodiscard]] bool connected() const override { return open_; }
+  void close() override { open_ = false; }
+
+ private:
+  DeviceInfo info_;
+  DeviceClock clock_;
+  std::int64_t next_;  ///< time of the next sample (ns)
+  std::uint64_t sequence_ = 0;
+  bool open_ = true;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/openigtlink_device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+namespace calot::recorder {
+namespace {
+
+using openigtlink::Item;
+
+constexpr std::int64_t between = 500'000'000;  // ns from one attempt to connect to the next
+constexpr std::chrono::milliseconds patience{300};
+constexpr std::size_t mostFaults = 16;  // kinds of fault told a connection
+constexpr double largestGripper = 3.2;  // rad
+constexpr int statusOk = 1;
+
+}  // namespace
+
+OpenIgtLinkDevice::OpenIgtLinkDevice(OpenIgtLinkSettings settings, DeviceClock clock)
+    : settings_(std::move(settings)), clock_(std::move(clock)) {
+  info_.name = "openigtlink";
+  info_.identity = fmt::format("openigtlink:{}/{},{}", settings_.host, settings_.tool[0], settings_.tool[1]);
+  info_.detail = fmt::format("server {}:{}, tools \"{}\" and \"{}\"", settings_.host, settings_.port, settings_.tool[0],
+                             settings_.tool[1]);
+  info_.capabilities.hands =
+      static_cast<int>(!settings_.tool[0].empty()) + static_cast<int>(!settings_.tool[1].empty());
+  info_.capabilities.sensesGripper = true;
+}
+
+void OpenIgtLinkDevice::close() {
+  open_ = false;
+  stream_.close();
+}
+
+void OpenIgtLinkDevice::connect(DeviceInput& out) {
+  std::string fault;
+  stream_ = TcpStream::connect(settings_.host, settings_.port, patience, fault);
+  nextAttempt_ = clock_() + between;
+  if (stream_.open()) {
+    decoder_.reset();
+    told_.clear();
+    refusal_.clear();
+    gripper_.fill(0.0);
+    out.events.push_back({DeviceEvent::Kind::connected, clock_(),
+                          fmt::format("openigtlink {}:{}: connected", settings_.host, settings_.port)});
+  } else if (fault != refusal_) {
+    refusal_ = fault;
+    out.events.push_back({DeviceEvent::Kind::disconnected, clock_(),
+                          fmt::format("openigtlink {}:{}: {}", settings_.host, settings_.port, fault)});
+  }
+}
+
+void OpenIgtLinkDevice::lose(const std::string& why, DeviceInput& out) {
+  stream_.close();
+  nextAttempt_ = clock_() + between;
+  out.events.push_back({DeviceEvent::Kind::disconnected, clock_(),
+                        fmt::format("openigtlink {}:{}: {}", settings_.host, settings_.port, why)});
+}
+
+void OpenIgtLinkDevice::tellOnce(const std::string& fault, DeviceInput& out) {
+  if (told_.size() >= mostFaults || !told_.insert(fault).second) return;
+  out.events.push_back({DeviceEvent::Kind::malformed, clock_(), "openigtlink: " + fault});
+}
+
+void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
+  if (item.kind == Item::Kind::unknown) return;
+  if (item.kind == Item::Kind::status) {
+    if (item.code != statusOk) {
+      const std::string text = fmt::format("the server says: status {} {}", item.code, item.text);
+      if (told_.size() < mostFaults && told_.insert(text).second)
+        out.events.push_back({DeviceEvent::Kind::status, clock_(), "openigtlink: " + text});
+    }
+    return;
+  }
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const std::string& tool = settings_.tool[h];
+    if (tool.empty()) continue;
+    if (item.kind == Item::Kind::number) {
+      if (item.name != tool + "Jaw") continue;
+      if (std::isfinite(item.value) && std::abs(item.value) <= largestGripper)
+        gripper_[h] = std::max(0.0, item.value);
+      else
+        tellOnce(fmt::format("{}: an opening that is no angle", item.name), out);
+      return;
+    }
+    if (item.name != tool) continue;
+    DeviceSample sample;
+    sample.hand = static_cast<Hand>(h);
+    sample.sequence = sequence_[h]++;
+    sample.hostTime = clock_();
+    sample.deviceTime = item.time;
+    sample.valid = item.kind == Item::Kind::pose && item.rotation;
+    sample.position = item.position;
+    sample.orientation = item.orientation;
+    sample.gripper = gripper_[h];
+    out.samples.push_back(sample);
+    if (item.kind == Item::Kind::pose && !item.rotation)
+      tellOnce(fmt::format("{}: a pose that is not finite, too far, or no rotation", item.name), out);
+    break;
+  }
+  if (item.kind == Item::Kind::fault) tellOnce(item.text, out);
+}
+
+void OpenIgtLinkDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
+  if (!open_) return;
+  if (!stream_.open()) {
+    if (clock_() < nextAttempt_) {
+      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
+      return;
+    }
+    connect(out);
+    if (!stream_.open()) return;
+  }
+  if (wait.count() > 0 && !stream_.readable(wait)) return;
+  std::array<std::byte, 65536> buffer;
+  // Bounded, so that a sender that never stops cannot hold the thread.
+  for (int i = 0; i < 16; ++i) {
+    const std::size_t n = stream_.receive(buffer);
+    if (n == 0) break;
+    if (!decoder_.take(std::span(buffer.data(), n), [&](const Item& item) { take(item, out); })) {
+      lose("disconnected: what the server sends is no OpenIGTLink", out);
+      return;
+    }
+  }
+  if (!stream_.open()) lose("the server is gone", out);
+}
+
+}  // namespace calot::recorder

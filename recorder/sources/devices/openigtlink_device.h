@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <set>
+#include <string>
+
+#include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/openigtlink_wire.h"
+#include "recorder/sources/devices/tcp.h"
+
+namespace calot::recorder {
+
+struct OpenIgtLinkSettings {
+  std::string host = "localhost";
+  int port = openigtlink::defaultPort;
+  /// Names of the tools that drive the left and the right hand; an empty name: that hand has none.
+  std::array<std::string, handCount> tool{"LeftTool", "RightTool"};
+};
+
+/// Client of an OpenIGTLink server (3D Slicer, PLUS, `calot devices serve`): poses of named tools by TRANSFORM, TDATA
+/// or QTDATA; the opening of a tool's gripper (rad) by SENSOR with the tool's name and "Jaw" behind it; STATUS is told
+/// as an event. Other messages and tools are passed over.
+///
+/// Connects at the first poll and again after a loss, every half second. Malformed input is counted as an invalid
+/// sample where it names one of the tools, told once a kind, and never more than that; a stream that is no OpenIGTLink
+/// is disconnected.
+class OpenIgtLinkDevice final : public Device {
+ public:
+  explicit OpenIgtLinkDevice(OpenIgtLinkSettings settings, DeviceClock clock = monotonicNanoseconds);
+
+  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
+  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
+  [[nodiscard]] bool connected() const override { return stream_.open(); }
+  void close() override;
+
+ private:
+  void connect(DeviceInput& out);
+  void lose(const std::string& why, DeviceInput& out);
+  void take(const openigtlink::Item& item, DeviceInput& out);
+  void tellOnce(const std::string& fault, DeviceInput& out);
+
+  OpenIgtLinkSettings settings_;
+  DeviceInfo info_;
+  DeviceClock clock_;
+  TcpStream stream_;
+  openigtlink::Decoder decoder_;
+  std::array<std::uint64_t, handCount> sequence_{};
+  std::array<double, handCount> gripper_{};
+  std::set<std::string> told_;    ///< faults of this connection
+  std::string refusal_;           ///< why the last attempt to connect failed; told when it changes
+  std::int64_t nextAttempt_ = 0;  ///< ns
+  bool open_ = true;
+};
+
+}  // namespace calot::recorder

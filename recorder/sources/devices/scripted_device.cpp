@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/scripted_device.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace calot::recorder {
+
+ScriptedDevice::ScriptedDevice(DeviceScript script, DeviceClock clock)
+    : script_(std::move(script)),
+      clock_(std::move(clock)),
+      gate_{WrenchGate(script_.largestForce, 0.0), WrenchGate(script_.largestForce, 0.0)},
+      origin_(clock_()) {
+  std::sort(script_.unpluggings.begin(), script_.unpluggings.end(),
+            [](const auto& a, const auto& b) { return a.at < b.at; });
+  info_.name = "scripted";
+  info_.identity = "scripted:" + script_.name;
+  info_.detail = "plays " + script_.file;
+  info_.operatorKind = script_.motionFile ? OperatorKind::kinematics : OperatorKind::performer;
+  info_.sourceFile = script_.file;
+  info_.sourceSha256 = script_.sha256;
+  std::array<bool, handCount> hand{};
+  for (const DeviceSample& s : script_.samples) hand[static_cast<std::size_t>(s.hand)] = true;
+  info_.capabilities.hands = static_cast<int>(hand[0]) + static_cast<int>(hand[1]);
+  info_.capabilities.sensesGripper = true;
+  info_.capabilities.actuated = script_.largestForce > 0.0 ? 3 : 0;
+  info_.capabilities.largestForce = script_.largestForce;
+  info_.capabilities.rate = script_.rate;
+  info_.capabilities.realTime = false;
+}
+
+void ScriptedDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
+  if (!open_) return;
+  const std::int64_t now = clock_();
+  if (!greeted_) {
+    greeted_ = connected_ = true;
+    out.events.push_back({DeviceEvent::Kind::connected, now, info_.identity + ": there"});
+  }
+  for (;;) {
+    const bool more = unplugging_ < script_.unpluggings.size();
+    const std::int64_t gone = more ? origin_ + script_.unpluggings[unplugging_].at : now + 1;
+    const std::int64_t back = more ? gone + script_.unpluggings[unplugging_].length : gone;
+    const std::int64_t until = std::min(now, gone - 1);
+    for (; next_ < script_.samples.size() && origin_ + script_.samples[next_].hostTime <= until; ++next_) {
+      out.samples.push_back(script_.samples[next_]);
+      out.samples.back().hostTime += origin_;
+    }
+    if (now < gone) return;
+    if (connected_) {
+      connected_ = false;
+      out.events.push_back({DeviceEvent::Kind::disconnected, gone, info_.identity + ": unplugged"});
+    }
+    if (now < back) return;
+    origin_ += script_.unpluggings[unplugging_].length;
+    ++unplugging_;
+    connected_ = true;
+    out.events.push_back({DeviceEvent::Kind::connected, back, info_.identity + ": there again"});
+  }
+}
+
+void ScriptedDevice::setWrench(Hand hand, const Wrench& wrench) {
+  gate_[static_cast<std::size_t>(hand)].command(wrench, clock_());
+}
+
+Wrench ScriptedDevice::shown(Hand hand) const {
+  if (!connected_) return {};
+  return gate_[static_cast<std::size_t>(hand)].output(clock_());
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/device_script.h"
+#include "recorder/sources/devices/wrench_gate.h"
+
+namespace calot::recorder {
+
+/// Plays a script on the clock that it is given: the same motion, the same unplugging, at the same ticks every time.
+/// While it is unplugged its script stands still, as a hand waits when nothing moves any more.
+class ScriptedDevice final : public Device {
+ public:
+  /// @param clock (ns); the script begins when the device is made.
+  ScriptedDevice(DeviceScript script, DeviceClock clock);
+
+  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
+  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
+  [[nodiscard]] bool connected() const override { return connected_; }
+  [[nodiscard]] bool ended() const override { return next_ == script_.samples.size(); }
+  void setWrench(Hand hand, const Wrench& wrench) override;
+  void close() override { open_ = connected_ = false; }
+
+  /// What its motors show now; zero where the script gives it none.
+  [[nodiscard]] Wrench shown(Hand hand) const;
+
+ private:
+  DeviceScript script_;
+  DeviceInfo info_;
+  DeviceClock clock_;
+  std::array<WrenchGate, handCount> gate_;
+  std::int64_t origin_;   ///< clock at the script's time 0; moves on with every unplugging
+  std::size_t next_ = 0;  ///< sample
+  std::size_t unplugging_ = 0;
+  bool connected_ = false, open_ = true, greeted_ = false;
+};
+
+}  // namespace calot::recorder

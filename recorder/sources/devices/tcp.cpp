@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/tcp.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "recorder/errors.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr std::chrono::milliseconds longestSend{1000};
+
+bool waitFor(int descriptor, short what, std::chrono::nanoseconds wait) {
+  pollfd p{descriptor, what, 0};
+  const auto whole = std::max<std::int64_t>(0, wait.count());
+  const timespec t{static_cast<time_t>(whole / 1'000'000'000), static_cast<long>(whole % 1'000'000'000)};
+  return ppoll(&p, 1, &t, nullptr) > 0;
+}
+
+int tryAddress(const addrinfo& a, std::chrono::milliseconds wait, int& fault) {
+  const int d = socket(a.ai_family, a.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, a.ai_protocol);
+  if (d < 0) {
+    fault = errno;
+    return -1;
+  }
+  if (connect(d, a.ai_addr, a.ai_addrlen) < 0) {
+    fault = errno;
+    if (fault == EINPROGRESS) {
+      socklen_t length = sizeof fault;
+      if (!waitFor(d, POLLOUT, wait)) {
+        fault = ETIMEDOUT;
+      } else if (getsockopt(d, SOL_SOCKET, SO_ERROR, &fault, &length) < 0) {
+        fault = errno;
+      }
+    }
+    if (fault != 0) {
+      ::close(d);
+      return -1;
+    }
+  }
+  const int on = 1;
+  setsockopt(d, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  return d;
+}
+
+}  // namespace
+
+TcpStream& TcpStream::operator=(TcpStream&& o) noexcept {
+  if (this != &o) {
+    close();
+    descriptor_ = std::exchange(o.descriptor_, -1);
+  }
+  return *this;
+}
+
+TcpStream TcpStream::connect(const std::string& host, int port, std::chrono::milliseconds wait, std::string& fault) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  addrinfo* list = nullptr;
+  const int found = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
+  if (found != 0) {
+    fault = gai_strerror(found);
+    return {};
+  }
+  int number = 0, descriptor = -1;
+  for (const addrinfo* a = list; a != nullptr && descriptor < 0; a = a->ai_next)
+    descriptor = tryAddress(*a, wait, number);
+  freeaddrinfo(list);
+  if (descriptor < 0) fault = std::strerror(number);
+  return TcpStream(descriptor);
+}
+
+bool TcpStream::readable(std::chrono::nanoseconds wait) const { return open() && waitFor(descriptor_, POLLIN, wait); }
+
+std::size_t TcpStream::receive(std::span<std::byte> buffer) {
+  if (!open() || buffer.empty()) return 0;
+  const ssize_t n = recv(descriptor_, buffer.data(), buffer.size(), MSG_DONTWAIT);
+  if (n > 0) return static_cast<std::size_t>(n);
+  if (n == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) close();
+  return 0;
+}
+
+bool TcpStream::send(std::span<const std::byte> bytes) {
+  while (open() && !bytes.empty()) {
+    const ssize_t n = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n > 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(n));
+    } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+      if (!waitFor(descriptor_, POLLOUT, longestSend)) close();
+    } else if (n < 0 && errno == EINTR) {
+      continue;
+    } else {
+      close();
+    }
+  }
+  return open();
+}
+
+void TcpStream::close() {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+}
+
+TcpListener::TcpListener(int port) {
+  descriptor_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  socklen_t length = sizeof address;
+  auto* generic = reinterpret_cast<sockaddr*>(&address);
+  if (descriptor_ < 0 || setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) < 0 ||
+      bind(descriptor_, generic, length) < 0 || listen(descriptor_, 4) < 0 ||
+      getsockname(descriptor_, generic, &length) < 0) {
+    const std::string why = std::strerror(errno);
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw Error(ExitCode::failure, fmt::format("port {}: {}; give another one, or 0 for any", port, why));
+  }
+  port_ = ntohs(address.sin_port);
+}
+
+TcpListener::~TcpListener() { ::close(descriptor_); }
+
+std::optional<TcpStream> TcpListener::accept(std::chrono::milliseconds wait) {
+  if (!waitFor(descriptor_, POLLIN, wait)) return std::nullopt;
+  const int d = accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  if (d < 0) return std::nullopt;
+  const int on = 1;
+  setsockopt(d, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  return TcpStream(d);
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stream sockets that never block longer than asked and never raise a signal. Internal to this folder.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace calot::recorder {
+
+/// A connected stream. Nothing throws: a connection that breaks is closed, and is asked for that.
+class TcpStream {
+ public:
+  TcpStream() = default;
+  explicit TcpStream(int descriptor) : descriptor_(descriptor) {}
+  ~TcpStream() { close(); }
+  TcpStream(TcpStream&& o) noexcept : descriptor_(o.descriptor_) { o.descriptor_ = -1; }
+  TcpStream& operator=(TcpStream&& o) noexcept;
+
+  /// @returns a stream that is not open where nobody answered within `wait`; `fault` then says why.
+  static TcpStream connect(const std::string& host, int port, std::chrono::milliseconds wait, std::string& fault);
+
+  [[nodiscard]] bool open() const { return descriptor_ >= 0; }
+  /// Waits for something to read. @returns false after `wait`.
+  [[nodiscard]] bool readable(std::chrono::nanoseconds wait) const;
+  /// What is there, at most the buffer; 0: nothing now. Closes where the other side has.
+  std::size_t receive(std::span<std::byte> buffer);
+  /// All or nothing within a second; closes and returns false where that fails.
+  bool send(std::span<const std::byte> bytes);
+  void close();
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// Listens on this machine alone (127.0.0.1).
+class TcpListener {
+ public:
+  /// @param port 0: any that is free. @throws Error (failure) where the port is taken.
+  explicit TcpListener(int port);
+  ~TcpListener();
+  TcpListener(const TcpListener&) = delete;
+  TcpListener& operator=(const TcpListener&) = delete;
+
+  [[nodiscard]] int port() const { return port_; }
+  /// @returns nothing after `wait`.
+  std::optional<TcpStream> accept(std::chrono::milliseconds wait);
+
+ private:
+  int descriptor_ = -1;
+  int port_ = 0;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "recorder/sources/devices/device.h"
+
+namespace calot::recorder {
+
+/// Stands before a motor: no more than it can do, nothing that is not finite, and nothing that nobody renews. A loop
+/// that hangs must not leave a hand under force.
+class WrenchGate {
+ public:
+  static constexpr std::int64_t watchdog = 50'000'000;  ///< ns without a command after which the wrench is zero
+
+  /// @param largestForce N; @param largestTorque N m; both at least 0.
+  WrenchGate(double largestForce, double largestTorque) : force_(largestForce), torque_(largestTorque) {}
+
+  /// Force and torque are shortened to their largest length, keeping their direction; what is not finite becomes zero.
+  void command(const Wrench& wrench, std::int64_t now);
+
+  /// What the motors shall show now.
+  [[nodiscard]] Wrench output(std::int64_t now) const;
+
+ private:
+  double force_, torque_;
+  Wrench wrench_;
+  std::int64_t commanded_ = 0;
+  bool any_ = false;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/contact/triangle_lanes.h"
+
+#include <algorithm>
+
+namespace calot {
+
+namespace {
+
+#define CALOT_INLINE inline __attribute__((always_inline))
+
+/// One lane's vector. Every function below is the scalar one of closest_point.h without branches, its operations in
+/// the same order (a dot product is x + (y + z)), so that a compiler can run a loop over lanes as vectors.
+struct V {
+  double x, y, z;
+};
+CALOT_INLINE V operator-(const V& a, const V& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+CALOT_INLINE V operator+(const V& a, const V& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+CALOT_INLINE V operator*(double s, const V& a) { return {s * a.x, s * a.y, s * a.z}; }
+CALOT_INLINE double dot(const V& a, const V& b) { return a.x * b.x + (a.y * b.y + a.z * b.z); }
+CALOT_INLINE double square(const V& a) { return dot(a, a); }
+CALOT_INLINE V cross(const V& a, const V& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+CALOT_INLINE double least(double a, double b) { return a < b ? a : b; }
+
+/// Squared distance of p from segment a-b.
+CALOT_INLINE double fromSegment(const V& p, const V& a, const V& b) {
+  const V ab = b - a;
+  const double length2 = dot(ab, ab);
+  const double u = dot(ab, p - a) / length2;
+  const double low = u < 0.0 ? 0.0 : u;
+  const double clamped = low > 1.0 ? 1.0 : low;
+  const double used = length2 > 0.0 ? clamped : 0.0;
+  return square(p - (a + used * ab));
+}
+
+/// Squared distance of p from triangle abc.
+CALOT_INLINE double fromTriangle(const V& p, const V& a, const V& b, const V& c) {
+  const V ab = b - a;
+  const V ac = c - a;
+  const V ap = p - a;
+  const V bp = p - b;
+  const V cp = p - c;
+  const double d1 = dot(ab, ap);
+  const double d2 = dot(ac, ap);
+  const double d3 = dot(ab, bp);
+  const double d4 = dot(ac, bp);
+  const double d5 = dot(ab, cp);
+  const double d6 = dot(ac, cp);
+  const V normal = cross(ab, ac);
+  const double area2 = square(normal);
+  const double wc = dot(normal, cross(ab, ap));
+  const double wb = dot(normal, cross(ap, ac));
+  const double wa = dot(normal, cross(c - b, bp));
+  const double sum = wa + wb + wc;
+  const V foot = ((wa / sum) * a + (wb / sum) * b) + (wc / sum) * c;
+  const double face = square(p - foot);
+  double edges = 1e300;
+  edges = least(fromSegment(p, a, b), edges);
+  edges = least(fromSegment(p, b, c), edges);
+  edges = least(fromSegment(p, c, a), edges);
+  const bool plane = area2 > 1e-20 * square(ab) * square(ac);
+  const bool over = (wa > 0.0) & (wb > 0.0) & (wc > 0.0);
+  double r = (plane & over) ? face : edges;
+  r = ((d6 >= 0.0) & (d5 <= d6)) ? square(cp) : r;
+  r = ((d3 >= 0.0) & (d4 <= d3)) ? square(bp) : r;
+  r = ((d1 <= 0.0) & (d2 <= 0.0)) ? square(ap) : r;
+  return r;
+}
+
+/// Squared distance of the lines p0-p1 and q0-q1 where they come closest inside both segments, else 1e300.
+CALOT_INLINE double fromInside(const V& p0, const V& p1, const V& q0, const V& q1) {
+  const V d = p1 - p0;
+  const V e = q1 - q0;
+  const V w = p0 - q0;
+  const V n = cross(d, e);
+  const double denominator = square(n);
+  const double s = dot(n, cross(e, w)) / denominator;
+  const double t = dot(n, cross(d, w)) / denominator;
+  const bool skew = denominator > 1e-24 * square(d) * square(e);
+  const bool inside = (s > 0.0) & (s < 1.0) & (t > 0.0) & (t < 1.0);
+  const double squared = square((p0 + s * d) - (q0 + t * e));
+  return (skew & inside) ? squared : 1e300;
+}
+
+/// Does segment p0-p1 pass through the face?
+CALOT_INLINE bool crosses(const V& p0, const V& p1, const V& a, const V& b, const V& c) {
+  const V normal = cross(b - a, c - a);
+  const double h0 = dot(normal, p0 - a);
+  const double h1 = dot(normal, p1 - a);
+  const double s = h0 / (h0 - h1);
+  const V x = p0 + s * (p1 - p0);
+  const double wa = dot(normal, cross(c - b, x - b));
+  const double wb = dot(normal, cross(a - c, x - c));
+  const double wc = dot(normal, cross(b - a, x - a));
+  const bool sides = ((h0 < 0.0) & (h1 > 0.0)) | ((h0 > 0.0) & (h1 < 0.0));
+  return sides & (wa >= 0.0) & (wb >= 0.0) & (wc >= 0.0) & (wa + wb + wc > 0.0);
+}
+
+CALOT_INLINE V cornerOf(const TriangleLanes& triangles, std::size_t k, std::size_t l) {
+  return {triangles.corner[k][0][l], triangles.corner[k][1][l], triangles.corner[k][2][l]};
+}
+
+CALOT_LANE_KERNEL void segmentKernel(const TriangleLanes& triangles, const V& p0, const V& p1,
+                                     double* __restrict squared) {
+  // In passes, each small enough for the registers.
+  double best[laneCount];
+  for (std::size_t l = 0; l < laneCount; ++l) {
+    best[l] =
+        least(fromTriangle(p0, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l)), 1e300);
+  }
+  for (std::size_t l = 0; l < laneCount; ++l) {
+    best[l] = least(fromTriangle(p1, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l)),
+                    best[l]);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = k == 2 ? 0 : k + 1;
+    for (std::size_t l = 0; l < laneCount; ++l) {
+      const V q = cornerOf(triangles, k, l);
+      best[l] = least(fromSegment(q, p0, p1), best[l]);
+      best[l] = least(fromInside(p0, p1, q, cornerOf(triangles, next, l)), best[l]);
+    }
+  }
+  for (std::size_t l = 0; l < laneCount; ++l) {
+    const bool through =
+        crosses(p0, p1, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l));
+    squared[l] = through ? 0.0 : best[l];
+  }
+}
+
+CALOT_LANE_KERNEL void pointKernel(const TriangleLanes& triangles, const V& p, double* __restrict squared) {
+  for (std::size_t l = 0; l < laneCount; ++l) {
+    squared[l] = fromTriangle(p, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l));
+  }
+}
+
+V laneVector(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+std::size_t trianglesInBox(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch,
+                           const Box& box, std::array<std::uint32_t, ContactSurface::largestPatch>& near) {
+  std::size_t count = 0;
+  const ContactSurface::Patch& range = surface.patches()[patch];
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const Index3& t = surface.triangles()[i];
+    const Vec3& a = position[static_cast<std::size_t>(t[0])];
+    const Vec3& b = position[static_cast<std::size_t>(t[1])];
+    const Vec3& c = position[static_cast<std::size_t>(t[2])];
+    bool out = false;
+    for (int k = 0; k < 3; ++k) {
+      const double lower = std::min(std::min(a[k], b[k]), c[k]);
+      const double upper = std::max(std::max(a[k], b[k]), c[k]);
+      out |= upper < box.lower[k];
+      out |= lower > box.upper[k];
+    }
+    near[count] = static_cast<std::uint32_t>(i);
+    count += out ? 0 : 1;
+  }
+  return count;
+}
+
+void gatherTriangles(const ContactSurface& surface, std::span<const Vec3> position,
+                     std::span<const std::uint32_t> triangles, TriangleLanes& out) {
+  for (std::size_t l = 0; l < laneCount; ++l) {
+    const Index3& t = surface.triangles()[triangles[std::min(l, triangles.size() - 1)]];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& p = position[static_cast<std::size_t>(t[static_cast<int>(k)])];
+      for (std::size_t a = 0; a < 3; ++a) out.corner[k][a][l] = p[static_cast<int>(a)];
+    }
+  }
+}
+
+void segmentTriangleDistances(const TriangleLanes& triangles, const Vec3& p0, const Vec3& p1, LaneValues& squared) {
+  segmentKernel(triangles, laneVector(p0), laneVector(p1), squared.data());
+}
+
+void pointTriangleDistances(const TriangleLanes& triangles, const Vec3& p, LaneValues& squared) {
+  pointKernel(triangles, laneVector(p), squared.data());
+}
+
+}  // namespace calot

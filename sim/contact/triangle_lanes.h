@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Squared distances of eight triangles at once. The bits are those of the scalar functions of
+// sim/geometry/closest_point.h (tests/sim/core/triangle_lanes_test.cpp): the lanes say which triangles count, those few
+// are then asked one by one where and by which feature.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "sim/contact/surface_patches.h"
+#include "sim/math/lanes.h"
+#include "sim/math/linear.h"
+
+namespace calot {
+
+using LaneValues = std::array<double, laneCount>;
+
+/// Eight triangles: corner, coordinate, lane (m).
+struct TriangleLanes {
+  alignas(64) double corner[3][3][laneCount];
+};
+
+/// Triangles of a patch whose boxes overlap `box`, ascending, written to `near`. @return how many
+std::size_t trianglesInBox(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch,
+                           const Box& box, std::array<std::uint32_t, ContactSurface::largestPatch>& near);
+
+/// Takes in up to eight triangles; lanes that are left over repeat the last. @pre triangles is not empty
+void gatherTriangles(const ContactSurface& surface, std::span<const Vec3> position,
+                     std::span<const std::uint32_t> triangles, TriangleLanes& out);
+
+/// closestSegmentTriangle(p0, p1, triangle).squaredDistance of each lane (m^2).
+void segmentTriangleDistances(const TriangleLanes& triangles, const Vec3& p0, const Vec3& p1, LaneValues& squared);
+
+/// closestOnTriangle(p, triangle).squaredDistance of each lane (m^2).
+void pointTriangleDistances(const TriangleLanes& triangles, const Vec3& p, LaneValues& squared);
+
+}  // namespace calot

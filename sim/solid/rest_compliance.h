@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a solid answers to impulses at rest, turned with its nodes: the compliance on which contact is decided.
+//
+// Solving the step's own matrix once for each row of the contact problem costs many times the motion itself. Its rest
+// shape never changes, so its compliance C = A_rest^-1 is worked out once for each node that is ever touched and
+// carried along by the nodes' rotations R (compliance warping; Saupin, Duriez, Cotin and Grisoni 2008):
+//   (A^-1)_ab ~ R_a C_ab R_b^T.
+// It decides contact forces only; what they do to the solid is solved with the step's own matrix.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/solid/solid.h"
+
+namespace calot {
+
+class RestCompliance {
+ public:
+  /// @param model outlives this. Assembles A at rest; columns come when they are asked for.
+  RestCompliance(const SolidModel& model, const SolidSolver::Settings& settings, Executor& executor);
+
+  /// Works out the columns of these nodes that are not known yet, eight right-hand sides at a time. A column is a
+  /// function of the model alone: in which order and company it is asked for changes nothing.
+  void require(std::span<const int> nodes, Executor& executor);
+
+  /// C_ab: velocity of node a (m/s) for an impulse on node b (N s). @pre b was required
+  [[nodiscard]] Mat3 block(int a, int b) const;
+
+  /// Columns known so far.
+  [[nodiscard]] std::size_t columns() const { return known_; }
+
+ private:
+  const SolidModel& model_;
+  SolidSolver::Settings settings_;
+  SolidSolver solver_;
+  std::vector<std::vector<float>> column_;  ///< per node: 9 numbers for each node, row-major; empty: not known
+  std::size_t known_ = 0;
+  std::vector<SolidSolver::Impulse> impulses_;
+  std::vector<std::vector<Vec3>> response_;
+};
+
+/// Rotation of a node: the mean of its tetrahedra's co-rotations, as a unit quaternion.
+Quat nodeRotation(const SolidModel& model, const SolidState& state, int node);
+
+}  // namespace calot

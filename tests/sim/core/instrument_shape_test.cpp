@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/instruments/instrument_shape.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "sim/math/random.h"
+
+namespace calot {
+namespace {
+
+constexpr double radius = 0.0025;
+constexpr double length = 0.15;
+constexpr InstrumentKind kinds[] = {InstrumentKind::grasper, InstrumentKind::hook, InstrumentKind::clipApplier,
+                                    InstrumentKind::scissors};
+
+Vec3 randomNear(Random& random) {
+  return {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.06, 0.02)};
+}
+
+TEST(InstrumentShape, NoneHasNoCapsules) {
+  const InstrumentShape shape = instrumentShape(InstrumentKind::none, 0.5, radius, length);
+  EXPECT_TRUE(shape.capsules().empty());
+  EXPECT_EQ(shape.jawReach(), 0.0);
+  EXPECT_EQ(shape.lateralReach(), 0.0);
+  EXPECT_GT(shape.distance(Vec3::Zero()), 1e100);
+}
+
+TEST(InstrumentShape, ReachesFromTheTipToThePort) {
+  for (const InstrumentKind kind : kinds) {
+    for (const double scale : {1.0, 2.0}) {
+      const InstrumentShape shape = instrumentShape(kind, 0.0, scale * radius, length);
+      double front = -1.0;
+      double back = 1.0;
+      for (const Capsule& c : shape.capsules()) {
+        for (const Vec3& p : {c.p0, c.p1}) {
+          front = std::max(front, p[2] + c.radius);
+          back = std::min(back, p[2]);
+        }
+        EXPECT_GT(c.radius, 0.0);
+        EXPECT_LE(c.radius, scale * radius);
+        if (c.part == Capsule::Part::shaft && c.p1[2] > -length) {
+          EXPECT_NEAR(c.p0[2] - c.p1[2], InstrumentShape::pieceLength, 1e-12) << "boxes stay small";
+        }
+      }
+      EXPECT_NEAR(front, 0.0, 1e-4) << "the frame's origin is the tip";
+      EXPECT_EQ(back, -length);
+    }
+  }
+  // The whole shaft of a long one is there, in at most mostPieces.
+  const InstrumentShape far = instrumentShape(InstrumentKind::grasper, 0.3, radius, 0.6);
+  EXPECT_LT(far.distance(Vec3(0.0, 0.0, -0.59)), -0.99 * radius);
+  // One that has hardly entered is its jaws and neck.
+  const InstrumentShape shallow = instrumentShape(InstrumentKind::grasper, 0.3, radius, 0.01);
+  for (const Capsule& c : shallow.capsules()) EXPECT_NE(c.part, Capsule::Part::shaft);
+}
+
+TEST(InstrumentShape, PiecesKeepTheirNumbers) {
+  for (const InstrumentKind kind : kinds) {
+    const InstrumentShape a = instrumentShape(kind, 0.0, radius, 0.1);
+    const InstrumentShape b = instrumentShape(kind, 0.9, radius, 0.2);
+    std::set<int> numbers;
+    for (const Capsule& c : b.capsules()) numbers.insert(c.piece);
+    EXPECT_EQ(numbers.size(), b.capsules().size());
+    ASSERT_LE(a.capsules().size(), b.capsules().size());
+    for (std::size_t k = 0; k < a.capsules().size(); ++k) {
+      EXPECT_EQ(a.capsules()[k].piece, b.capsules()[k].piece);
+      EXPECT_EQ(a.capsules()[k].part, b.capsules()[k].part);
+    }
+  }
+}
+
+TEST(InstrumentShape, JawsOpenSymmetricallyAcrossTheHinge) {
+  SCOPED_TRACE("seed 321");
+  Random random(321);
+  for (const InstrumentKind kind : {InstrumentKind::grasper, InstrumentKind::clipApplier, InstrumentKind::scissors}) {
+    for (const double jaw : {0.0, 0.4, 1.2}) {
+      const InstrumentShape shape = instrumentShape(kind, jaw, radius, length);
+      for (int i = 0; i < 200; ++i) {
+        const Vec3 p = randomNear(random);
+        EXPECT_NEAR(shape.distance(p), shape.distance(Vec3(p[0], -p[1], p[2])), 1e-15);
+      }
+    }
+  }
+  const double hinge = -0.017;
+  const InstrumentShape open = instrumentShape(InstrumentKind::grasper, 1.0, radius, length);
+  EXPECT_GT(open.distance(Vec3(0.0, 0.0, -0.004)), 0.003) << "free between open jaws";
+  EXPECT_LT(open.distance(Vec3(0.0, 0.012 * std::sin(0.5) + 0.0009, hinge + 0.012 * std::cos(0.5))), 0.0);
+  const InstrumentShape closed = instrumentShape(InstrumentKind::grasper, 0.0, radius, length);
+  EXPECT_LT(closed.distance(Vec3(0.0004, 0.0002, -0.004)), 0.0);
+  EXPECT_EQ(instrumentShape(InstrumentKind::grasper, -3.0, radius, length).distance(Vec3(0, 0.01, 0)),
+            closed.distance(Vec3(0, 0.01, 0)));
+}
+
+/// The implicit function is a distance: it changes no faster than its arguments, and what a joint moves is bounded.
+TEST(InstrumentShape, MotionsAreBoundedByTheReaches) {
+  SCOPED_TRACE("seed 322");
+  Random random(322);
+  for (const InstrumentKind kind : kinds) {
+    double tight = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const double jaw = random.uniform(0.0, 1.5);
+      const double change = random.uniform(0.0, 0.3);
+      const InstrumentShape a = instrumentShape(kind, jaw, radius, length);
+      const InstrumentShape b = instrumentShape(kind, jaw + change, radius, length);
+      EXPECT_NEAR(a.jawReach(), b.jawReach(), 1e-12) << "rigid about the hinge";
+      const Vec3 p = randomNear(random);
+      EXPECT_LE(std::abs(a.distance(p) - b.distance(p)), 0.5 * change * a.jawReach() + 1e-12);
+      const double roll = random.uniform(0.0, 0.5);
+      const Vec3 turned(p[0] * std::cos(roll) - p[1] * std::sin(roll), p[0] * std::sin(roll) + p[1] * std::cos(roll),
+                        p[2]);
+      const double moved = std::abs(a.distance(p) - a.distance(turned));
+      EXPECT_LE(moved, roll * std::max(a.lateralReach(), 0.0) + 1e-12);
+      tight = std::max(tight, moved / (roll * a.lateralReach() + 1e-9));
+      const Vec3 q = randomNear(random);
+      EXPECT_LE(std::abs(a.distance(p) - a.distance(q)), (p - q).norm() * (1.0 + 1e-12));
+    }
+    if (kind == InstrumentKind::hook) {
+      EXPECT_GT(tight, 0.3) << "the toe sweeps round";
+    }
+  }
+}
+
+TEST(InstrumentShape, PlacedInTheWorldIsTheSameShape) {
+  SCOPED_TRACE("seed 323");
+  Random random(323);
+  for (const InstrumentKind kind : kinds) {
+    const InstrumentShape shape = instrumentShape(kind, 0.6, radius, length);
+    Pose pose;
+    pose.position = Vec3(0.1, -0.2, 0.05);
+    pose.orientation = Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
+    const InstrumentShape world = placed(shape, pose);
+    EXPECT_EQ(world.jawReach(), shape.jawReach());
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 p = randomNear(random);
+      EXPECT_NEAR(world.distance(pose.position + pose.orientation * p), shape.distance(p), 1e-14);
+    }
+  }
+}
+
+TEST(InstrumentShape, AHookIsAnL) {
+  const InstrumentShape shape = instrumentShape(InstrumentKind::hook, 0.7, radius, length);
+  EXPECT_EQ(shape.jawReach(), 0.0);
+  EXPECT_LT(shape.distance(Vec3(0.0, 0.004, -0.0006)), 0.0) << "the toe";
+  EXPECT_GT(shape.distance(Vec3(0.0, -0.002, -0.0006)), 0.0) << "on one side alone";
+  EXPECT_GT(shape.distance(Vec3(0.0, 0.003, -0.004)), 0.0) << "room under it for tissue";
+  EXPECT_LT(shape.distance(Vec3(0.0, 0.0, -0.006)), 0.0) << "the straight part";
+}
+
+TEST(GraspRegion, LiesBetweenTheJaws) {
+  SCOPED_TRACE("seed 324");
+  Random random(324);
+  for (const double jaw : {0.0, 0.3, 1.0}) {
+    const InstrumentShape shape = instrumentShape(InstrumentKind::grasper, jaw, radius, length);
+    const GraspRegion region = graspRegion(jaw, radius);
+    const auto [from, to] = region.line();
+    EXPECT_TRUE(region.contains(from));
+    EXPECT_TRUE(region.contains(0.5 * (from + to)));
+    EXPECT_FALSE(region.contains(to + 0.001 * Vec3::UnitZ()));
+    EXPECT_FALSE(region.contains(Vec3(0.003, 0.0, -0.005)));
+    int within = 0;
+    for (int i = 0; i < 200000; ++i) {
+      const Vec3 p = randomNear(random);
+      if (!region.contains(p)) continue;
+      ++within;
+      EXPECT_GE(shape.distance(p), -0.00075) << "no deeper in a jaw than the axis of one of its bars";
+      Box point;
+      point.include(p);
+      EXPECT_TRUE(region.box().overlaps(point));
+    }
+    EXPECT_GT(within, 20);
+  }
+  EXPECT_FALSE(graspRegion(0.0, radius).contains(Vec3(0.0, 0.003, -0.004)));
+  EXPECT_TRUE(graspRegion(1.0, radius).contains(Vec3(0.0, 0.003, -0.004)));
+}
+
+}  // namespace
+}  // namespace calot
