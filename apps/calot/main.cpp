@@ -24,9 +24,10 @@ int main(int argc, char** argv) {
                                         std::to_string(simulationVersion));
   app.require_subcommand(1);
   apps::Run run;
-  for (const auto add : {apps::addRecord, apps::addReplay, apps::addBranch, apps::addInspect, apps::addRecover, apps::addExport,
-                         apps::addState, apps::addDiff, apps::addAssess, apps::addStudy, apps::addParticipant,
-                         apps::addRender, apps::addMesh, apps::addScenes, apps::addCheckpoints, apps::addDevices}) {
+  for (const auto add :
+       {apps::addRecord, apps::addReplay, apps::addBranch, apps::addInspect, apps::addRecover, apps::addExport,
+        apps::addState, apps::addDiff, apps::addAssess, apps::addStudy, apps::addParticipant, apps::addRender,
+        apps::addMesh, apps::addScenes, apps::addCheckpoints, apps::addDevices}) {
     add(app, run);
   }
   try {

@@ -72,7 +72,8 @@ int record(const Options& o) {
   const recorder::RunReport report = recorder::runAttempt(session, *source, run);
   writer.finish();
   if (!o.json) tellDevice(*source);
-  return tell({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
+  return tell({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live},
+              o.json);
 }
 
 }  // namespace

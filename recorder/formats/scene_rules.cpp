@@ -54,8 +54,8 @@ std::vector<ObjectRule> makeRules() {
       {"nearOrgan", {required("organ"), openBelow(required("distance", 0, 0.1))}},
       {"solver",
        {openBelow(optional("tolerance", 0, 0.1)), optional("iterations", 1, 100000),
-        openBelow(optional("responseTolerance", 0, 0.1)), openBelow(optional("contactTolerance", 0, 0.001)), optional("contactPasses", 1, 100), optional("contactIterations", 1, 100000),
-        optional("sleeping")}},
+        openBelow(optional("responseTolerance", 0, 0.1)), openBelow(optional("contactTolerance", 0, 0.001)),
+        optional("contactPasses", 1, 100), optional("contactIterations", 1, 100000), optional("sleeping")}},
   };
 }
 

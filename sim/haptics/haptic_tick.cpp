@@ -10,7 +10,7 @@ namespace calot {
 
 namespace {
 
-constexpr double letGo = 0.9;           ///< share of the difference that is left after each tick
+constexpr double letGo = 0.9;  ///< share of the difference that is left after each tick
 constexpr double tickSeconds = 0.001;
 
 bool finite(const std::vector<double>& values) {

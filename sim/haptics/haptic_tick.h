@@ -46,15 +46,15 @@ struct ContactSet {
 
 /// What the tick carries from one to the next. Never part of State.
 struct HapticState {
-  Vec3 tip = Vec3::Zero();               ///< real tip of the newest measurement, held while there is none (m)
-  Quat orientation = Quat::Identity();   ///< of the real instrument
-  std::int64_t set = -1;                 ///< step of the contact set that `lambda` belongs to
-  std::uint32_t age = 0;                 ///< ticks that used this set so far
-  std::vector<double> lambda;            ///< N
-  Vec3 force = Vec3::Zero();             ///< what the last tick gave out (N)
-  double torque = 0.0;                   ///< about the axis (N m)
-  Vec3 forceRest = Vec3::Zero();         ///< what is left of the difference at the last change of sets (N)
-  double torqueRest = 0.0;               ///< N m
+  Vec3 tip = Vec3::Zero();              ///< real tip of the newest measurement, held while there is none (m)
+  Quat orientation = Quat::Identity();  ///< of the real instrument
+  std::int64_t set = -1;                ///< step of the contact set that `lambda` belongs to
+  std::uint32_t age = 0;                ///< ticks that used this set so far
+  std::vector<double> lambda;           ///< N
+  Vec3 force = Vec3::Zero();            ///< what the last tick gave out (N)
+  double torque = 0.0;                  ///< about the axis (N m)
+  Vec3 forceRest = Vec3::Zero();        ///< what is left of the difference at the last change of sets (N)
+  double torqueRest = 0.0;              ///< N m
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -80,8 +80,8 @@ struct HapticModel {
   double largestForce = 8.0;      ///< what the device can do (N)
   double largestStretch = 0.008;  ///< of the coupling at the tip: largest force over stiffness (m)
   std::uint32_t ticksPerStep = 10;
-  std::uint32_t sweeps = 4;   ///< of the reduced problem, from the last tick's forces
-  double tolerance = 1e-6;    ///< m
+  std::uint32_t sweeps = 4;  ///< of the reduced problem, from the last tick's forces
+  double tolerance = 1e-6;   ///< m
 };
 
 /// Largest stretch of the coupling about the shaft (rad).

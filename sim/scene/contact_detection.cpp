@@ -11,10 +11,8 @@ using namespace stepping;
 
 namespace {
 
-constexpr int largestAdvances = 16;       ///< conservative advancements a step
-constexpr double near = 0.003;             ///< of two contacts that may be one (m)
-constexpr double sameWay = 0.8;            ///< cosine of the angle between their normals
-constexpr double tissueSlop = 2e-5;       ///< overlap that organs are left (m)
+constexpr int largestAdvances = 16;        ///< conservative advancements a step
+constexpr double tissueSlop = 2e-5;        ///< overlap that organs are left (m)
 constexpr double foldDisplacement = 0.01;  ///< an organ that moved less from rest has not folded onto itself (m)
 
 }  // namespace
@@ -71,7 +69,8 @@ bool Stepper::Workspace::ignores(const HandState& hand, const Capsule& capsule, 
   return hand.grasped == organ && (capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw);
 }
 
-/// Least gap between the instrument in `shape` and all organs, at most `reach_`. @pre refreshBounds() since organs moved
+/// Least gap between the instrument in `shape` and all organs, at most `reach_`. @pre refreshBounds() since organs
+/// moved
 double Stepper::Workspace::gapOf(const HandState& hand, double reach_) {
   double least = reach_;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
@@ -157,45 +156,6 @@ void Stepper::Workspace::addInstrumentBlock(const State& state, std::size_t hand
   blocks.push_back(block);
 }
 
-/// Capsules that overlap find the same place more than once: of contacts that are near each other and face the same way
-/// one is kept, first those that carried a force in the last step, then the deepest.
-void Stepper::Workspace::condense(const HandState& hand, std::size_t organ) {
-  const auto carries = [&](const SurfaceContact& contact) {
-    const std::uint64_t key = contact.key | static_cast<std::uint64_t>(organ) << 52U;
-    for (std::size_t k = 0; k < hand.contactKey.size(); ++k) {
-      if (hand.contactKey[k] == key) return !hand.contactForce[k].isZero(0.0);
-    }
-    return false;
-  };
-  std::vector<std::size_t> order(found.size());
-  std::vector<bool> first(found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    order[i] = i;
-    first[i] = carries(found[i]);
-  }
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (first[a] != first[b]) return static_cast<bool>(first[a]);
-    if (found[a].gap != found[b].gap) return found[a].gap < found[b].gap;
-    return a < b;
-  });
-  std::vector<bool> kept(found.size(), false);
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    const SurfaceContact& contact = found[order[n]];
-    bool fresh = true;
-    for (std::size_t m = 0; m < n && fresh; ++m) {
-      const SurfaceContact& other = found[order[m]];
-      fresh = !kept[order[m]] || (contact.onAxis - other.onAxis).squaredNorm() > near * near ||
-              contact.normal.dot(other.normal) < sameWay;
-    }
-    kept[order[n]] = fresh;
-  }
-  std::size_t to = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (kept[i]) found[to++] = found[i];
-  }
-  found.resize(to);
-}
-
 /// Blocks of every instrument near every organ, in order of hand, organ and place.
 void Stepper::Workspace::detectInstruments(const State& state) {
   blocks.clear();
@@ -215,7 +175,6 @@ void Stepper::Workspace::detectInstruments(const State& state) {
         capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, far, c.piece,
                         found);
       }
-      condense(state.hand[h], o);
       for (const SurfaceContact& contact : found) addInstrumentBlock(state, h, o, contact);
     }
   }

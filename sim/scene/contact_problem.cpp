@@ -21,7 +21,8 @@ constexpr double skinShare = 1e-4;
 /// A nodal quantity at a place.
 Vec3 at(const SolidSolver::Impulse& place, const std::vector<Vec3>& values) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < place.count; ++k) sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
+  for (std::size_t k = 0; k < place.count; ++k)
+    sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
   return sum;
 }
 

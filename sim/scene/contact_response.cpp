@@ -73,8 +73,8 @@ void Stepper::Workspace::move(State& state) {
     Vec3 way = stretch[hand].head<3>() + push.head<3>() / description.couplingStiffness;
     const double size = way.norm();
     if (size > largestSlide) way *= largestSlide / size;
-    const double roll = std::clamp(stretch[hand][3] + push[3] / description.rollStiffness, -largestRollStretch,
-                                   largestRollStretch);
+    const double roll =
+        std::clamp(stretch[hand][3] + push[3] / description.rollStiffness, -largestRollStretch, largestRollStretch);
     const Pose pose = movedTool(description.port, simulated(state, hand), way, roll);
     s.simulatedPosition = pose.position;
     s.simulatedOrientation = pose.orientation;
@@ -158,7 +158,8 @@ void Stepper::Workspace::withdraw(State& state, std::size_t hand) {
     for (std::size_t i = 0; i < n; ++i) {
       free[i] = inside[i].gap;
       for (std::size_t j = 0; j < n; ++j) {
-        w[i * n + j] = inside[i].row.head<3>().dot(inside[j].row.head<3>()) + inside[i].row[3] * inside[j].row[3] / arm2;
+        w[i * n + j] =
+            inside[i].row.head<3>().dot(inside[j].row.head<3>()) + inside[i].row[3] * inside[j].row[3] / arm2;
       }
       w[i * n + i] *= 1.01;
     }

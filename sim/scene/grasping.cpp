@@ -12,18 +12,17 @@ using namespace stepping;
 
 namespace {
 
-constexpr double openJaw = 0.35;    ///< jaws opened wider may grasp when they close (rad)
-constexpr double closedJaw = 0.25;  ///< jaws closed further hold what is between them (rad)
-constexpr double lockedGrip = 2.0;  ///< the ratchet holds so much harder than a hand that just closes
+constexpr double openJaw = 0.35;        ///< jaws opened wider may grasp when they close (rad)
+constexpr double closedJaw = 0.25;      ///< jaws closed further hold what is between them (rad)
+constexpr double lockedGrip = 2.0;      ///< the ratchet holds so much harder than a hand that just closes
 constexpr double searchRadius = 0.004;  ///< of a place to hold, about each station along the jaws (m)
-constexpr double apart = 0.0015;    ///< places held are no nearer to each other (m)
-constexpr double lost = 0.005;      ///< a place that slipped so far out of the jaws is let go (m)
+constexpr double apart = 0.0015;        ///< places held are no nearer to each other (m)
+constexpr double lost = 0.005;          ///< a place that slipped so far out of the jaws is let go (m)
 /// Stations along the line between the jaws, from the tip backwards (shares of its length).
 constexpr std::array<double, 3> stations{1.0, 0.65, 0.3};
 
 double gripOf(const HandState& hand) {
-  return std::clamp(1.0 - hand.realJaw / closedJaw, 0.2, 1.0) *
-         ((hand.buttons & button::lock) != 0 ? lockedGrip : 1.0);
+  return std::clamp(1.0 - hand.realJaw / closedJaw, 0.2, 1.0) * ((hand.buttons & button::lock) != 0 ? lockedGrip : 1.0);
 }
 
 Vec3 skinPoint(const std::vector<Vec3>& skin, const std::array<std::uint32_t, 3>& node, const Vec3& weight) {
@@ -77,7 +76,8 @@ void Stepper::Workspace::closeJaws(State& state, std::size_t hand) {
       }
     }
     if (nearestOrgan == ContactBlock::nobody) continue;
-    const bool near = std::any_of(held.begin(), held.end(), [&](const Vec3& p) { return (p - best.point).norm() < apart; });
+    const bool near =
+        std::any_of(held.begin(), held.end(), [&](const Vec3& p) { return (p - best.point).norm() < apart; });
     if (near) continue;
     organ = nearestOrgan;
     held.push_back(best.point);

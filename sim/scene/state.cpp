@@ -170,7 +170,8 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     if (hand.touchingSince.size() != model.organs().size()) return false;
     if (hand.contactKey.size() != hand.contactForce.size()) return false;
     const std::size_t held = hand.graspNode.size();
-    if (hand.graspWeight.size() != held || hand.graspPlace.size() != held || hand.graspForce.size() != held) return false;
+    if (hand.graspWeight.size() != held || hand.graspPlace.size() != held || hand.graspForce.size() != held)
+      return false;
     if ((hand.grasped == noOrgan) != (held == 0)) return false;
     if (held == 0) continue;
     if (hand.grasped >= model.organs().size()) return false;

@@ -60,16 +60,16 @@ struct HandState {
   std::uint32_t touching = 0;                ///< bit o: organ o
   std::vector<std::uint64_t> touchingSince;  ///< per organ: step in which the touch began
   std::vector<std::uint64_t> contactKey;     ///< the last step's contacts: where,
-  std::vector<Vec3> contactForce;  ///< its normal and tangential parts (N); warm start of the next problem
-  std::uint32_t grasped = noOrgan;       ///< organ that the jaws hold
-  bool jawsOpened = false;               ///< since they last closed: only then do they grasp when they close
+  std::vector<Vec3> contactForce;            ///< its normal and tangential parts (N); warm start of the next problem
+  std::uint32_t grasped = noOrgan;           ///< organ that the jaws hold
+  bool jawsOpened = false;                   ///< since they last closed: only then do they grasp when they close
   /// Places of its skin that the jaws hold: corners of a triangle and barycentric coordinates,
   std::vector<std::array<std::uint32_t, 3>> graspNode;
   std::vector<Vec3> graspWeight;
   std::vector<Vec3> graspPlace;  ///< where they are in frame I (m),
   std::vector<Vec3> graspForce;  ///< and f_W on the instrument there (N); warm start
-  bool slipping = false;                 ///< held tissue is being pulled through the jaws
-  std::uint64_t graspSince = 0;          ///< step in which the hold began
+  bool slipping = false;         ///< held tissue is being pulled through the jaws
+  std::uint64_t graspSince = 0;  ///< step in which the hold began
   /// XXH3-64 of the last step's samples of this hand, as they came: a changed sample shows in its own step even where
   /// it moves nothing.
   std::uint64_t inputs = 0;

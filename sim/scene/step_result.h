@@ -25,7 +25,8 @@ enum class EventKind : std::uint16_t {
   graspEnd = 10,           ///< tissue let go; subject: organ index; value: how long it was held (s)
   graspSlip = 11,          ///< held tissue begins to slip; subject: organ index; value: pull (N)
   tissueTear = 12,         ///< held tissue tore out of the jaws; subject: organ index; value: pull (N)
-  clockStretched = 16,     ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
+  clockStretched =
+      16,  ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
 };
 
 /// A fixed-size event. `hand` is 0, 1 or 255 (none).

@@ -19,14 +19,14 @@
 namespace calot {
 
 namespace stepping {
-inline constexpr double margin = 0.001;           ///< contacts nearer than this are watched even at rest (m)
-inline constexpr double slack = 0.0005;           ///< rows whose free gap is larger take no part (m)
-inline constexpr double largestSlide = 0.005;     ///< of a tip near a surface in one step (m)
-inline constexpr double largestJawStep = 0.05;    ///< of a jaw near a surface in one step (rad)
+inline constexpr double margin = 0.001;            ///< contacts nearer than this are watched even at rest (m)
+inline constexpr double slack = 0.0005;            ///< rows whose free gap is larger take no part (m)
+inline constexpr double largestSlide = 0.005;      ///< of a tip near a surface in one step (m)
+inline constexpr double largestJawStep = 0.05;     ///< of a jaw near a surface in one step (rad)
 inline constexpr double largestRecovery = 0.0005;  ///< by which overlapping organs part in one step (m)
-inline constexpr std::uint32_t quietSteps = 50;   ///< before an organ sleeps
-inline constexpr double leastForce = 1e-6;        ///< N; below, nothing counts as touching
-inline constexpr double broadCell = 0.02;         ///< m
+inline constexpr std::uint32_t quietSteps = 50;    ///< before an organ sleeps
+inline constexpr double leastForce = 1e-6;         ///< N; below, nothing counts as touching
+inline constexpr double broadCell = 0.02;          ///< m
 }  // namespace stepping
 
 /// One block of the contact problem: an instrument on an organ, an organ on an organ, or held tissue.
@@ -34,17 +34,17 @@ struct ContactBlock {
   static constexpr std::size_t nobody = ~std::size_t{0};
 
   BlockKind kind = BlockKind::frictional;
-  double limit = 0.0;              ///< friction coefficient; force of a hold (N)
-  std::size_t hand = nobody;       ///< whose instrument is pushed along +direction,
-  std::size_t other = nobody;      ///< or which organ is,
-  std::size_t organ = 0;           ///< and which organ along -direction
-  std::size_t anchor = nobody;     ///< of a hold: index of the held place
+  double limit = 0.0;           ///< friction coefficient; force of a hold (N)
+  std::size_t hand = nobody;    ///< whose instrument is pushed along +direction,
+  std::size_t other = nobody;   ///< or which organ is,
+  std::size_t organ = 0;        ///< and which organ along -direction
+  std::size_t anchor = nobody;  ///< of a hold: index of the held place
   std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   SolidSolver::Impulse place, otherPlace;  ///< where the organs are pushed
   std::array<ToolRow, 3> tool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
-  std::array<double, 3> gap{};      ///< now; slip counts from the step's beginning (m)
-  std::uint64_t key = 0;            ///< names the place: equal in two steps means the same one
-  std::size_t row = 0;              ///< its first row
+  std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
+  std::uint64_t key = 0;        ///< names the place: equal in two steps means the same one
+  std::size_t row = 0;          ///< its first row
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
 };
@@ -70,7 +70,6 @@ struct Stepper::Workspace {
   [[nodiscard]] bool ignores(const HandState& hand, const Capsule& capsule, std::size_t organ) const;
   double gapOf(const HandState& hand, double reach);
   void advanceFreely(State& state, std::size_t hand);
-  void condense(const HandState& hand, std::size_t organ);
   void detectInstruments(const State& state);
   void detectTissue(const State& state);
   void addInstrumentBlock(const State& state, std::size_t hand, std::size_t organ, const SurfaceContact& contact);
@@ -114,21 +113,21 @@ struct Stepper::Workspace {
   std::vector<SolidSolver> solver;  // per organ
   std::vector<std::unique_ptr<RestCompliance>> rest;
   std::vector<std::unique_ptr<BroadPhase>> broad;
-  std::vector<bool> bounded;            // per organ: broad phase holds bounds of the current positions
-  std::vector<bool> moved;              // per organ: solved in this step
-  std::vector<std::vector<Vec3>> skin;  // per organ: surface points of the current positions
+  std::vector<bool> bounded;             // per organ: broad phase holds bounds of the current positions
+  std::vector<bool> moved;               // per organ: solved in this step
+  std::vector<std::vector<Vec3>> skin;   // per organ: surface points of the current positions
   std::vector<std::vector<Box>> bounds;  // per organ and patch
-  std::vector<bool> refittable;           // per organ: the broad phase knows earlier bounds
+  std::vector<bool> refittable;          // per organ: the broad phase knows earlier bounds
   std::vector<Box> earlierBounds;
   std::vector<BroadPhase::Pair> pairs;
   std::vector<std::uint32_t> patches;
   std::vector<SurfaceContact> found;
   std::vector<VertexContact> foundVertices;
-  InstrumentShape local;        // of the instrument at hand, in I
-  std::vector<Capsule> shape;   // the same in W
+  InstrumentShape local;       // of the instrument at hand, in I
+  std::vector<Capsule> shape;  // the same in W
   std::vector<Box> queries;
   std::array<ToolRow, handCount> stretch{ToolRow::Zero(), ToolRow::Zero()};  // of the virtual coupling
-  std::array<double, handCount> reach{};     // how far contacts were looked for (m)
+  std::array<double, handCount> reach{};                                     // how far contacts were looked for (m)
   std::vector<ContactBlock> blocks;
   std::size_t rows = 0;
   ContactSolver contactSolver;

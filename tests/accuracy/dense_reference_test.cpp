@@ -55,9 +55,15 @@ void compare(double friction, InstrumentKind instrument, double& worst, double& 
     if (i % 4 != 3 || result.hand[0].contactForce.norm() < 0.05) continue;
     const Pose reference = rig.stepper.contactSet(0).reference;
     const Pose real{rig.state.hand[0].realPosition, rig.state.hand[0].realOrientation};
-    test::DenseContact dense = test::denseContact(*model, 0, before, reference, real, rig.state.hand[0].jaw, 0.0015,
-                                                  rig.stepper.contactSet(0));
-    ASSERT_EQ(dense.tool.size(), rig.stepper.contactSet(0).direction.size()) << "every row is found again";
+    test::DenseContact dense =
+        test::denseContact(*model, 0, before, reference, real, rig.state.hand[0].jaw, 0.0015, rig.stepper.contactSet(0));
+    // Two pieces of a shape may touch the same place: the reference counts it once.
+    std::vector<ToolRow> published;
+    for (const ToolRow& row : rig.stepper.contactSet(0).direction) {
+      const auto same = [&](const ToolRow& other) { return (row - other).norm() < 1e-12; };
+      if (std::none_of(published.begin(), published.end(), same)) published.push_back(row);
+    }
+    ASSERT_EQ(dense.tool.size(), published.size()) << "every row is found again";
     Eigen::VectorXd lambda;
     if (friction == 0.0) {
       // Rows that stay open by far take no part; so few are left that every set of active ones can be tried.

@@ -27,6 +27,13 @@ class Liar final : public Observer {
   enum class About { force, digest, volume, keyframe };
   Liar(Observer& writer, About about, std::uint64_t step) : writer_(writer), about_(about), step_(step) {}
 
+  /// Index of a field among the digests, liver being the first organ.
+  static std::size_t placeOf(const std::string& name) {
+    const DigestLayout layout = digestLayout({"liver"});
+    std::size_t place = 0;
+    while (layout.fields[place].name != name) ++place;
+    return place;
+  }
   void onStep(const StepRecord& record) override {
     if (record.step != step_) return writer_.onStep(record);
     std::vector<TickOutcome> ticks(record.ticks.begin(), record.ticks.end());
@@ -38,8 +45,8 @@ class Liar final : public Observer {
         ticks[4].hand[1].force[2] += 1e-9;
         break;
       case About::digest:
-        digest.component[4] ^= 1U;
-        digest.field[3 + 3 + 2 * 15] ^= 1U;  // after clock, camera and two hands: organ.liver/position
+        digest.component[State::organsFrom] ^= 1U;
+        digest.field[placeOf("organ.liver/position")] ^= 1U;
         break;
       case About::volume:
         result.organ[0].volume *= 1.0 + 1e-15;

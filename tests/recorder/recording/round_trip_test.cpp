@@ -168,6 +168,21 @@ INSTANTIATE_TEST_SUITE_P(Shapes, RoundTrip,
                                          Shape{7, 3, 200}, Shape{300, 1, 9}, Shape{10, 2, 1}, Shape{10, 2, 0},
                                          Shape{1000, 32, 3}));
 
+/// Recordings from before StepResult grew are read as they are; what they do not hold stays at nothing.
+TEST(EarlierVersion, OfStepResultIsRead) {
+  const Folder folder;
+  AttemptHeader header = makeHeader();
+  header.stepResultVersion = 1;
+  test::writeRecording(folder / "r.h5", header, 60);
+  Recording r(folder / "r.h5");
+  EXPECT_TRUE(r.verifyChain().intact);
+  const Step made = randomStep(header, 59, 1);
+  EXPECT_EQ(r.step(59).result.contact.rows, made.result.contact.rows);
+  EXPECT_EQ(r.step(59).result.hand[1].organForce, made.result.hand[1].organForce);
+  EXPECT_EQ(r.step(59).result.contact.blocks, 0U);
+  EXPECT_EQ(r.step(59).result.hand[1].graspForce, 0.0);
+}
+
 TEST(Keyframes, AreKeptAboutEverySecond) {
   const Folder folder;
   test::writeRecording(folder / "r.h5", makeHeader(), 450);

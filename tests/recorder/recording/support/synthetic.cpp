@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "recorder/recording/writer.h"
+#include "sim/scene/version.h"
 
 namespace calot::recorder::test {
 
@@ -50,7 +51,7 @@ AttemptHeader makeHeader(std::uint32_t ticksPerStep, std::size_t organs) {
   h.software = "calot 0.1.0";
   h.build = "test";
   h.simulationVersion = 3;
-  h.stepResultVersion = 1;
+  h.stepResultVersion = stepResultVersion;
   h.participant = "P-\xC3\xA4";
   h.provenance.kind = OperatorKind::performer;
   h.provenance.profile = "skilled";
