@@ -97,6 +97,7 @@ std::vector<ListedDevice> listDevices() {
   } catch (const Error& e) {
     fault = e.what();
   }
+  out.reserve(pads.size() + 4);
   for (const std::string& pad : pads)
     out.push_back({"gamepad:" + pad, pad, true, "1 at a time", "3 + roll, jaw, buttons", "250"});
   if (pads.empty()) out.push_back({"gamepad", fault, false, "1 at a time", "3 + roll, jaw, buttons", "250"});

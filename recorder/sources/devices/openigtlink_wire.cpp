@@ -217,10 +217,11 @@ std::vector<std::byte> transformMessage(const std::string& name, std::int64_t ti
                                         const Quat& orientation) {
   const Mat3 r = orientation.normalized().toRotationMatrix();
   std::array<igtl_float32, 12> m{};
+  std::size_t next = 0;  // column by column, then the position
   for (int c = 0; c < 3; ++c) {
-    for (int row = 0; row < 3; ++row) m[static_cast<std::size_t>(3 * c + row)] = static_cast<float>(r(row, c));
-    m[static_cast<std::size_t>(9 + c)] = static_cast<float>(position[c] / metresPerMillimetre);
+    for (int row = 0; row < 3; ++row) m[next++] = static_cast<float>(r(row, c));
   }
+  for (int c = 0; c < 3; ++c) m[next++] = static_cast<float>(position[c] / metresPerMillimetre);
   igtl_transform_convert_byte_order(m.data());
   return message("TRANSFORM", name, time, std::as_bytes(std::span(m)));
 }
