@@ -16,6 +16,8 @@ FOLDERS = ("sim", "recorder/sources", "analytics/checkpoints")
 # into the scene is ours again.
 INPUT = "recorder/sources/devices"
 INPUT_CHECKED = "device_mapping"
+# The one place that may change how a source is compiled: it takes a pass away that breaks the contract.
+STRICTER = "sim/math/no_fused_pairs.h"
 
 _LIBM = ("a?(?:sin|cos|tan)h?f?l? atan2[fl]? pow[fl]? exp[fl]? exp2[fl]? expm1[fl]? log[fl]? log2[fl]? log10[fl]? log1p[fl]? "
          "cbrt[fl]? hypot[fl]? fma[fl]? fmod[fl]? remainder[fl]? erfc?[fl]? [tl]gamma[fl]? lerp sincos "
@@ -84,6 +86,8 @@ def lint(root, report=print):
             continue
         seen += 1
         for number, name, why in look((root / path).read_text(encoding="utf-8")):
+            if path.as_posix() == STRICTER and name == "relaxed arithmetic":
+                continue
             faults += 1
             report(f"{path}:{number}: forbidden ({name}): {why}")
     return seen, faults
