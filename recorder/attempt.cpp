@@ -70,6 +70,7 @@ AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Pr
   header.assets = std::move(assets);
   for (const OrganModel& organ : model.organs()) header.organs.push_back(organ.name);
   header.layout = model.layout();
+  header.deviceSamples = !provenance.device.empty();
   return header;
 }
 

@@ -56,6 +56,7 @@ struct AttemptHeader {
   std::vector<Asset> assets;        ///< the scene file first
   std::vector<std::string> organs;  ///< names in the Model's order (columns of the observables)
   DigestLayout layout;
+  bool deviceSamples = false;  ///< the recording has a place for a device's raw samples (/device); no attribute
 };
 
 }  // namespace calot::recorder

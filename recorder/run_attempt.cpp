@@ -109,6 +109,7 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
   const Gate gate(session, settings);
   const std::uint64_t before = session.steps();
+  session.prepare();
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   HapticThread haptics(

@@ -42,6 +42,9 @@ class Session {
   /// Is told of the contact sets as soon as a step has made them, before any observer is told of the step.
   void onContactSets(std::function<void(const ContactSets&)> tell) { tell_ = std::move(tell); }
 
+  /// For live runs, before the first tick: see Stepper::prepare().
+  void prepare() { stepper_.prepare(); }
+
   /// Haptic tick of both hands for the i-th tick of the coming step.
   /// @param sets which contact sets to use; none: the newest (the previous step's). Live, older ones come where the
   /// simulation was behind; a hand's numbers never fall from tick to tick.

@@ -85,8 +85,8 @@ int branch(const Options& o) {
   run.seconds = o.seconds > 0.0 ? static_cast<double>(session.steps()) * model->stepSeconds() + o.seconds : 0.0;
   run.live = o.live;
   driveDevice(*source, run);
+  recordDevice(*source, writer, session.steps() * model->scene().ticksPerStep);
   run.stop = &interrupted;
-  driveDevice(*source, run);
   Progress progress("recording, steps", o.json);
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) interrupted = true;  // nothing more can be kept; finish() says why
@@ -96,6 +96,7 @@ int branch(const Options& o) {
   writer.finish();
   if (!o.json) {
     fmt::print("{}: branch of {} after its step {}\n", o.output, header.parent, forkStep);
+    tellDevice(*source);
   }
   return tell(
       {header.attempt, o.output, model->stepSeconds(), report, source->statusText(), run.paced || o.live, o.live},

@@ -57,6 +57,11 @@ void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run) {
   };
 }
 
+void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) {
+  if (auto* device = dynamic_cast<recorder::DeviceSource*>(&source); device != nullptr)
+    writer.takeRawSamples(device->rawSamples(), firstTick);
+}
+
 void tellDevice(const recorder::SampleSource& source) {
   const auto* device = dynamic_cast<const recorder::DeviceSource*>(&source);
   if (device == nullptr) return;

@@ -11,6 +11,7 @@
 
 #include "recorder/attempt.h"
 #include "recorder/identity.h"
+#include "recorder/recording/writer.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/open_device.h"
 #include "sim/scene/description.h"
@@ -37,6 +38,10 @@ std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& op
 /// Where the source is a device: runs it at the pace of the clock if it lives in real time, and lets its motors have
 /// the forces. @param source outlives the run.
 void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run);
+
+/// Where the source is a device: its raw samples go into the recording. @param firstTick as
+/// RecordingWriter::takeRawSamples. Source and writer outlive the run.
+void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick = 0);
 
 /// Where the source is a device: what came from it, on stdout.
 void tellDevice(const recorder::SampleSource& source);

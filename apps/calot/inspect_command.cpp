@@ -9,6 +9,7 @@
 #include "apps/calot/commands.h"
 #include "recorder/errors.h"
 #include "recorder/recording/header.h"
+#include "recorder/recording/raw_statistics.h"
 #include "recorder/recording/reader.h"
 #include "sim/scene/version.h"
 
@@ -54,6 +55,22 @@ void describeDeadlines(recorder::Recording& recording, ordered_json& out) {
   out["clock_stretched_s"] = stretched;
 }
 
+/// What the device measured, by hand.
+ordered_json describeDevice(recorder::Recording& recording) {
+  ordered_json out;
+  for (const Hand hand : {Hand::left, Hand::right}) {
+    const recorder::RawStatistics s = recorder::rawStatistics(recording, hand);
+    out[handNames[static_cast<std::size_t>(hand)]] = {{"samples", s.samples},
+                                                      {"valid", s.valid},
+                                                      {"used", s.used},
+                                                      {"dropped", s.dropped},
+                                                      {"missing", s.missing},
+                                                      {"rate_hz", s.rate},
+                                                      {"longest_interval_s", s.longestInterval}};
+  }
+  return out;
+}
+
 ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdict& chain) {
   const recorder::AttemptHeader& header = recording.header();
   ordered_json out;
@@ -66,6 +83,7 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
   out["events"] = recording.eventCount();
   out["keyframes"] = recording.keyframeSteps().size();
   describeDeadlines(recording, out);
+  if (header.deviceSamples) out["device_samples"] = describeDevice(recording);
   out["flushes"] = recording.status().size() - 1;
   out["chain"] = chain.intact ? "intact" : "broken";
   if (!chain.intact) out["chain_broken_at_flush"] = chain.flush;
@@ -99,6 +117,14 @@ void print(const ordered_json& d) {
     } else if (key == "scene_files") {
       for (const auto& asset : value)
         fmt::print("{:<24} {} ({} bytes)\n", "scene file", shown(asset["name"]), shown(asset["bytes"]));
+    } else if (key == "device_samples") {
+      for (const auto& [hand, s] : value.items()) {
+        fmt::print(
+            "{:<24} {} ({} valid, {} used by ticks, {} dropped, {} missing), {:.1f} a second, {:.0f} ms apart at "
+            "most\n",
+            "device, " + hand, shown(s["samples"]), shown(s["valid"]), shown(s["used"]), shown(s["dropped"]),
+            shown(s["missing"]), s["rate_hz"].get<double>(), 1e3 * s["longest_interval_s"].get<double>());
+      }
     } else {
       fmt::print("{:<24} {}\n", key, shown(value));
     }

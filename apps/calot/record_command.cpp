@@ -60,6 +60,7 @@ int record(const Options& o) {
   run.paced = o.paced;
   run.live = o.live;
   driveDevice(*source, run);
+  recordDevice(*source, writer);
   run.stop = &interrupted;
   const double stepSeconds = built.model->stepSeconds();
   run.progress = [&](std::uint64_t step) {

@@ -14,7 +14,7 @@
 #include "recorder/live/contact_exchange.h"
 #include "recorder/live/cost_histogram.h"
 #include "recorder/live/paced_clock.h"
-#include "recorder/live/ring.h"
+#include "recorder/ring.h"
 #include "recorder/observer.h"
 #include "recorder/sources/source.h"
 

@@ -11,24 +11,6 @@ namespace calot::recorder {
 
 namespace {
 
-void append(std::vector<std::byte>& out, const void* data, std::size_t size) {
-  const auto* bytes = static_cast<const std::byte*>(data);
-  out.insert(out.end(), bytes, bytes + size);
-}
-
-template <class T>
-void appendValue(std::vector<std::byte>& out, const T& value) {
-  append(out, &value, sizeof value);
-}
-
-template <class T>
-T takeValue(std::span<const std::byte>& bytes) {
-  T value;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  bytes = bytes.subspan(sizeof value);
-  return value;
-}
-
 /// Appends every visited value to its column.
 struct AppendVisitor {
   const Layout& layout;
@@ -40,7 +22,7 @@ struct AppendVisitor {
     appendValue(block.column[index++], value);
   }
   void operator()(const char*, const char*, const char*, const Vec3& v) {
-    append(block.column[index++], v.data(), 3 * sizeof(double));
+    appendBytes(block.column[index++], v.data(), 3 * sizeof(double));
   }
   void operator()(const char*, const char*, const char*, const Quat& q) {
     const std::array<double, 4> wxyz{q.w(), q.x(), q.y(), q.z()};
@@ -169,6 +151,7 @@ Block::Block(const Layout& layout) : column(layout.columns.size()) {
     }
   }
   column[layout.events].reserve(eventBytes * 64);
+  for (const std::size_t raw : layout.raw) column[raw].reserve(layout.deviceSamples ? rawSampleBytes * 256 : 0);
 }
 
 void Block::clear() {
@@ -177,6 +160,11 @@ void Block::clear() {
   last = false;
   completed = false;
   outcome = Outcome::running;
+  rawDropped.fill(0);
+}
+
+std::array<std::uint64_t, streamCount> countsOf(const StatusRow& row) {
+  return {row.ticks, row.steps, row.events, row.keyframes, row.keyframeWords, row.rawSamples[0], row.rawSamples[1]};
 }
 
 void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* keyframe, std::uint64_t& keyframeBase,
@@ -229,70 +217,6 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
   visitStep(out.digest, out.lateness, out.result, visit);
   out.result.step = out.step;
   return named(visit.fault, out.step);
-}
-
-void appendEvent(const Event& event, std::vector<std::byte>& out) {
-  appendValue(out, event.step);
-  appendValue(out, event.kind);
-  appendValue(out, event.hand);
-  appendValue(out, event.subject);
-  append(out, event.position.data(), 3 * sizeof(double));
-  appendValue(out, event.value);
-}
-
-Event parseEvent(std::span<const std::byte> row) {
-  Event e;
-  e.step = takeValue<std::uint64_t>(row);
-  e.kind = static_cast<EventKind>(takeValue<std::uint16_t>(row));
-  e.hand = takeValue<std::uint8_t>(row);
-  e.subject = takeValue<std::uint16_t>(row);
-  for (int i = 0; i < 3; ++i) e.position[i] = takeValue<double>(row);
-  e.value = takeValue<double>(row);
-  return e;
-}
-
-void appendKeyframeRow(const KeyframeRow& row, std::vector<std::byte>& out) {
-  appendValue(out, row.step);
-  appendValue(out, row.offset);
-  appendValue(out, row.stateBytes);
-  appendValue(out, row.hapticsBytes);
-}
-
-KeyframeRow parseKeyframeRow(std::span<const std::byte> row) {
-  KeyframeRow k;
-  k.step = takeValue<std::uint64_t>(row);
-  k.offset = takeValue<std::uint64_t>(row);
-  k.stateBytes = takeValue<std::uint64_t>(row);
-  k.hapticsBytes = takeValue<std::uint64_t>(row);
-  return k;
-}
-
-void appendStatus(const StatusRow& row, std::vector<std::byte>& out) {
-  appendValue(out, row.ticks);
-  appendValue(out, row.steps);
-  appendValue(out, row.events);
-  appendValue(out, row.keyframes);
-  appendValue(out, row.keyframeWords);
-  appendValue(out, static_cast<std::uint8_t>(row.completed ? 1 : 0));
-  appendValue(out, row.outcome);
-  appendValue(out, row.wallNanoseconds);
-  append(out, row.chain.data(), row.chain.size());
-}
-
-bool parseStatus(std::span<const std::byte> bytes, StatusRow& row) {
-  row.ticks = takeValue<std::uint64_t>(bytes);
-  row.steps = takeValue<std::uint64_t>(bytes);
-  row.events = takeValue<std::uint64_t>(bytes);
-  row.keyframes = takeValue<std::uint64_t>(bytes);
-  row.keyframeWords = takeValue<std::uint64_t>(bytes);
-  const auto completed = takeValue<std::uint8_t>(bytes);
-  const auto outcome = takeValue<std::uint8_t>(bytes);
-  row.wallNanoseconds = takeValue<std::int64_t>(bytes);
-  std::memcpy(row.chain.data(), bytes.data(), row.chain.size());
-  row.completed = completed == 1;
-  row.outcome = static_cast<Outcome>(outcome);
-  return completed <= 1 && outcome <= static_cast<std::uint8_t>(Outcome::technicalFailure) &&
-         (completed == 1) == (row.outcome != Outcome::running);
 }
 
 }  // namespace calot::recorder

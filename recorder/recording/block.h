@@ -11,6 +11,7 @@
 
 #include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
+#include "recorder/recording/rows.h"
 
 namespace calot::recorder {
 
@@ -20,11 +21,15 @@ struct Block {
   bool last = false;                              ///< nothing comes after it
   bool completed = false;                         ///< the attempt ended with it
   Outcome outcome = Outcome::running;
+  std::array<std::uint64_t, handCount> rawDropped{};  ///< raw samples of this block that could not be kept
 
   /// Room for a whole block, so that filling it does not allocate (but for events and keyframes).
   explicit Block(const Layout& layout);
   void clear();
 };
+
+/// Rows of each stream that a row of /status vouches for.
+std::array<std::uint64_t, streamCount> countsOf(const StatusRow& row);
 
 /// Appends a step to a block. The keyframe is appended where one is given; `keyframeBase` counts the words of
 /// /keyframes/bytes before it and moves on.
@@ -33,22 +38,5 @@ void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* 
 
 /// Reads step `at` (of this block) back, but for its events. @return an empty string, or which value is out of range.
 std::string extractStep(const Layout& layout, const Block& block, std::uint64_t at, RecordedStep& out);
-
-/// Packed rows.
-void appendEvent(const Event& event, std::vector<std::byte>& out);
-Event parseEvent(std::span<const std::byte> row);
-
-struct KeyframeRow {
-  std::uint64_t step = 0;
-  std::uint64_t offset = 0;  ///< of its first byte in /keyframes/bytes
-  std::uint64_t stateBytes = 0;
-  std::uint64_t hapticsBytes = 0;
-};
-void appendKeyframeRow(const KeyframeRow& row, std::vector<std::byte>& out);
-KeyframeRow parseKeyframeRow(std::span<const std::byte> row);
-
-void appendStatus(const StatusRow& row, std::vector<std::byte>& out);
-/// @return false if a field is out of range.
-bool parseStatus(std::span<const std::byte> bytes, StatusRow& row);
 
 }  // namespace calot::recorder

@@ -68,22 +68,6 @@ void appendCounts(Hash& hash, const StatusRow& row) {
   hash.number(static_cast<std::uint8_t>(row.outcome));
 }
 
-std::uint64_t countOf(const StatusRow& row, Stream stream) {
-  switch (stream) {
-    case Stream::ticks:
-      return row.ticks;
-    case Stream::steps:
-      return row.steps;
-    case Stream::events:
-      return row.events;
-    case Stream::keyframes:
-      return row.keyframes;
-    case Stream::keyframeWords:
-      return row.keyframeWords;
-  }
-  return 0;
-}
-
 }  // namespace
 
 ChainHead chainStart(const AttemptHeader& header) {
@@ -114,12 +98,14 @@ ChainHead chainStart(const AttemptHeader& header) {
 ChainHead chainNext(const Layout& layout, const StatusRow& before, const Block& block, const StatusRow& after) {
   Hash hash;
   hash.bytes(before.chain.data(), before.chain.size());
+  const std::array<std::uint64_t, streamCount> first = countsOf(before);
   for (std::size_t c = 0; c < layout.columns.size(); ++c) {
     const Column& column = layout.columns[c];
     if (!column.chained || column.width == 0) continue;
     hash.string(column.path);
-    hash.number(countOf(before, column.stream));
-    hash.number(block.rows[static_cast<std::size_t>(column.stream)]);
+    const auto stream = static_cast<std::size_t>(column.stream);
+    hash.number(first[stream]);
+    hash.number(block.rows[stream]);
     hash.bytes(block.column[c].data(), block.column[c].size());
   }
   appendCounts(hash, after);

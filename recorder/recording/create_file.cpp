@@ -159,6 +159,9 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
     builder.group(name);
   }
   if (layout.organs > 0) builder.group("/observables/organs");
+  if (layout.deviceSamples) {
+    for (const char* name : {"/device", "/device/left", "/device/right"}) builder.group(name);
+  }
   {
     const Id g = hdf5::group(H5Gopen2(builder.root(), "/observables", H5P_DEFAULT));
     builder.attribute(g.get(), "version", H5T_STD_U32LE, &header.stepResultVersion);
@@ -193,6 +196,14 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
   const Id statusType = hdf5::elementType(Element::status);
   const Id status = builder.dataset("/status", statusType.get(), {1}, 1, false, true);
   builder.need(H5Dwrite(status.get(), statusType.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) >= 0, "/status");
+
+  if (layout.deviceSamples) {
+    packed.clear();
+    appendRawCounts(first, packed);
+    const Id type = hdf5::elementType(Element::rawCounts);
+    const Id counts = builder.dataset(rawCountsPath, type.get(), {1}, rawChunkRows, false, true);
+    builder.need(H5Dwrite(counts.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) >= 0, rawCountsPath);
+  }
 
   builder.bytes("/scene/description", header.assets.front());
   for (std::size_t i = 1; i < header.assets.size(); ++i) {

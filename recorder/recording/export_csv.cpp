@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <iterator>
+#include <algorithm>
 #include <memory>
 #include <system_error>
 
 #include "recorder/errors.h"
+#include "recorder/recording/csv_table.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/layout.h"
 
@@ -16,73 +16,9 @@ namespace calot::recorder {
 
 namespace {
 
-/// Quoted where a comma, quote or line break asks for it (RFC 4180).
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
-}
+using Tables = std::vector<std::unique_ptr<CsvTable>>;
 
-/// One CSV file, written under its own name in the staging folder.
-class Table {
- public:
-  Table(const std::filesystem::path& stage, const std::string& folder) : folder_(folder) {
-    std::string name = folder.substr(1) + ".csv";
-    for (char& c : name) c = c == '/' ? '_' : c;
-    path_ = stage / name;
-    file_.reset(std::fopen(path_.c_str(), "w"));
-    if (!file_) fail();
-  }
-
-  [[nodiscard]] const std::string& folder() const { return folder_; }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-  template <class... Args>
-  void value(fmt::format_string<Args...> format, Args&&... args) {
-    if (!first_) line_.push_back(',');
-    first_ = false;
-    fmt::format_to(std::back_inserter(line_), format, std::forward<Args>(args)...);
-  }
-  void put(double v) { value("{:.17g}", v); }
-  void put(float v) { value("{:.9g}", v); }
-  void put(bool v) { value("{}", v ? 1 : 0); }
-  void put(InstrumentKind v) { value("{}", static_cast<unsigned>(v)); }
-  void put(const std::string& v) { value("{}", cell(v)); }
-  template <class T>
-  requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) void put(T v) { value("{}", v); }
-
-  void endRow() {
-    line_.push_back('\n');
-    if (std::fwrite(line_.data(), 1, line_.size(), file_.get()) != line_.size()) fail();
-    line_.clear();
-    first_ = true;
-  }
-  void close() {
-    if (std::fclose(file_.release()) != 0) fail();
-  }
-
- private:
-  [[noreturn]] void fail() const {
-    throw Error(ExitCode::failure,
-                fmt::format("{}: cannot be written: {}", path_.string(), std::generic_category().message(errno)));
-  }
-  struct Closer {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
-  std::string folder_;
-  std::filesystem::path path_;
-  std::unique_ptr<std::FILE, Closer> file_;
-  fmt::memory_buffer line_;
-  bool first_ = true;
-};
-
-using Tables = std::vector<std::unique_ptr<Table>>;
-
-Table* find(Tables& tables, const std::string& folder) {
+CsvTable* find(Tables& tables, const std::string& folder) {
   for (const auto& t : tables) {
     if (t->folder() == folder) return t.get();
   }
@@ -132,9 +68,9 @@ struct TitleVisitor {
 
  private:
   void title(const std::string& folder, const std::string& name, const char* unit) {
-    Table* table = find(tables, folder);
+    CsvTable* table = find(tables, folder);
     if (table == nullptr) {
-      tables.push_back(std::make_unique<Table>(stage, folder));
+      tables.push_back(std::make_unique<CsvTable>(stage, folder));
       table = tables.back().get();
       table->put(std::string(clock));
     }
@@ -148,7 +84,7 @@ struct ValueVisitor {
   Tables& tables;
   std::uint64_t row = 0;
   const char* folderNow = nullptr;
-  Table* table = nullptr;
+  CsvTable* table = nullptr;
 
   template <class T>
   void operator()(const char* folder, const char*, const char*, const T& v) {
@@ -175,7 +111,7 @@ struct ValueVisitor {
   }
 
  private:
-  Table& to(const char* folder) {
+  CsvTable& to(const char* folder) {
     if (folder != folderNow) {
       folderNow = folder;
       table = find(tables, folder);
@@ -192,7 +128,7 @@ void endRows(Tables& tables) {
 }
 
 struct AttributeRows {
-  Table& table;
+  CsvTable& table;
   template <class T>
   void operator()(const char* name, const T& value) {
     table.put(std::string(name));
@@ -208,6 +144,34 @@ struct AttributeRows {
     (*this)(name, std::string(names[static_cast<std::size_t>(value)]));
   }
 };
+
+/// Raw samples of a hand's device.
+void writeRawSamples(Recording& recording, Hand hand, CsvTable& table) {
+  for (const char* title : {"device_time (ns)", "host_time (ns)", "sequence", "tick", "position_x (m)",
+                            "position_y (m)", "position_z (m)", "orientation_w", "orientation_x", "orientation_y",
+                            "orientation_z", "gripper (rad)", "buttons", "valid", "used"}) {
+    table.put(std::string(title));
+  }
+  table.endRow();
+  constexpr std::uint64_t most = 4096;
+  const std::uint64_t count = recording.rawSampleCount(hand);
+  for (std::uint64_t at = 0; at < count; at += most) {
+    for (const RawSample& raw : recording.rawSamples(hand, at, std::min(most, count - at))) {
+      const DeviceSample& s = raw.sample;
+      table.put(s.deviceTime);
+      table.put(s.hostTime);
+      table.put(s.sequence);
+      table.put(raw.tick);
+      for (int i = 0; i < 3; ++i) table.put(s.position[i]);
+      for (const double v : {s.orientation.w(), s.orientation.x(), s.orientation.y(), s.orientation.z()}) table.put(v);
+      table.put(s.gripper);
+      table.put(static_cast<unsigned>(s.buttons));
+      table.put(s.valid);
+      table.put(raw.used);
+      table.endRow();
+    }
+  }
+}
 
 void writeAll(Recording& recording, const std::filesystem::path& stage,
               const std::function<void(std::uint64_t)>& progress, std::vector<std::filesystem::path>& files) {
@@ -225,7 +189,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   visitStep(digest, lateness, result, stepTitles);
   endRows(ticks);
   endRows(steps);
-  Table events(stage, "/events");
+  CsvTable events(stage, "/events");
   for (const char* title :
        {"step", "kind", "hand", "subject", "position_x (m)", "position_y (m)", "position_z (m)", "value"}) {
     events.put(std::string(title));
@@ -254,7 +218,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
     }
     if (progress) progress(n + 1);
   }
-  Table attempt(stage, "/attempt");
+  CsvTable attempt(stage, "/attempt");
   attempt.put(std::string("attribute"));
   attempt.put(std::string("value"));
   attempt.endRow();
@@ -262,7 +226,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   visitAttributes(header, rows);
   rows("complete", recording.complete());
   rows("outcome", std::string(outcomeNames[static_cast<std::size_t>(recording.outcome())]));
-  const auto finish = [&files](Table& table) {
+  const auto finish = [&files](CsvTable& table) {
     table.close();
     files.push_back(table.path());
   };
@@ -270,6 +234,12 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   for (const auto& t : ticks) finish(*t);
   for (const auto& t : steps) finish(*t);
   finish(events);
+  if (!header.deviceSamples) return;
+  for (const Hand hand : {Hand::left, Hand::right}) {
+    CsvTable raw(stage, std::string("/device/") + handNames[static_cast<std::size_t>(hand)]);
+    writeRawSamples(recording, hand, raw);
+    finish(raw);
+  }
 }
 
 }  // namespace

@@ -27,14 +27,21 @@ FileAppender::FileAppender(const std::filesystem::path& path, const Layout& layo
   const hdf5::Id how = hdf5::datasetAccess(statusBytes);
   status_ = hdf5::dataset(H5Dopen2(file_.get(), "/status", how.get()));
   if (!status_.valid()) fail("cannot open /status");
+  if (!layout.deviceSamples) return;
+  rawCountsType_ = hdf5::elementType(Element::rawCounts);
+  const hdf5::Id small = hdf5::datasetAccess(rawCountsBytes * rawChunkRows);
+  rawCounts_ = hdf5::dataset(H5Dopen2(file_.get(), rawCountsPath, small.get()));
+  if (!rawCounts_.valid()) fail(std::string("cannot open ") + rawCountsPath);
 }
 
 FileAppender::~FileAppender() {
   const hdf5::Session session;
   dataset_.clear();
   status_.reset();
+  rawCounts_.reset();
   type_.clear();
   statusType_.reset();
+  rawCountsType_.reset();
   file_.reset();
 }
 
@@ -66,12 +73,16 @@ void FileAppender::append(const Block& block, std::int64_t wallNanoseconds) {
   row.events = last_.events + block.rows[static_cast<std::size_t>(Stream::events)];
   row.keyframes = last_.keyframes + block.rows[static_cast<std::size_t>(Stream::keyframes)];
   row.keyframeWords = last_.keyframeWords + block.rows[static_cast<std::size_t>(Stream::keyframeWords)];
+  for (std::size_t h = 0; h < row.rawSamples.size(); ++h) {
+    const Stream stream = layout_.columns[layout_.raw[h]].stream;
+    row.rawSamples[h] = last_.rawSamples[h] + block.rows[static_cast<std::size_t>(stream)];
+    row.rawDropped[h] = last_.rawDropped[h] + block.rawDropped[h];
+  }
   row.completed = block.completed;
   row.outcome = block.outcome;
   row.wallNanoseconds = wallNanoseconds;
   row.chain = chainNext(layout_, last_, block, row);
-  const std::array<std::uint64_t, streamCount> before{last_.ticks, last_.steps, last_.events, last_.keyframes,
-                                                      last_.keyframeWords};
+  const std::array<std::uint64_t, streamCount> before = countsOf(last_);
   const hdf5::Session session;
   for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
     const Column& column = layout_.columns[c];
@@ -80,11 +91,16 @@ void FileAppender::append(const Block& block, std::int64_t wallNanoseconds) {
     writeRows(dataset_[c], type_[c], before[stream], block.rows[stream], column.width, column.vector,
               block.column[c].data(), column.path);
   }
+  if (rawCounts_.valid()) {
+    packed_.clear();
+    appendRawCounts(row, packed_);
+    writeRows(rawCounts_, rawCountsType_, statusRows_, 1, 1, false, packed_.data(), rawCountsPath);
+  }
   // The rows must be in the file before the row that vouches for them.
   if (swmr_ && H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
-  statusBytes_.clear();
-  appendStatus(row, statusBytes_);
-  writeRows(status_, statusType_, statusRows_, 1, 1, false, statusBytes_.data(), "/status");
+  packed_.clear();
+  appendStatus(row, packed_);
+  writeRows(status_, statusType_, statusRows_, 1, 1, false, packed_.data(), "/status");
   if (swmr_ && H5Dflush(status_.get()) < 0) fail("cannot flush /status");
   ++statusRows_;
   last_ = row;
@@ -96,6 +112,7 @@ void FileAppender::close() {
     if (!d.reset()) fail("cannot close");
   }
   if (!status_.reset()) fail("cannot close /status");
+  if (!rawCounts_.reset()) fail(std::string("cannot close ") + rawCountsPath);
   if (H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
   if (!file_.reset())
     throw Error(ExitCode::failure, fmt::format("{}: cannot be closed: {}", path_.string(), hdf5::reason()));

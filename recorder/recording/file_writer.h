@@ -52,7 +52,8 @@ class FileAppender {
   hdf5::Id file_;
   std::vector<hdf5::Id> type_, dataset_;
   hdf5::Id statusType_, status_;
-  std::vector<std::byte> statusBytes_;
+  hdf5::Id rawCountsType_, rawCounts_;  ///< where there is a /device
+  std::vector<std::byte> packed_;
 };
 
 }  // namespace calot::recorder

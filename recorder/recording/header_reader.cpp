@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/recording/header_reader.h"
-#include "recorder/formats/file_bytes.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstring>
-#include <fstream>
-
-#include "recorder/recording/chain.h"
+#include "recorder/formats/file_bytes.h"
 #include "recorder/recording/header.h"
-#include "recorder/recording/types.h"
+#include "recorder/recording/layout.h"
 
 namespace calot::recorder {
 
@@ -181,49 +176,6 @@ bool isUuid(const std::string& text) {
 
 }  // namespace
 
-Superblock readSuperblock(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error(ExitCode::damaged, path.string() + ": no such file");
-  if (std::filesystem::is_directory(status))
-    throw Error(ExitCode::damaged, path.string() + ": is a folder, not a recording");
-  if (!std::filesystem::is_regular_file(status))
-    throw Error(ExitCode::damaged, path.string() + ": is not a regular file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(ExitCode::damaged, path.string() + ": cannot be opened; check its permissions");
-  std::array<char, 36> head{};
-  in.read(head.data(), head.size());
-  if (in.gcount() == 0) throw Error(ExitCode::damaged, path.string() + ": is empty");
-  constexpr std::array<char, 8> signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  if (in.gcount() < static_cast<std::streamsize>(head.size()) ||
-      !std::equal(signature.begin(), signature.end(), head.begin())) {
-    throw Error(ExitCode::damaged, path.string() + ": is not an HDF5 file, so not a recording");
-  }
-  // HDF5 File Format Specification 3.0, II.A: byte 8 version, 9 size of offsets, 11 consistency flags, 28 end of file.
-  Superblock s;
-  s.version = static_cast<unsigned char>(head[8]);
-  s.writing = s.version >= 2 && (static_cast<unsigned char>(head[11]) & 0x5U) != 0;
-  if (s.version >= 2 && head[9] == 8) std::memcpy(&s.endOfFile, &head[28], sizeof s.endOfFile);
-  return s;
-}
-
-hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
-  const Superblock superblock = readSuperblock(path);
-  const Id how = hdf5::fileAccess(access == Access::settled ? 1 : 0);
-  const unsigned swmr = superblock.writing ? H5F_ACC_SWMR_READ : 0U;
-  Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get()));
-  if (file.valid()) return file;
-  const std::string why = hdf5::reason();
-  std::error_code ignored;
-  const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
-  if (superblock.endOfFile > bytes && !superblock.writing) {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: is cut off: {} of {} bytes are there; calot recover saves what it can", path.string(),
-                            bytes, superblock.endOfFile));
-  }
-  throw Error(ExitCode::damaged, fmt::format("{}: cannot be opened: {}", path.string(), why));
-}
-
 AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file, std::uint64_t fileBytes) {
   const HeaderReader reader(path, file, fileBytes);
   AttemptHeader h;
@@ -260,112 +212,8 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   reader.number(observables.get(), "/observables", "version", H5T_STD_U32LE, &version);
   if (version != h.stepResultVersion)
     throw damaged(path, "/observables@version", "is not the root's step_result_version");
+  h.deviceSamples = reader.there("/device");
   return h;
-}
-
-ColumnReader::ColumnReader(std::filesystem::path path, const hdf5::Id& file, const Layout& layout,
-                           std::uint64_t fileBytes)
-    : path_(std::move(path)), layout_(layout), fileBytes_(fileBytes) {
-  // /status first: of a file that is being written, what is opened later holds at least what its rows vouch for.
-  statusColumn_.path = "/status";
-  statusColumn_.element = Element::status;
-  statusColumn_.deflate = false;
-  status_ = open(file, statusColumn_);
-  for (const Column& column : layout.columns) source_.push_back(open(file, column));
-  statusRows_ = status_.rows;
-  if (statusRows_ < 1) throw damaged(path_, "/status", "is empty");
-  if (statusRows_ > fileBytes) throw damaged(path_, "/status", "claims more rows than the file can hold");
-}
-
-ColumnReader::Source ColumnReader::open(const hdf5::Id& file, const Column& column) const {
-  Source s;
-  s.type = hdf5::elementType(column.element);
-  if (column.width == 0) return s;
-  const Id how = hdf5::datasetAccess(column.rowBytes() * static_cast<std::size_t>(column.chunkRows));
-  s.dataset = hdf5::dataset(H5Dopen2(file.get(), column.path.c_str(), how.get()));
-  if (!s.dataset.valid()) throw damaged(path_, column.path, "is missing or cannot be read");
-  const Id type = hdf5::type(H5Dget_type(s.dataset.get()));
-  if (H5Tequal(type.get(), s.type.get()) <= 0) throw damaged(path_, column.path, "has the wrong type");
-  const Id space = hdf5::space(H5Dget_space(s.dataset.get()));
-  const int rank = column.vector ? 2 : 1;
-  std::array<hsize_t, 2> extent{};
-  if (H5Sget_simple_extent_ndims(space.get()) != rank ||
-      H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr) != rank ||
-      (column.vector && extent[1] != column.width)) {
-    throw damaged(path_, column.path, "has the wrong shape");
-  }
-  s.rows = extent[0];
-  return s;
-}
-
-void ColumnReader::read(const Source& source, const Column& column, std::uint64_t first, std::uint64_t rows,
-                        std::vector<std::byte>& out) const {
-  out.resize(static_cast<std::size_t>(rows) * column.rowBytes());
-  if (rows == 0 || column.width == 0) return;
-  if (first + rows > source.rows) {
-    throw damaged(path_, column.path,
-                  fmt::format("holds {} rows where /status vouches for {}", source.rows, first + rows));
-  }
-  const std::array<hsize_t, 2> start{first, 0};
-  const std::array<hsize_t, 2> count{rows, column.width};
-  const Id fileSpace = hdf5::space(H5Dget_space(source.dataset.get()));
-  const Id memorySpace = hdf5::space(H5Screate_simple(column.vector ? 2 : 1, count.data(), nullptr));
-  if (H5Sselect_hyperslab(fileSpace.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
-      H5Dread(source.dataset.get(), source.type.get(), memorySpace.get(), fileSpace.get(), H5P_DEFAULT, out.data()) <
-          0) {
-    throw damaged(path_, column.path, fmt::format("rows {} to {}: {}", first, first + rows - 1, hdf5::reason()));
-  }
-}
-
-void ColumnReader::readRows(std::size_t column, std::uint64_t first, std::uint64_t rows,
-                            std::vector<std::byte>& out) const {
-  read(source_[column], layout_.columns[column], first, rows, out);
-}
-
-StatusRow ColumnReader::readStatus(std::uint64_t row) const {
-  std::vector<std::byte> bytes;
-  read(status_, statusColumn_, row, 1, bytes);
-  StatusRow out;
-  if (!parseStatus(bytes, out)) throw damaged(path_, "/status", fmt::format("row {} has an unknown outcome", row));
-  if (row == 0 && (out.ticks | out.steps | out.events | out.keyframes | out.keyframeWords) != 0) {
-    throw damaged(path_, "/status", "row 0 does not start at nothing");
-  }
-  return out;
-}
-
-void ColumnReader::checkFollows(const StatusRow& before, const StatusRow& after, std::uint64_t row) const {
-  const auto refuse = [&](const char* why) { throw damaged(path_, "/status", fmt::format("row {} {}", row, why)); };
-  if (before.completed) refuse("comes after the end");
-  if (after.ticks < before.ticks || after.steps < before.steps || after.events < before.events ||
-      after.keyframes < before.keyframes || after.keyframeWords < before.keyframeWords) {
-    refuse("counts less than the row before it");
-  }
-  const std::uint64_t steps = after.steps - before.steps;
-  if (steps > layout_.stepsPerBlock) refuse("vouches for more than a flush can write");
-  if (steps == 0 && !after.completed) refuse("vouches for nothing");
-  if (after.ticks - before.ticks != steps * layout_.ticksPerStep) refuse("has ticks that do not fit its steps");
-  if (after.keyframes - before.keyframes > steps) refuse("has more keyframes than steps");
-  // Events have no bound of their own but the file's size; deflate cannot shrink keyframes more than 1032 to 1.
-  if ((after.events - before.events) > fileBytes_ || (after.keyframeWords - before.keyframeWords) / 130 > fileBytes_) {
-    refuse("claims more rows than the file can hold");
-  }
-}
-
-void ColumnReader::readBlock(const StatusRow& before, const StatusRow& after, bool withKeyframes, Block& block) const {
-  const std::array<std::uint64_t, streamCount> first{before.ticks, before.steps, before.events, before.keyframes,
-                                                     before.keyframeWords};
-  block.rows = {after.ticks - before.ticks, after.steps - before.steps, after.events - before.events,
-                after.keyframes - before.keyframes, after.keyframeWords - before.keyframeWords};
-  block.completed = after.completed;
-  block.outcome = after.outcome;
-  for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
-    const auto stream = static_cast<std::size_t>(layout_.columns[c].stream);
-    if (c == layout_.keyframeWords && !withKeyframes) {
-      block.column[c].clear();
-      continue;
-    }
-    read(source_[c], layout_.columns[c], first[stream], block.rows[stream], block.column[c]);
-  }
 }
 
 }  // namespace calot::recorder

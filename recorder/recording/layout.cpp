@@ -27,6 +27,10 @@ std::size_t elementBytes(Element element) {
       return keyframeBytes;
     case Element::status:
       return statusBytes;
+    case Element::rawSample:
+      return rawSampleBytes;
+    case Element::rawCounts:
+      return rawCountsBytes;
   }
   return 0;
 }
@@ -116,7 +120,8 @@ struct Collect {
 }  // namespace
 
 Layout::Layout(const AttemptHeader& header)
-    : ticksPerStep(header.ticksPerStep),
+    : deviceSamples(header.deviceSamples),
+      ticksPerStep(header.ticksPerStep),
       organs(header.organs.size()),
       components(header.layout.components.size()),
       fields(header.layout.fields.size()),
@@ -154,6 +159,13 @@ Layout::Layout(const AttemptHeader& header)
   events = irregular("/events", Element::event, Stream::events, 32, false);
   keyframeIndex = irregular("/keyframes/index", Element::keyframe, Stream::keyframes, 16, false);
   keyframeWords = irregular("/keyframes/bytes", Element::u8, Stream::keyframeWords, keyframeChunkWords, true);
+  for (std::size_t h = 0; h < raw.size(); ++h) {
+    static constexpr std::array<const char*, handCount> path{"/device/left/samples", "/device/right/samples"};
+    static constexpr std::array<Stream, handCount> stream{Stream::rawLeft, Stream::rawRight};
+    raw[h] = irregular(path[h], Element::rawSample, stream[h], rawChunkRows, false);
+    columns.back().width = deviceSamples ? 1 : 0;
+    columns.back().chained = false;
+  }
 }
 
 }  // namespace calot::recorder

@@ -18,13 +18,15 @@ inline constexpr const char* formatName = "calot-recording";
 inline constexpr std::uint32_t largestTicksPerStep = 1000;
 inline constexpr std::size_t largestOrganCount = 32;  // HandResult::touching has a bit for each
 inline constexpr std::uint64_t keyframeChunkWords = 8192;
+inline constexpr std::uint64_t rawChunkRows = 64;
+inline constexpr const char* rawCountsPath = "/device/counts";
 
-/// Stored types, all little-endian. The last three are packed compounds.
-enum class Element : std::uint8_t { u1, u2, u4, u8, i8, f4, f8, event, keyframe, status };
+/// Stored types, all little-endian. The last five are packed compounds.
+enum class Element : std::uint8_t { u1, u2, u4, u8, i8, f4, f8, event, keyframe, status, rawSample, rawCounts };
 
-/// Which count of /status a data set's rows follow.
-enum class Stream : std::uint8_t { ticks, steps, events, keyframes, keyframeWords };
-inline constexpr std::size_t streamCount = 5;
+/// Which count of /status, or of /device/counts beside it, a data set's rows follow.
+enum class Stream : std::uint8_t { ticks, steps, events, keyframes, keyframeWords, rawLeft, rawRight };
+inline constexpr std::size_t streamCount = 7;
 
 std::size_t elementBytes(Element element);
 
@@ -46,12 +48,17 @@ struct Column {
 inline constexpr std::size_t eventBytes = 45;
 inline constexpr std::size_t keyframeBytes = 32;
 inline constexpr std::size_t statusBytes = 82;
+inline constexpr std::size_t rawSampleBytes = 99;
+inline constexpr std::size_t rawCountsBytes = 32;
 
 struct Layout {
-  std::vector<Column> columns;  ///< in the order of the chain: ticks, steps, events, keyframe index, keyframe bytes
-  std::size_t tickColumns = 0;  ///< the first ones
-  std::size_t stepColumns = 0;  ///< the next ones
+  /// In the order of the chain: ticks, steps, events, keyframe index, keyframe bytes. Then raw samples, left and right.
+  std::vector<Column> columns;
+  std::size_t tickColumns = 0;                                   ///< the first ones
+  std::size_t stepColumns = 0;                                   ///< the next ones
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
+  std::array<std::size_t, handCount> raw{};
+  bool deviceSamples = false;  ///< there is a /device
   std::uint32_t ticksPerStep = 10;
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;

@@ -7,8 +7,10 @@
 #include <cassert>
 
 #include "recorder/recording/chain.h"
+#include "recorder/recording/column_reader.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/header_reader.h"
+#include "recorder/recording/open_file.h"
 
 namespace calot::recorder {
 
@@ -47,7 +49,9 @@ struct Recording::Impl {
     columns = std::make_unique<ColumnReader>(path, file, *layout, fileBytes);
     for (std::uint64_t row = 0; row < columns->statusRows(); ++row) {
       status.push_back(columns->readStatus(row));
-      if (row > 0) columns->checkFollows(status[status.size() - 2], status.back(), row);
+      const StatusRow before = row > 0 ? status[status.size() - 2] : StatusRow{};
+      if (row > 0) columns->checkFollows(before, status.back(), row);
+      columns->readRawCounts(before, row, status.back());
     }
     readKeyframeIndex();
     block = std::make_unique<Block>(*layout);
@@ -81,6 +85,7 @@ struct Recording::Impl {
     blockRow = 0;
     const StatusRow& before = status[row - 1];
     columns->readBlock(before, status[row], false, *block);
+    columns->readRaw(before, status[row], *block);
     events.assign(static_cast<std::size_t>(status[row].steps - before.steps), {});
     const std::vector<std::byte>& packed = block->column[layout->events];
     for (std::uint64_t i = 0; i < status[row].events - before.events; ++i) {
@@ -150,6 +155,32 @@ Keyframe Recording::keyframe(std::size_t index) {
   const auto haptics = std::span(words).subspan(static_cast<std::size_t>(k.offset % 8 + k.stateBytes),
                                                 static_cast<std::size_t>(k.hapticsBytes));
   return {k.step, {state.begin(), state.end()}, {haptics.begin(), haptics.end()}};
+}
+
+std::uint64_t Recording::rawSampleCount(Hand hand) const {
+  return impl_->status.back().rawSamples[static_cast<std::size_t>(hand)];
+}
+
+std::uint64_t Recording::rawSamplesDropped(Hand hand) const {
+  return impl_->status.back().rawDropped[static_cast<std::size_t>(hand)];
+}
+
+std::vector<RawSample> Recording::rawSamples(Hand hand, std::uint64_t first, std::uint64_t count) {
+  const Impl& impl = *impl_;
+  assert(first + count <= rawSampleCount(hand));
+  const std::size_t column = impl.layout->raw[static_cast<std::size_t>(hand)];
+  std::vector<std::byte> bytes;
+  {
+    const hdf5::Session session;
+    impl.columns->readRows(column, first, count, bytes);
+  }
+  std::vector<RawSample> out(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::string fault = parseRawSample(std::span(bytes).subspan(i * rawSampleBytes), hand, out[i]);
+    if (!fault.empty())
+      throw hdf5::damaged(impl.path, impl.layout->columns[column].path, fmt::format("row {} {}", first + i, fault));
+  }
+  return out;
 }
 
 ChainVerdict Recording::verifyChain() {

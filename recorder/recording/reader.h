@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "recorder/device_sample.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
 
@@ -22,6 +23,9 @@ struct StatusRow {
   Outcome outcome = Outcome::running;
   std::int64_t wallNanoseconds = 0;  ///< since 1970-01-01 UTC, when the row was written; outside the chain
   std::array<std::uint8_t, 32> chain{};
+  /// Of the row of /device/counts that belongs to it; 0 where there is no /device.
+  std::array<std::uint64_t, handCount> rawSamples{};
+  std::array<std::uint64_t, handCount> rawDropped{};
 };
 
 /// One step as recorded.
@@ -83,6 +87,13 @@ class Recording {
   /// Index into keyframeSteps of the last keyframe at or before a step, if there is one.
   [[nodiscard]] std::optional<std::size_t> keyframeAtOrBefore(std::uint64_t step) const;
   [[nodiscard]] Keyframe keyframe(std::size_t index);
+
+  /// Raw samples of a hand's device: how many there are, and how many came and could not be kept. 0 without a device,
+  /// or in a file whose writer kept none.
+  [[nodiscard]] std::uint64_t rawSampleCount(Hand hand) const;
+  [[nodiscard]] std::uint64_t rawSamplesDropped(Hand hand) const;
+  /// Some of them, in the order of arrival. @pre first + count <= rawSampleCount(hand)
+  [[nodiscard]] std::vector<RawSample> rawSamples(Hand hand, std::uint64_t first, std::uint64_t count);
 
   /// Computes the chain anew over the whole file. Throws where data cannot be read; a disagreement is a verdict.
   ChainVerdict verifyChain();

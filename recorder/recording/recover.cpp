@@ -7,9 +7,11 @@
 #include <system_error>
 
 #include "recorder/recording/chain.h"
+#include "recorder/recording/column_reader.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/header_reader.h"
+#include "recorder/recording/open_file.h"
 #include "recorder/recording/publish.h"
 
 namespace calot::recorder {
@@ -45,8 +47,13 @@ class Salvage {
       cut_ = fmt::format(" (cut off: {} of {} bytes are there)", fileBytes, std::filesystem::file_size(readable));
     file_ = openForReading(readable, Access::settled);
     header_ = readHeader(path, file_, fileBytes);
-    layout_ = std::make_unique<Layout>(header_);
-    columns_ = std::make_unique<ColumnReader>(path, file_, *layout_, fileBytes);
+    try {
+      open(fileBytes);
+    } catch (const Error&) {
+      if (!header_.deviceSamples) throw;
+      header_.deviceSamples = false;  // all but the raw samples, then
+      open(fileBytes);
+    }
     before_ = columns_->readStatus(0);
     if (chainStart(header_) != before_.chain) {
       throw hdf5::damaged(path, "/status", "the content chain does not fit header and scene");
@@ -75,6 +82,7 @@ class Salvage {
         lost = fmt::format("{}: the content chain is broken at flush {}{}", path_.string(), row_, cut_);
         return false;
       }
+      readRaw(after, block);
     } catch (const Error& e) {
       lost = e.what() + cut_;
       return false;
@@ -85,6 +93,29 @@ class Salvage {
   }
 
  private:
+  void open(std::uint64_t fileBytes) {
+    columns_.reset();
+    layout_ = std::make_unique<Layout>(header_);
+    columns_ = std::make_unique<ColumnReader>(path_, file_, *layout_, fileBytes);
+  }
+
+  /// What cannot be read of the raw samples costs nothing else: it is counted with what could not be kept.
+  void readRaw(StatusRow& after, Block& block) const {
+    after.rawSamples = before_.rawSamples;
+    after.rawDropped = before_.rawDropped;
+    try {
+      columns_->readRawCounts(before_, row_, after);
+      columns_->readRaw(before_, after, block);
+    } catch (const Error&) {
+      for (std::size_t h = 0; h < layout_->raw.size(); ++h) {
+        const Column& column = layout_->columns[layout_->raw[h]];
+        block.column[layout_->raw[h]].clear();
+        block.rows[static_cast<std::size_t>(column.stream)] = 0;
+        block.rawDropped[h] = after.rawDropped[h] - before_.rawDropped[h] + after.rawSamples[h] - before_.rawSamples[h];
+      }
+    }
+  }
+
   std::filesystem::path path_;
   std::string cut_;
   hdf5::Id file_;

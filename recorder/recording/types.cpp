@@ -45,6 +45,33 @@ Id statusType() {
   return t;
 }
 
+Id rawSampleType() {
+  Id t = type(H5Tcreate(H5T_COMPOUND, rawSampleBytes));
+  const hsize_t three = 3, four = 4;
+  const Id vector = type(H5Tarray_create2(H5T_IEEE_F64LE, 1, &three));
+  const Id quaternion = type(H5Tarray_create2(H5T_IEEE_F64LE, 1, &four));
+  H5Tinsert(t.get(), "device_time", 0, H5T_STD_I64LE);
+  H5Tinsert(t.get(), "host_time", 8, H5T_STD_I64LE);
+  H5Tinsert(t.get(), "sequence", 16, H5T_STD_U64LE);
+  H5Tinsert(t.get(), "tick", 24, H5T_STD_U64LE);
+  H5Tinsert(t.get(), "position", 32, vector.get());
+  H5Tinsert(t.get(), "orientation", 56, quaternion.get());
+  H5Tinsert(t.get(), "gripper", 88, H5T_IEEE_F64LE);
+  H5Tinsert(t.get(), "buttons", 96, H5T_STD_U8LE);
+  H5Tinsert(t.get(), "valid", 97, H5T_STD_U8LE);
+  H5Tinsert(t.get(), "used", 98, H5T_STD_U8LE);
+  return t;
+}
+
+Id rawCountsType() {
+  Id t = type(H5Tcreate(H5T_COMPOUND, rawCountsBytes));
+  H5Tinsert(t.get(), "left", 0, H5T_STD_U64LE);
+  H5Tinsert(t.get(), "right", 8, H5T_STD_U64LE);
+  H5Tinsert(t.get(), "left_dropped", 16, H5T_STD_U64LE);
+  H5Tinsert(t.get(), "right_dropped", 24, H5T_STD_U64LE);
+  return t;
+}
+
 }  // namespace
 
 Id elementType(Element element) {
@@ -69,6 +96,10 @@ Id elementType(Element element) {
       return keyframeType();
     case Element::status:
       return statusType();
+    case Element::rawSample:
+      return rawSampleType();
+    case Element::rawCounts:
+      return rawCountsType();
   }
   return {};
 }

@@ -48,6 +48,9 @@ struct RecordingWriter::Impl {
   std::uint64_t nextStep = 0;
   std::uint64_t keyframeWords = 0;
   bool ended = false;
+  RawSampleFeed* feed = nullptr;
+  std::uint64_t feedFirstTick = 0;
+  std::array<std::uint64_t, handCount> dropped{};  // that the feed told of so far
 
   // Between the two threads.
   SpscQueue<Block*> full, empty;
@@ -113,6 +116,22 @@ struct RecordingWriter::Impl {
     writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
   }
 
+  /// Moves what the device measured up to the end of the last step into the block.
+  void takeRaw() {
+    if (feed == nullptr) return;
+    const std::uint64_t end = nextStep * layout.ticksPerStep - feedFirstTick;
+    RawSample raw;
+    while (feed->take(end, raw)) {
+      raw.tick += feedFirstTick;
+      const std::size_t column = layout.raw[static_cast<std::size_t>(raw.sample.hand)];
+      appendRawSample(raw, filling->column[column]);
+      ++filling->rows[static_cast<std::size_t>(layout.columns[column].stream)];
+    }
+    const std::array<std::uint64_t, handCount> now = feed->dropped();
+    for (std::size_t h = 0; h < now.size(); ++h) filling->rawDropped[h] += now[h] - dropped[h];
+    dropped = now;
+  }
+
   void end(bool completed, Outcome outcome) {
     if (ended) return;
     ended = true;
@@ -152,6 +171,13 @@ RecordingWriter::~RecordingWriter() {
   impl_->thread.join();
 }
 
+void RecordingWriter::takeRawSamples(RawSampleFeed& feed, std::uint64_t firstTick) {
+  assert(impl_->layout.deviceSamples);
+  impl_->feed = &feed;
+  impl_->feedFirstTick = firstTick;
+  impl_->dropped.fill(0);
+}
+
 void RecordingWriter::onStep(const StepRecord& record) {
   Impl& impl = *impl_;
   assert(!impl.ended && record.step == impl.nextStep);
@@ -162,6 +188,7 @@ void RecordingWriter::onStep(const StepRecord& record) {
   } else {
     appendStep(impl.layout, record, nullptr, impl.keyframeWords, *impl.filling);
   }
+  impl.takeRaw();
   if (impl.filling->rows[static_cast<std::size_t>(Stream::steps)] == impl.layout.stepsPerBlock) {
     impl.handOver(false);
     impl.filling = impl.freshBlock();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "recorder/device_sample.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
 
@@ -43,6 +44,11 @@ class RecordingWriter final : public Observer {
   ~RecordingWriter() override;
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  /// From the next step on, keeps what a device measured. Taken at each step, on the loop's thread; what came up to a
+  /// step's last tick is flushed with that step. @param feed outlives the last step. @param firstTick of the attempt,
+  /// at which the feed's tick 0 lies (a branch). @pre the header says deviceSamples
+  void takeRawSamples(RawSampleFeed& feed, std::uint64_t firstTick = 0);
 
   /// Appends a step. Does not throw for the disk's sake. @pre record.step counts 0, 1, 2, ...
   void onStep(const StepRecord& record) override;

@@ -180,6 +180,14 @@ void Stepper::Workspace::detectInstruments(const State& state) {
   }
 }
 
+const SurfacePair& Stepper::Workspace::restOf(std::size_t pair) {
+  const TissuePair& p = model.tissuePairs()[pair];
+  if (p.rest.has_value()) return *p.rest;
+  std::unique_ptr<const SurfacePair>& mine = selfRest[p.a];
+  if (mine == nullptr) mine = std::make_unique<SurfacePair>(model.organs()[p.a].surface, model.organs()[p.a].skin);
+  return *mine;
+}
+
 /// Blocks among organs that are awake; wet tissue on wet tissue slides without friction.
 void Stepper::Workspace::detectTissue(const State& state) {
   result.contact.tissueDepth = 0.0;
@@ -188,19 +196,20 @@ void Stepper::Workspace::detectTissue(const State& state) {
     if (!moved[pair.a] && !moved[pair.b]) continue;
     if (pair.a == pair.b && state.organ[pair.a].largestDisplacement < foldDisplacement) continue;
     const double far = 2.0 * tissueSlop;
+    const SurfacePair& rest_ = restOf(i);
     const ContactSurface& a = model.organs()[pair.a].surface;
     const ContactSurface& b = model.organs()[pair.b].surface;
-    patchesInPlay(pair.rest, a, skin[pair.a], b, skin[pair.b], far, patches);
+    patchesInPlay(rest_, a, skin[pair.a], b, skin[pair.b], far, patches);
     if (patches.empty()) continue;
     queries.clear();
     for (const std::uint32_t p : patches) {
       queries.push_back(bounds[pair.a][p]);
-      queries.back().grow(pair.rest.search(p, far));
+      queries.back().grow(rest_.search(p, far));
     }
     broad[pair.b]->pairs(queries, pairs);
     for (BroadPhase::Pair& p : pairs) p.query = patches[p.query];
     foundVertices.clear();
-    surfaceContacts(pair.rest, a, skin[pair.a], b, skin[pair.b], pairs, far, foundVertices);
+    surfaceContacts(rest_, a, skin[pair.a], b, skin[pair.b], pairs, far, foundVertices);
     for (const VertexContact& contact : foundVertices) {
       result.contact.tissueDepth = std::max(result.contact.tissueDepth, -contact.gap);
       ContactBlock block;

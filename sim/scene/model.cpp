@@ -91,7 +91,7 @@ Model::Built Model::build(SceneDescription scene) {
     }
   }
   for (std::size_t o = 0; o < organs.size(); ++o) {
-    model->tissuePairs_.push_back({o, o, SurfacePair(organs[o].surface, organs[o].skin)});
+    model->tissuePairs_.push_back({o, o, std::nullopt});
   }
   model->layout_ = digestLayout(names);
   model->scene_ = std::move(scene);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct OrganModel {
 struct TissuePair {
   std::size_t a = 0;
   std::size_t b = 0;
-  SurfacePair rest;
+  /// Of two organs. Of an organ with itself it is worked out by who meets it folded: most never are.
+  std::optional<SurfacePair> rest;
 };
 
 /// Everything that is built from the scene and never changes afterwards: a pure function of the description.

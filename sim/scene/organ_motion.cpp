@@ -72,7 +72,7 @@ void Stepper::Workspace::finishOrgans(State& state) {
       }
       out.largestSpeed = std::sqrt(speed);
       organ.largestDisplacement = std::sqrt(displacement);
-      organ.volume = fixed.solid.elements().volume(organ.position);
+      organ.volume = fixed.solid.volume(organ.position);
       bool touched = false;
       for (const ContactBlock& block : blocks) {
         touched = touched || (block.hand != ContactBlock::nobody && block.organ == o);

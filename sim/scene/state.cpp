@@ -185,7 +185,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
   for (std::size_t o = 0; o < read.organ.size(); ++o) {
     const SolidModel& solid = model.organs()[o].solid;
     if (read.organ[o].position.size() != solid.nodes() || read.organ[o].velocity.size() != solid.nodes()) return false;
-    if (read.organ[o].rotation.size() != solid.elements().groups().size()) return false;
+    if (read.organ[o].rotation.size() != solid.groups()) return false;
   }
   state = std::move(read);
   return true;

@@ -154,6 +154,7 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
   bounds.resize(organs);
   nodal.resize(organs);
   rest.resize(organs);
+  selfRest.resize(organs);
   moved.assign(organs, false);
   for (std::size_t o = 0; o < organs; ++o) {
     broad.push_back(make != nullptr ? make() : std::make_unique<SortedGrid>(broadCell));
@@ -181,6 +182,24 @@ void Stepper::Workspace::invalidate() {
 Stepper::Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase)
     : w_(std::make_unique<Workspace>(model, executor, makeBroadPhase)) {}
 Stepper::~Stepper() = default;
+
+void Stepper::prepare() {
+  const FloatingPointScope scope;
+  Workspace& w = *w_;
+  for (std::size_t pair = 0; pair < w.model.tissuePairs().size(); ++pair) w.restOf(pair);
+  for (std::size_t o = 0; o < w.model.organs().size(); ++o) {
+    constexpr std::size_t most = std::size_t{256} << 20U;  // bytes
+    const OrganModel& organ = w.model.organs()[o];
+    if (organ.solid.nodes() > most / (9 * sizeof(float)) / organ.solid.nodes()) continue;
+    std::vector<int> nodes;
+    for (const Embedding::Anchor& anchor : organ.embedding.anchors()) {
+      nodes.insert(nodes.end(), anchor.node.begin(), anchor.node.end());
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    w.rest[o]->require(nodes, w.executor);
+  }
+}
 
 const StepResult& Stepper::step(State& state, std::span<const TickSamples> samples) {
   const FloatingPointScope scope;

@@ -30,6 +30,11 @@ class Stepper {
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
+  /// Works out ahead what steps else work out when they first need it (compliances of the skins' nodes, rest tables of
+  /// folding organs): for live runs, which cannot wait for it in mid-step. Changes no result. Of organs whose
+  /// compliances would take more than 256 MiB, nothing is worked out ahead.
+  void prepare();
+
   /// Advances the state by one step. Never throws on any sample: what is not finite counts as not measured.
   /// @pre samples.size() == ticksPerStep
   const StepResult& step(State& state, std::span<const TickSamples> samples);

@@ -72,6 +72,8 @@ struct Stepper::Workspace {
   void advanceFreely(State& state, std::size_t hand);
   void detectInstruments(const State& state);
   void detectTissue(const State& state);
+  /// Rest tables of a tissue pair; those of an organ with itself are worked out when first asked for.
+  const SurfacePair& restOf(std::size_t pair);
   void addInstrumentBlock(const State& state, std::size_t hand, std::size_t organ, const SurfaceContact& contact);
 
   // grasping.cpp
@@ -112,6 +114,7 @@ struct Stepper::Workspace {
   SolidSolver::Settings responseSettings;
   std::vector<SolidSolver> solver;  // per organ
   std::vector<std::unique_ptr<RestCompliance>> rest;
+  std::vector<std::unique_ptr<const SurfacePair>> selfRest;  // per organ; empty until it folds
   std::vector<std::unique_ptr<BroadPhase>> broad;
   std::vector<bool> bounded;             // per organ: broad phase holds bounds of the current positions
   std::vector<bool> moved;               // per organ: solved in this step

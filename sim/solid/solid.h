@@ -5,17 +5,19 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "sim/math/executor.h"
 #include "sim/math/linear.h"
 #include "sim/solid/block_matrix.h"
 #include "sim/solid/conjugate_gradient.h"
+#include "sim/solid/hexahedral_elements.h"
 #include "sim/solid/tetrahedral_elements.h"
 
 namespace calot {
 
-/// Fixed data of one solid.
+/// Fixed data of one solid: of tetrahedra, or of cubes.
 class SolidModel {
  public:
   struct Material {
@@ -29,13 +31,28 @@ class SolidModel {
   /// @pre positive volumes; every node belongs to a tetrahedron.
   SolidModel(std::vector<Vec3> rest, std::vector<Index4> tetrahedra, std::vector<bool> fixed, Material material);
 
+  /// A solid of equal cubes.
+  /// @param edge of the cubes (m)
+  /// @pre at rest every cube's nodes lie as Index8 says; every node belongs to a cube.
+  SolidModel(std::vector<Vec3> rest, std::vector<Index8> cubes, double edge, std::vector<bool> fixed,
+             Material material);
+
   [[nodiscard]] std::size_t nodes() const { return rest_.size(); }
   [[nodiscard]] const std::vector<Vec3>& rest() const { return rest_; }
   [[nodiscard]] const std::vector<Index4>& tetrahedra() const { return tetrahedra_; }
   [[nodiscard]] const Material& material() const { return material_; }
-  [[nodiscard]] const TetrahedralElements& elements() const { return elements_; }
-  /// Lumped masses (kg): a quarter of each incident tetrahedron.
+  [[nodiscard]] const std::vector<Index8>& cubes() const { return cube_; }
+  /// @pre made of tetrahedra
+  [[nodiscard]] const TetrahedralElements& elements() const { return std::get<TetrahedralElements>(elements_); }
+  /// @pre made of cubes
+  [[nodiscard]] const HexahedralElements& hexahedra() const { return std::get<HexahedralElements>(elements_); }
+  [[nodiscard]] bool madeOfCubes() const { return std::holds_alternative<HexahedralElements>(elements_); }
+  /// Groups of lanes that hold its elements: so many rotations has its State.
+  [[nodiscard]] std::size_t groups() const;
+  /// Lumped masses (kg): an equal share of each incident element, where all are full.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
+  /// Deformed volume (m^3). @param fill share of each cube that is there; empty: all of it
+  [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill = {}) const;
   /// Row of a node in the system, or -1 where it is fixed.
   [[nodiscard]] int row(std::size_t node) const { return row_[node]; }
   [[nodiscard]] const std::vector<int>& freeNodes() const { return freeNode_; }
@@ -45,42 +62,54 @@ class SolidModel {
 
  private:
   friend class SolidSolver;
+  /// Slot of block (row, column). @pre both belong to corners of one element
+  [[nodiscard]] std::size_t slotOf(int row, int column) const;
+  /// Nodal masses of partly filled cubes (kg).
+  void massOf(std::span<const double> fill, std::vector<double>& mass) const;
   /// A block K_ab of one element that is added into a slot of the matrix, or a force that is added to a node.
   struct Contribution {
     std::int32_t element;
     std::uint8_t a;  ///< corners of the element
     std::uint8_t b;
   };
+  /// Corners of an element, as the assembly numbers them.
+  [[nodiscard]] std::span<const int> cornersOf(std::size_t element) const {
+    return madeOfCubes() ? std::span<const int>(cube_[element]) : std::span<const int>(tetrahedra_[element].data(), 4);
+  }
+  [[nodiscard]] std::size_t elementCount() const { return madeOfCubes() ? cube_.size() : tetrahedra_.size(); }
   struct SlotRange {
     std::size_t slot;  ///< in the matrix values
-    std::int32_t row;
+    std::int32_t row, column;
     bool diagonal;
     std::size_t first, last;  ///< in contributions
   };
 
   void buildStructure();
+  [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
 
   std::vector<Vec3> rest_;
   std::vector<Index4> tetrahedra_;
+  std::vector<Index8> cube_;
   std::vector<bool> fixed_;
   Material material_;
-  TetrahedralElements elements_;
+  std::variant<TetrahedralElements, HexahedralElements> elements_;
   std::vector<double> mass_;
   std::vector<int> row_;
   std::vector<int> freeNode_;  ///< row -> node
   BlockMatrix matrix_;
-  std::vector<int> diagonal_;    ///< per row: which of its columns is the diagonal
-  std::vector<SlotRange> slot_;  ///< in row order
+  std::vector<int> diagonal_;         ///< per row: which of its columns is the diagonal
+  std::vector<SlotRange> slot_;       ///< in row order
+  std::vector<std::size_t> rowSlot_;  ///< per row: its first slot; and the end
   std::vector<Contribution> contribution_;
   std::vector<std::size_t> incidentStart_;  ///< per node
-  std::vector<Contribution> incident_;      ///< element and corner of each incident tetrahedron
+  std::vector<Contribution> incident_;      ///< element and corner of each incident element
 };
 
 /// Everything of one solid that changes.
 struct SolidState {
   std::vector<Vec3> position;           ///< in W (m)
   std::vector<Vec3> velocity;           ///< (m/s)
-  std::vector<RotationGroup> rotation;  ///< co-rotation of each tetrahedron, warm start of the next step's
+  std::vector<RotationGroup> rotation;  ///< co-rotation of each element, warm start of the next step's
   std::uint32_t quietSteps = 0;         ///< steps in a row without touch and slower than the sleeping speed
   double volume = 0.0;                  ///< deformed (m^3); kept because a sleeping organ does not recompute it
   double largestDisplacement = 0.0;     ///< (m)
@@ -99,9 +128,36 @@ struct SolidState {
 /// Rest: no displacement, no velocity, asleep.
 SolidState restState(const SolidModel& model);
 
+/// A place inside one element of a solid: its corners and their shares.
+struct SolidPlace {
+  std::array<int, 8> node{};
+  std::array<double, 8> weight{};
+  std::size_t count = 0;
+
+  /// A nodal quantity there.
+  [[nodiscard]] Vec3 of(std::span<const Vec3> values) const;
+};
+
+/// A force at a place of a solid that comes from what is not its own, such as a spring to another body, linearised over
+/// a step: f = force - damper v, v the place's velocity at the step's end. A spring of stiffness matrix K and damping C
+/// gives damper = h K + C: implicit on the solid's side.
+struct Attachment {
+  SolidPlace place;
+  Vec3 force = Vec3::Zero();   ///< N
+  Mat3 damper = Mat3::Zero();  ///< N s/m, symmetric, positive semidefinite
+};
+
+/// What a step of a solid depends on besides its own model and state.
+struct Surroundings {
+  std::span<const Attachment> attachments;
+  std::span<const double> fill;  ///< share of each cube that is there; empty: all of it
+};
+
 /// Implicit Euler, one linearisation a step (Baraff and Witkin 1998): with h = dt,
 ///   [(1 + alpha h) M + (h^2 + beta h) K] dv = h (f_external + f(x + (h + beta) v) - alpha M v),  v += dv,  x += h v,
-/// where K and f are co-rotational with the rotations of x. Holds the matrix of the step for contact.
+/// where K and f are co-rotational with the rotations of x; attachments add h damper to the left and
+/// h (force - damper v) to the right. Nodes that only empty cubes hold stay where they are. Holds the matrix of the
+/// step for contact.
 class SolidSolver {
  public:
   struct Settings {
@@ -114,7 +170,8 @@ class SolidSolver {
   /// Assembles at the state's position and computes the free velocity (without contact) into freeVelocity().
   /// @param external forces on the nodes besides gravity (N), or empty.
   SolveReport freeMotion(const SolidModel& model, SolidState& state, const Vec3& gravity,
-                         std::span<const Vec3> external, const Settings& settings, Executor& executor);
+                         std::span<const Vec3> external, const Settings& settings, Executor& executor,
+                         const Surroundings& surroundings = {});
 
   /// Velocities that the step ends with, as far as they are known: free motion and what push() added since.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
@@ -141,9 +198,17 @@ class SolidSolver {
   bool advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step);
 
  private:
-  void assemble(const SolidModel& model, const Settings& settings, Executor& executor);
+  void assemble(const SolidModel& model, const Settings& settings, const Surroundings& surroundings,
+                Executor& executor);
+  void addAttachments(const SolidModel& model, const Settings& settings, std::span<const Attachment> attachments);
+  void addBlock(const SolidModel& model, const SolidModel::Contribution& contribution, std::array<float, 9>& block,
+                float lambda, float mu, float scale) const;
+  [[nodiscard]] Vec3 cornerForce(const SolidModel& model, const SolidModel::Contribution& contribution) const;
 
   std::vector<ElementResult> element_;
+  std::vector<HexahedronResult> hexahedron_;
+  std::vector<double> mass_;  ///< of the nodes, where cubes are not full
+  std::vector<Vec3> load_;    ///< on the nodes from outside (N)
   std::vector<float> values_;
   std::vector<float> b_, x_;
   std::vector<Vec3> freeVelocity_;

@@ -11,6 +11,7 @@
 #include "sim/math/executor.h"
 #include "sim/math/lanes.h"
 #include "sim/math/linear.h"
+#include "sim/solid/polar.h"
 
 namespace calot {
 
@@ -35,9 +36,6 @@ struct ElementResult {
   std::array<std::array<std::array<double, laneCount>, 3>, 4> force;    ///< on the nodes (N)
   std::array<std::array<std::array<float, laneCount>, 3>, 4> gradient;  ///< rotated: R grad N_a (1/m)
 };
-
-/// Unit quaternions (w, x, y, z) of eight elements.
-using RotationGroup = std::array<std::array<double, laneCount>, 4>;
 
 /// The tetrahedra of one solid at rest.
 class TetrahedralElements {

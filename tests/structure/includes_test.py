@@ -37,7 +37,7 @@ MAY_SEE = {
     "assets": ("sim", "recorder"),
 }
 # What lies at the top of recorder/ and belongs to all of its folders.
-CONTRACTS = ("recorder/errors.h", "recorder/identity.h", "recorder/observer.h")
+CONTRACTS = ("recorder/device_sample.h", "recorder/errors.h", "recorder/identity.h", "recorder/observer.h", "recorder/ring.h")
 
 # The core sees these and nothing else from outside.
 SIM_FOREIGN = set("""algorithm array bit bitset cassert cmath compare concepts cstddef cstdint cstring deque functional

@@ -10,28 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "recorder/device_sample.h"
 #include "recorder/identity.h"
 #include "sim/math/linear.h"
 #include "sim/scene/samples.h"
 
 namespace calot::recorder {
-
-/// Bit of DeviceSample::buttons beyond those of InstrumentSample (sim/scene/samples.h): while it is held the instrument
-/// rests, so that the hand can be put elsewhere.
-inline constexpr std::uint8_t clutchButton = 1U << 7U;
-
-/// One measurement of one hand, as the driver got it. Provenance: never rounded, never interpolated.
-struct DeviceSample {
-  std::int64_t deviceTime = -1;  ///< the device's own clock (ns); -1: it sends none
-  std::int64_t hostTime = 0;     ///< when it was received, on the host's monotonic clock (ns)
-  std::uint64_t sequence = 0;    ///< 0, 1, 2, ... for each hand and opening, invalid ones included
-  Hand hand = Hand::right;
-  Vec3 position = Vec3::Zero();         ///< p_DI (m)
-  Quat orientation = Quat::Identity();  ///< q_DI, unit
-  double gripper = 0.0;                 ///< opening angle (rad), 0 closed
-  std::uint8_t buttons = 0;             ///< bits of calot::button, and clutchButton
-  bool valid = true;                    ///< false: the pose means nothing (occluded, not finite, no rotation)
-};
 
 /// Once a device is open its faults are events, not exceptions: it may vanish at any moment and come back.
 struct DeviceEvent {

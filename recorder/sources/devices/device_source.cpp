@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t tickNanoseconds = 1'000'000;
 constexpr std::int64_t secondHand = 500'000'000;  // ns that the other hand is waited for
-constexpr std::size_t mostRaw = 1000000;
+constexpr std::size_t freshRoom = 1024;
 constexpr std::size_t mostTold = 100;
 
 }  // namespace
@@ -38,13 +38,14 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescriptio
       return settings_.calibration && settings_.calibration->hand[which] ? &*settings_.calibration->hand[which]
                                                                          : nullptr;
     };
-    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false};
+    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false, false};
     state.held.position = scene.hands[h].home;
     state.held.orientation = pointing(scene.hands[h].port, scene.hands[h].home);
     state.held.instrument = InstrumentKind::none;
     state.held.valid = false;
     hand_.push_back(state);
   }
+  fresh_.reserve(freshRoom);
   if (!settings_.tickClock) pump_ = std::make_unique<DevicePump>(*device_);
 }
 
@@ -87,9 +88,24 @@ void DeviceSource::gather() {
     else
       hand_[static_cast<std::size_t>(sample.hand)].newest = sample;
   }
-  // What came before the attempt is no part of it.
-  if (begun_) raw_.insert(raw_.end(), input_.samples.begin(), input_.samples.end());
-  if (raw_.size() > mostRaw) raw_.erase(raw_.begin(), raw_.end() - static_cast<std::ptrdiff_t>(mostRaw));
+  if (begun_) fresh_.insert(fresh_.end(), input_.samples.begin(), input_.samples.end());
+}
+
+/// What came before the attempt is no part of it, but for what its first tick finds.
+void DeviceSource::beginAttempt() {
+  gather();
+  begun_ = true;
+  for (const HandState& hand : hand_) {
+    if (hand.newest) fresh_.push_back(*hand.newest);
+  }
+}
+
+void DeviceSource::keepRaw(std::uint64_t tick) {
+  for (const DeviceSample& sample : fresh_) {
+    const HandState& hand = hand_[static_cast<std::size_t>(sample.hand)];
+    raw_.put({sample, tick, hand.used && sample.valid && sample.sequence == hand.newest->sequence});
+  }
+  fresh_.clear();
 }
 
 void DeviceSource::waitForFirst(double seconds, const std::atomic<bool>* stop) {
@@ -118,6 +134,7 @@ void DeviceSource::waitForFirst(double seconds, const std::atomic<bool>* stop) {
 }
 
 void DeviceSource::fill(HandState& hand, InstrumentSample& out) {
+  hand.used = false;
   if (hand.newest) {
     const DeviceSample& sample = *hand.newest;
     const bool fresh = lost_.empty() && static_cast<double>(now() - sample.hostTime) <= 1e9 * settings_.staleAfter;
@@ -131,19 +148,23 @@ void DeviceSource::fill(HandState& hand, InstrumentSample& out) {
       hand.anchorAgain = false;
       hand.clutched = clutch;
       if (!clutch) hand.held = hand.mapping.map(sample);
+      hand.used = !clutch;
     }
     hand.held.valid = fresh;
   }
   out = hand.held;
 }
 
-bool DeviceSource::next(std::uint64_t, TickSamples& out) {
+bool DeviceSource::next(std::uint64_t tick, TickSamples& out) {
   const FloatingPointScope environment;
-  begun_ = true;
-  gather();
+  if (begun_)
+    gather();
+  else
+    beginAttempt();
   if (ended_ && input_.samples.empty()) return false;
   TickSamples samples;
   for (std::size_t h = 0; h < handCount; ++h) fill(hand_[h], samples.hand[h]);
+  keepRaw(tick);
   samples.camera = camera_;
   out = roundedToGrid(samples);
   if (settings_.tickClock) settings_.tickClock->now += tickNanoseconds;
@@ -170,7 +191,5 @@ void DeviceSource::feedback(const std::array<Wrench, handCount>& inWorld) {
       device_->setWrench(static_cast<Hand>(h), wrench);
   }
 }
-
-std::vector<DeviceSample> DeviceSource::rawSamples() { return std::exchange(raw_, {}); }
 
 }  // namespace calot::recorder

@@ -10,6 +10,7 @@
 
 #include "recorder/sources/devices/device_mapping.h"
 #include "recorder/sources/devices/device_pump.h"
+#include "recorder/sources/devices/raw_sample_queue.h"
 #include "recorder/sources/source.h"
 
 namespace calot::recorder {
@@ -62,9 +63,10 @@ class DeviceSource final : public SampleSource {
   /// What the hands shall feel; for devices with motors.
   void feedback(const std::array<Wrench, handCount>& inWorld);
 
-  /// Raw samples since the last call, in the order of arrival: provenance for the recording. Of a source that has run
-  /// long without being asked, the newest million.
-  std::vector<DeviceSample> rawSamples();
+  /// What the device measured since the attempt began, in the order of arrival, for the recording: also those that no
+  /// tick used. It begins with what the first tick found. Another thread than the one that asks for ticks may take
+  /// them.
+  [[nodiscard]] RawSampleFeed& rawSamples() { return raw_; }
 
   [[nodiscard]] const DeviceCounts& counts() const { return counts_; }
   [[nodiscard]] const Device& device() const { return *device_; }
@@ -76,8 +78,11 @@ class DeviceSource final : public SampleSource {
     InstrumentSample held;
     bool anchorAgain = false;
     bool clutched = false;
+    bool used = false;  ///< the tick's pose was made from the newest
   };
   void gather();
+  void beginAttempt();
+  void keepRaw(std::uint64_t tick);
   [[nodiscard]] std::int64_t now() const;
   void fill(HandState& hand, InstrumentSample& out);
 
@@ -87,7 +92,8 @@ class DeviceSource final : public SampleSource {
   std::vector<HandState> hand_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<DevicePump> pump_;  ///< after the device: it ends first
-  std::vector<DeviceSample> raw_;
+  std::vector<DeviceSample> fresh_;   ///< gathered since the last tick
+  RawSampleQueue raw_;
   DeviceCounts counts_;
   DeviceInput input_;
   std::string lost_;     ///< why the device is gone; empty: it is there

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "recorder/attempt.h"
 #include "recorder/errors.h"
@@ -35,6 +37,13 @@ struct Rig {
     device = made.get();
     settings.tickClock = clock;
     source = std::make_unique<DeviceSource>(std::move(made), scene, std::move(settings));
+  }
+
+  /// All raw samples that wait.
+  std::vector<RawSample> raw() const {
+    std::vector<RawSample> out;
+    for (RawSample r; source->rawSamples().take(std::numeric_limits<std::uint64_t>::max(), r);) out.push_back(r);
+    return out;
   }
 };
 
@@ -114,8 +123,13 @@ TEST(DeviceSource, HoldsTheNewestAndSaysWhenItIsOld) {
   EXPECT_TRUE(valid[301]);
   EXPECT_EQ(rig.source->counts().invalid, 1U);
   EXPECT_EQ(rig.source->counts().samples, 7U);
-  EXPECT_EQ(rig.source->rawSamples().size(), 7U);
-  EXPECT_TRUE(rig.source->rawSamples().empty());
+  const std::vector<RawSample> raw = rig.raw();
+  ASSERT_EQ(raw.size(), 7U);
+  EXPECT_FALSE(raw[3].sample.valid);
+  EXPECT_FALSE(raw[3].used);
+  EXPECT_EQ(raw[4].tick, 40U);
+  EXPECT_EQ(position[raw[4].tick], position[200]);
+  EXPECT_EQ(std::count_if(raw.begin(), raw.end(), [](const RawSample& r) { return r.used; }), 6);
 }
 
 TEST(DeviceSource, TheClutchRestsTheInstrument) {

@@ -9,7 +9,7 @@
 
 #include "recorder/live/contact_exchange.h"
 #include "recorder/live/newest.h"
-#include "recorder/live/ring.h"
+#include "recorder/ring.h"
 #include "recorder/session.h"
 #include "sim/scene/stepper.h"
 #include "tests/recorder/loop/support/small_scene.h"

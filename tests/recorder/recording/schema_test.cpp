@@ -34,6 +34,10 @@ TEST(Schema, NamesAllThatIsThereAndNothingElse) {
   bare.assets.resize(1);
   test::writeRecording(folder / "d.h5", bare, 300);
   EXPECT_EQ(check(folder / "d.h5"), 0);
+  AttemptHeader ofDevice = test::makeHeader();
+  ofDevice.deviceSamples = true;
+  test::writeRecording(folder / "e.h5", ofDevice, 60);
+  EXPECT_EQ(check(folder / "e.h5"), 0);
 }
 
 TEST(Schema, CheckerSeesWhatIsTooMuchAndTooLittle) {
@@ -49,6 +53,7 @@ TEST(Schema, CheckerSeesWhatIsTooMuchAndTooLittle) {
     return check(r);
   };
   EXPECT_EQ(change("f['/extra'] = 1"), 1);
+  EXPECT_EQ(change("f.create_group('/device')"), 1);
   EXPECT_EQ(change("f['/ticks'].attrs['extra'] = 1"), 1);
   EXPECT_EQ(change("del f['/observables/misses']"), 1);
   EXPECT_EQ(change("del f.attrs['seed']; f.attrs['seed'] = 1.0"), 1);

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot-bench: options, then the benchmarks of tests/bench.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
+#include "tests/bench/benchmarks.h"
+#include "tests/bench/figures.h"
+
+namespace {
+
+constexpr std::string_view filterOption = "--benchmark_filter=";
+
+/// The library would go on with nothing to do.
+void checkFilter(std::string filter) {
+  if (filter.starts_with('-')) filter.erase(0, 1);
+  try {
+    const std::regex expression(filter, std::regex::extended);
+  } catch (const std::regex_error&) {
+    throw calot::Error(calot::ExitCode::usage,
+                       fmt::format("--benchmark_filter: '{}' is no regular expression", filter));
+  }
+}
+
+int run(int argc, char** argv) {
+  // The library's options go to the library as they are, all others are ours.
+  std::vector<char*> theirs{argv[0]};
+  std::vector<std::string> ours;
+  for (int i = argc - 1; i > 0; --i) {  // the parser takes them from the back
+    const std::string_view argument = argv[i];
+    if (argument.starts_with("--benchmark_")) {
+      theirs.push_back(argv[i]);
+      if (argument.starts_with(filterOption)) checkFilter(std::string(argument.substr(filterOption.size())));
+    } else {
+      ours.emplace_back(argument);
+    }
+  }
+  CLI::App options{"Measures run time against a peer in the same run.", "calot-bench"};
+  options.footer(
+      "Google Benchmark's options --benchmark_NAME=VALUE are passed on: --benchmark_list_tests=true,\n"
+      "--benchmark_filter=REGEX, --benchmark_out=F.json, ... docs/performance.md says how to read the figures.");
+  std::string output;
+  bool force = false;
+  options.add_option("--figures", output, "Write the headline figures of this run as one flat JSON map");
+  options.add_flag("--force", force, "Overwrite that file");
+  try {
+    options.parse(std::move(ours));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return options.exit(error);
+    throw calot::Error(calot::ExitCode::usage, fmt::format("{}; try --help", error.what()));
+  }
+  if (!output.empty()) calot::recorder::refuseOutput(output, force);
+
+  auto count = static_cast<int>(theirs.size());
+  theirs.push_back(nullptr);
+  benchmark::Initialize(&count, theirs.data());
+  if (count > 1) {
+    throw calot::Error(calot::ExitCode::usage,
+                       fmt::format("{} is no option of Google Benchmark's; try --help", theirs[1]));
+  }
+  calot::bench::registerAll();
+  if (benchmark::RunSpecifiedBenchmarks() == 0) {
+    throw calot::Error(calot::ExitCode::usage, "no benchmark has such a name; try --benchmark_list_tests=true");
+  }
+  if (!output.empty()) calot::recorder::writeText(output, calot::bench::figures().json(), force);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const calot::Error& error) {
+    fmt::print(stderr, "calot-bench: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "calot-bench: {}\n", error.what());
+    return static_cast<int>(calot::ExitCode::failure);
+  }
+}

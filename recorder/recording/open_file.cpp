@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/open_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+
+#include "recorder/errors.h"
+#include "recorder/recording/types.h"
+
+namespace calot::recorder {
+
+using hdf5::Id;
+
+Superblock readSuperblock(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw Error(ExitCode::damaged, path.string() + ": no such file");
+  if (std::filesystem::is_directory(status))
+    throw Error(ExitCode::damaged, path.string() + ": is a folder, not a recording");
+  if (!std::filesystem::is_regular_file(status))
+    throw Error(ExitCode::damaged, path.string() + ": is not a regular file");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(ExitCode::damaged, path.string() + ": cannot be opened; check its permissions");
+  std::array<char, 36> head{};
+  in.read(head.data(), head.size());
+  if (in.gcount() == 0) throw Error(ExitCode::damaged, path.string() + ": is empty");
+  constexpr std::array<char, 8> signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  if (in.gcount() < static_cast<std::streamsize>(head.size()) ||
+      !std::equal(signature.begin(), signature.end(), head.begin())) {
+    throw Error(ExitCode::damaged, path.string() + ": is not an HDF5 file, so not a recording");
+  }
+  // HDF5 File Format Specification 3.0, II.A: byte 8 version, 9 size of offsets, 11 consistency flags, 28 end of file.
+  Superblock s;
+  s.version = static_cast<unsigned char>(head[8]);
+  s.writing = s.version >= 2 && (static_cast<unsigned char>(head[11]) & 0x5U) != 0;
+  if (s.version >= 2 && head[9] == 8) std::memcpy(&s.endOfFile, &head[28], sizeof s.endOfFile);
+  return s;
+}
+
+hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
+  const Superblock superblock = readSuperblock(path);
+  const Id how = hdf5::fileAccess(access == Access::settled ? 1 : 0);
+  const unsigned swmr = superblock.writing ? H5F_ACC_SWMR_READ : 0U;
+  Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get()));
+  if (file.valid()) return file;
+  const std::string why = hdf5::reason();
+  std::error_code ignored;
+  const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
+  if (superblock.endOfFile > bytes && !superblock.writing) {
+    throw Error(ExitCode::damaged,
+                fmt::format("{}: is cut off: {} of {} bytes are there; calot recover saves what it can", path.string(),
+                            bytes, superblock.endOfFile));
+  }
+  throw Error(ExitCode::damaged, fmt::format("{}: cannot be opened: {}", path.string(), why));
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"
+//
+#include "sim/carving/carve.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace calot {
+
+void RestingTissue::place(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const {
+  const Vec3 at = lattice_.position(first);
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const double x = k == 0 ? lattice_.position(first + Index3(i, 0, 0))[0] : at[k];
+      out.now[k][i] = x;
+      out.before[k][i] = x;
+    }
+    for (int k = 0; k < 9; ++k) out.gradient[k][i] = k % 4 == 0 ? 1.0 : 0.0;
+  }
+}
+
+Box sweptBounds(std::span<const SweptCapsule> tool, double band, double stretch) {
+  Box box;
+  for (const SweptCapsule& c : tool) {
+    Box one;
+    for (const Vec3* p : {&c.p0, &c.p1, &c.q0, &c.q1}) one.include(*p);
+    one.grow(c.radius + band * stretch);
+    box.include(one.lower);
+    box.include(one.upper);
+  }
+  return box;
+}
+
+NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds) {
+  NodeBox box;
+  for (int a = 0; a < 3; ++a) {
+    const double last = static_cast<double>(lattice.nodes()[a]);
+    const double low = std::clamp((bounds.lower[a] - lattice.origin()[a]) / lattice.cell(), 0.0, last);
+    const double high = std::clamp((bounds.upper[a] - lattice.origin()[a]) / lattice.cell() + 1.0, 0.0, last);
+    box.lower[a] = static_cast<int>(low);
+    box.upper[a] = static_cast<int>(high);
+  }
+  return box;
+}
+
+void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<const NodeBox> boxes,
+           const TissueMotion& motion) {
+  const BrickLattice& lattice = field.lattice();
+  const double band = field.band();
+  NodeLanes lanes;
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    const NodeBox& box = boxes[b];
+    assert((box.lower.array() >= 0).all() && (box.upper.array() <= lattice.nodes().array()).all());
+    for (int z = box.lower[2]; z < box.upper[2]; ++z) {
+      for (int y = box.lower[1]; y < box.upper[1]; ++y) {
+        for (int x = box.lower[0]; x < box.upper[0];) {
+          const Index3 first(x, y, z);
+          const int count = std::min(box.upper[0] - x, 8 - (x & 7));
+          x += count;
+          const std::uint32_t node = lattice.node(first);
+          const double* value = field.values().data() + node;
+          if (std::all_of(value, value + count, [band](double v) { return v >= band; })) continue;
+          motion.place(b, first, count, lanes);
+          for (int i = count; i < laneCount; ++i) {  // idle lanes repeat the first
+            for (auto& row : lanes.now) row[i] = row[0];
+            for (auto& row : lanes.before) row[i] = row[0];
+            for (auto& row : lanes.gradient) row[i] = row[0];
+          }
+          double potential[laneCount];
+          std::fill(potential, potential + laneCount, -1e300);
+          bool any = false;
+          for (const SweptCapsule& capsule : tool) any = toolPotential(capsule, lanes, band, potential) || any;
+          if (any) field.raiseRow(node, {potential, slot(count)});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace calot

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/carving/cube_table.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace calot {
+namespace {
+
+constexpr int never = 1 << 20;
+
+/// A loop of at most 12 cut edges, and the cheapest way to fill it: inner sides as short as can be, none on a face.
+class Loop {
+ public:
+  void push(unsigned edge) { edge_[size_++] = edge; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  void fill(CubeCase& out) {
+    for (std::size_t length = 2; length < size_; ++length) {
+      for (std::size_t i = 0; i + length < size_; ++i) {
+        const std::size_t j = i + length;
+        cost_[i][j] = never;
+        for (std::size_t k = i + 1; k < j; ++k) {
+          const int cost = cost_[i][k] + cost_[k][j] + side(i, k) + side(k, j);
+          if (cost >= cost_[i][j]) continue;
+          cost_[i][j] = cost;
+          apex_[i][j] = k;
+        }
+      }
+    }
+    assert(cost_[0][size_ - 1] < never);
+    emit(0, size_ - 1, out);
+  }
+
+ private:
+  /// Squared length of a side between the middles of two edges, in quarter cells; nothing for the loop's own.
+  [[nodiscard]] int side(std::size_t i, std::size_t j) const {
+    if (j - i == 1 || j - i == size_ - 1) return 0;
+    if ((facesOfEdge(edge_[i]) & facesOfEdge(edge_[j])) != 0) return never;
+    int sum = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const int d = twice(edge_[i], axis) - twice(edge_[j], axis);
+      sum += d * d;
+    }
+    return sum;
+  }
+  /// Twice the coordinate of an edge's middle.
+  static int twice(unsigned edge, unsigned axis) {
+    const unsigned a = edge / 4;
+    if (axis == a) return 1;
+    return axis == (a + 1) % 3 ? 2 * static_cast<int>(edge & 1U) : 2 * static_cast<int>(edge >> 1U & 1U);
+  }
+  void emit(std::size_t i, std::size_t j, CubeCase& out) {
+    if (j - i < 2) return;
+    const std::size_t k = apex_[i][j];
+    assert(out.count < CubeCase::most);
+    out.edge[out.count++] = {static_cast<std::uint8_t>(edge_[i]), static_cast<std::uint8_t>(edge_[k]),
+                             static_cast<std::uint8_t>(edge_[j])};
+    emit(i, k, out);
+    emit(k, j, out);
+  }
+
+  std::array<unsigned, 12> edge_{};
+  std::size_t size_ = 0;
+  std::array<std::array<int, 12>, 12> cost_{};
+  std::array<std::array<std::size_t, 12>, 12> apex_{};
+};
+
+unsigned corner(unsigned axis, unsigned along, unsigned u, unsigned v) {
+  return along << axis | u << (axis + 1) % 3 | v << (axis + 2) % 3;
+}
+
+/// The edge between two neighbouring corners.
+unsigned edgeBetween(unsigned c, unsigned d) {
+  const unsigned difference = c ^ d;
+  const unsigned a = difference == 1 ? 0 : (difference == 2 ? 1 : 2);
+  return 4 * a + (c >> (a + 1) % 3 & 1U) + 2 * (c >> (a + 2) % 3 & 1U);
+}
+
+/// Where the cut goes from each cut edge, so that the outside is in front of the loop.
+std::array<int, 12> successors(unsigned inside) {
+  std::array<int, 12> next{};
+  next.fill(-1);
+  for (unsigned face = 0; face < 6; ++face) {
+    const unsigned axis = face / 2;
+    const unsigned s = face & 1U;
+    // Counter-clockwise as seen from outside of the cell.
+    std::array<unsigned, 4> ring{corner(axis, s, 0, 0), corner(axis, s, 1, 0), corner(axis, s, 1, 1),
+                                 corner(axis, s, 0, 1)};
+    if (s == 0) std::swap(ring[1], ring[3]);
+    const auto in = [&](unsigned i) { return (inside >> ring[i % 4] & 1U) != 0; };
+    for (unsigned i = 0; i < 4; ++i) {
+      if (!in(i) || in(i + 3)) continue;  // a run of inside corners begins at i
+      unsigned j = i;
+      while (in(j + 1)) ++j;
+      const unsigned entry = edgeBetween(ring[(i + 3) % 4], ring[i]);
+      const unsigned exit = edgeBetween(ring[j % 4], ring[(j + 1) % 4]);
+      next[entry] = static_cast<int>(exit);
+    }
+  }
+  return next;
+}
+
+void findAcross(CubeCase& c) {
+  for (std::size_t t = 0; t < c.count; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const unsigned from = c.edge[t][k];
+      const unsigned to = c.edge[t][(k + 1) % 3];
+      const unsigned shared = facesOfEdge(from) & facesOfEdge(to);
+      int found = never;
+      if (shared != 0) {
+        for (int f = 0; f < 6; ++f) {
+          if ((shared >> static_cast<unsigned>(f) & 1U) != 0) found = -1 - f;
+        }
+      }
+      for (std::size_t other = 0; other < c.count && shared == 0; ++other) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          if (c.edge[other][j] == to && c.edge[other][(j + 1) % 3] == from) found = static_cast<int>(other);
+        }
+      }
+      assert(found != never);
+      c.across[t][k] = static_cast<std::int8_t>(found);
+    }
+  }
+}
+
+}  // namespace
+
+CubeTable::CubeTable() {
+  for (unsigned inside = 0; inside < 256; ++inside) {
+    std::array<int, 12> next = successors(inside);
+    CubeCase& c = case_[inside];
+    for (unsigned start = 0; start < 12; ++start) {
+      if (next[start] < 0) continue;
+      Loop loop;
+      for (unsigned e = start; next[e] >= 0;) {
+        loop.push(e);
+        const auto following = static_cast<unsigned>(next[e]);
+        next[e] = -1;
+        e = following;
+      }
+      loop.fill(c);
+    }
+    findAcross(c);
+  }
+}
+
+const CubeTable& CubeTable::get() {
+  static const CubeTable table;
+  return table;
+}
+
+}  // namespace calot

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/carving/islands.h"
+
+#include <algorithm>
+
+namespace calot {
+namespace {
+
+constexpr std::uint32_t brickNodes = BrickLattice::brickNodes;
+constexpr std::size_t mostComponents = 256;  // of a brick: every other node
+
+/// What hangs together with the lowest node of `open`.
+BrickBits lowestComponent(const BrickBits& open) {
+  BrickBits part{};
+  for (std::size_t z = 0; z < 8; ++z) {
+    if (open[z] == 0) continue;
+    part[z] = open[z] & (~open[z] + 1);
+    break;
+  }
+  for (;;) {
+    BrickBits grown = dilated(part);
+    std::uint64_t change = 0;
+    for (std::size_t z = 0; z < 8; ++z) {
+      grown[z] &= open[z];
+      // Upward within the same pass: a body is mostly filled in two or three.
+      if (z > 0) grown[z] |= grown[z - 1] & open[z];
+    }
+    for (std::size_t z = 7; z-- > 0;) grown[z] |= grown[z + 1] & open[z];
+    for (std::size_t z = 0; z < 8; ++z) change |= grown[z] ^ part[z];
+    if (change == 0) return part;
+    part = grown;
+  }
+}
+
+}  // namespace
+
+Islands::Islands(const BrickLattice& lattice, std::span<const std::uint32_t> anchors)
+    : lattice_(lattice),
+      count_(lattice.brickCount(), 0),
+      link_(lattice.brickCount(), 0),
+      label_(lattice.storage(), 0),
+      base_(lattice.brickCount() + 1, 0) {
+  std::vector<std::uint32_t> sorted(anchors.begin(), anchors.end());
+  std::sort(sorted.begin(), sorted.end());
+  for (const std::uint32_t node : sorted) {
+    const std::uint32_t brick = node / brickNodes;
+    if (anchor_.empty() || anchor_.back().first != brick) anchor_.push_back({brick, BrickBits{}});
+    const std::uint32_t local = node % brickNodes;
+    anchor_.back().second[local >> 6U] |= std::uint64_t{1} << (local & 63U);
+  }
+  parent_.reserve(mostComponents * lattice.brickCount());
+  anchored_.reserve(mostComponents * lattice.brickCount());
+  work_.reserve(lattice.brickCount());
+}
+
+bool Islands::neighbour(std::uint32_t brick, int axis, int step, std::uint32_t& out) const {
+  Index3 b = lattice_.brickAt(brick);
+  b[axis] += step;
+  if (b[axis] < 0 || b[axis] >= lattice_.bricks()[axis]) return false;
+  out = lattice_.brick(b);
+  return true;
+}
+
+void Islands::label(const CarvedField& field, std::uint32_t brick) {
+  BrickBits open = field.bits(brick);
+  std::uint16_t count = 0;
+  std::uint8_t* label = label_.data() + std::size_t{brick} * brickNodes;
+  while (anyBit(open)) {
+    const BrickBits part = lowestComponent(open);
+    for (std::size_t z = 0; z < 8; ++z) open[z] &= ~part[z];
+    // The common case, one component, needs no labels.
+    if (count > 0 || anyBit(open)) {
+      forEachBit(part, [label, count](std::uint32_t local) { label[local] = static_cast<std::uint8_t>(count); });
+    }
+    ++count;
+  }
+  count_[brick] = count;
+}
+
+void Islands::link(const CarvedField& field, std::uint32_t brick, int axis) {
+  std::uint32_t other = 0;
+  const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(axis));
+  link_[brick] = static_cast<std::uint8_t>(link_[brick] & ~bit);
+  if (!neighbour(brick, axis, 1, other)) return;
+  if (sharedFace(field.bits(brick), field.bits(other), axis) != 0) link_[brick] |= bit;
+}
+
+void Islands::relabel(const CarvedField& field, std::uint32_t brick) {
+  label(field, brick);
+  for (int axis = 0; axis < 3; ++axis) {
+    link(field, brick, axis);
+    std::uint32_t before = 0;
+    if (neighbour(brick, axis, -1, before)) link(field, before, axis);
+  }
+}
+
+void Islands::rebuild(const CarvedField& field) {
+  const auto bricks = static_cast<std::uint32_t>(lattice_.brickCount());
+  for (std::uint32_t b = 0; b < bricks; ++b) {
+    label(field, b);
+    for (int axis = 0; axis < 3; ++axis) link(field, b, axis);
+  }
+}
+
+std::size_t Islands::component(std::uint32_t brick, std::uint32_t local) const {
+  return base_[brick] + (count_[brick] > 1 ? label_[std::size_t{brick} * brickNodes + local] : 0U);
+}
+
+std::uint32_t Islands::root(std::size_t component) {
+  auto c = static_cast<std::uint32_t>(component);
+  while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
+  return c;
+}
+
+void Islands::joinComponents(const CarvedField& field) {
+  const std::size_t bricks = lattice_.brickCount();
+  for (std::size_t b = 0; b < bricks; ++b) base_[b + 1] = base_[b] + count_[b];
+  parent_.resize(base_[bricks]);
+  for (std::uint32_t c = 0; c < base_[bricks]; ++c) parent_[c] = c;
+  const auto join = [this](std::size_t x, std::size_t y) {
+    const std::uint32_t a = root(x);
+    const std::uint32_t b = root(y);
+    parent_[std::max(a, b)] = std::min(a, b);
+  };
+  const Index3& size = lattice_.bricks();
+  const std::array<std::uint32_t, 3> step{1, static_cast<std::uint32_t>(size[0]),
+                                          static_cast<std::uint32_t>(size[0] * size[1])};
+  for (std::uint32_t b = 0; b < bricks; ++b) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((link_[b] >> static_cast<unsigned>(axis) & 1U) == 0) continue;  // at a border there is none
+      const std::uint32_t other = b + step[slot(axis)];
+      if (count_[b] == 1 && count_[other] == 1) {
+        join(base_[b], base_[other]);
+        continue;
+      }
+      for (std::uint64_t face = sharedFace(field.bits(b), field.bits(other), axis); face != 0; face &= face - 1) {
+        const FacePair pair = facePair(static_cast<unsigned>(std::countr_zero(face)), axis);
+        join(component(b, pair.a), component(other, pair.b));
+      }
+    }
+  }
+}
+
+void Islands::markAnchored(const CarvedField& field) {
+  anchored_.assign(parent_.size(), 0);
+  for (const auto& [brick, nodes] : anchor_) {
+    BrickBits held = field.bits(brick);
+    for (std::size_t z = 0; z < 8; ++z) held[z] &= nodes[z];
+    if (count_[brick] == 1) {
+      if (anyBit(held)) anchored_[root(base_[brick])] = 1;
+      continue;
+    }
+    const std::uint32_t b = brick;
+    forEachBit(held, [this, b](std::uint32_t local) { anchored_[root(component(b, local))] = 1; });
+  }
+}
+
+std::int64_t Islands::removeLoose(CarvedField& field) {
+  std::int64_t removed = 0;
+  work_.clear();
+  for (std::uint32_t b = 0; b < lattice_.brickCount(); ++b) {
+    bool loose = false;
+    for (std::uint32_t c = base_[b]; c < base_[b + 1]; ++c) loose = loose || anchored_[root(c)] == 0;
+    if (!loose) continue;
+    BrickBits nodes{};
+    forEachBit(field.bits(b), [&](std::uint32_t local) {
+      if (anchored_[root(component(b, local))] == 0) nodes[local >> 6U] |= std::uint64_t{1} << (local & 63U);
+    });
+    removed += countBits(nodes);
+    field.remove(b, nodes);
+    work_.push_back(b);
+  }
+  for (const std::uint32_t b : work_) relabel(field, b);
+  return removed;
+}
+
+std::int64_t Islands::remove(CarvedField& field) {
+  bool fewer = false;
+  for (const std::uint32_t b : field.changed()) {
+    if (!anyBit(field.removed(b))) continue;
+    fewer = true;
+    relabel(field, b);
+  }
+  if (!fewer && !parent_.empty()) return 0;
+  joinComponents(field);
+  markAnchored(field);
+  return removeLoose(field);
+}
+
+}  // namespace calot

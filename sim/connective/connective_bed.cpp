@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/connective/connective_bed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "sim/geometry/embedding.h"
+#include "sim/geometry/surface_distance.h"
+
+namespace calot {
+
+namespace {
+
+/// A vertex of the divided bed: up to three vertices of the surface and how many n-ths of each; unused places are -1.
+using Blend = std::array<std::array<int, 2>, 3>;
+
+Blend blendOf(const Index3& triangle, const std::array<int, 3>& parts) {
+  Blend blend{{{-1, 0}, {-1, 0}, {-1, 0}}};
+  for (int c = 0; c < 3; ++c) {
+    if (parts[static_cast<std::size_t>(c)] > 0) {
+      blend[static_cast<std::size_t>(c)] = {triangle[c], parts[static_cast<std::size_t>(c)]};
+    }
+  }
+  if (blend[1] < blend[0]) std::swap(blend[0], blend[1]);
+  if (blend[2] < blend[1]) std::swap(blend[1], blend[2]);
+  if (blend[1] < blend[0]) std::swap(blend[0], blend[1]);
+  return blend;
+}
+
+/// The triangles of a bed with every edge divided by n: vertices numbered as they come, three to a triangle.
+struct Division {
+  std::vector<Blend> vertex;
+  std::vector<Index3> triangle;
+};
+
+Division divide(const std::vector<Index3>& bed, int n) {
+  Division out;
+  std::map<Blend, int> number;
+  const auto at = [&](const Index3& t, int i, int j) {
+    const Blend blend = blendOf(t, {n - i - j, i, j});
+    const auto [found, isNew] = number.try_emplace(blend, static_cast<int>(out.vertex.size()));
+    if (isNew) out.vertex.push_back(blend);
+    return found->second;
+  };
+  for (const Index3& t : bed) {
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; i + j < n; ++j) {
+        out.triangle.emplace_back(at(t, i, j), at(t, i + 1, j), at(t, i, j + 1));
+        if (i + j + 1 < n) out.triangle.emplace_back(at(t, i + 1, j), at(t, i + 1, j + 1), at(t, i, j + 1));
+      }
+    }
+  }
+  return out;
+}
+
+SolidPlace placeOf(const Embedding::Anchor& anchor) {
+  SolidPlace place;
+  place.count = 4;
+  for (std::size_t k = 0; k < 4; ++k) {
+    place.node[k] = anchor.node[k];
+    place.weight[k] = anchor.weight[k];
+  }
+  return place;
+}
+
+std::vector<std::array<std::uint32_t, 2>> edgesOf(const std::vector<Index3>& triangles) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const Index3& t : triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::uint32_t>(t[k]);
+      const auto b = static_cast<std::uint32_t>(t[(k + 1) % 3]);
+      edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+}  // namespace
+
+ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reach, std::size_t leastStrands) {
+  ConnectiveBed out;
+  const SurfaceDistance distance(second.surface);
+  std::vector<bool> near;
+  for (const Vec3& p : first.surface.vertex) near.push_back(distance.signedDistance(p) <= reach);
+  std::vector<Index3> bed;
+  for (const Index3& t : first.surface.triangle) {
+    if (near[slot(t[0])] && near[slot(t[1])] && near[slot(t[2])]) bed.push_back(t);
+  }
+  if (bed.empty()) {
+    out.error = "no triangle of the first organ lies within " + std::to_string(1000.0 * reach) +
+                " mm of the second: there is no bed for connective tissue";
+    return out;
+  }
+  int n = 1;
+  Division division = divide(bed, n);
+  while (division.vertex.size() < leastStrands) division = divide(bed, ++n);
+
+  std::vector<Vec3> ends;
+  std::vector<Vec3> feet;
+  for (const Blend& blend : division.vertex) {
+    Vec3 p = Vec3::Zero();
+    for (const auto& [vertex, parts] : blend) {
+      if (vertex >= 0) p += static_cast<double>(parts) / n * first.surface.vertex[slot(vertex)];
+    }
+    ends.push_back(p);
+    feet.push_back(distance.closest(p).on.point);
+  }
+  const Embedding inFirst(ends, first.mesh);
+  const Embedding inSecond(feet, second.mesh);
+  for (std::size_t s = 0; s < ends.size(); ++s) {
+    Strand strand;
+    strand.a = placeOf(inFirst.anchors()[s]);
+    strand.b = placeOf(inSecond.anchors()[s]);
+    const Vec3 way = ends[s] - feet[s];
+    strand.restLength = way.norm();
+    // Organs that overlap at rest, or touch, have strands that point out of the second one all the same.
+    const Index3& t = second.surface.triangle[slot(distance.closest(ends[s]).triangle)];
+    const Vec3& a = second.surface.vertex[slot(t[0])];
+    const Vec3 outward = (second.surface.vertex[slot(t[1])] - a).cross(second.surface.vertex[slot(t[2])] - a);
+    strand.restDirection = strand.restLength > 1e-5 ? Vec3(way / strand.restLength) : Vec3(outward / outward.norm());
+    out.strands.push_back(strand);
+  }
+  for (const Index3& t : division.triangle) {
+    const Vec3& a = ends[slot(t[0])];
+    const double third = (ends[slot(t[1])] - a).cross(ends[slot(t[2])] - a).norm() / 6.0;
+    for (int k = 0; k < 3; ++k) out.strands[slot(t[k])].area += third;
+  }
+  out.sheets = edgesOf(division.triangle);
+  return out;
+}
+
+}  // namespace calot

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/connective/connective_tissue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/geometry/closest_point.h"
+
+namespace calot {
+
+namespace {
+
+constexpr double shortest = 1e-6;  ///< m: below, the direction of a strand is its direction at rest
+
+struct Stretch {
+  Vec3 direction = Vec3::Zero();
+  double length = 0.0;
+};
+
+Stretch stretchOf(const Strand& strand, const Vec3& a, const Vec3& b) {
+  const Vec3 way = a - b;
+  const double length = way.norm();
+  if (length < shortest) return {strand.restDirection, length};
+  return {way / length, length};
+}
+
+/// Squared distance between a segment and the quadrilateral that the hook's axis sweeps.
+double squaredDistance(const Vec3& p, const Vec3& q, const HookSweep& hook) {
+  const double first = closestSegmentTriangle(p, q, hook.before[0], hook.before[1], hook.now[1]).squaredDistance;
+  const double second = closestSegmentTriangle(p, q, hook.before[0], hook.now[1], hook.now[0]).squaredDistance;
+  return std::min(first, second);
+}
+
+}  // namespace
+
+ConnectiveTissue::ConnectiveTissue(std::vector<Strand> strands, std::vector<std::array<std::uint32_t, 2>> sheets,
+                                   ConnectiveMaterial material)
+    : strand_(std::move(strands)), sheet_(std::move(sheets)), material_(material) {
+  for (const Strand& strand : strand_) area_ += strand.area;
+}
+
+ConnectiveState intactState(const ConnectiveTissue& tissue) {
+  ConnectiveState state;
+  state.condition.assign(tissue.strands().size(), StrandCondition::attached);
+  state.alpha.assign(tissue.strands().size(), 1.0);
+  return state;
+}
+
+void addConnectiveLoads(const ConnectiveTissue& tissue, const ConnectiveState& state, ConnectiveSide side,
+                        const OrganMotion& own, const OrganMotion& other, double step, std::vector<Attachment>& out) {
+  const ConnectiveMaterial& m = tissue.material();
+  for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
+    if (state.condition[s] != StrandCondition::attached) continue;
+    const Strand& strand = tissue.strands()[s];
+    const SolidPlace& mine = side == ConnectiveSide::a ? strand.a : strand.b;
+    const SolidPlace& theirs = side == ConnectiveSide::a ? strand.b : strand.a;
+    const Vec3 here = mine.of(own.position);
+    const Vec3 there = theirs.of(other.position);
+    // d points from b to a whichever side asks; along it, the two ends see opposite forces.
+    const Stretch stretch = side == ConnectiveSide::a ? stretchOf(strand, here, there) : stretchOf(strand, there, here);
+    const double stiffness = state.alpha[s] * m.stiffness * strand.area;
+    const double damping = state.alpha[s] * m.damping * strand.area;
+    const double tension = stiffness * (stretch.length - strand.restLength);
+    const Vec3 pull =
+        side == ConnectiveSide::a ? Vec3(-tension * stretch.direction) : Vec3(tension * stretch.direction);
+    Attachment attachment;
+    attachment.place = mine;
+    // A majorant of the spring's tangent, which is stiff along it and, across, as stiff as its pull makes it: at rest
+    // no different, in motion damped more, never unstable.
+    attachment.damper = (step * stiffness + damping) * Mat3::Identity();
+    attachment.force = pull + attachment.damper * theirs.of(other.velocity);
+    out.push_back(attachment);
+  }
+}
+
+double strandTension(const ConnectiveTissue& tissue, const ConnectiveState& state, std::size_t strand,
+                     std::span<const Vec3> positionA, std::span<const Vec3> positionB) {
+  if (state.condition[strand] != StrandCondition::attached) return 0.0;
+  const Strand& s = tissue.strands()[strand];
+  const Stretch stretch = stretchOf(s, s.a.of(positionA), s.b.of(positionB));
+  return state.alpha[strand] * tissue.material().stiffness * s.area * (stretch.length - s.restLength);
+}
+
+double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
+                         std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn) {
+  double largest = 0.0;
+  for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
+    if (state.condition[s] != StrandCondition::attached) continue;
+    const double area = tissue.strands()[s].area;
+    const double tension = strandTension(tissue, state, s, positionA, positionB);
+    // A faded strand is weaker in the measure in which it is softer: what tears is its stretch.
+    const double pull = tension / (state.alpha[s] * area);
+    largest = std::max(largest, pull);
+    if (!(pull > tissue.material().strength)) continue;
+    state.condition[s] = StrandCondition::torn;
+    torn.push_back(static_cast<std::uint32_t>(s));
+  }
+  return largest;
+}
+
+std::size_t burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
+                        std::span<const Vec3> positionB, const HookSweep& hook, double step,
+                        std::vector<std::uint32_t>& burned) {
+  const ConnectiveMaterial& m = tissue.material();
+  Box reach;
+  for (const Vec3& p : hook.before) reach.include(p);
+  for (const Vec3& p : hook.now) reach.include(p);
+  reach.grow(hook.radius);
+  std::size_t touched = 0;
+  for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
+    if (state.condition[s] == StrandCondition::burned) continue;
+    const Strand& strand = tissue.strands()[s];
+    const Vec3 a = strand.a.of(positionA);
+    const Vec3 b = strand.b.of(positionB);
+    const double limit = hook.radius * hook.radius;
+    bool touches = false;
+    if (state.condition[s] == StrandCondition::attached) {
+      Box box;
+      box.include(a);
+      box.include(b);
+      touches = box.overlaps(reach) && squaredDistance(a, b, hook) <= limit;
+    } else {
+      const double stump = std::max(0.5 * strand.restLength, hook.radius);
+      Box boxA;
+      boxA.include(a);
+      boxA.grow(stump);
+      Box boxB;
+      boxB.include(b);
+      boxB.grow(stump);
+      const double far = (hook.radius + stump) * (hook.radius + stump);
+      touches = (boxA.overlaps(reach) && squaredDistance(a, a, hook) <= far) ||
+                (boxB.overlaps(reach) && squaredDistance(b, b, hook) <= far);
+    }
+    if (!touches) continue;
+    ++touched;
+    state.alpha[s] -= step / m.fadeTime * (1.0 - m.goneBelow);
+    if (state.alpha[s] > m.goneBelow) continue;
+    state.alpha[s] = 0.0;
+    state.condition[s] = StrandCondition::burned;
+    burned.push_back(static_cast<std::uint32_t>(s));
+  }
+  return touched;
+}
+
+ConnectiveShares sharesOf(const ConnectiveTissue& tissue, const ConnectiveState& state) {
+  ConnectiveShares shares;
+  if (!(tissue.area() > 0.0)) return shares;
+  for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
+    const double share = tissue.strands()[s].area / tissue.area();
+    switch (state.condition[s]) {
+      case StrandCondition::attached:
+        shares.attached += share;
+        break;
+      case StrandCondition::burned:
+        shares.burned += share;
+        break;
+      case StrandCondition::torn:
+        shares.torn += share;
+        break;
+    }
+  }
+  return shares;
+}
+
+}  // namespace calot

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces, edges and vertices of a surface with what a distance needs of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sim/geometry/triangle_mesh.h"
+
+namespace calot {
+
+/// Features of a mesh whose coordinates are given (any unit). Linear in its size.
+class SurfaceFeatures {
+ public:
+  struct Face {
+    Vec3 normal = Vec3::Zero();     ///< unit, outward; zero for a sliver (sine of its angle below 1e-10)
+    std::array<Vec3, 3> inward{};   ///< unit, in the plane, across edge k to the inside; zero for a sliver
+    [[nodiscard]] bool flat() const { return normal.squaredNorm() > 0.5; }
+  };
+  struct Edge {
+    int low = 0;  ///< vertices, low < high
+    int high = 0;
+    int first = 0;  ///< sides [first, last)
+    int last = 0;
+    Vec3 normal = Vec3::Zero();  ///< sum of its faces' normals
+  };
+  struct Side {
+    int triangle = 0;
+    int side = 0;
+    int low = 0;
+    int high = 0;
+    bool forward = false;  ///< runs from low to high
+  };
+
+  SurfaceFeatures(std::span<const Vec3> vertex, std::span<const Index3> triangle);
+
+  [[nodiscard]] const std::vector<Face>& faces() const { return face_; }
+  [[nodiscard]] const std::vector<Edge>& edges() const { return edge_; }
+  [[nodiscard]] std::span<const Side> sides(const Edge& edge) const {
+    return std::span(side_).subspan(slot(edge.first), slot(edge.last - edge.first));
+  }
+  /// Edges that end at a vertex.
+  [[nodiscard]] std::span<const int> edgesAt(int vertex) const {
+    return std::span(around_).subspan(slot(aroundStart_[slot(vertex)]),
+                                      slot(aroundStart_[slot(vertex) + 1] - aroundStart_[slot(vertex)]));
+  }
+  /// Angle-weighted sums of the faces' normals, one a vertex.
+  [[nodiscard]] const std::vector<Vec3>& vertexNormals() const { return vertexNormal_; }
+  /// Edges that are not run through as often in one direction as in the other.
+  [[nodiscard]] int openEdges() const { return openEdges_; }
+  /// Every edge has exactly two sides, in opposite directions.
+  [[nodiscard]] bool manifoldEdges() const { return manifold_; }
+
+ private:
+  void makeEdges(std::size_t vertices, std::span<const Index3> triangle);
+
+  std::vector<Face> face_;
+  std::vector<Edge> edge_;
+  std::vector<Side> side_;
+  std::vector<int> aroundStart_;
+  std::vector<int> around_;
+  std::vector<Vec3> vertexNormal_;
+  int openEdges_ = 0;
+  bool manifold_ = true;
+};
+
+}  // namespace calot

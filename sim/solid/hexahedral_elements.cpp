@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solid/hexahedral_elements.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/math/floating_point.h"
+
+namespace calot {
+
+namespace {
+
+constexpr std::size_t groupsPerTask = 4;
+
+using CornerLanes = std::array<std::array<std::array<double, laneCount>, 3>, 8>;
+using Stiffness = std::array<std::array<double, 24>, 24>;
+using RotationLanes = std::array<std::array<std::array<double, laneCount>, 3>, 3>;
+
+/// -1 or +1: on which side of the middle corner c lies along an axis.
+constexpr double side(std::size_t c, std::size_t axis) { return ((c >> axis) & 1U) != 0 ? 1.0 : -1.0; }
+
+void gather(const HexahedronGroup& group, std::span<const Vec3> values, CornerLanes& out) {
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t l = 0; l < laneCount; ++l) {
+      const Vec3& v = values[static_cast<std::size_t>(group.node[a][l])];
+      for (std::size_t i = 0; i < 3; ++i) out[a][i][l] = v[static_cast<int>(i)];
+    }
+  }
+}
+
+/// Mean of F over the cube: sum_a x_a g_a^T with g_a = (+-1, +-1, +-1) / (4 edge).
+CALOT_LANE_KERNEL void deformation(const CornerLanes& x, double edge, DeformationLanes& f) {
+  const double g = 0.25 / edge;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t l = 0; l < laneCount; ++l) {
+        double sum = 0.0;
+        for (std::size_t a = 0; a < 8; ++a) sum += side(a, j) * x[a][i][l];
+        f[i][j][l] = g * sum;
+      }
+    }
+  }
+}
+
+CALOT_LANE_KERNEL void matrices(const RotationGroup& q, RotationLanes& r) {
+  for (std::size_t l = 0; l < laneCount; ++l) {
+    const double w = q[0][l];
+    const double x = q[1][l];
+    const double y = q[2][l];
+    const double z = q[3][l];
+    r[0][0][l] = 1.0 - 2.0 * (y * y + z * z);
+    r[0][1][l] = 2.0 * (x * y - w * z);
+    r[0][2][l] = 2.0 * (x * z + w * y);
+    r[1][0][l] = 2.0 * (x * y + w * z);
+    r[1][1][l] = 1.0 - 2.0 * (x * x + z * z);
+    r[1][2][l] = 2.0 * (y * z - w * x);
+    r[2][0][l] = 2.0 * (x * z - w * y);
+    r[2][1][l] = 2.0 * (y * z + w * x);
+    r[2][2][l] = 1.0 - 2.0 * (x * x + y * y);
+  }
+}
+
+/// u = R^T (x - middle) - corner, then f = -fill R K u.
+CALOT_LANE_KERNEL void forces(const CornerLanes& x, const std::array<Vec3, 8>& corner, const Stiffness& stiffness,
+                              const RotationLanes& r, const std::array<double, laneCount>& fill,
+                              HexahedronResult& out) {
+  std::array<std::array<double, laneCount>, 24> u;
+  std::array<std::array<double, laneCount>, 3> middle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t l = 0; l < laneCount; ++l) {
+      double sum = 0.0;
+      for (std::size_t a = 0; a < 8; ++a) sum += x[a][i][l];
+      middle[i][l] = 0.125 * sum;
+    }
+  }
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double rest = corner[a][static_cast<int>(j)];
+      for (std::size_t l = 0; l < laneCount; ++l) {
+        u[3 * a + j][l] = ((r[0][j][l] * (x[a][0][l] - middle[0][l]) + r[1][j][l] * (x[a][1][l] - middle[1][l])) +
+                           r[2][j][l] * (x[a][2][l] - middle[2][l])) -
+                          rest;
+      }
+    }
+  }
+  for (std::size_t a = 0; a < 8; ++a) {
+    std::array<std::array<double, laneCount>, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::array<double, laneCount> sum{};
+      for (std::size_t k = 0; k < 24; ++k) {
+        const double entry = stiffness[3 * a + i][k];
+        for (std::size_t l = 0; l < laneCount; ++l) sum[l] += entry * u[k][l];
+      }
+      p[i] = sum;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t l = 0; l < laneCount; ++l) {
+        out.force[a][i][l] = -fill[l] * ((r[i][0][l] * p[0][l] + r[i][1][l] * p[1][l]) + r[i][2][l] * p[2][l]);
+      }
+    }
+  }
+}
+
+CALOT_LANE_KERNEL void blocks(const Stiffness& stiffness, const RotationLanes& r,
+                              const std::array<double, laneCount>& fill, HexahedronResult& out) {
+  std::array<std::array<std::array<float, laneCount>, 3>, 3> turn;
+  std::array<float, laneCount> share;
+  for (std::size_t l = 0; l < laneCount; ++l) share[l] = static_cast<float>(fill[l]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t l = 0; l < laneCount; ++l) turn[i][j][l] = static_cast<float>(r[i][j][l]);
+    }
+  }
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t b = a; b < 8; ++b) {
+      std::array<std::array<std::array<float, laneCount>, 3>, 3> half;  // fill R K_ab
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          const auto k0 = static_cast<float>(stiffness[3 * a][3 * b + j]);
+          const auto k1 = static_cast<float>(stiffness[3 * a + 1][3 * b + j]);
+          const auto k2 = static_cast<float>(stiffness[3 * a + 2][3 * b + j]);
+          for (std::size_t l = 0; l < laneCount; ++l) {
+            half[i][j][l] = share[l] * ((turn[i][0][l] * k0 + turn[i][1][l] * k1) + turn[i][2][l] * k2);
+          }
+        }
+      }
+      auto& block = out.block[HexahedralElements::pairOf(a, b)];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          for (std::size_t l = 0; l < laneCount; ++l) {
+            block[3 * i + j][l] =
+                (half[i][0][l] * turn[j][0][l] + half[i][1][l] * turn[j][1][l]) + half[i][2][l] * turn[j][2][l];
+          }
+        }
+      }
+    }
+  }
+}
+
+/// K of a full cube: deviatoric part in full, volumetric part with the mean dilatation.
+void integrate(double edge, LameConstants material, Stiffness& stiffness) {
+  const double bulk = material.lambda + 2.0 / 3.0 * material.mu;
+  const double volume = edge * edge * edge;
+  const double abscissa = 1.0 / std::sqrt(3.0);
+  for (std::size_t point = 0; point < 8; ++point) {
+    std::array<Vec3, 8> g;
+    for (std::size_t a = 0; a < 8; ++a) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        double slope = side(a, i) * 0.25 / edge;
+        for (std::size_t j = 0; j < 3; ++j) {
+          if (j != i) slope *= 1.0 + side(a, j) * side(point, j) * abscissa;
+        }
+        g[a][static_cast<int>(i)] = slope;
+      }
+    }
+    const double part = 0.125 * volume * material.mu;
+    for (std::size_t a = 0; a < 8; ++a) {
+      for (std::size_t b = 0; b < 8; ++b) {
+        const double dot = g[a].dot(g[b]);
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (std::size_t j = 0; j < 3; ++j) {
+            const auto ii = static_cast<int>(i);
+            const auto jj = static_cast<int>(j);
+            double entry = g[b][ii] * g[a][jj] - 2.0 / 3.0 * (g[a][ii] * g[b][jj]);
+            if (i == j) entry += dot;
+            stiffness[3 * a + i][3 * b + j] += part * entry;
+          }
+        }
+      }
+    }
+  }
+  const double mean = 0.25 / edge;
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t b = 0; b < 8; ++b) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          stiffness[3 * a + i][3 * b + j] += bulk * volume * (mean * side(a, i)) * (mean * side(b, j));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+HexahedralElements::HexahedralElements(std::span<const Index8> cells, double edge, LameConstants material)
+    : count_(cells.size()), edge_(edge), groups_(laneGroups(cells.size())) {
+  for (std::size_t e = 0; e < groups_.size() * laneCount; ++e) {
+    HexahedronGroup& group = groups_[e / laneCount];
+    const Index8& cell = cells[std::min(e, count_ - 1)];
+    for (std::size_t a = 0; a < 8; ++a) group.node[a][e % laneCount] = cell[a];
+    group.weight[e % laneCount] = e < count_ ? 1.0 : 0.0;
+  }
+  for (std::size_t a = 0; a < 8; ++a) corner_[a] = 0.5 * edge * Vec3(side(a, 0), side(a, 1), side(a, 2));
+  integrate(edge, material, stiffness_);
+}
+
+void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
+                                  int sweeps, std::span<const double> fill, std::span<RotationGroup> rotation,
+                                  std::span<HexahedronResult> result, Executor& executor) const {
+  executor.run((groups_.size() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
+    const FloatingPointScope scope;
+    const std::size_t end = std::min(groups_.size(), (task + 1) * groupsPerTask);
+    for (std::size_t g = task * groupsPerTask; g < end; ++g) {
+      std::array<double, laneCount> share = groups_[g].weight;
+      if (!fill.empty()) {
+        for (std::size_t l = 0; l < laneCount; ++l) share[l] *= fill[std::min(g * laneCount + l, count_ - 1)];
+      }
+      CornerLanes x;
+      CornerLanes v;
+      DeformationLanes f;
+      gather(groups_[g], position, x);
+      deformation(x, edge_, f);
+      turnTowardsPolar(f, sweeps, rotation[g]);
+      RotationLanes r;
+      matrices(rotation[g], r);
+      gather(groups_[g], velocity, v);
+      for (std::size_t a = 0; a < 8; ++a) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (std::size_t l = 0; l < laneCount; ++l) x[a][i][l] += lookAhead * v[a][i][l];
+        }
+      }
+      forces(x, corner_, stiffness_, r, share, result[g]);
+      blocks(stiffness_, r, share, result[g]);
+    }
+  });
+}
+
+double HexahedralElements::volume(std::span<const Vec3> position, std::span<const double> fill) const {
+  // The Jacobian is at most quadratic along each axis: two Gauss points an axis are exact.
+  const double abscissa = 1.0 / std::sqrt(3.0);
+  double total = 0.0;
+  for (std::size_t e = 0; e < count_; ++e) {
+    const HexahedronGroup& group = groups_[e / laneCount];
+    const std::size_t l = e % laneCount;
+    double sum = 0.0;
+    for (std::size_t point = 0; point < 8; ++point) {
+      Mat3 f = Mat3::Zero();
+      for (std::size_t a = 0; a < 8; ++a) {
+        const Vec3& p = position[static_cast<std::size_t>(group.node[a][l])];
+        for (std::size_t i = 0; i < 3; ++i) {
+          double slope = side(a, i) * 0.125;
+          for (std::size_t j = 0; j < 3; ++j) {
+            if (j != i) slope *= 1.0 + side(a, j) * side(point, j) * abscissa;
+          }
+          f.col(static_cast<int>(i)) += slope * p;
+        }
+      }
+      sum += f.col(0).dot(f.col(1).cross(f.col(2)));
+    }
+    total += fill.empty() ? sum : fill[e] * sum;
+  }
+  return total;
+}
+
+}  // namespace calot

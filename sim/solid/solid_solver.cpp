@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Implicit Euler of one solid.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/math/floating_point.h"
+#include "sim/solid/solid.h"
+
+namespace calot {
+
+namespace {
+
+constexpr std::size_t rowsPerTask = 128;
+constexpr double orphanMass = 1.0;  ///< of a node that only empty cubes hold (kg): it has no neighbours and no load
+
+}  // namespace
+
+/// Block K_ab of one element, scaled for the system.
+inline void SolidSolver::addBlock(const SolidModel& model, const SolidModel::Contribution& contribution,
+                                  std::array<float, 9>& block, float lambda, float mu, float scale) const {
+  const auto e = static_cast<std::size_t>(contribution.element);
+  const std::size_t l = e % laneCount;
+  const auto a = static_cast<std::size_t>(contribution.a);
+  const auto b = static_cast<std::size_t>(contribution.b);
+  if (model.madeOfCubes()) {
+    const auto& stored = hexahedron_[e / laneCount].block[HexahedralElements::pairOf(std::min(a, b), std::max(a, b))];
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += scale * stored[a <= b ? 3 * i + j : 3 * j + i][l];
+    }
+    return;
+  }
+  const ElementResult& element = element_[e / laneCount];
+  const auto volume = static_cast<float>(model.elements().groups()[e / laneCount].volume[l]);
+  const float ga[3] = {element.gradient[a][0][l], element.gradient[a][1][l], element.gradient[a][2][l]};
+  const float gb[3] = {element.gradient[b][0][l], element.gradient[b][1][l], element.gradient[b][2][l]};
+  const float lv = lambda * volume;
+  const float mv = mu * volume;
+  const float diagonal = mv * ((ga[0] * gb[0] + ga[1] * gb[1]) + ga[2] * gb[2]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += lv * (ga[i] * gb[j]) + mv * (gb[i] * ga[j]);
+    block[4 * i] += diagonal;
+  }
+}
+
+inline Vec3 SolidSolver::cornerForce(const SolidModel& model, const SolidModel::Contribution& contribution) const {
+  const auto e = static_cast<std::size_t>(contribution.element);
+  const auto a = static_cast<std::size_t>(contribution.a);
+  const std::size_t l = e % laneCount;
+  const auto& lanes = model.madeOfCubes() ? hexahedron_[e / laneCount].force[a] : element_[e / laneCount].force[a];
+  return {lanes[0][l], lanes[1][l], lanes[2][l]};
+}
+
+void SolidSolver::assemble(const SolidModel& model, const Settings& settings, const Surroundings& surroundings,
+                           Executor& executor) {
+  const double h = settings.step;
+  const SolidModel::Material& m = model.material_;
+  const auto scale = static_cast<float>(h * h + m.stiffnessDamping * h);
+  const double massScale = 1.0 + m.massDamping * h;
+  const float lambda = scale * static_cast<float>(m.lame.lambda);
+  const float mu = scale * static_cast<float>(m.lame.mu);
+  const std::vector<double>& masses = surroundings.fill.empty() ? model.mass_ : mass_;
+  values_.assign(model.matrix_.valueCount(), 0.0F);
+  const std::size_t tasks = (model.slot_.size() + 8 * rowsPerTask - 1) / (8 * rowsPerTask);
+  executor.run(tasks, [&](std::size_t task) {
+    const FloatingPointScope scope;
+    const std::size_t last = std::min(model.slot_.size(), (task + 1) * 8 * rowsPerTask);
+    for (std::size_t s = task * 8 * rowsPerTask; s < last; ++s) {
+      const SolidModel::SlotRange& range = model.slot_[s];
+      std::array<float, 9> block{};
+      for (std::size_t c = range.first; c < range.last; ++c) {
+        addBlock(model, model.contribution_[c], block, lambda, mu, scale);
+      }
+      if (range.diagonal) {
+        const double own = masses[static_cast<std::size_t>(model.freeNode_[static_cast<std::size_t>(range.row)])];
+        const auto mass = static_cast<float>(own > 0.0 ? massScale * own : orphanMass);
+        for (std::size_t i = 0; i < 3; ++i) block[4 * i] += mass;
+      }
+      for (std::size_t i = 0; i < 9; ++i) values_[range.slot + i * laneCount] = block[i];
+    }
+  });
+  addAttachments(model, settings, surroundings.attachments);
+}
+
+void SolidSolver::addAttachments(const SolidModel& model, const Settings& settings,
+                                 std::span<const Attachment> attachments) {
+  for (const Attachment& attachment : attachments) {
+    const SolidPlace& place = attachment.place;
+    for (std::size_t a = 0; a < place.count; ++a) {
+      const int row = model.row(static_cast<std::size_t>(place.node[a]));
+      if (row < 0) continue;
+      for (std::size_t b = 0; b < place.count; ++b) {
+        const int column = model.row(static_cast<std::size_t>(place.node[b]));
+        if (column < 0) continue;
+        const std::size_t at = model.slotOf(row, column);
+        const double share = settings.step * (place.weight[a] * place.weight[b]);
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (std::size_t j = 0; j < 3; ++j) {
+            values_[at + (3 * i + j) * laneCount] +=
+                static_cast<float>(share * attachment.damper(static_cast<int>(i), static_cast<int>(j)));
+          }
+        }
+      }
+    }
+  }
+}
+
+SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, const Vec3& gravity,
+                                    std::span<const Vec3> external, const Settings& settings, Executor& executor,
+                                    const Surroundings& surroundings) {
+  const double h = settings.step;
+  const SolidModel::Material& m = model.material_;
+  if (model.madeOfCubes()) {
+    hexahedron_.resize(model.groups());
+    model.hexahedra().evaluate(state.position, state.velocity, h + m.stiffnessDamping, settings.rotationSweeps,
+                               surroundings.fill, state.rotation, hexahedron_, executor);
+    if (!surroundings.fill.empty()) model.massOf(surroundings.fill, mass_);
+  } else {
+    element_.resize(model.groups());
+    model.elements().evaluate(state.position, state.velocity, h + m.stiffnessDamping, m.lame, settings.rotationSweeps,
+                              state.rotation, element_, executor);
+  }
+  assemble(model, settings, surroundings, executor);
+
+  // In double until all that acts on a node is known.
+  load_.assign(external.begin(), external.end());
+  if (!surroundings.attachments.empty()) load_.resize(model.nodes(), Vec3::Zero());
+  for (const Attachment& attachment : surroundings.attachments) {
+    const Vec3 force = attachment.force - attachment.damper * attachment.place.of(state.velocity);
+    for (std::size_t k = 0; k < attachment.place.count; ++k) {
+      load_[static_cast<std::size_t>(attachment.place.node[k])] += attachment.place.weight[k] * force;
+    }
+  }
+  const std::vector<double>& masses = surroundings.fill.empty() ? model.mass_ : mass_;
+  b_.assign(model.matrix_.vectorSize(), 0.0F);
+  x_.resize(model.matrix_.vectorSize());
+  const std::size_t rows = model.freeNode_.size();
+  executor.run((rows + rowsPerTask - 1) / rowsPerTask, [&](std::size_t task) {
+    const FloatingPointScope scope;
+    const std::size_t last = std::min(rows, (task + 1) * rowsPerTask);
+    for (std::size_t r = task * rowsPerTask; r < last; ++r) {
+      const auto node = static_cast<std::size_t>(model.freeNode_[r]);
+      if (!(masses[node] > 0.0)) continue;
+      Vec3 force = Vec3::Zero();
+      for (std::size_t k = model.incidentStart_[node]; k < model.incidentStart_[node + 1]; ++k) {
+        force += cornerForce(model, model.incident_[k]);
+      }
+      force += masses[node] * (gravity - m.massDamping * state.velocity[node]);
+      if (!load_.empty()) force += load_[node];
+      for (int i = 0; i < 3; ++i) {
+        b_[laneOffset(r) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(h * force[i]);
+      }
+    }
+  });
+  cg_.prepare(model.matrix_, values_, model.diagonal_, executor);
+  const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
+  freeVelocity_.assign(model.nodes(), Vec3::Zero());
+  for (std::size_t r = 0; r < rows; ++r) {
+    const auto node = static_cast<std::size_t>(model.freeNode_[r]);
+    const std::size_t at = laneOffset(r);
+    freeVelocity_[node] = state.velocity[node] + Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
+  }
+  return report;
+}
+
+SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
+                                   std::vector<std::vector<Vec3>>& response, Executor& executor) {
+  const std::size_t size = model.matrix_.vectorSize() * laneCount;
+  b_.assign(size, 0.0F);
+  x_.resize(size);
+  for (std::size_t n = 0; n < impulses.size(); ++n) {
+    for (std::size_t k = 0; k < impulses[n].count; ++k) {
+      const int r = model.row(static_cast<std::size_t>(impulses[n].node[k]));
+      if (r < 0) continue;
+      for (int i = 0; i < 3; ++i) {
+        b_[static_cast<std::size_t>(r) * laneStride + static_cast<std::size_t>(i) * laneCount + n] +=
+            static_cast<float>(impulses[n].weight[k] * impulses[n].impulse[i]);
+      }
+    }
+  }
+  const SolveReport report = cg_.solveMany(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
+  response.resize(impulses.size());
+  for (std::size_t n = 0; n < impulses.size(); ++n) {
+    response[n].assign(model.nodes(), Vec3::Zero());
+    for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
+      const std::size_t at = r * laneStride + n;
+      response[n][static_cast<std::size_t>(model.freeNode_[r])] =
+          Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
+    }
+  }
+  return report;
+}
+
+SolveReport SolidSolver::push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings,
+                              Executor& executor) {
+  b_.assign(model.matrix_.vectorSize(), 0.0F);
+  x_.resize(model.matrix_.vectorSize());
+  for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
+    const Vec3& p = impulse[static_cast<std::size_t>(model.freeNode_[r])];
+    for (int i = 0; i < 3; ++i) {
+      b_[laneOffset(r) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(p[i]);
+    }
+  }
+  const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
+  for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
+    const std::size_t at = laneOffset(r);
+    freeVelocity_[static_cast<std::size_t>(model.freeNode_[r])] +=
+        Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
+  }
+  return report;
+}
+
+bool SolidSolver::advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step) {
+  bool finite = true;
+  for (const int free : model.freeNode_) {
+    const auto node = static_cast<std::size_t>(free);
+    Vec3 velocity = freeVelocity_[node];
+    if (!correction.empty()) velocity += correction[node];
+    const Vec3 position = state.position[node] + step * velocity;
+    if (!velocity.allFinite() || !position.allFinite()) {
+      finite = false;
+      state.velocity[node].setZero();
+      continue;
+    }
+    state.velocity[node] = velocity;
+    state.position[node] = position;
+  }
+  return finite;
+}
+
+}  // namespace calot

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is fixed about vessels: tubes as geometrically exact beams (Simo 1985), one or several, branching or not.
+//
+// A vessel is a chain of nodes, each a place and an orientation (unit quaternion), joined by two-node elements with one
+// point of integration. The strains of an element are measured in its middle frame R_m, the geodesic mean of its nodes'
+// orientations:
+//   gamma = d / L - R_m a      d = x_b - x_a, L the rest length, a the rest axis in the middle frame
+//   kappa = 4 / L (P - P_0)    P = tan(theta/4) n: relative rotation of the nodes by theta about n, in the middle frame
+// and the energy is L/2 (E A |gamma|^2 + kappa . D kappa) with D = diag(EI, EI, GJ) about the axis. Both strains do not
+// change under rigid motions, however large, and both stay defined for every state, a collapsed or inverted element
+// included; that is why this form was taken instead of a frame that follows the chord.
+//
+// Shear has the stiffness E A of stretch, not k G A. Shear flexibility adds less than 1 % to the deflection of a vessel
+// twenty times as long as thick; with k G A (a fifth to a third of E A) a linear law would lose stability in *tension*
+// at strains of 0.2 to 0.3, where real vessels stretch and do not shear. So strains up to 1 are stable.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/math/linear.h"
+
+namespace calot {
+
+/// Circular section.
+struct TubeSection {
+  double outerRadius = 0.0;                   ///< m
+  double wall = 0.0;                          ///< thickness (m); the outer radius or more: solid
+  [[nodiscard]] double area() const;          ///< A of the wall (m^2)
+  [[nodiscard]] double secondMoment() const;  ///< I about a diameter (m^4); the polar one, J, is twice that
+};
+
+struct BeamMaterial {
+  double young = 0.0;             ///< E (Pa)
+  double poisson = 0.0;           ///< nu
+  double density = 0.0;           ///< kg/m^3
+  double massDamping = 0.0;       ///< Rayleigh alpha (1/s)
+  double stiffnessDamping = 0.0;  ///< Rayleigh beta (s)
+  double ultimateStrain = 1e300;  ///< stretch (length / rest length - 1) above which an element tears
+};
+
+/// One tube to be built.
+struct BeamBranch {
+  std::vector<Vec3> node;  ///< rest places along the centre line (m), evenly spaced for best accuracy
+  TubeSection section;
+  BeamMaterial material;
+  int join = -1;  ///< node of an earlier branch that this branch grows out of (its node[0] is there); -1: none
+  bool fixedStart = false;  ///< first node held, place and orientation
+  bool fixedEnd = false;    ///< last node held
+};
+
+/// `elements` + 1 nodes at equal arc lengths on the centripetal-free (uniform) Catmull-Rom curve through the points.
+/// @pre at least two points, neighbours apart
+std::vector<Vec3> evenNodes(std::span<const Vec3> points, std::size_t elements);
+
+/// Two nodes joined. Its index is its place among the model's elements; those of one branch follow each other.
+struct BeamElement {
+  int a = 0;  ///< nearer to the branch's start
+  int b = 0;
+  int branch = 0;
+  double length = 0.0;       ///< L at rest (m)
+  Vec3 axis = Vec3::Zero();  ///< unit, in the middle frame at rest
+  Vec3 bend = Vec3::Zero();  ///< P_0
+  double stretching = 0.0;   ///< E A (N)
+  double bending = 0.0;      ///< E I (N m^2)
+  double twisting = 0.0;     ///< G J (N m^2)
+  double damping = 0.0;      ///< beta (s)
+};
+
+class BeamModel {
+ public:
+  /// A branch as it was built.
+  struct Branch {
+    TubeSection section;
+    BeamMaterial material;
+    std::vector<int> node;      ///< from start to end; the first may belong to another branch
+    std::vector<double> place;  ///< arc length of each node at rest (m)
+    std::size_t firstElement = 0;
+    int join = -1;
+    Quat startFrame = Quat::Identity();  ///< the branch's first frame in that of its first node (a turn where it joins)
+
+    [[nodiscard]] std::size_t elements() const { return node.size() - 1; }
+    [[nodiscard]] double length() const { return place.back(); }
+  };
+
+  /// @pre faultOf(branches) is empty
+  explicit BeamModel(const std::vector<BeamBranch>& branches);
+
+  /// What is wrong with a description, naming branch and value, or nothing.
+  static std::string faultOf(const std::vector<BeamBranch>& branches);
+
+  [[nodiscard]] std::size_t nodes() const { return rest_.size(); }
+  [[nodiscard]] const std::vector<Vec3>& rest() const { return rest_; }
+  /// Rest orientation of each node: z along the centre line, x and y carried along it without twist.
+  [[nodiscard]] const std::vector<Quat>& restOrientation() const { return restOrientation_; }
+  [[nodiscard]] const std::vector<BeamElement>& elements() const { return element_; }
+  [[nodiscard]] const std::vector<Branch>& branches() const { return branch_; }
+  /// Neighbour towards the start, a smaller index; -1 for a node where a tree starts.
+  [[nodiscard]] std::span<const int> parents() const { return parent_; }
+  /// Element between a node and its parent; -1 where there is none.
+  [[nodiscard]] int elementBefore(std::size_t node) const { return elementBefore_[node]; }
+  [[nodiscard]] bool fixed(std::size_t node) const { return fixed_[node]; }
+  /// Lumped masses (kg): half of each element at the node.
+  [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
+  /// Lumped rotary inertias (kg m^2), taken as those about the axis for every direction: exact in torsion, of second
+  /// order in radius / wavelength for bending, and free of gyroscopic terms.
+  [[nodiscard]] const std::vector<double>& inertia() const { return inertia_; }
+  /// Rayleigh alpha of each node (1/s): mean over its elements by mass.
+  [[nodiscard]] const std::vector<double>& massDamping() const { return massDamping_; }
+  /// Arc lengths of a branch where other branches meet it or it meets them (m), ascending.
+  [[nodiscard]] std::vector<double> junctions(std::size_t branch) const;
+
+ private:
+  void addNode(const Vec3& place, const Quat& orientation, int parent, bool fixed);
+
+  std::vector<Vec3> rest_;
+  std::vector<Quat> restOrientation_;
+  std::vector<int> parent_;
+  std::vector<int> elementBefore_;
+  std::vector<bool> fixed_;
+  std::vector<double> mass_, inertia_, massDamping_;
+  std::vector<BeamElement> element_;
+  std::vector<Branch> branch_;
+};
+
+}  // namespace calot

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that changes about vessels.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim/math/linear.h"
+#include "sim/vessel/beam_model.h"
+
+namespace calot {
+
+/// How an element was parted. A parted element carries nothing; what is left of it stays on its two nodes.
+enum class Parting : std::uint8_t { none, cut, torn };
+
+struct BeamState {
+  std::vector<Vec3> position;         ///< of the nodes in W (m)
+  std::vector<Quat> orientation;      ///< of the nodes in W, unit
+  std::vector<Vec3> velocity;         ///< (m/s)
+  std::vector<Vec3> angularVelocity;  ///< in W (rad/s)
+  std::vector<Parting> parting;       ///< per element
+  std::vector<double> partedAt;       ///< per element: where, as a share of its length from its first node
+  std::vector<double> peakStrain;     ///< per element: largest stretch so far
+  /// Per element: what clips on it add to its stiffness, in multiples of its own; 0 without clips.
+  std::vector<double> sleeve;
+  std::vector<Vec3> sleeveStretch;  ///< R_m^T d / L at which the sleeves are without force
+  std::vector<Vec3> sleeveBend;     ///< P at which they are
+  /// Clips, in the order in which they were set. They stay with the wall: places are arc lengths at rest.
+  std::vector<std::uint32_t> clipBranch;
+  std::vector<double> clipPlace;  ///< middle of the clip (m)
+  std::vector<double> clipWidth;  ///< along the vessel (m)
+  std::vector<double> clipRoll;   ///< direction in which it flattens, about z of the branch's frame there, from x (rad)
+  std::vector<double> clipClosure;   ///< 0 open to 1 closed
+  std::vector<double> clipEnclosed;  ///< share of the flattened section between its legs, 1: all of it
+  std::uint32_t quietSteps = 0;      ///< steps in a row without touch and slower than the sleeping speed
+  double largestDisplacement = 0.0;  ///< from rest (m); kept because sleeping vessels do not recompute it
+
+  [[nodiscard]] std::size_t clips() const { return clipPlace.size(); }
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("position", self.position);
+    visit("orientation", self.orientation);
+    visit("velocity", self.velocity);
+    visit("angularVelocity", self.angularVelocity);
+    visit("parting", self.parting);
+    visit("partedAt", self.partedAt);
+    visit("peakStrain", self.peakStrain);
+    visit("sleeve", self.sleeve);
+    visit("sleeveStretch", self.sleeveStretch);
+    visit("sleeveBend", self.sleeveBend);
+    visit("clipBranch", self.clipBranch);
+    visit("clipPlace", self.clipPlace);
+    visit("clipWidth", self.clipWidth);
+    visit("clipRoll", self.clipRoll);
+    visit("clipClosure", self.clipClosure);
+    visit("clipEnclosed", self.clipEnclosed);
+    visit("quietSteps", self.quietSteps);
+    visit("largestDisplacement", self.largestDisplacement);
+  }
+};
+
+/// Rest: no displacement, no velocity, whole, without clips, asleep.
+BeamState restState(const BeamModel& model);
+
+/// Could this be a state of the model (numbers of nodes and elements, lists of one length, clips on branches, places in
+/// range)? For what comes from outside.
+bool fits(const BeamModel& model, const BeamState& state);
+
+/// A place on a branch.
+struct BeamPlace {
+  std::size_t branch = 0;
+  std::size_t element = 0;  ///< of the model
+  double share = 0.0;       ///< of the element's length, from its first node, in [0, 1]
+  double place = 0.0;       ///< arc length at rest from the branch's start (m)
+};
+
+/// @param place arc length, clamped to the branch
+BeamPlace placeAt(const BeamModel& model, std::size_t branch, double place);
+
+/// Parts a vessel there, if the element is whole. The share is kept within [0.1, 0.9], so that both stumps have length.
+/// @return false where it was parted before.
+bool part(BeamState& state, const BeamPlace& where, Parting how);
+
+/// The place of a branch that is nearest to a point in W, on the chords of whole elements and what is left of parted
+/// ones. @param[out] distance from the centre line (m)
+BeamPlace nearestPlace(const BeamModel& model, const BeamState& state, std::size_t branch, const Vec3& point,
+                       double& distance);
+
+}  // namespace calot

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"  // first
+
+#include "sim/vessel/block_tree.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace calot {
+
+namespace {
+
+/// Lower Cholesky factor in place, reciprocals on the diagonal.
+bool factorBlock(Block6& a) {
+  bool positive = true;
+  for (std::size_t j = 0; j < 6; ++j) {
+    double pivot = a[7 * j];
+    for (std::size_t k = 0; k < j; ++k) pivot -= a[6 * j + k] * a[6 * j + k];
+    const bool sound = pivot > 0.0 && pivot < 1e300;
+    positive = positive && sound;
+    const double inverse = sound ? 1.0 / std::sqrt(pivot) : 0.0;
+    a[7 * j] = inverse;
+    for (std::size_t i = j + 1; i < 6; ++i) {
+      double sum = a[6 * i + j];
+      for (std::size_t k = 0; k < j; ++k) sum -= a[6 * i + k] * a[6 * j + k];
+      a[6 * i + j] = sum * inverse;
+    }
+  }
+  return positive;
+}
+
+/// x <- L^-1 x for `width` columns of row-major x.
+template <std::size_t width>
+void forward(const Block6& l, double* x) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const double f = l[6 * i + k];
+      for (std::size_t c = 0; c < width; ++c) x[width * i + c] -= f * x[width * k + c];
+    }
+    for (std::size_t c = 0; c < width; ++c) x[width * i + c] *= l[7 * i];
+  }
+}
+
+/// x <- L^-T x.
+template <std::size_t width>
+void backward(const Block6& l, double* x) {
+  for (std::size_t i = 6; i-- > 0;) {
+    for (std::size_t k = i + 1; k < 6; ++k) {
+      const double f = l[6 * k + i];
+      for (std::size_t c = 0; c < width; ++c) x[width * i + c] -= f * x[width * k + c];
+    }
+    for (std::size_t c = 0; c < width; ++c) x[width * i + c] *= l[7 * i];
+  }
+}
+
+/// y -= W^T x.
+template <std::size_t width>
+void subtractTransposed(const Block6& w, const double* x, double* y) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double f = w[6 * k + i];
+      for (std::size_t c = 0; c < width; ++c) y[width * i + c] -= f * x[width * k + c];
+    }
+  }
+}
+
+/// y -= W x.
+template <std::size_t width>
+void subtract(const Block6& w, const double* x, double* y) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double f = w[6 * i + k];
+      for (std::size_t c = 0; c < width; ++c) y[width * i + c] -= f * x[width * k + c];
+    }
+  }
+}
+
+}  // namespace
+
+void BlockTree::reset(std::size_t nodes) {
+  diagonal_.assign(nodes, Block6{});
+  coupling_.assign(nodes, Block6{});
+  work_.resize(nodes);
+}
+
+bool BlockTree::factor(std::span<const int> parent) {
+  assert(parent.size() == diagonal_.size());
+  bool positive = true;
+  for (std::size_t i = diagonal_.size(); i-- > 0;) {
+    positive = factorBlock(diagonal_[i]) && positive;
+    if (parent[i] < 0) continue;
+    forward<6>(diagonal_[i], coupling_[i].data());
+    subtractTransposed<6>(coupling_[i], coupling_[i].data(), diagonal_[static_cast<std::size_t>(parent[i])].data());
+  }
+  return positive;
+}
+
+void BlockTree::solve(std::span<const int> parent, std::span<Vector6> x) const {
+  for (std::size_t i = diagonal_.size(); i-- > 0;) {
+    forward<1>(diagonal_[i], x[i].data());
+    if (parent[i] >= 0) {
+      subtractTransposed<1>(coupling_[i], x[i].data(), x[static_cast<std::size_t>(parent[i])].data());
+    }
+  }
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+    if (parent[i] >= 0) subtract<1>(coupling_[i], x[static_cast<std::size_t>(parent[i])].data(), x[i].data());
+    backward<1>(diagonal_[i], x[i].data());
+  }
+}
+
+void BlockTree::columns(std::span<const int> parent, std::size_t node, std::span<double> out) {
+  for (std::array<double, 18>& block : work_) block.fill(0.0);
+  for (std::size_t k = 0; k < 3; ++k) work_[node][4 * k] = 1.0;
+  // Going up, only the way from the node to its root is touched.
+  for (int at = static_cast<int>(node); at >= 0;) {
+    const auto i = static_cast<std::size_t>(at);
+    forward<3>(diagonal_[i], work_[i].data());
+    at = parent[i];
+    if (at >= 0) subtractTransposed<3>(coupling_[i], work_[i].data(), work_[static_cast<std::size_t>(at)].data());
+  }
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+    if (parent[i] >= 0) subtract<3>(coupling_[i], work_[static_cast<std::size_t>(parent[i])].data(), work_[i].data());
+    backward<3>(diagonal_[i], work_[i].data());
+    for (std::size_t k = 0; k < 9; ++k) out[9 * i + k] = work_[i][k];
+  }
+}
+
+}  // namespace calot

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Direct solution of A x = b where A is symmetric, positive definite, of 6 x 6 blocks, and its graph is a forest: a
+// chain (block-tridiagonal) or branching chains. Eliminating every node before its parent fills nothing in, so block
+// Cholesky is exact and linear in the number of nodes.
+//
+// With A_i the diagonal block of node i, B_i = A_{i,p} its block in the column of its parent p, from the last node to
+// the first:
+//   L_i L_i^T = A_i,   W_i = L_i^-1 B_i,   A_p -= W_i^T W_i.
+// Plain scalar loops in an order that the source fixes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sim/math/linear.h"
+
+namespace calot {
+
+/// 6 x 6 block, row-major: translation (0 to 2), then rotation (3 to 5).
+using Block6 = std::array<double, 36>;
+using Vector6 = std::array<double, 6>;
+
+class BlockTree {
+ public:
+  /// Sets all blocks to zero. Allocates only when the number of nodes grows. @param nodes rows of the system
+  void reset(std::size_t nodes);
+
+  /// A_i, to be filled before factor().
+  [[nodiscard]] Block6& diagonal(std::size_t node) { return diagonal_[node]; }
+  /// B_i, to be filled before factor(); stays zero for a root.
+  [[nodiscard]] Block6& coupling(std::size_t node) { return coupling_[node]; }
+
+  /// Factorises in place. @param parent per node: a smaller index, or -1
+  /// @return false where a pivot was not positive and finite: that unknown is then held at zero.
+  bool factor(std::span<const int> parent);
+
+  /// Solves in place. @pre factor(); x.size() is the number of nodes
+  void solve(std::span<const int> parent, std::span<Vector6> x) const;
+
+  /// Translations of all nodes for unit right-hand sides on the three translations of one node: out[9 a + 3 i + k] is
+  /// component i at node a for direction k. @pre factor(). @param out 9 numbers for each node
+  void columns(std::span<const int> parent, std::size_t node, std::span<double> out);
+
+ private:
+  std::vector<Block6> diagonal_;  ///< after factor(): L_i, reciprocals on its diagonal
+  std::vector<Block6> coupling_;  ///< after factor(): W_i
+  std::vector<std::array<double, 18>> work_;
+};
+
+}  // namespace calot

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/connective/connective_tissue.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/connective/connective_bed.h"
+#include "sim/math/random.h"
+#include "tests/accuracy/support/cube_box.h"
+
+namespace calot {
+namespace {
+
+using test::CubeBox;
+using test::cubeBox;
+
+/// Two blocks of cubes, one above the other, joined by strands over the gap between them.
+struct Pair {
+  CubeBox lower = cubeBox(4, 4, 2, Vec3::Zero(), 0.01);
+  CubeBox upper = cubeBox(4, 4, 2, Vec3(0.0, 0.0, 0.023), 0.01);
+  SolidModel lowerSolid, upperSolid;
+  ConnectiveTissue tissue;
+  SolidState a, b;
+  ConnectiveState state;
+
+  static std::vector<bool> bottom(const CubeBox& box, bool hold) {
+    std::vector<bool> fixed(box.node.size(), false);
+    if (!hold) return fixed;
+    for (int j = 0; j <= box.ny; ++j) {
+      for (int i = 0; i <= box.nx; ++i) fixed[static_cast<std::size_t>(box.index(i, j, 0))] = true;
+    }
+    return fixed;
+  }
+  static SolidPlace corner(int node) {
+    SolidPlace place;
+    place.node[0] = node;
+    place.weight[0] = 1.0;
+    place.count = 1;
+    return place;
+  }
+  std::vector<Strand> strands() const {
+    std::vector<Strand> out;
+    for (int j = 0; j <= 4; ++j) {
+      for (int i = 0; i <= 4; ++i) {
+        const double share = (i % 4 == 0 ? 0.5 : 1.0) * (j % 4 == 0 ? 0.5 : 1.0);
+        out.push_back({corner(upper.index(i, j, 0)), corner(lower.index(i, j, 2)), 0.003, Vec3::UnitZ(), share * 1e-4});
+      }
+    }
+    return out;
+  }
+  explicit Pair(bool hold, ConnectiveMaterial material = {})
+      : lowerSolid(lower.node, lower.cube, 0.01, bottom(lower, hold), {lameConstants(5e3, 0.4), 1000.0, 0.0, 0.02}),
+        upperSolid(upper.node, upper.cube, 0.01, bottom(upper, false), {lameConstants(5e3, 0.4), 1000.0, 0.0, 0.02}),
+        tissue(strands(), {}, material),
+        a(restState(upperSolid)),
+        b(restState(lowerSolid)),
+        state(intactState(tissue)) {}
+
+  void step(double h, std::span<const Vec3> load, int sweeps = 1) {
+    SerialExecutor executor;
+    SolidSolver solverA, solverB;
+    SolidSolver::Settings settings;
+    settings.step = h;
+    settings.tolerance = 1e-6;
+    std::vector<Attachment> loads;
+    std::vector<Vec3> velocityA = a.velocity;
+    SolidState nextA = a;
+    SolidState nextB = b;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      loads.clear();
+      addConnectiveLoads(tissue, state, ConnectiveSide::a, {a.position, a.velocity},
+                         {b.position, sweep == 0 ? b.velocity : solverB.freeVelocity()}, h, loads);
+      nextA = a;
+      solverA.freeMotion(upperSolid, nextA, Vec3::Zero(), load, settings, executor, {loads, {}});
+      loads.clear();
+      addConnectiveLoads(tissue, state, ConnectiveSide::b, {b.position, b.velocity},
+                         {a.position, solverA.freeVelocity()}, h, loads);
+      nextB = b;
+      solverB.freeMotion(lowerSolid, nextB, Vec3::Zero(), {}, settings, executor, {loads, {}});
+    }
+    ASSERT_TRUE(solverA.advance(upperSolid, nextA, {}, h));
+    ASSERT_TRUE(solverB.advance(lowerSolid, nextB, {}, h));
+    a = nextA;
+    b = nextB;
+  }
+  [[nodiscard]] double speed() const {
+    double speed = 0.0;
+    for (const Vec3& v : a.velocity) speed = std::max(speed, v.norm());
+    for (const Vec3& v : b.velocity) speed = std::max(speed, v.norm());
+    return speed;
+  }
+};
+
+/// A load on the upper block goes through the strands alone: at rest their pulls add up to it, exactly.
+TEST(Connective, PullsBalanceTheLoadAtRest) {
+  Pair pair(true);
+  const Vec3 load(0.002, 0.0, 0.05);
+  const std::vector<Vec3> nodal(pair.upper.node.size(), load / static_cast<double>(pair.upper.node.size()));
+  for (int i = 0; i < 4000 && (i < 10 || pair.speed() > 1e-9); ++i) pair.step(0.02, nodal);
+  ASSERT_LT(pair.speed(), 1e-7);
+  std::vector<Attachment> loads;
+  addConnectiveLoads(pair.tissue, pair.state, ConnectiveSide::a, {pair.a.position, pair.a.velocity},
+                     {pair.b.position, pair.b.velocity}, 0.02, loads);
+  Vec3 sum = Vec3::Zero();
+  for (const Attachment& l : loads) sum += l.force;
+  EXPECT_LT((sum + load).norm(), 1e-4 * load.norm());
+  double tension = 0.0;
+  for (std::size_t s = 0; s < pair.tissue.strands().size(); ++s) {
+    tension += strandTension(pair.tissue, pair.state, s, pair.a.position, pair.b.position);
+  }
+  EXPECT_NEAR(tension, load[2], 0.02 * load[2]);
+}
+
+/// Both sides see opposite forces at any place and speed.
+TEST(Connective, ForcesAreOpposite) {
+  Pair pair(false);
+  Random random(3);
+  for (Vec3& p : pair.a.position) p += 0.002 * Vec3(random.normal(), random.normal(), random.normal());
+  std::vector<Attachment> onA, onB;
+  addConnectiveLoads(pair.tissue, pair.state, ConnectiveSide::a, {pair.a.position, pair.a.velocity},
+                     {pair.b.position, pair.b.velocity}, 0.01, onA);
+  addConnectiveLoads(pair.tissue, pair.state, ConnectiveSide::b, {pair.b.position, pair.b.velocity},
+                     {pair.a.position, pair.a.velocity}, 0.01, onB);
+  ASSERT_EQ(onA.size(), onB.size());
+  for (std::size_t s = 0; s < onA.size(); ++s) {
+    EXPECT_LT((onA[s].force + onB[s].force).norm(), 1e-15);
+    EXPECT_EQ(onA[s].damper, onB[s].damper);
+    EXPECT_GE(Vec3(onA[s].damper.diagonal()).minCoeff(), 0.0);
+  }
+}
+
+/// Solved one after the other, the organs stay together and calm at any stiffness and step.
+TEST(Connective, StableAtAnyStiffness) {
+  for (const double stiffness : {1e3, 1e6, 1e9}) {
+    for (const double h : {0.001, 0.01, 0.1}) {
+      ConnectiveMaterial material;
+      material.stiffness = stiffness;
+      material.strength = 1e12;
+      Pair pair(true, material);
+      std::vector<Vec3> nodal(pair.upper.node.size(), Vec3::Zero());
+      for (int i = 0; i < 300; ++i) {
+        // A hard pull in a direction that changes, then none.
+        const double t = i < 100 ? 0.3 : 0.0;
+        for (Vec3& f : nodal) f = t * Vec3((i / 10) % 2 == 0 ? 1.0 : -1.0, 0.3, 0.5) / 75.0;
+        pair.step(h, nodal);
+        for (const Vec3& p : pair.a.position) ASSERT_LT(p.norm(), 1.0) << stiffness << ' ' << h << ' ' << i;
+      }
+      // The soft one swings on; what is stiff has come to rest.
+      if (stiffness > 1e5) {
+        EXPECT_LT(pair.speed(), 0.01) << stiffness << ' ' << h;
+      }
+    }
+  }
+}
+
+/// In motion the second organ's answer comes within the step, but the first one's not: two free blocks that fly apart
+/// keep the sum of their momenta the better the smaller the step.
+TEST(Connective, MomentumErrorFallsWithTheStep) {
+  double previous = 0.0;
+  for (const double h : {0.004, 0.002, 0.001}) {
+    ConnectiveMaterial material;
+    material.stiffness = 2e4;
+    material.damping = 0.0;
+    Pair pair(false, material);
+    for (Vec3& v : pair.a.velocity) v = Vec3(0.0, 0.0, 0.05);
+    double mass = 0.0;
+    for (const double m : pair.upperSolid.mass()) mass += m;
+    const double before = 0.05 * mass;
+    for (double t = 0.0; t < 0.1 - 0.5 * h; t += h) pair.step(h, {});
+    double after = 0.0;
+    for (std::size_t n = 0; n < pair.a.velocity.size(); ++n) after += pair.upperSolid.mass()[n] * pair.a.velocity[n][2];
+    for (std::size_t n = 0; n < pair.b.velocity.size(); ++n) after += pair.lowerSolid.mass()[n] * pair.b.velocity[n][2];
+    const double error = std::abs(after / before - 1.0);
+    RecordProperty("momentum_error_" + std::to_string(h), std::to_string(error));
+    if (previous > 0.0) {
+      EXPECT_LT(error, 0.7 * previous) << h;
+    }
+    previous = error;
+  }
+  EXPECT_LT(previous, 0.05);
+}
+
+TEST(Connective, TearsAboveItsStrengthAndNoSooner) {
+  Pair pair(true);
+  const ConnectiveMaterial& m = pair.tissue.material();
+  std::vector<std::uint32_t> torn;
+  const double stretch = m.strength / m.stiffness;
+  for (Vec3& p : pair.a.position) p[2] += 0.99 * stretch;
+  EXPECT_NEAR(tearOverstretched(pair.tissue, pair.state, pair.a.position, pair.b.position, torn), 0.99 * m.strength,
+              1e-9 * m.strength);
+  EXPECT_TRUE(torn.empty());
+  for (Vec3& p : pair.a.position) p[2] += 0.02 * stretch;
+  pair.state.condition[3] = StrandCondition::burned;
+  tearOverstretched(pair.tissue, pair.state, pair.a.position, pair.b.position, torn);
+  EXPECT_EQ(torn.size(), pair.tissue.strands().size() - 1);
+  EXPECT_EQ(pair.state.condition[3], StrandCondition::burned);
+  const ConnectiveShares shares = sharesOf(pair.tissue, pair.state);
+  EXPECT_EQ(shares.attached, 0.0);
+  EXPECT_NEAR(shares.torn + shares.burned, 1.0, 1e-12);
+  std::vector<Attachment> loads;
+  addConnectiveLoads(pair.tissue, pair.state, ConnectiveSide::a, {pair.a.position, pair.a.velocity},
+                     {pair.b.position, pair.b.velocity}, 0.01, loads);
+  EXPECT_TRUE(loads.empty());
+}
+
+/// The hook burns what it touches, in the time the material says, and nothing else; sweeping over strands between two
+/// steps touches those in between.
+TEST(Connective, HookBurnsWhatItSweepsOver) {
+  Pair pair(true);
+  const ConnectiveMaterial& m = pair.tissue.material();
+  std::vector<std::uint32_t> burned;
+  // Over the strands at y = 0.02, from x = -0.005 to 0.025, in the middle of the gap.
+  HookSweep sweep;
+  sweep.radius = 0.001;
+  sweep.before = {Vec3(-0.005, 0.02, 0.0215), Vec3(-0.005, 0.02, 0.0216)};
+  sweep.now = {Vec3(0.025, 0.02, 0.0215), Vec3(0.025, 0.02, 0.0216)};
+  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, sweep, 0.01, burned), 3U);
+  EXPECT_TRUE(burned.empty());
+  HookSweep still = sweep;
+  still.before = still.now = {Vec3(0.02, 0.02, 0.0215), Vec3(0.02, 0.02, 0.0216)};
+  int steps = 1;
+  while (burned.empty() && steps < 1000) {
+    EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, still, 0.01, burned), 1U);
+    ++steps;
+  }
+  EXPECT_NEAR(0.01 * steps, m.fadeTime, 0.011);
+  ASSERT_EQ(burned.size(), 1U);
+  EXPECT_EQ(burned[0], 12U);  // i = 2, j = 2
+  EXPECT_EQ(pair.state.alpha[12], 0.0);
+  EXPECT_EQ(pair.state.alpha[13], 1.0);
+  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, still, 0.01, burned), 0U);
+}
+
+/// Residue: a torn strand is no longer in the way between the organs, but burns at either of them.
+TEST(Connective, ResidueBurnsAtItsStumps) {
+  Pair pair(true);
+  pair.state.condition[12] = StrandCondition::torn;
+  for (Vec3& p : pair.a.position) p[2] += 0.03;
+  std::vector<std::uint32_t> burned;
+  HookSweep hook;
+  hook.radius = 0.001;
+  hook.before = hook.now = {Vec3(0.02, 0.02, 0.038), Vec3(0.02, 0.02, 0.038)};  // between the organs
+  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, hook, 0.01, burned), 0U);
+  hook.before = hook.now = {Vec3(0.02, 0.02, 0.052), Vec3(0.02, 0.02, 0.052)};  // at the upper one
+  for (int i = 0; i < 100; ++i) {
+    burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, hook, 0.01, burned);
+  }
+  ASSERT_EQ(burned.size(), 1U);
+  EXPECT_EQ(burned[0], 12U);
+  EXPECT_EQ(sharesOf(pair.tissue, pair.state).torn, 0.0);
+}
+
+TetrahedralMesh tetrahedra(const CubeBox& box) {
+  TetrahedralMesh mesh;
+  mesh.vertex = box.node;
+  constexpr int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (const Index8& cube : box.cube) {
+    for (const auto& axes : order) {
+      int at = 0;
+      Index4 t(cube[0], 0, 0, 0);
+      for (int s = 0; s < 3; ++s) {
+        at |= 1 << axes[s];
+        t[s + 1] = cube[static_cast<std::size_t>(at)];
+      }
+      const auto p = [&](int c) { return mesh.vertex[static_cast<std::size_t>(t[c])]; };
+      if ((p(1) - p(0)).cross(p(2) - p(0)).dot(p(3) - p(0)) < 0.0) std::swap(t[2], t[3]);
+      mesh.tetrahedron.push_back(t);
+    }
+  }
+  return mesh;
+}
+
+/// A block on a block: the bed is the face between them, whatever the division.
+TEST(ConnectiveBed, CoversTheFaceBetweenTwoBlocks) {
+  const TetrahedralMesh below = tetrahedra(cubeBox(6, 6, 2, Vec3(-0.01, -0.01, 0.0), 0.01));
+  const TetrahedralMesh above = tetrahedra(cubeBox(4, 4, 2, Vec3(0.0, 0.0, 0.022), 0.01));
+  const TriangleMesh skinBelow = boundarySurface(below);
+  const TriangleMesh skinAbove = boundarySurface(above);
+  for (const std::size_t least : {10U, 200U, 700U}) {
+    const ConnectiveBed bed = makeBed({skinAbove, above}, {skinBelow, below}, 0.004, least);
+    ASSERT_TRUE(bed.ok()) << bed.error;
+    EXPECT_GE(bed.strands.size(), least);
+    double area = 0.0;
+    for (const Strand& s : bed.strands) {
+      area += s.area;
+      const Vec3 a = s.a.of(above.vertex);
+      const Vec3 b = s.b.of(below.vertex);
+      EXPECT_NEAR(a[2], 0.022, 1e-9);
+      EXPECT_NEAR(b[2], 0.020, 1e-9);
+      EXPECT_NEAR(s.restLength, 0.002, 1e-9);
+      EXPECT_LT((s.restDirection - Vec3::UnitZ()).norm(), 1e-6);
+      EXPECT_LT((a - b - Vec3(0.0, 0.0, 0.002)).norm(), 1e-9);
+    }
+    EXPECT_NEAR(area, 16e-4, 1e-9);
+    // Euler: vertices - edges + triangles = 1 for a disc; triangles follow from edges and boundary.
+    for (const auto& [i, j] : bed.sheets) {
+      EXPECT_LT(i, j);
+      EXPECT_LT(j, bed.strands.size());
+    }
+  }
+  EXPECT_FALSE(makeBed({skinAbove, above}, {skinBelow, below}, 0.001, 10).ok());
+}
+
+/// The same tissue in more strands pulls alike.
+TEST(ConnectiveBed, DivisionDoesNotChangeTheTissue) {
+  const TetrahedralMesh below = tetrahedra(cubeBox(6, 6, 2, Vec3(-0.01, -0.01, 0.0), 0.01));
+  const TetrahedralMesh above = tetrahedra(cubeBox(4, 4, 2, Vec3(0.0, 0.0, 0.022), 0.01));
+  const TriangleMesh skinBelow = boundarySurface(below);
+  const TriangleMesh skinAbove = boundarySurface(above);
+  double first = 0.0;
+  for (const std::size_t least : {25U, 600U}) {
+    const ConnectiveBed bed = makeBed({skinAbove, above}, {skinBelow, below}, 0.004, least);
+    const ConnectiveTissue tissue(bed.strands, bed.sheets, {});
+    const ConnectiveState state = intactState(tissue);
+    std::vector<Vec3> lifted = above.vertex;
+    for (Vec3& p : lifted) p += Vec3(0.001, 0.0, 0.002);
+    const std::vector<Vec3> stillA(above.vertex.size(), Vec3::Zero());
+    const std::vector<Vec3> stillB(below.vertex.size(), Vec3::Zero());
+    std::vector<Attachment> loads;
+    addConnectiveLoads(tissue, state, ConnectiveSide::a, {lifted, stillA}, {below.vertex, stillB}, 0.01, loads);
+    Vec3 sum = Vec3::Zero();
+    for (const Attachment& l : loads) sum += l.force;
+    if (first == 0.0) {
+      first = sum[2];
+    } else {
+      EXPECT_NEAR(sum[2], first, 1e-9 * std::abs(first));
+    }
+  }
+  EXPECT_LT(first, -0.1);
+}
+
+}  // namespace
+}  // namespace calot
