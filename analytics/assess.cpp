@@ -6,8 +6,8 @@
 #include <map>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/cohort/words.h"
 #include "analytics/report/text_table.h"
+#include "recorder/words.h"
 
 namespace calot::analytics {
 namespace {

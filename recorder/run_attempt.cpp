@@ -6,12 +6,11 @@
 #include "recorder/attempt.h"
 #include "recorder/live/haptic_thread.h"
 #include "recorder/live/paced_clock.h"
+#include "recorder/live/source_pause.h"
 
 namespace calot::recorder {
 
 namespace {
-
-constexpr Nanoseconds askAgain = std::chrono::milliseconds(2);
 
 double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
 
@@ -39,22 +38,6 @@ class Gate {
 
 float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, seconds(monotonicNow() - due))); }
 
-/// Waits while the source pauses. @returns its status then.
-SourceStatus settled(SampleSource& source, const Gate& gate, PacedClock& clock, RunReport& report) {
-  SourceStatus status = source.status();
-  if (status != SourceStatus::paused) return status;
-  ++report.pauses;
-  const Nanoseconds began = monotonicNow();
-  while (status == SourceStatus::paused && !gate.stopped()) {
-    sleepUntil(monotonicNow() + askAgain);
-    status = source.status();
-  }
-  const Nanoseconds length = monotonicNow() - began;
-  clock.pause(length);
-  report.paused += seconds(length);
-  return status;
-}
-
 /// Ticks and steps on one thread.
 void runInline(Session& session, SampleSource& source, const RunSettings& settings, RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
@@ -62,9 +45,11 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   PacedClock clock(monotonicNow());
+  SourcePauses pauses;
   std::uint64_t tick = 0;
   while (true) {
-    const SourceStatus status = settled(source, gate, clock, report);
+    const SourceStatus status = waitWhilePaused(
+        source, [&gate] { return gate.stopped(); }, clock, pauses);
     report.outcome = status == SourceStatus::failed ? Outcome::technicalFailure : gate.ask(session.steps());
     if (report.outcome != Outcome::running) break;
     bool open = true;
@@ -89,6 +74,8 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
     session.step(samples, ticks, settings.paced ? lateness(clock.due(tick)) : 0.0F);
     if (settings.progress) settings.progress(session.steps());
   }
+  report.pauses = pauses.count;
+  report.paused = pauses.seconds;
   report.missedDeadlines = clock.missed();
   report.largestLateness = seconds(clock.largestLateness());
   report.stretched = seconds(clock.stretched());
@@ -139,8 +126,8 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
   report.missedDeadlines = seen.missedDeadlines;
   report.largestLateness = seen.largestLateness;
   report.stretched = seen.stretched;
-  report.pauses = seen.pauses;
-  report.paused = seen.paused;
+  report.pauses = seen.pauses.count;
+  report.paused = seen.pauses.seconds;
   report.realTime = seen.realTime;
   report.tickMean = seen.cost.mean();
   report.tickP999 = seen.cost.quantile(0.999);

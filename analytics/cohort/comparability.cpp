@@ -2,7 +2,8 @@
 #include <fmt/format.h>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/words.h"
+
+#include "recorder/words.h"
 
 namespace calot::analytics {
 

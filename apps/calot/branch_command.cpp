@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <memory>
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/run_report.h"
 #include "apps/calot/source_options.h"
+#include "apps/calot/stop_request.h"
 #include "recorder/blended_source.h"
 #include "recorder/branch.h"
 #include "recorder/errors.h"
@@ -30,8 +29,6 @@ struct Options {
   bool live = false, force = false, json = false;
 };
 
-std::atomic<bool> interrupted{false};
-
 /// Keeps the newest measured pose of each hand, and the camera.
 class LastPose final : public recorder::Observer {
  public:
@@ -49,6 +46,7 @@ class LastPose final : public recorder::Observer {
 
 int branch(const Options& o) {
   if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
+  stopOnSignals();
   const double at = parseTime(o.at);
   recorder::BranchFile file(o.output, o.force);
   const recorder::ChainVerdict chain = recorder::probe(o.parent);
@@ -65,8 +63,6 @@ int branch(const Options& o) {
   LastPose pose;
   session.join(writer);
   session.join(pose);
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
   {
     Progress progress("taking the parent's steps", o.json);
     recorder::takeParent(parent, session, forkStep, [&](std::uint64_t step, std::uint64_t of) {
@@ -74,7 +70,7 @@ int branch(const Options& o) {
         session.end(recorder::Outcome::technicalFailure);
         writer.finish();  // says why
       }
-      if (interrupted) throw Error(ExitCode::failure, fmt::format("{}: stopped before the fork", o.output));
+      if (stopRequested()) throw Error(ExitCode::failure, fmt::format("{}: stopped before the fork", o.output));
       progress.show(step, of);
     });
   }
@@ -86,10 +82,10 @@ int branch(const Options& o) {
   run.live = o.live;
   driveDevice(*source, run);
   recordDevice(*source, writer, session.steps() * model->scene().ticksPerStep);
-  run.stop = &interrupted;
+  run.stop = &stopRequested();
   Progress progress("recording, steps", o.json);
   run.progress = [&](std::uint64_t step) {
-    if (writer.failed()) interrupted = true;  // nothing more can be kept; finish() says why
+    if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
     progress.show(step, 0);
   };
   const recorder::RunReport report = recorder::runAttempt(session, blended, run);

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -15,6 +13,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/device_options.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/stop_request.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/sources/devices/calibration_fit.h"
@@ -23,13 +22,6 @@
 
 namespace calot::apps {
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-void stopOnSignals() {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
-}
 
 int list(bool asJson) {
   const std::vector<recorder::ListedDevice> devices = recorder::listDevices();
@@ -81,7 +73,7 @@ class GuidedRecording {
     fmt::print("{}\npress Enter to begin: ", step.text);
     std::fflush(stdout);
     std::string line;
-    if (!std::getline(std::cin, line) || interrupted) throw Error(ExitCode::failure, "calibrate: broken off");
+    if (!std::getline(std::cin, line) || stopRequested()) throw Error(ExitCode::failure, "calibrate: broken off");
     recorder::DeviceInput skipped;
     pump_.drain(skipped);
     const std::int64_t begin = recorder::monotonicNanoseconds();
@@ -89,7 +81,7 @@ class GuidedRecording {
     const std::size_t before = stream_.samples.size();
     Progress progress("measuring, seconds");
     while (recorder::monotonicNanoseconds() < begin + length) {
-      if (interrupted) throw Error(ExitCode::failure, "calibrate: broken off");
+      if (stopRequested()) throw Error(ExitCode::failure, "calibrate: broken off");
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       take(begin);
       progress.show(static_cast<std::uint64_t>((recorder::monotonicNanoseconds() - begin) / 1'000'000'000),
@@ -212,7 +204,7 @@ int serve(const ServeOptions& o) {
   recorder::OpenIgtLinkServer server(motion, settings);
   fmt::print("listening on 127.0.0.1:{}\n", server.port());
   std::fflush(stdout);
-  server.run(interrupted, [](const std::string& line) {
+  server.run(stopRequested(), [](const std::string& line) {
     fmt::print("{}\n", line);
     std::fflush(stdout);
   });

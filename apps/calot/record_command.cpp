@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <memory>
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/run_report.h"
 #include "apps/calot/source_options.h"
+#include "apps/calot/stop_request.h"
 #include "recorder/attempt.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
@@ -30,10 +29,9 @@ struct Options {
   bool paced = false, live = false, force = false, json = false;
 };
 
-std::atomic<bool> interrupted{false};
-
 int record(const Options& o) {
   if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
+  stopOnSignals();
   refuseExisting(o.output, o.force);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   const Model::Built built = Model::build(scene.description);
@@ -61,15 +59,13 @@ int record(const Options& o) {
   run.live = o.live;
   driveDevice(*source, run);
   recordDevice(*source, writer);
-  run.stop = &interrupted;
+  run.stop = &stopRequested();
   const double stepSeconds = built.model->stepSeconds();
   run.progress = [&](std::uint64_t step) {
-    if (writer.failed()) interrupted = true;  // nothing more can be kept; finish() says why
+    if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
     progress.show(static_cast<std::uint64_t>(static_cast<double>(step) * stepSeconds),
                   static_cast<std::uint64_t>(o.seconds));
   };
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
   const recorder::RunReport report = recorder::runAttempt(session, *source, run);
   writer.finish();
   if (!o.json) tellDevice(*source);

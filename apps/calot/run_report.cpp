@@ -7,34 +7,17 @@
 #include <nlohmann/json.hpp>
 
 #include "recorder/errors.h"
+#include "recorder/words.h"
 
 namespace calot::apps {
 
 namespace {
 
-const char* outcomeText(recorder::Outcome outcome) {
-  switch (outcome) {
-    case recorder::Outcome::completed:
-      return "completed";
-    case recorder::Outcome::timeLimit:
-      return "time limit";
-    case recorder::Outcome::abandoned:
-      return "abandoned";
-    case recorder::Outcome::stopped:
-      return "stopped";
-    case recorder::Outcome::technicalFailure:
-      return "technical failure";
-    case recorder::Outcome::running:
-      break;
-  }
-  return "running";
-}
-
 void printJson(const FinishedRun& run, double seconds) {
   const recorder::RunReport& r = run.report;
   nlohmann::ordered_json out{{"attempt", run.attempt},
                              {"file", run.file},
-                             {"outcome", outcomeText(r.outcome)},
+                             {"outcome", wordFor(r.outcome)},
                              {"steps", r.steps},
                              {"seconds", seconds},
                              {"wall_seconds", r.wallSeconds},
@@ -59,7 +42,7 @@ void printJson(const FinishedRun& run, double seconds) {
 void printText(const FinishedRun& run, double seconds) {
   const recorder::RunReport& r = run.report;
   const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
-  fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, outcomeText(r.outcome),
+  fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, wordFor(r.outcome),
              failed ? ": " : "", failed ? run.why : "");
   if (run.paced) {
     fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",

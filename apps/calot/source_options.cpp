@@ -2,6 +2,7 @@
 #include "apps/calot/source_options.h"
 
 #include "apps/calot/environment.h"
+#include "apps/calot/stop_request.h"
 #include "recorder/sources/kinematics_source.h"
 #include "recorder/sources/performer_source.h"
 
@@ -22,7 +23,7 @@ CLI::Option_group* addSource(CLI::App& command, SourceOptions& options) {
 
 std::unique_ptr<recorder::SampleSource> makeSource(const SourceOptions& options, const SceneDescription& scene,
                                                    std::uint64_t seed) {
-  if (!options.device.name.empty()) return makeDeviceSource(options.device, scene, options.mode, nullptr);
+  if (!options.device.name.empty()) return makeDeviceSource(options.device, scene, options.mode, &stopRequested());
   if (!options.kinematics.empty()) return std::make_unique<recorder::KinematicsSource>(options.kinematics, scene);
   const recorder::PerformerProfile profile =
       recorder::loadPerformer(recorder::findPerformer(options.performer, assetFolders()));

@@ -8,6 +8,7 @@
 #include <QTimeZone>
 
 #include "analytics/checkpoints/registry.h"
+#include "recorder/words.h"
 
 namespace calot::gui {
 
@@ -67,24 +68,10 @@ Badge badgeOf(const analytics::AttemptRow& attempt) {
   return badge;
 }
 
-QString modeText(recorder::Mode mode) { return mode == recorder::Mode::assessment ? "assessment" : "practice"; }
+QString modeText(recorder::Mode mode) { return wordFor(mode); }
 
 QString outcomeText(recorder::Outcome outcome) {
-  switch (outcome) {
-    case recorder::Outcome::running:
-      return "incomplete";
-    case recorder::Outcome::completed:
-      return "completed";
-    case recorder::Outcome::timeLimit:
-      return "time limit";
-    case recorder::Outcome::abandoned:
-      return "abandoned";
-    case recorder::Outcome::stopped:
-      return "stopped";
-    case recorder::Outcome::technicalFailure:
-      return "technical failure";
-  }
-  return "unknown";
+  return outcome == recorder::Outcome::running ? "incomplete" : wordFor(outcome);
 }
 
 QString operatorText(const analytics::AttemptRow& attempt) {

@@ -14,7 +14,6 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr Nanoseconds askAgain = std::chrono::milliseconds(2);
 constexpr std::size_t ticksOfLag = 100;  // longestLag
 
 /// Before all ordinary threads, where the system permits it; and woken when it asked to be.
@@ -98,18 +97,9 @@ void HapticThread::ticks() {
 
 /// Asks the source before a step. @returns false where the run ends here.
 bool HapticThread::waitForSource() {
-  SourceStatus status = source_.status();
-  if (status == SourceStatus::paused) {
-    ++report_.pauses;
-    const Nanoseconds began = monotonicNow();
-    while (status == SourceStatus::paused && !abandoned_ && !(settings_.stop != nullptr && settings_.stop->load())) {
-      sleepUntil(monotonicNow() + askAgain);
-      status = source_.status();
-    }
-    const Nanoseconds length = monotonicNow() - began;
-    clock_.pause(length);
-    report_.paused += seconds(length);
-  }
+  const SourceStatus status = waitWhilePaused(
+      source_, [this] { return abandoned_ || (settings_.stop != nullptr && settings_.stop->load()); }, clock_,
+      report_.pauses);
   if (status == SourceStatus::failed) report_.outcome = Outcome::technicalFailure;
   return status != SourceStatus::failed && !abandoned_;
 }

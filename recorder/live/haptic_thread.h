@@ -14,8 +14,9 @@
 #include "recorder/live/contact_exchange.h"
 #include "recorder/live/cost_histogram.h"
 #include "recorder/live/paced_clock.h"
-#include "recorder/ring.h"
+#include "recorder/live/source_pause.h"
 #include "recorder/observer.h"
+#include "recorder/ring.h"
 #include "recorder/sources/source.h"
 
 namespace calot::recorder {
@@ -28,9 +29,8 @@ struct HapticReport {
   std::uint64_t missedDeadlines = 0;
   double largestLateness = 0.0;  ///< s
   double stretched = 0.0;        ///< s
-  std::uint64_t pauses = 0;      ///< of the source
-  double paused = 0.0;           ///< s
-  CostHistogram cost;            ///< thread CPU time of a tick: both hands' samples taken and forces made
+  SourcePauses pauses;
+  CostHistogram cost;  ///< thread CPU time of a tick: both hands' samples taken and forces made
 };
 
 /// Runs ticks at the pace of the tick clock, each with the newest contact sets that the simulation published, until the

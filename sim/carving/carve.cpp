@@ -12,21 +12,20 @@ namespace calot {
 void RestingTissue::place(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const {
   const Vec3 at = lattice_.position(first);
   for (int i = 0; i < count; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const double x = k == 0 ? lattice_.position(first + Index3(i, 0, 0))[0] : at[k];
-      out.now[k][i] = x;
-      out.before[k][i] = x;
-    }
+    out.now[0][i] = lattice_.origin()[0] + lattice_.cell() * static_cast<double>(first[0] + i);
+    out.now[1][i] = at[1];
+    out.now[2][i] = at[2];
     for (int k = 0; k < 9; ++k) out.gradient[k][i] = k % 4 == 0 ? 1.0 : 0.0;
   }
+  for (int k = 0; k < 3; ++k) std::copy(out.now[k], out.now[k] + count, out.before[k]);
 }
 
-Box sweptBounds(std::span<const SweptCapsule> tool, double band, double stretch) {
+Box sweptBounds(std::span<const SweptCapsule> tool, double depth, double stretch) {
   Box box;
   for (const SweptCapsule& c : tool) {
     Box one;
     for (const Vec3* p : {&c.p0, &c.p1, &c.q0, &c.q1}) one.include(*p);
-    one.grow(c.radius + band * stretch);
+    one.grow(c.radius + depth * stretch);
     box.include(one.lower);
     box.include(one.upper);
   }
@@ -46,7 +45,7 @@ NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds) {
 }
 
 void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<const NodeBox> boxes,
-           const TissueMotion& motion) {
+           const TissueMotion& motion, double depth) {
   const BrickLattice& lattice = field.lattice();
   const double band = field.band();
   NodeLanes lanes;
@@ -71,8 +70,11 @@ void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<con
           double potential[laneCount];
           std::fill(potential, potential + laneCount, -1e300);
           bool any = false;
-          for (const SweptCapsule& capsule : tool) any = toolPotential(capsule, lanes, band, potential) || any;
-          if (any) field.raiseRow(node, {potential, slot(count)});
+          for (const SweptCapsule& capsule : tool) any = toolPotential(capsule, lanes, depth, potential) || any;
+          if (!any) continue;
+          // What is deeper is left alone even where a lane beside it is not.
+          for (double& p : potential) p = p >= -depth ? p : -1e300;
+          field.raiseRow(node, {potential, slot(count)});
         }
       }
     }

@@ -35,19 +35,24 @@ class RestingTissue final : public TissueMotion {
   const BrickLattice& lattice_;
 };
 
-/// Bounds (m, W) of all that a stroke can change, for choosing boxes: the sweep with its radius and the band around it,
-/// the band times `stretch`, the largest factor by which tissue is lengthened anywhere. Its motion since the previous
+/// How deep below a carved surface the field is made a distance anew, in cells: what polygons and gradients read.
+inline constexpr double carveDepth = 2.0;
+
+/// Bounds (m, W) of all that a stroke can change, for choosing boxes: the sweep with its radius and, around it, the
+/// depth (m) times `stretch`, the largest factor by which tissue is lengthened anywhere. Its motion since the previous
 /// pose counts: hold the union of a cell's bounds now and before against this.
-[[nodiscard]] Box sweptBounds(std::span<const SweptCapsule> tool, double band, double stretch);
+[[nodiscard]] Box sweptBounds(std::span<const SweptCapsule> tool, double depth, double stretch);
 
 /// The box of nodes within bounds given in rest space (m), for tissue at rest.
 [[nodiscard]] NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds);
 
-/// phi = max(phi, the potential of the tool's swept capsules) at all nodes of the boxes (toolPotential()), each lane of
-/// them an independent node: no order matters. Between CarvedField::begin() and commit(). Allocates nothing.
+/// phi = max(phi, the potential of the tool's swept capsules) at all nodes of the boxes where that potential is at least
+/// -depth (toolPotential()). Every node is on its own: neither the order of boxes nor how nodes are dealt into them
+/// matters. Between CarvedField::begin() and commit(). Allocates nothing.
 /// @param tool capsules in W
 /// @param boxes within the lattice; a node in two of them is carved by both
+/// @param depth m; more than a cell, at most the field's band; carveDepth cells are enough for all that is made of it
 void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<const NodeBox> boxes,
-           const TissueMotion& motion);
+           const TissueMotion& motion, double depth);
 
 }  // namespace calot

@@ -40,6 +40,7 @@ CarvedField::CarvedField(const FieldModel& model)
       value_(model.value),
       inside_(model.lattice.brickCount()),
       before_(model.lattice.brickCount()),
+      raised_(model.lattice.brickCount()),
       touched_(model.lattice.brickCount(), 0),
       place_(model.lattice.brickCount(), -1) {
   assert(model.fault().empty());
@@ -95,6 +96,7 @@ void CarvedField::touch(std::uint32_t brick) {
   if (touched_[brick] != 0) return;
   touched_[brick] = 1;
   before_[brick] = inside_[brick];
+  raised_[brick] = {};
   changed_.push_back(brick);
 }
 
@@ -107,18 +109,25 @@ void CarvedField::raiseRow(std::uint32_t first, std::span<const double> candidat
   touch(brick);
   const std::uint32_t local = first % brickNodes;
   std::uint64_t outside = 0;
+  std::uint64_t raised = 0;
   for (std::size_t i = 0; i < candidate.size(); ++i) {
-    value[i] = std::max(value[i], std::min(candidate[i], band()));
+    const double target = std::min(candidate[i], band());
+    raised |= static_cast<std::uint64_t>(target > value[i]) << i;
+    value[i] = std::max(value[i], target);
     outside |= static_cast<std::uint64_t>(!(value[i] < 0.0)) << i;
   }
   inside_[brick][local >> 6U] &= ~(outside << (local & 63U));
+  raised_[brick][local >> 6U] |= raised << (local & 63U);
 }
 
 void CarvedField::remove(std::uint32_t brick, const BrickBits& nodes) {
   touch(brick);
   double* value = value_.data() + std::size_t{brick} * brickNodes;
   forEachBit(nodes, [&](std::uint32_t local) { value[local] = band(); });
-  for (std::size_t z = 0; z < 8; ++z) inside_[brick][z] &= ~nodes[z];
+  for (std::size_t z = 0; z < 8; ++z) {
+    inside_[brick][z] &= ~nodes[z];
+    raised_[brick][z] |= nodes[z];
+  }
 }
 
 BrickBits CarvedField::removed(std::uint32_t brick) const {

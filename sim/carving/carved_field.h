@@ -78,6 +78,8 @@ class CarvedField {
   [[nodiscard]] std::span<const std::uint32_t> changed() const { return changed_; }
   /// Inside as it was at begin(). @pre the brick is among changed()
   [[nodiscard]] const BrickBits& insideBefore(std::uint32_t brick) const { return before_[brick]; }
+  /// Nodes of a brick whose value this stroke changed. @pre as above
+  [[nodiscard]] const BrickBits& raised(std::uint32_t brick) const { return raised_[brick]; }
   /// Nodes of a brick that this stroke put outside. @pre as above
   [[nodiscard]] BrickBits removed(std::uint32_t brick) const;
 
@@ -89,6 +91,7 @@ class CarvedField {
   std::vector<double> value_;
   std::vector<BrickBits> inside_;
   std::vector<BrickBits> before_;
+  std::vector<BrickBits> raised_;
   std::vector<std::uint8_t> touched_;
   std::vector<std::uint32_t> changed_;
   std::vector<std::int32_t> place_;  ///< of a brick in CarvedBricks; -1: not there

@@ -45,9 +45,13 @@ void CarvedSurface::rebuild(const CarvedField& field) {
     dirtyBrick_.push_back(b);
   }
   remakeDirty(field);
+  const std::size_t room = 2 * patches_ + 64;
+  pool_.reserve(room);
+  next_.reserve(room);
 }
 
 void CarvedSurface::update(const CarvedField& field) {
+  const std::size_t room = pool_.capacity();
   dirtyBrick_.clear();
   for (const std::uint32_t b : field.changed()) {
     const BrickBits removed = field.removed(b);
@@ -55,6 +59,7 @@ void CarvedSurface::update(const CarvedField& field) {
   }
   std::sort(dirtyBrick_.begin(), dirtyBrick_.end());
   remakeDirty(field);
+  growths_ += pool_.capacity() != room ? 1 : 0;
 }
 
 void CarvedSurface::markBlocks(std::uint32_t brick, const BrickBits& removed) {

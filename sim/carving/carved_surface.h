@@ -44,7 +44,8 @@ struct SurfacePatch {
 /// that has a changed sign at a corner are made anew, and the result is that of rebuild(), bit for bit. Positions are
 /// not kept, they follow from the field (surface_vertex).
 ///
-/// Closed and manifold at every field whose border is outside. Allocates when there are more patches than ever before.
+/// Closed and manifold at every field whose border is outside. rebuild() makes room for twice the patches that there
+/// are; update() allocates only beyond that, and counts it.
 class CarvedSurface {
  public:
   explicit CarvedSurface(const BrickLattice& lattice);
@@ -60,6 +61,8 @@ class CarvedSurface {
   [[nodiscard]] std::span<const std::uint32_t> bricks() const { return brick_; }
   [[nodiscard]] std::size_t triangles() const { return triangles_; }
   [[nodiscard]] std::size_t patches() const { return patches_; }
+  /// How often update() had to make room.
+  [[nodiscard]] std::size_t growths() const { return growths_; }
 
   /// Calls visit(patch) for each patch of a block, in order of keys.
   template <class Visit>
@@ -109,6 +112,7 @@ class CarvedSurface {
   std::vector<std::uint16_t> used_;                         ///< which of these are set
   std::size_t triangles_ = 0;
   std::size_t patches_ = 0;
+  std::size_t growths_ = 0;
 };
 
 }  // namespace calot

@@ -36,6 +36,8 @@ BrickBits lowestComponent(const BrickBits& open) {
 
 Islands::Islands(const BrickLattice& lattice, std::span<const std::uint32_t> anchors)
     : lattice_(lattice),
+      anchorOf_(lattice.brickCount(), -1),
+      held_(lattice.brickCount(), 0),
       count_(lattice.brickCount(), 0),
       link_(lattice.brickCount(), 0),
       label_(lattice.storage(), 0),
@@ -44,7 +46,10 @@ Islands::Islands(const BrickLattice& lattice, std::span<const std::uint32_t> anc
   std::sort(sorted.begin(), sorted.end());
   for (const std::uint32_t node : sorted) {
     const std::uint32_t brick = node / brickNodes;
-    if (anchor_.empty() || anchor_.back().first != brick) anchor_.push_back({brick, BrickBits{}});
+    if (anchor_.empty() || anchor_.back().first != brick) {
+      anchorOf_[brick] = static_cast<std::int32_t>(anchor_.size());
+      anchor_.push_back({brick, BrickBits{}});
+    }
     const std::uint32_t local = node % brickNodes;
     anchor_.back().second[local >> 6U] |= std::uint64_t{1} << (local & 63U);
   }
@@ -75,6 +80,11 @@ void Islands::label(const CarvedField& field, std::uint32_t brick) {
     ++count;
   }
   count_[brick] = count;
+  held_[brick] = 0;
+  if (anchorOf_[brick] < 0) return;
+  BrickBits held = anchor_[slot(anchorOf_[brick])].second;
+  for (std::size_t z = 0; z < 8; ++z) held[z] &= field.bits(brick)[z];
+  held_[brick] = anyBit(held) ? 1 : 0;
 }
 
 void Islands::link(const CarvedField& field, std::uint32_t brick, int axis) {
@@ -85,13 +95,28 @@ void Islands::link(const CarvedField& field, std::uint32_t brick, int axis) {
   if (sharedFace(field.bits(brick), field.bits(other), axis) != 0) link_[brick] |= bit;
 }
 
-void Islands::relabel(const CarvedField& field, std::uint32_t brick) {
+/// @return false: what hangs together through this brick, and is held in it, does so still
+bool Islands::relabel(const CarvedField& field, std::uint32_t brick) {
+  const bool whole = count_[brick] == 1;
+  const bool held = held_[brick] != 0;
   label(field, brick);
+  bool less = !whole || count_[brick] != 1 || (held && held_[brick] == 0);
   for (int axis = 0; axis < 3; ++axis) {
+    const std::uint8_t links = link_[brick];
     link(field, brick, axis);
+    less = less || links != link_[brick];
     std::uint32_t before = 0;
-    if (neighbour(brick, axis, -1, before)) link(field, before, axis);
+    if (!neighbour(brick, axis, -1, before)) continue;
+    const std::uint8_t linksBefore = link_[before];
+    link(field, before, axis);
+    // A neighbour in parts may have lost the link of one of them.
+    less = less || linksBefore != link_[before] || count_[before] > 1;
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    std::uint32_t after = 0;
+    less = less || (neighbour(brick, axis, 1, after) && count_[after] > 1);
+  }
+  return less;
 }
 
 void Islands::rebuild(const CarvedField& field) {
@@ -100,6 +125,7 @@ void Islands::rebuild(const CarvedField& field) {
     label(field, b);
     for (int axis = 0; axis < 3; ++axis) link(field, b, axis);
   }
+  searched_ = false;
 }
 
 std::size_t Islands::component(std::uint32_t brick, std::uint32_t local) const {
@@ -144,13 +170,14 @@ void Islands::joinComponents(const CarvedField& field) {
 void Islands::markAnchored(const CarvedField& field) {
   anchored_.assign(parent_.size(), 0);
   for (const auto& [brick, nodes] : anchor_) {
-    BrickBits held = field.bits(brick);
-    for (std::size_t z = 0; z < 8; ++z) held[z] &= nodes[z];
-    if (count_[brick] == 1) {
-      if (anyBit(held)) anchored_[root(base_[brick])] = 1;
+    const std::uint32_t b = brick;
+    if (held_[b] == 0) continue;
+    if (count_[b] == 1) {
+      anchored_[root(base_[b])] = 1;
       continue;
     }
-    const std::uint32_t b = brick;
+    BrickBits held = field.bits(b);
+    for (std::size_t z = 0; z < 8; ++z) held[z] &= nodes[z];
     forEachBit(held, [this, b](std::uint32_t local) { anchored_[root(component(b, local))] = 1; });
   }
 }
@@ -175,13 +202,12 @@ std::int64_t Islands::removeLoose(CarvedField& field) {
 }
 
 std::int64_t Islands::remove(CarvedField& field) {
-  bool fewer = false;
+  bool less = !searched_;
   for (const std::uint32_t b : field.changed()) {
-    if (!anyBit(field.removed(b))) continue;
-    fewer = true;
-    relabel(field, b);
+    if (anyBit(field.removed(b))) less = relabel(field, b) || less;
   }
-  if (!fewer && !parent_.empty()) return 0;
+  if (!less) return 0;
+  searched_ = true;
   joinComponents(field);
   markAnchored(field);
   return removeLoose(field);

@@ -14,7 +14,9 @@ namespace calot {
 
 /// Inside nodes hang together along lattice edges (six neighbours), as they do in the polygons (cube_table.h). What
 /// does not hang together with an inside anchor node is an island. Components are kept brick by brick, and a graph of
-/// bricks is searched: a stroke labels the bricks anew in which nodes left, and no others. Equal to a full flood.
+/// bricks is searched: a stroke labels the bricks anew in which nodes left, and no others; where none of these bricks
+/// fell into parts, lost a link to a neighbour or its last anchor, nothing can have come loose and no search is made.
+/// Equal to a full flood.
 ///
 /// Follows from the field alone; never saved. Allocates in its constructor only.
 class Islands {
@@ -32,7 +34,7 @@ class Islands {
  private:
   void label(const CarvedField& field, std::uint32_t brick);
   void link(const CarvedField& field, std::uint32_t brick, int axis);
-  void relabel(const CarvedField& field, std::uint32_t brick);
+  bool relabel(const CarvedField& field, std::uint32_t brick);
   void joinComponents(const CarvedField& field);
   void markAnchored(const CarvedField& field);
   std::int64_t removeLoose(CarvedField& field);
@@ -43,6 +45,8 @@ class Islands {
 
   BrickLattice lattice_;
   std::vector<std::pair<std::uint32_t, BrickBits>> anchor_;
+  std::vector<std::int32_t> anchorOf_;  ///< of a brick, into anchor_; -1: none
+  std::vector<std::uint8_t> held_;      ///< does a brick have an inside anchor?
   std::vector<std::uint16_t> count_;  ///< components of each brick
   std::vector<std::uint8_t> link_;    ///< bit a: whole bricks hang together with the next along axis a
   std::vector<std::uint8_t> label_;   ///< of each node, where its brick has several components
@@ -50,6 +54,7 @@ class Islands {
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint8_t> anchored_;
   std::vector<std::uint32_t> work_;
+  bool searched_ = false;  ///< since rebuild()
 };
 
 }  // namespace calot

@@ -60,6 +60,7 @@ CALOT_INLINE void offerFace(Nearest& best, const V& a, const V& b, const V& c) {
 }
 
 CALOT_INLINE double least(double a, double b) { return a < b ? a : b; }
+CALOT_INLINE double magnitude(double a) { return a < 0.0 ? -a : a; }
 CALOT_INLINE double most(double a, double b) { return a > b ? a : b; }
 
 /// Distance of the origin from [low, high], squared.
@@ -80,9 +81,16 @@ CALOT_LANE_KERNEL int anyNear(const SweptCapsule& c, const NodeLanes& n, double 
       const double high = most(most(c.p0[k], c.p1[k]) - y, most(c.q0[k], c.q1[k]) - x);
       distance2 += gap2(low, high);
     }
-    double stretch2 = 0.0;  // Frobenius: at least any |F^T n|
-    for (int k = 0; k < 9; ++k) stretch2 += n.gradient[k][i] * n.gradient[k][i];
-    const double limit = c.radius + reach * std::sqrt(stretch2);
+    // No |F^T n| exceeds the root of the largest row sum times the largest column sum.
+    double row = 0.0;
+    double column = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      row = most(row, magnitude(n.gradient[3 * k][i]) + magnitude(n.gradient[3 * k + 1][i]) +
+                          magnitude(n.gradient[3 * k + 2][i]));
+      column = most(column, magnitude(n.gradient[k][i]) + magnitude(n.gradient[k + 3][i]) +
+                                magnitude(n.gradient[k + 6][i]));
+    }
+    const double limit = c.radius + reach * std::sqrt(row * column);
     near[i] = limit * limit - distance2;
   }
   int any = 0;

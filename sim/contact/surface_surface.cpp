@@ -29,16 +29,23 @@ class Candidates {
     }
     group_.resize(laneGroups(triangle_.size()));
     bounds_.resize(group_.size());
+    whole_.resize(group_.size());
     for (std::size_t g = 0; g < group_.size(); ++g) {
       gatherTriangles(surface_, position_, lanesOf(g), group_[g]);
-      boundsOf(group_[g], bounds_[g]);
+      boundsOf(group_[g], bounds_[g], whole_[g]);
     }
   }
 
   /// Calls f(triangle, squared distance) for every triangle no farther from p than `best` (m^2), which f may lower.
+  /// @param first group to begin with: one that is near lowers `best` early
+  /// @return the last group in which f lowered it, or `first`
   template <class F>
-  void forEachNear(const Vec3& p, double& best, F&& f) const {
-    for (std::size_t g = 0; g < group_.size(); ++g) {
+  std::size_t forEachNear(const Vec3& p, double& best, F&& f, std::size_t first = 0) const {
+    std::size_t lowered = first;
+    for (std::size_t k = 0; k < group_.size(); ++k) {
+      const std::size_t g = k == 0 ? first : (k <= first ? k - 1 : k);
+      if (boxDistance(whole_[g], p) > best) continue;
+      const double before = best;
       LaneValues squared;
       boxDistances(bounds_[g], p, squared);
       if (!anyWithin(squared, best)) continue;
@@ -47,7 +54,9 @@ class Candidates {
       for (std::size_t l = 0; l < lanes.size(); ++l) {
         if (squared[l] <= best) f(lanes[l], squared[l]);
       }
+      if (best < before) lowered = g;
     }
+    return lowered;
   }
 
  private:
@@ -56,7 +65,8 @@ class Candidates {
     alignas(64) double upper[3][laneCount];
   };
 
-  static void boundsOf(const TriangleLanes& group, Bounds& bounds) {
+  static void boundsOf(const TriangleLanes& group, Bounds& bounds, Box& whole) {
+    whole = Box{};
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t l = 0; l < laneCount; ++l) {
         const double x = group.corner[0][a][l];
@@ -64,6 +74,8 @@ class Candidates {
         const double z = group.corner[2][a][l];
         bounds.lower[a][l] = std::min(std::min(x, y), z);
         bounds.upper[a][l] = std::max(std::max(x, y), z);
+        whole.lower[static_cast<int>(a)] = std::min(whole.lower[static_cast<int>(a)], bounds.lower[a][l]);
+        whole.upper[static_cast<int>(a)] = std::max(whole.upper[static_cast<int>(a)], bounds.upper[a][l]);
       }
     }
   }
@@ -78,6 +90,16 @@ class Candidates {
         squared[l] += d * d * (1.0 - 1e-12);
       }
     }
+  }
+
+  /// The same for the box of a whole group: not above that of any of its triangles, as rounding is monotonic.
+  static double boxDistance(const Box& box, const Vec3& p) {
+    double squared = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = std::max(std::max(box.lower[a] - p[a], p[a] - box.upper[a]), 0.0);
+      squared += d * d * (1.0 - 1e-12);
+    }
+    return squared;
   }
 
   static bool anyWithin(const LaneValues& squared, double best) {
@@ -96,6 +118,7 @@ class Candidates {
   std::vector<std::uint32_t> triangle_;
   std::vector<TriangleLanes> group_;
   std::vector<Bounds> bounds_;
+  std::vector<Box> whole_;  ///< of each group
 };
 
 struct Near {
@@ -172,11 +195,15 @@ class SurfaceSearch {
     }
     if (!any || kept_.empty()) return false;
     candidates_.gather(kept_, boundsOf(a_, positionA_, patch, limit));
+    last_ = 0;
     return true;
   }
 
   /// For rest: every triangle that reaches into the box.
-  void take(const Box& box) { candidates_.gather(allPatches(b_), box); }
+  void take(const Box& box) {
+    candidates_.gather(allPatches(b_), box);
+    last_ = 0;
+  }
 
   /// Can it be told from the displacements that a vertex of the patch taken is outside, farther than `reach`?
   [[nodiscard]] bool surelyFar(std::size_t vertex, double reach) const {
@@ -191,10 +218,12 @@ class SurfaceSearch {
     return true;
   }
 
-  [[nodiscard]] Near nearest(int vertex, const Vec3& p, double limit) const {
+  /// The least distance, ties to the lower triangle: in which order groups are looked at changes nothing, but the one
+  /// where the last vertex, most often a neighbour, found its own makes the others short.
+  [[nodiscard]] Near nearest(int vertex, const Vec3& p, double limit) {
     Near near;
     double best = limit * limit;
-    candidates_.forEachNear(p, best, [&](std::size_t i, double squared) {
+    const auto look = [&](std::size_t i, double squared) {
       if (near.found && squared == best && i > near.triangle) return;
       const Index3& t = b_.triangles()[i];
       const PointTriangle point = closestOnTriangle(p, at(t[0]), at(t[1]), at(t[2]));
@@ -204,7 +233,8 @@ class SurfaceSearch {
       }
       near = Near{true, i, point, Vec3::Zero(), 0.0};
       best = squared;
-    });
+    };
+    last_ = candidates_.forEachNear(p, best, look, last_);
     if (near.found) measure(p, near);
     return near;
   }
@@ -232,6 +262,7 @@ class SurfaceSearch {
   const ContactSurface& b_;
   std::span<const Vec3> positionB_;
   Candidates candidates_;
+  std::size_t last_ = 0;  ///< group of the candidates in which the last nearest point was found
   std::vector<std::uint32_t> kept_;
   std::span<const std::uint32_t> near_;     ///< of the patch taken, kept or not
   std::vector<Displacement> displacement_;  ///< per patch of b, made when first asked for

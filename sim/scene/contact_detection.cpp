@@ -65,8 +65,9 @@ void Stepper::Workspace::shapeAt(const State& state, std::size_t hand, const Pos
   shape.assign(world.capsules().begin(), world.capsules().end());
 }
 
-bool Stepper::Workspace::ignores(const HandState& hand, const Capsule& capsule, std::size_t organ) const {
-  return hand.grasped == organ && (capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw);
+double Stepper::Workspace::allowance(const HandState& hand, const Capsule& capsule, std::size_t organ) {
+  const bool jaw = capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw;
+  return jaw && hand.grasped == organ ? heldDepth : 0.0;
 }
 
 /// Least gap between the instrument in `shape` and all organs, at most `reach_`. @pre refreshBounds() since organs
@@ -75,14 +76,14 @@ double Stepper::Workspace::gapOf(const HandState& hand, double reach_) {
   double least = reach_;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     for (const Capsule& c : shape) {
-      if (ignores(hand, c, o)) continue;
+      const double allowed = allowance(hand, c, o);
       Box box;
       box.include(c.p0);
       box.include(c.p1);
-      box.grow(capsuleSearch(c.radius, std::max(least, 0.0)));
+      box.grow(capsuleSearch(c.radius, std::max(least - allowed, 0.0)));
       const std::span<const std::uint32_t> near = patchesNear(o, box);
       if (near.empty()) continue;
-      least = leastGap(model.organs()[o].surface, skin[o], near, c.p0, c.p1, c.radius, least);
+      least = allowed + leastGap(model.organs()[o].surface, skin[o], near, c.p0, c.p1, c.radius, least - allowed);
     }
   }
   return least;
@@ -156,6 +157,14 @@ void Stepper::Workspace::addInstrumentBlock(const State& state, std::size_t hand
   blocks.push_back(block);
 }
 
+/// Counts the gaps of the contacts found last from `allowed` deeper, and drops those that are then too wide.
+void Stepper::Workspace::allow(double allowed, double far, std::size_t from) {
+  const auto first = found.begin() + static_cast<std::ptrdiff_t>(from);
+  for (auto contact = first; contact != found.end(); ++contact) contact->gap += allowed;
+  found.erase(std::remove_if(first, found.end(), [far](const SurfaceContact& c) { return !(c.gap < far); }),
+              found.end());
+}
+
 /// Blocks of every instrument near every organ, in order of hand, organ and place.
 void Stepper::Workspace::detectInstruments(const State& state) {
   blocks.clear();
@@ -167,13 +176,15 @@ void Stepper::Workspace::detectInstruments(const State& state) {
       const double far = reach[h] + std::min(std::sqrt(speed) * settings.step, largestSlide);
       found.clear();
       for (const Capsule& c : shape) {
-        if (ignores(state.hand[h], c, o)) continue;
+        const double allowed = allowance(state.hand[h], c, o);
         Box box;
         box.include(c.p0);
         box.include(c.p1);
         box.grow(capsuleSearch(c.radius, far));
+        const std::size_t before = found.size();
         capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, far, c.piece,
                         found);
+        if (allowed > 0.0) allow(allowed, far, before);
       }
       for (const SurfaceContact& contact : found) addInstrumentBlock(state, h, o, contact);
     }

@@ -115,13 +115,14 @@ void Stepper::Workspace::withdraw(State& state, std::size_t hand) {
     for (std::size_t o = 0; o < model.organs().size(); ++o) {
       found.clear();
       for (const Capsule& c : shape) {
-        if (ignores(s, c, o)) continue;
         Box box;
         box.include(c.p0);
         box.include(c.p1);
         box.grow(capsuleSearch(c.radius, 0.0));
+        const std::size_t before = found.size();
         capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece,
                         found);
+        if (const double allowed = allowance(s, c, o); allowed > 0.0) allow(allowed, 0.0, before);
       }
       for (const SurfaceContact& contact : found) {
         if (!(contact.gap < 0.0)) continue;

@@ -33,12 +33,16 @@ Vec3 skinPoint(const std::vector<Vec3>& skin, const std::array<std::uint32_t, 3>
 
 }  // namespace
 
-/// Begins a hold where jaws that were open close on tissue, ends it where they open.
+/// Ends a hold where the jaws open, or the instrument is taken away.
+void Stepper::Workspace::openJaws(State& state, std::size_t hand) {
+  const HandState& h = state.hand[hand];
+  if (h.grasped == noOrgan || (h.instrument == InstrumentKind::grasper && h.realJaw <= openJaw)) return;
+  letGo(state, hand, EventKind::graspEnd, static_cast<double>(state.clock.step - h.graspSince) * settings.step);
+}
+
+/// Begins a hold where jaws that were open close on tissue.
 void Stepper::Workspace::closeJaws(State& state, std::size_t hand) {
   HandState& h = state.hand[hand];
-  if (h.grasped != noOrgan && (h.instrument != InstrumentKind::grasper || h.realJaw > openJaw)) {
-    letGo(state, hand, EventKind::graspEnd, static_cast<double>(state.clock.step - h.graspSince) * settings.step);
-  }
   if (h.instrument != InstrumentKind::grasper) {
     h.jawsOpened = false;
     return;
@@ -131,6 +135,8 @@ void Stepper::Workspace::letGo(State& state, std::size_t hand, EventKind why, do
   h.graspWeight.clear();
   h.graspPlace.clear();
   h.graspForce.clear();
+  // Jaws may have sunk into what they held.
+  withdraw(state, hand);
 }
 
 /// After the step: tissue that tore or slipped. @pre refreshBounds() since organs moved

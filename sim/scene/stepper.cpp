@@ -211,6 +211,7 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.result.contact = {};
   w.readSamples(state, samples);
   w.refreshBounds(state);
+  for (std::size_t h = 0; h < handCount; ++h) w.openJaws(state, h);
   for (std::size_t h = 0; h < handCount; ++h) w.advanceFreely(state, h);
   for (std::size_t h = 0; h < handCount; ++h) w.closeJaws(state, h);
   w.detectInstruments(state);

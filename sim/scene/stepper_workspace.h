@@ -26,6 +26,7 @@ inline constexpr double largestJawStep = 0.05;     ///< of a jaw near a surface 
 inline constexpr double largestRecovery = 0.0005;  ///< by which overlapping organs part in one step (m)
 inline constexpr std::uint32_t quietSteps = 50;    ///< before an organ sleeps
 inline constexpr double leastForce = 1e-6;         ///< N; below, nothing counts as touching
+inline constexpr double heldDepth = 0.0035;        ///< that jaws may sink into what they hold (m)
 inline constexpr double broadCell = 0.02;          ///< m
 }  // namespace stepping
 
@@ -66,17 +67,20 @@ struct Stepper::Workspace {
   std::span<const std::uint32_t> patchesNear(std::size_t organ, const Box& box);
   /// Capsules of a hand's instrument at a pose, in W.
   void shapeAt(const State& state, std::size_t hand, const Pose& pose, double jaw);
-  /// Does this part of the instrument pass by what the jaws hold?
-  [[nodiscard]] bool ignores(const HandState& hand, const Capsule& capsule, std::size_t organ) const;
+  /// How deep this part of the instrument may stand in an organ (m): jaws in what they hold, for a mesh does not fold
+  /// between them; nothing else.
+  [[nodiscard]] static double allowance(const HandState& hand, const Capsule& capsule, std::size_t organ);
   double gapOf(const HandState& hand, double reach);
   void advanceFreely(State& state, std::size_t hand);
   void detectInstruments(const State& state);
   void detectTissue(const State& state);
   /// Rest tables of a tissue pair; those of an organ with itself are worked out when first asked for.
   const SurfacePair& restOf(std::size_t pair);
+  void allow(double allowed, double far, std::size_t from);
   void addInstrumentBlock(const State& state, std::size_t hand, std::size_t organ, const SurfaceContact& contact);
 
   // grasping.cpp
+  void openJaws(State& state, std::size_t hand);
   void closeJaws(State& state, std::size_t hand);
   void addHolds(const State& state);
   void letGo(State& state, std::size_t hand, EventKind why, double value);

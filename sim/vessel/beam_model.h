@@ -47,11 +47,11 @@ struct BeamBranch {
   TubeSection section;
   BeamMaterial material;
   int join = -1;  ///< node of an earlier branch that this branch grows out of (its node[0] is there); -1: none
-  bool fixedStart = false;  ///< first node held, place and orientation
+  bool fixedStart = false;  ///< first node held, place and orientation (and carried: carry())
   bool fixedEnd = false;    ///< last node held
 };
 
-/// `elements` + 1 nodes at equal arc lengths on the centripetal-free (uniform) Catmull-Rom curve through the points.
+/// `elements` + 1 nodes at equal arc lengths on the (uniform) Catmull-Rom curve through the points.
 /// @pre at least two points, neighbours apart
 std::vector<Vec3> evenNodes(std::span<const Vec3> points, std::size_t elements);
 

@@ -16,6 +16,8 @@ namespace {
 
 /// Of a chord in one step, as a share of its rest length; of a node in one step (rad).
 constexpr double largestTurn = 0.7;
+/// Of a node (m/s). No hand moves tissue as fast; it keeps loose pieces within the range of numbers.
+constexpr double fastest = 20.0;
 
 /// Adds scale * m to the 3 x 3 part of a block at (row, column) in {0, 3}.
 void add(Block6& block, std::size_t row, std::size_t column, double scale, const Mat3& m) {
@@ -196,7 +198,8 @@ void BeamSolver::attachmentForces(const BeamState& state, std::span<const BeamAt
 }
 
 /// A linear step cannot follow a chord that turns or grows by about its own length: velocities of a whole piece are
-/// then scaled down together, so that the pattern of motion stays what was solved for.
+/// then scaled down together, so that the pattern of motion stays what was solved for. Pieces that are not finite are
+/// left to advance().
 bool BeamSolver::limitPieces(const BeamModel& model, const BeamState& state) {
   const std::size_t nodes = model.nodes();
   piece_.resize(nodes);
@@ -206,7 +209,7 @@ bool BeamSolver::limitPieces(const BeamModel& model, const BeamState& state) {
     const bool joined = before >= 0 && state.parting[static_cast<std::size_t>(before)] == Parting::none;
     piece_[n] = joined ? piece_[static_cast<std::size_t>(model.parents()[n])] : static_cast<int>(n);
     double& excess = excess_[static_cast<std::size_t>(piece_[n])];
-    excess = std::max(excess, step_ * freeSpin_[n].norm() / largestTurn);
+    excess = std::max({excess, step_ * freeSpin_[n].norm() / largestTurn, freeVelocity_[n].norm() / fastest});
     if (!joined) continue;
     const BeamElement& e = model.elements()[static_cast<std::size_t>(before)];
     const Vec3 apart = freeVelocity_[n] - freeVelocity_[static_cast<std::size_t>(e.a)];
@@ -215,7 +218,7 @@ bool BeamSolver::limitPieces(const BeamModel& model, const BeamState& state) {
   bool limited = false;
   for (std::size_t n = 0; n < nodes; ++n) {
     const double excess = excess_[static_cast<std::size_t>(piece_[n])];
-    if (!(excess > 1.0)) continue;
+    if (!(excess > 1.0) || model.fixed(n)) continue;
     limited = true;
     freeVelocity_[n] /= excess;
     freeSpin_[n] /= excess;
@@ -229,20 +232,18 @@ BeamReport BeamSolver::advance(const BeamModel& model, BeamState& state) {
   double displacement = 0.0;
   double speed = 0.0;
   for (std::size_t n = 0; n < model.nodes(); ++n) {
-    if (!model.fixed(n)) {
-      const Vec3 position = state.position[n] + step_ * freeVelocity_[n];
-      const Quat orientation = turned(state.orientation[n], step_ * freeSpin_[n]);
-      if (position.allFinite() && freeVelocity_[n].allFinite() && freeSpin_[n].allFinite() &&
-          orientation.coeffs().allFinite() && orientation.coeffs().squaredNorm() > 0.5) {
-        state.position[n] = position;
-        state.orientation[n] = orientation;
-        state.velocity[n] = freeVelocity_[n];
-        state.angularVelocity[n] = freeSpin_[n];
-      } else {
-        report.finite = false;
-        state.velocity[n].setZero();
-        state.angularVelocity[n].setZero();
-      }
+    const Vec3 position = state.position[n] + step_ * freeVelocity_[n];
+    const Quat orientation = turned(state.orientation[n], step_ * freeSpin_[n]);
+    if (position.allFinite() && freeVelocity_[n].allFinite() && freeSpin_[n].allFinite() &&
+        orientation.coeffs().allFinite() && orientation.coeffs().squaredNorm() > 0.5) {
+      state.position[n] = position;
+      state.orientation[n] = orientation;
+      state.velocity[n] = freeVelocity_[n];
+      state.angularVelocity[n] = freeSpin_[n];
+    } else {
+      report.finite = false;
+      state.velocity[n].setZero();
+      state.angularVelocity[n].setZero();
     }
     speed = std::max(speed, state.velocity[n].squaredNorm());
     displacement = std::max(displacement, (state.position[n] - model.rest()[n]).squaredNorm());

@@ -21,8 +21,8 @@ Quat frameAlong(const Vec3& z);
 /// Rotation of b relative to a about axis n by theta: tan(theta/4) n in W (modified Rodrigues parameters; at most 1).
 Vec3 quarterTangent(const Quat& a, const Quat& b);
 
-/// q turned by the vector w (rad) in W: (1, w/2) q, normalised. A turn by 2 atan(|w|/2): w to third order, always less
-/// than half a turn.
+/// q turned about the vector w in W by the angle whose tangent is |w|: a step of rotation. A rod whose end goes
+/// straight ahead by w x d turns by just that angle, so that place and orientation stay together in long steps.
 Quat turned(const Quat& q, const Vec3& w);
 
 }  // namespace calot

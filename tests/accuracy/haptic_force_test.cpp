@@ -95,6 +95,26 @@ TEST_F(HapticForces, PullingHeldTissueHasNoJumps) {
   EXPECT_GT(felt.largestForce, 0.05);
 }
 
+/// Held tissue is let go: what the jaws had sunk into, and the pull, go within ticks, not at once.
+TEST_F(HapticForces, LettingGoHasNoJumps) {
+  for (const double lift : {0.002, 0.004}) {
+    const test::Felt felt = run(
+        1.8,
+        [&](double t) {
+          const double down = std::min(1.0, t / 0.3);
+          const double pull = t < 0.8 ? 0.0 : std::min(lift, 0.02 * (t - 0.8));
+          return Vec3(-0.009, 0.0013, 0.030 - 0.0135 * down + pull);
+        },
+        [](double t) {
+          if (t > 1.2) return std::min(0.6, 2.0 * (t - 1.2));
+          return t < 0.4 ? 0.6 : std::max(0.0, 0.6 - 2.0 * (t - 0.4));
+        },
+        "letting go of held tissue");
+    EXPECT_LT(felt.largestJump, 0.01 + 0.12 * felt.largestForce);  // a tenth of what is left each tick
+    EXPECT_GT(felt.largestForce, 0.02);
+  }
+}
+
 /// A passive device gives back no more than it took: over closed paths it does no work on the operator.
 TEST_F(HapticForces, PressingAndReleasingTakesWork) {
   for (const double speed : {0.005, 0.02, 0.05, 0.1, 0.2}) {

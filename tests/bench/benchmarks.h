@@ -5,11 +5,17 @@
 
 namespace calot::bench {
 
-void registerContactStep();  ///< contact/step: whole steps against deformation alone
-void registerHaptics();      ///< haptics/tick
+void registerContactStep();    ///< contact/step: whole steps against deformation alone
+void registerContactBudget();  ///< contact/budget: time against error over the solver's budgets
+void registerContactSolver();  ///< contact/solver: the complementarity problem against dense methods
+void registerDetection();      ///< contact/narrow, contact/broad
+void registerHaptics();        ///< haptics/tick
 
 inline void registerAll() {
   registerContactStep();
+  registerContactBudget();
+  registerContactSolver();
+  registerDetection();
   registerHaptics();
 }
 

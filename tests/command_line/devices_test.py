@@ -57,10 +57,10 @@ def whole_stream(noise=0.0):
 
 
 class Server:
-    """calot devices serve, on any port."""
+    """calot devices serve, on any port or a certain one."""
 
-    def __init__(self, *arguments):
-        self.process = subprocess.Popen([str(PROGRAM), "devices", "serve", "--port", "0", *map(str, arguments)],
+    def __init__(self, *arguments, port=0):
+        self.process = subprocess.Popen([str(PROGRAM), "devices", "serve", "--port", str(port), *map(str, arguments)],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = self.process.stdout.readline()
         self.port = int(line.rsplit(":", 1)[1]) if ":" in line else None

@@ -73,7 +73,7 @@ class LiveDevice(ProgramTest):
             raw = self.raw(name, hand)
             self.assertGreater(len(raw), 10)
             # Each client is sent the motion from its first row on: the number of a sample is the number of its row.
-            self.assertEqual(list(raw["sequence"]), list(range(raw["sequence"][0], raw["sequence"][0] + len(raw))))
+            self.assertEqual(list(raw["sequence"]), list(range(int(raw["sequence"][0]), int(raw["sequence"][0]) + len(raw))))
             for sample in raw[raw["sequence"] < len(sent[hand])]:
                 for a, b in zip(sample["position"], sent[hand][sample["sequence"]]):
                     self.assertAlmostEqual(a, b, 7)  # float32 millimetres on the way
@@ -158,7 +158,7 @@ class LiveDevice(ProgramTest):
         time.sleep(0.7)
         self.assertEqual(self.ticks("r.h5"), paused)
         self.assertIsNone(process.poll())
-        with Server("--kinematics", motion, "--port", server.port):
+        with Server("--kinematics", motion, port=server.port):
             self.until(lambda: self.ticks("r.h5") >= paused + 1000)
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=60)
@@ -170,18 +170,18 @@ class LiveDevice(ProgramTest):
         for hand in HANDS:
             raw = self.raw("r.h5", hand)
             # The driver counts on over the loss; the server began anew.
-            self.assertEqual(list(raw["sequence"]), list(range(raw["sequence"][0], raw["sequence"][0] + len(raw))))
-            silence = (raw["host_time"][1:] - raw["host_time"][:-1]).argmax()
+            self.assertEqual(list(raw["sequence"]), list(range(int(raw["sequence"][0]), int(raw["sequence"][0]) + len(raw))))
+            silence = int((raw["host_time"][1:] - raw["host_time"][:-1]).argmax())
             self.assertGreater(raw["host_time"][silence + 1] - raw["host_time"][silence], 1_000_000_000)
-            first = raw["sequence"][silence + 1]
+            first = int(raw["sequence"][silence + 1])
             for sample in raw[silence + 1:]:
-                for a, b in zip(sample["position"], sent[hand][sample["sequence"] - first]):
+                for a, b in zip(sample["position"], sent[hand][int(sample["sequence"]) - first]):
                     self.assertAlmostEqual(a, b, 7)
             with h5py.File(self.path("r.h5"), "r") as file:
                 position, valid = file[f"/ticks/{hand}/position"][:], file[f"/ticks/{hand}/valid"][:]
-            # Nothing jumps: the script's hand moves by at most 2.1 mm in 10 ms; ticks without measurement are held.
+            # Nothing jumps, though the motion began anew 14 mm away. Ticks without measurement are held.
             steps = ((position[1:] - position[:-1]) ** 2).sum(axis=1) ** 0.5
-            self.assertLess(steps.max(), 0.05)
+            self.assertLess(steps.max(), 0.008)
             gone = (valid == 0).nonzero()[0]
             for tick in gone[gone > 0]:
                 self.assertEqual(position[tick].tobytes(), position[tick - 1].tobytes())

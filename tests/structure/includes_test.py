@@ -11,10 +11,11 @@ import tempfile
 import cpp_text
 
 # Room -> rooms whose headers it may include, besides its own. A room is a folder; its longest matching name counts.
-SIM = ("sim/math", "sim/geometry", "sim/solid", "sim/contact", "sim/haptics", "sim/instruments", "sim/scene")
+SIM = ("sim/math", "sim/geometry", "sim/solid", "sim/vessel", "sim/contact", "sim/haptics", "sim/instruments", "sim/scene")
 MAY_SEE = {
     "sim/math": (),
     "sim/geometry": ("sim/math",),
+    "sim/vessel": ("sim/math", "sim/geometry"),
     # These are one library; what the step is made of may not reach up to recorder or beyond.
     "sim/solid": SIM, "sim/contact": SIM, "sim/haptics": SIM, "sim/instruments": SIM, "sim/scene": SIM,
     "sim/bullet": SIM,  # a library of its own above the core

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"
+//
+#include "sim/carving/adaptive_surface.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "sim/carving/carved_surface.h"
+#include "sim/carving/field_sample.h"
+
+namespace calot {
+namespace {
+
+constexpr int step = 2;         ///< cells along a cell of the base
+constexpr int reachBelow = 4;   ///< a block depends on nodes up to its last cell's origin plus this
+constexpr int reachAbove = 2;   ///< and down to its first cell's origin minus this
+constexpr int iterations = 3;   ///< of the move onto the surface
+constexpr double wander = 1.0;  ///< cells that a middle may move along each axis
+
+Vec3 unitOrZero(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0.0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+}  // namespace
+
+AdaptiveSurface::AdaptiveSurface(const BrickLattice& lattice)
+    : lattice_(lattice),
+      table_(CubeTable::get()),
+      part_(8 * lattice.brickCount()),
+      dirty_(8 * lattice.brickCount(), 0) {
+  changedBlock_.reserve(part_.size());
+}
+
+void AdaptiveSurface::rebuild(const CarvedField& field) {
+  changedBlock_.clear();
+  for (std::uint32_t b = 0; b < blocks(); ++b) {
+    changedBlock_.push_back(b);
+    makeBlock(field, b);
+  }
+}
+
+void AdaptiveSurface::update(const CarvedField& field) {
+  changedBlock_.clear();
+  for (const std::uint32_t brick : field.changed()) mark(field, brick);
+  std::sort(changedBlock_.begin(), changedBlock_.end());
+  for (const std::uint32_t b : changedBlock_) {
+    dirty_[b] = 0;
+    makeBlock(field, b);
+  }
+}
+
+void AdaptiveSurface::mark(const CarvedField& field, std::uint32_t brick) {
+  // Bounds of the changed nodes.
+  const BrickBits& raised = field.raised(brick);
+  std::uint64_t all = 0;
+  Index3 low = Index3::Constant(8);
+  Index3 high = Index3::Constant(-1);
+  for (int z = 0; z < 8; ++z) {
+    if (raised[slot(z)] == 0) continue;
+    all |= raised[slot(z)];
+    low[2] = std::min(low[2], z);
+    high[2] = z;
+  }
+  for (int i = 0; i < 8; ++i) {
+    if ((all & columnFirst << static_cast<unsigned>(i)) != 0) {
+      low[0] = std::min(low[0], i);
+      high[0] = i;
+    }
+    if ((all >> static_cast<unsigned>(8 * i) & 0xFFU) != 0) {
+      low[1] = std::min(low[1], i);
+      high[1] = i;
+    }
+  }
+  if (high[2] < 0) return;
+  const Index3 origin = 8 * lattice_.brickAt(brick);
+  const Index3 from = (origin + low).array() - reachBelow;
+  const Index3 to = (origin + high).array() + reachAbove;
+  const Index3 first = from.cwiseMax(0) / 4;
+  const Index3 last = (to / 4).cwiseMin((2 * lattice_.bricks().array() - 1).matrix());
+  Index3 b;
+  for (b[2] = first[2]; b[2] <= last[2]; ++b[2]) {
+    for (b[1] = first[1]; b[1] <= last[1]; ++b[1]) {
+      for (b[0] = first[0]; b[0] <= last[0]; ++b[0]) {
+        const std::uint32_t in = lattice_.brick(b / 2);
+        const std::uint32_t block = 8 * in + static_cast<std::uint32_t>((b[0] & 1) + 2 * (b[1] & 1) + 4 * (b[2] & 1));
+        if (dirty_[block] != 0) continue;
+        dirty_[block] = 1;
+        changedBlock_.push_back(block);
+      }
+    }
+  }
+}
+
+bool AdaptiveSurface::insideAt(const CarvedField& field, const Index3& node) const {
+  return (node.array() < 8 * lattice_.bricks().array()).all() && field.inside(lattice_.node(node));
+}
+
+void AdaptiveSurface::makeBlock(const CarvedField& field, std::uint32_t block) {
+  Part& part = part_[block];
+  triangles_ -= part.triangle.size();
+  part.vertex.clear();
+  part.triangle.clear();
+  side_.clear();
+  const auto octant = static_cast<int>(block & 7U);
+  const Index3 origin = 8 * lattice_.brickAt(block / 8) + 4 * Index3(octant & 1, octant >> 1 & 1, octant >> 2);
+  // All corners alike: no surface. Read once.
+  std::array<bool, 27> corner{};
+  bool any = false;
+  bool all = true;
+  for (int i = 0; i < 27; ++i) {
+    corner[slot(i)] = insideAt(field, origin + step * Index3(i % 3, i / 3 % 3, i / 9));
+    any = any || corner[slot(i)];
+    all = all && corner[slot(i)];
+  }
+  if (any && !all) {
+    for (int c = 0; c < 8; ++c) makeCell(field, part, origin + step * Index3(c & 1, c >> 1 & 1, c >> 2));
+  }
+  triangles_ += part.triangle.size();
+}
+
+void AdaptiveSurface::makeCell(const CarvedField& field, Part& part, const Index3& cell) {
+  unsigned inside = 0;
+  for (int c = 0; c < 8; ++c) {
+    const Index3 n = cell + step * Index3(c & 1, c >> 1 & 1, c >> 2);
+    inside |= static_cast<unsigned>(insideAt(field, n)) << static_cast<unsigned>(c);
+  }
+  const CubeCase& shape = table_[inside];
+  for (std::size_t t = 0; t < shape.count; ++t) {
+    std::array<std::uint8_t, 3> v{};
+    std::array<int, 3> m{};
+    for (std::size_t k = 0; k < 3; ++k) v[k] = baseVertex(field, part, cell, shape.edge[t][k]);
+    int split = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      m[k] = middleVertex(field, part, v[k], v[(k + 1) % 3]);
+      split += m[k] >= 0 ? 1 : 0;
+    }
+    const auto add = [&part](int a, int b, int c) {
+      part.triangle.push_back({static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), static_cast<std::uint8_t>(c)});
+    };
+    if (split == 0) {
+      add(v[0], v[1], v[2]);
+    } else if (split == 3) {
+      add(v[0], m[0], m[2]);
+      add(v[1], m[1], m[0]);
+      add(v[2], m[2], m[1]);
+      add(m[0], m[1], m[2]);
+    } else {
+      // Turned so that side 0 is split and, of two, side 1 too.
+      std::size_t k = 0;
+      while (m[k] < 0 || (split == 2 && m[(k + 1) % 3] < 0)) ++k;
+      const int a = v[k];
+      const int b = v[(k + 1) % 3];
+      const int c = v[(k + 2) % 3];
+      const int ab = m[k];
+      const int bc = m[(k + 1) % 3];
+      if (split == 1) {
+        add(a, ab, c);
+        add(ab, b, c);
+        continue;
+      }
+      add(ab, b, bc);
+      const auto length = [&part](int i, int j) {
+        return (part.vertex[slot(i)].position - part.vertex[slot(j)].position).squaredNorm();
+      };
+      if (length(a, bc) <= length(ab, c)) {
+        add(a, ab, bc);
+        add(a, bc, c);
+      } else {
+        add(a, ab, c);
+        add(ab, bc, c);
+      }
+    }
+  }
+}
+
+std::uint8_t AdaptiveSurface::baseVertex(const CarvedField& field, Part& part, const Index3& cell, unsigned edge) {
+  const auto axis = static_cast<int>(edge / 4);
+  Index3 n = cell;
+  if ((edge & 1U) != 0) n[(axis + 1) % 3] += step;
+  if ((edge & 2U) != 0) n[(axis + 2) % 3] += step;
+  const bool first = insideAt(field, n);
+  Index3 middle = n;
+  ++middle[axis];
+  const std::uint32_t v = 3 * lattice_.node(insideAt(field, middle) == first ? middle : n) + edge / 4;
+  const std::uint64_t key = std::uint64_t{v} << 32U | v;
+  for (std::size_t i = 0; i < part.vertex.size(); ++i) {
+    if (part.vertex[i].key == key) return static_cast<std::uint8_t>(i);
+  }
+  part.vertex.push_back({key, surface_vertex::restPosition(field, v), unitOrZero(gradientAtVertex(field, v))});
+  return static_cast<std::uint8_t>(part.vertex.size() - 1);
+}
+
+int AdaptiveSurface::middleVertex(const CarvedField& field, Part& part, std::uint8_t a, std::uint8_t b) {
+  if (part.vertex[b].key < part.vertex[a].key) std::swap(a, b);
+  const std::uint64_t key = (part.vertex[a].key & 0xFFFFFFFF00000000ULL) | (part.vertex[b].key & 0xFFFFFFFFULL);
+  for (const Side& side : side_) {
+    if (side.key == key) return side.vertex;
+  }
+  side_.push_back({key, -1});
+  const double h = lattice_.cell();
+  const Vec3 middle = (0.5 * (part.vertex[a].position + part.vertex[b].position) - lattice_.origin()) / h;
+  Vec3 p = middle;
+  Vec3 normal = Vec3::Zero();
+  for (int i = 0; i < iterations; ++i) {
+    const FieldSample sample = sampleField(field, p);
+    const double slope2 = sample.gradient.squaredNorm();
+    if (!(slope2 > 0.01 * h * h)) {
+      if (i == 0) return -1;  // no direction to go
+      break;
+    }
+    if (i == 0 && !(sample.value * sample.value > tolerance * tolerance * slope2)) return -1;
+    normal = sample.gradient;
+    p -= sample.value / slope2 * sample.gradient;
+    // Around its own middle, not its cell: both triangles at the side must see the same.
+    p = p.cwiseMax((middle.array() - wander).matrix()).cwiseMin((middle.array() + wander).matrix());
+  }
+  part.vertex.push_back({key, lattice_.origin() + h * p, unitOrZero(normal)});
+  side_.back().vertex = static_cast<std::int16_t>(part.vertex.size() - 1);
+  return side_.back().vertex;
+}
+
+TriangleMesh AdaptiveSurface::mesh() const {
+  std::vector<std::pair<std::uint64_t, Vec3>> vertex;
+  for (const Part& part : part_) {
+    for (const Vertex& v : part.vertex) vertex.emplace_back(v.key, v.position);
+  }
+  const auto less = [](const auto& x, const auto& y) { return x.first < y.first; };
+  std::stable_sort(vertex.begin(), vertex.end(), less);
+  const auto same = [](const auto& x, const auto& y) { return x.first == y.first; };
+  vertex.erase(std::unique(vertex.begin(), vertex.end(), same), vertex.end());
+  TriangleMesh mesh;
+  for (const auto& v : vertex) mesh.vertex.push_back(v.second);
+  for (const Part& part : part_) {
+    for (const auto& t : part.triangle) {
+      Index3 v;
+      for (int k = 0; k < 3; ++k) {
+        const std::pair<std::uint64_t, Vec3> wanted{part.vertex[t[slot(k)]].key, Vec3::Zero()};
+        v[k] = static_cast<int>(std::lower_bound(vertex.begin(), vertex.end(), wanted, less) - vertex.begin());
+      }
+      mesh.triangle.push_back(v);
+    }
+  }
+  return mesh;
+}
+
+bool AdaptiveSurface::operator==(const AdaptiveSurface& other) const {
+  const auto sameVertex = [](const Vertex& x, const Vertex& y) {
+    return x.key == y.key && std::memcmp(x.position.data(), y.position.data(), 3 * sizeof(double)) == 0 &&
+           std::memcmp(x.normal.data(), y.normal.data(), 3 * sizeof(double)) == 0;
+  };
+  return part_.size() == other.part_.size() &&
+         std::equal(part_.begin(), part_.end(), other.part_.begin(), [&](const Part& x, const Part& y) {
+           return x.triangle == y.triangle && std::equal(x.vertex.begin(), x.vertex.end(), y.vertex.begin(),
+                                                         y.vertex.end(), sameVertex);
+         });
+}
+
+}  // namespace calot

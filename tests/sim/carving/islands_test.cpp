@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/carving/islands.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "tests/sim/carving/support/carving_bodies.h"
+
+namespace calot {
+namespace {
+
+TEST(Islands, EqualAFloodOnNoise) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed, 8);
+    const FieldModel model = test::noise(random, 20 + static_cast<int>(seed % 9));
+    std::vector<std::uint32_t> anchors;
+    for (int i = 0; i < 5; ++i) anchors.push_back(random.next() % static_cast<std::uint32_t>(model.lattice.storage()));
+    CarvedField field(model);
+    const std::vector<std::uint8_t> held = test::fullFlood(field, anchors);
+    const std::int64_t before = field.insideNodes();
+    Islands islands(model.lattice, anchors);
+    islands.rebuild(field);
+    field.begin();
+    const std::int64_t removed = islands.remove(field);
+    EXPECT_EQ(removed, before - field.insideNodes());
+    for (std::uint32_t n = 0; n < held.size(); ++n) ASSERT_EQ(held[n] != 0, field.inside(n)) << n;
+    // Again there is nothing to do, and no search is asked for.
+    CarvedBricks state;
+    field.commit(state);
+    field.begin();
+    EXPECT_EQ(islands.remove(field), 0);
+    EXPECT_TRUE(field.changed().empty());
+  }
+}
+
+TEST(Islands, CheckerboardHasTheMostComponents) {
+  const BrickLattice lattice(Vec3::Zero(), 1.0, Index3::Constant(18));
+  const FieldModel model = test::fieldOf(lattice, 1.0, [](const Vec3& p) {
+    return static_cast<int>(p.sum()) % 2 == 0 ? -0.5 : 0.5;
+  });
+  CarvedField field(model);
+  const std::int64_t before = field.insideNodes();
+  EXPECT_EQ(before, 2048);
+  Islands islands(lattice, std::vector<std::uint32_t>{lattice.node({2, 2, 2}), lattice.node({9, 9, 10})});
+  islands.rebuild(field);
+  field.begin();
+  EXPECT_EQ(islands.remove(field), before - 2);
+  EXPECT_TRUE(field.inside(lattice.node({2, 2, 2})));
+  EXPECT_TRUE(field.inside(lattice.node({9, 9, 10})));
+}
+
+TEST(Islands, ACutOffPartLeaves) {
+  const FieldModel model = test::lump(41);
+  std::vector<std::uint32_t> anchors;
+  for (const std::uint32_t n : test::floorAnchors(model.lattice)) {
+    if (model.lattice.position(model.lattice.nodeAt(n))[0] < -0.01) anchors.push_back(n);
+  }
+  CarvedField field(model);
+  CarvedBricks state;
+  Islands islands(model.lattice, anchors);
+  islands.rebuild(field);
+  std::int64_t removed = 0;
+  for (int i = 0; i < 14; ++i) {  // across, 3 mm wide, from one side to the other
+    field.begin();
+    const double y = -0.018 + 0.0026 * i;
+    const Vec3 low(0.002, y, -0.012);
+    const Vec3 high(0.002, y, 0.012);
+    const Vec3 on(0.0, 0.0026, 0.0);
+    test::carveAtRest(field, {{low, high, low + on, high + on, 0.0015}});
+    const std::int64_t now = islands.remove(field);
+    EXPECT_TRUE(now == 0 || removed == 0);
+    removed += now;
+    field.commit(state);
+  }
+  EXPECT_GT(removed, 1000);
+  for (std::uint32_t n = 0; n < model.lattice.storage(); ++n) {
+    if (!field.inside(n)) continue;
+    ASSERT_LT(model.lattice.position(model.lattice.nodeAt(n))[0], 0.001);
+  }
+  std::cout << removed << " nodes left with the part\n";
+}
+
+}  // namespace
+}  // namespace calot
