@@ -47,7 +47,7 @@ struct RunSettings {
 struct RunReport {
   Outcome outcome = Outcome::completed;
   std::uint64_t steps = 0;  ///< of the session
-  std::uint64_t ticks = 0;  ///< of this run
+  std::uint64_t ticks = 0;  ///< of this run's steps; what follows counts these, as the recording does
   std::uint64_t missedDeadlines =
       0;                         ///< paced: ticks whose force was ready later than tickDeadline after they were due
   double largestLateness = 0.0;  ///< of a tick (s)

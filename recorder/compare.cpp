@@ -117,6 +117,17 @@ std::optional<Divergence> compareResult(const StepResult& recorded, const StepRe
     c.whole(name + "iterations", a.iterations, b.iterations);
     c.whole(name + "asleep", a.asleep, b.asleep);
   }
+  c.whole("connective.size", recorded.connective.size(), here.connective.size());
+  for (std::size_t t = 0; !c.first() && t < here.connective.size(); ++t) {
+    const ConnectiveResult& a = recorded.connective[t];
+    const ConnectiveResult& b = here.connective[t];
+    const std::string name = fmt::format("connective[{}]/", t);
+    c.number(name + "attached", a.attached, b.attached);
+    c.number(name + "burned", a.burned, b.burned);
+    c.number(name + "torn", a.torn, b.torn);
+    c.number(name + "largestPull", a.largestPull, b.largestPull);
+    c.whole(name + "hookTouches", a.hookTouches, b.hookTouches);
+  }
   c.whole("contact/blocks", recorded.contact.blocks, here.contact.blocks);
   c.whole("contact/rows", recorded.contact.rows, here.contact.rows);
   c.whole("contact/iterations", recorded.contact.iterations, here.contact.iterations);

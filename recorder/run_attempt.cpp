@@ -64,7 +64,6 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
       ticks[i] = session.tick(samples[i]);
       if (settings.feedback) settings.feedback(ticks[i]);
       ticks[i].lateness = settings.paced ? clock.finish(tick, monotonicNow()) : 0.0F;
-      ++report.ticks;
     }
     if (!open) {
       report.outcome = Outcome::completed;
@@ -72,13 +71,14 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
     }
     // A step is due when the next one's first tick is.
     session.step(samples, ticks, settings.paced ? lateness(clock.due(tick)) : 0.0F);
+    report.ticks = tick;
+    report.missedDeadlines = clock.missed();
+    report.largestLateness = seconds(clock.largestLateness());
+    report.stretched = seconds(clock.stretched());
     if (settings.progress) settings.progress(session.steps());
   }
   report.pauses = pauses.count;
   report.paused = pauses.seconds;
-  report.missedDeadlines = clock.missed();
-  report.largestLateness = seconds(clock.largestLateness());
-  report.stretched = seconds(clock.stretched());
 }
 
 bool sameForce(const HandTick& a, const HandTick& b) {

@@ -121,6 +121,7 @@ DrawList makeDrawList(const SceneView& view, bool cavity) {
       builder.add(builder.point(wall.position[v]), builder.direction(wall.normal[v]), wall.position[v], wall.normal[v]);
     builder.end(Appearance::cavity, wall.triangle);
   }
+  builder.list.sheets = makeSheetList(view);
   return std::move(builder.list);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gui/render/sheet_list.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -54,6 +55,7 @@ struct DrawList {
   std::vector<DrawVertex> vertex;
   std::vector<std::uint32_t> index;
   std::vector<DrawPart> part;      ///< the cavity, if any, last
+  SheetList sheets;                ///< connective tissue, blended over the parts
   float referenceDistance = 0.1F;  ///< distance at which the endoscope's exposure is right (m)
 };
 

@@ -11,6 +11,7 @@
 // glext.h has pointer types for what came after OpenGL 1.1; for the older functions the declaration gives the type.
 #define CALOT_GL_FUNCTIONS(ENTRY)                                  \
   ENTRY(decltype(&glBindTexture), BindTexture)                     \
+  ENTRY(decltype(&glBlendFunc), BlendFunc)                         \
   ENTRY(decltype(&glClear), Clear)                                 \
   ENTRY(decltype(&glClearColor), ClearColor)                       \
   ENTRY(decltype(&glColorMask), ColorMask)                         \
@@ -27,6 +28,7 @@
   ENTRY(decltype(&glGetString), GetString)                         \
   ENTRY(decltype(&glPixelStorei), PixelStorei)                     \
   ENTRY(decltype(&glReadPixels), ReadPixels)                       \
+  ENTRY(decltype(&glTexImage2D), TexImage2D)                       \
   ENTRY(decltype(&glTexParameteri), TexParameteri)                 \
   ENTRY(decltype(&glViewport), Viewport)                           \
   ENTRY(PFNGLACTIVETEXTUREPROC, ActiveTexture)                     \

@@ -17,10 +17,10 @@ constexpr float lightX = 0.0045F, lightY = -0.0050F;  // of the light's bundle b
 constexpr float shadowHalfWidth = 1.25F;              // of the light's field over the picture's
 constexpr float occlusionReach = 0.016F;              // m
 
-enum Unit : int { noiseUnit = 0, occlusionUnit = 1, shadowUnit = 2, depthUnit = 3 };
+enum Unit : int { noiseUnit = 0, occlusionUnit = 1, shadowUnit = 2, depthUnit = 3, fibreUnit = 4 };
 
-const char* const filmCounts = "#define OCCLUSION_SAMPLES 24\n#define BLOCKERS 8\n#define SHADOW_SAMPLES 16\n";
-const char* const interactiveCounts = "#define OCCLUSION_SAMPLES 8\n#define BLOCKERS 3\n#define SHADOW_SAMPLES 4\n";
+const char* const filmCounts = "#define OCCLUSION_SAMPLES 24\n#define BLOCKERS 8\n#define SHADOW_SAMPLES 16\n#define SHEET_SHADOW_SAMPLES 4\n";
+const char* const interactiveCounts = "#define OCCLUSION_SAMPLES 8\n#define BLOCKERS 3\n#define SHADOW_SAMPLES 4\n#define SHEET_SHADOW_SAMPLES 1\n";
 
 int samplesAside(Quality quality) { return quality == Quality::film ? 2 : 1; }
 
@@ -32,10 +32,11 @@ struct ScenePainter::Programs {
         prepass(gl, "prepass", {glsl::common, glsl::surfaceVertex}, {glsl::prepassFragment}),
         surface(gl, "surface", {glsl::common, glsl::surfaceVertex},
                 {counts, glsl::common, glsl::surfaceMaterial, glsl::surfaceFragment}),
+        sheet(gl, "sheet", {glsl::common, glsl::sheetVertex}, {counts, glsl::common, glsl::sheetFragment}),
         occlusion(gl, "occlusion", {glsl::pictureVertex}, {counts, glsl::common, glsl::occlusionFragment}),
         blur(gl, "blur", {glsl::pictureVertex}, {glsl::blurFragment}),
         compose(gl, "compose", {glsl::pictureVertex}, {glsl::composeFragment}) {}
-  ShaderProgram shadow, prepass, surface, occlusion, blur, compose;
+  ShaderProgram shadow, prepass, surface, sheet, occlusion, blur, compose;
 };
 
 struct ScenePainter::Targets {
@@ -123,6 +124,11 @@ void ScenePainter::drawParts(const DrawList& list, const ShaderProgram& program,
   }
 }
 
+void ScenePainter::drawSheets(const SheetList& sheets) {
+  if (!sheets_) sheets_ = std::make_unique<SheetPainter>(gl_);
+  sheets_->draw(sheets, fibreUnit);
+}
+
 void ScenePainter::drawPicture() {
   gl_.BindVertexArray(emptyArray_);
   gl_.Disable(GL_DEPTH_TEST);
@@ -184,17 +190,24 @@ Image ScenePainter::paint(const DrawList& list, double verticalFieldOfView, int 
   drawPicture();
 
   clear(targets.radiance, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  setCamera(programs.surface, focalX, focalY, 0.0F, 0.0F);
   targets.smoothed.sampleColour(occlusionUnit);
   targets.shadow.sampleDepth(shadowUnit);
-  programs.surface.set("occlusionMap", static_cast<int>(occlusionUnit));
-  programs.surface.set("shadowMap", static_cast<int>(shadowUnit));
-  programs.surface.set("shadowFocal", shadowFocal, shadowFocal);
-  programs.surface.set("light", lightX, lightY, 0.0F);
-  programs.surface.set("referenceDistance", list.referenceDistance);
-  programs.surface.set("pixels", static_cast<float>(targets.radiance.width()),
-                       static_cast<float>(targets.radiance.height()));
+  const auto setLighting = [&](const ShaderProgram& program) {
+    setCamera(program, focalX, focalY, 0.0F, 0.0F);
+    program.set("occlusionMap", static_cast<int>(occlusionUnit));
+    program.set("shadowMap", static_cast<int>(shadowUnit));
+    program.set("shadowFocal", shadowFocal, shadowFocal);
+    program.set("light", lightX, lightY, 0.0F);
+    program.set("referenceDistance", list.referenceDistance);
+    program.set("pixels", static_cast<float>(targets.radiance.width()), static_cast<float>(targets.radiance.height()));
+  };
+  setLighting(programs.surface);
   drawParts(list, programs.surface, true);
+  if (!list.sheets.index.empty()) {
+    setLighting(programs.sheet);
+    programs.sheet.set("fibreMap", static_cast<int>(fibreUnit));
+    drawSheets(list.sheets);
+  }
 
   targets.picture.bind();
   programs.compose.use();

@@ -9,6 +9,7 @@
 #include "gui/render/render_target.h"
 #include "gui/render/renderer.h"
 #include "gui/render/shader_program.h"
+#include "gui/render/sheet_painter.h"
 
 namespace calot::gui {
 
@@ -33,11 +34,13 @@ class ScenePainter {
   void upload(const DrawList& list);
   void drawParts(const DrawList& list, const ShaderProgram& program, bool withCavity);
   void drawPicture();
+  void drawSheets(const SheetList& sheets);
   void prepareTargets(int width, int height, Quality quality);
 
   GlFunctions gl_;
   std::unique_ptr<Programs> film_, interactive_;
   std::unique_ptr<Targets> targets_;
+  std::unique_ptr<SheetPainter> sheets_;  ///< from the first picture with connective tissue on
   GLuint vertexArray_ = 0, emptyArray_ = 0, vertexBuffer_ = 0, indexBuffer_ = 0, noise_ = 0;
 };
 

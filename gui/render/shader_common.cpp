@@ -23,6 +23,14 @@ vec2 hash(uvec2 v) {
   return vec2(v >> 8u) / 16777216.0;
 }
 
+// What the endoscope's light gives a surface that faces it, in direction l at squared distance d2: inverse square, in a
+// cone that fades, right at the reference distance.
+float lightAt(vec3 l, float d2, float referenceDistance) {
+  float cone = pow(clamp(-l.z, 0.0, 1.0), 2.5);
+  float light = cone * referenceDistance * referenceDistance / max(d2, 0.0004);
+  return 1.25 * light / (1.0 + 0.35 * light);  // a camera's knee for what comes too close
+}
+
 vec4 project(vec3 p, vec2 f) {
   return vec4(f.x * p.x, -f.y * p.y,
               (p.z * (depthRange.y + depthRange.x) - 2.0 * depthRange.x * depthRange.y) / (depthRange.y - depthRange.x), p.z);

@@ -82,7 +82,8 @@ void main() {
   for (int y = 0; y < samples; ++y)
     for (int x = 0; x < samples; ++x) {
       vec4 s = texelFetch(radianceMap, pixel * samples + ivec2(x, y), 0);
-      sum += vec4(tone(0.85 * s.rgb) * s.a, s.a);
+      // Translucent tissue over nothing leaves its colour multiplied by its opacity.
+      sum += vec4(tone(0.85 * s.rgb / max(s.a, 1e-3)) * s.a, s.a);
     }
   float covered = sum.a / float(samples * samples);
   vec3 linear = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);

@@ -10,6 +10,8 @@ extern const char* const shadowFragment;     ///< depth only
 extern const char* const prepassFragment;    ///< normal and depth, for the occlusion
 extern const char* const surfaceMaterial;    ///< the looks: colour, gloss and bumps of every Appearance
 extern const char* const surfaceFragment;    ///< lighting
+extern const char* const sheetVertex;        ///< transforms a SheetVertex
+extern const char* const sheetFragment;      ///< connective tissue: texture, opacity and lighting
 extern const char* const pictureVertex;      ///< one triangle over the whole picture
 extern const char* const occlusionFragment;  ///< how much of the surroundings a point sees
 extern const char* const blurFragment;       ///< smooths the occlusion within surfaces

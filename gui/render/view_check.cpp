@@ -32,6 +32,31 @@ void checkSurface(const SurfaceView& surface) {
       refuse(fmt::format("surface '{}', triangle {}: names a vertex outside 0 to {}", surface.organ, t, count - 1));
 }
 
+void checkConnective(const ConnectiveView& connective) {
+  const std::size_t strands = connective.strand.size();
+  if (connective.condition.size() != strands || connective.alpha.size() != strands)
+    refuse(
+        fmt::format("connective tissue '{}' has {} strands but {} conditions and {} alphas; give one of each a strand",
+                    connective.name, strands, connective.condition.size(), connective.alpha.size()));
+  for (std::size_t s = 0; s < strands; ++s) {
+    if (!drawable(connective.strand[s][0]) || !drawable(connective.strand[s][1]))
+      refuse(fmt::format(
+          "connective tissue '{}', strand {}: a coordinate is not finite or over 1 km; the step behind it is not valid",
+          connective.name, s));
+    if (connective.condition[s] > StrandCondition::torn)
+      refuse(fmt::format("connective tissue '{}', strand {}: condition {} is none of attached, burned, torn",
+                         connective.name, s, static_cast<int>(connective.condition[s])));
+    if (!(connective.alpha[s] >= 0.0F && connective.alpha[s] <= 1.0F))
+      refuse(fmt::format("connective tissue '{}', strand {}: alpha {}; give one between 0 and 1", connective.name, s,
+                         connective.alpha[s]));
+  }
+  for (std::size_t p = 0; p < connective.sheet.size(); ++p)
+    for (const std::uint32_t s : connective.sheet[p])
+      if (s >= strands)
+        refuse(fmt::format("connective tissue '{}', sheet {}: names strand {}, but there are {}", connective.name, p, s,
+                           strands));
+}
+
 }  // namespace
 
 void checkView(const SceneView& view) {
@@ -48,6 +73,7 @@ void checkView(const SceneView& view) {
                          handNames[static_cast<std::size_t>(h)]));
   }
   for (const SurfaceView& surface : view.surface) checkSurface(surface);
+  for (const ConnectiveView& connective : view.connective) checkConnective(connective);
 }
 
 void checkPictureSize(long long width, long long height) {

@@ -9,6 +9,7 @@
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/json_reader.h"
 #include "recorder/formats/scene_names.h"
+#include "recorder/formats/scene_connective.h"
 #include "recorder/formats/scene_organs.h"
 #include "recorder/formats/scene_rules.h"
 #include "sim/math/floating_point.h"
@@ -101,6 +102,7 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   for (const JsonPlace& organ : object.at("organs").list(1, mostOrgans))
     scene.organs.push_back(readOrgan(organ, fetch));
   checkOrgans(object.at("organs"), scene.organs);
+  if (object.has("connective")) scene.connective = readConnective(object.at("connective"), scene.organs);
 
   if (object.has("solver")) {
     const JsonObject solver = object.at("solver").object(sceneRule("solver"));

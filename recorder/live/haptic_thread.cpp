@@ -56,9 +56,6 @@ void HapticThread::run() {
   } catch (...) {
     fault_ = std::current_exception();
   }
-  report_.missedDeadlines = clock_.missed();
-  report_.largestLateness = seconds(clock_.largestLateness());
-  report_.stretched = seconds(clock_.stretched());
   ::sem_post(&steps_);
 }
 
@@ -88,10 +85,14 @@ void HapticThread::ticks() {
     if (settings_.feedback) settings_.feedback(tick.outcome);
     tick.due = clock_.due(t);
     tick.outcome.lateness = clock_.finish(t, monotonicNow());
-    ++report_.ticks;
     [[maybe_unused]] const bool taken = ring_.push(tick);
     assert(taken);
-    if ((t + 1) % ticksPerStep_ == 0) ::sem_post(&steps_);
+    if ((t + 1) % ticksPerStep_ != 0) continue;
+    report_.ticks = t + 1;
+    report_.missedDeadlines = clock_.missed();
+    report_.largestLateness = seconds(clock_.largestLateness());
+    report_.stretched = seconds(clock_.stretched());
+    ::sem_post(&steps_);
   }
 }
 

@@ -21,7 +21,7 @@
 
 namespace calot::recorder {
 
-/// What the haptic thread saw of itself.
+/// What the haptic thread saw of itself. Ticks, deadlines and stretching are those of whole steps: of what is recorded.
 struct HapticReport {
   Outcome outcome = Outcome::completed;
   bool realTime = false;  ///< the system let it run before all ordinary threads (SCHED_FIFO)

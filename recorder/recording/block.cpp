@@ -38,11 +38,11 @@ struct AppendVisitor {
     for (std::size_t i = 0; i < width; ++i) appendValue(block.column[index], i < values.size() ? values[i] : T{});
     ++index;
   }
-  template <class T>
-  void organs(const char*, const char*, const char*, const std::vector<OrganResult>& organ, T OrganResult::*member) {
-    assert(organ.size() == layout.organs);
-    for (std::size_t i = 0; i < layout.organs; ++i) {
-      appendValue(block.column[index], i < organ.size() ? organ[i].*member : T{});
+  template <class Part, class T>
+  void each(const char*, const char*, const char*, const std::vector<Part>& parts, T Part::*member) {
+    assert(parts.size() == layout.countOf(parts));
+    for (std::size_t i = 0; i < layout.countOf(parts); ++i) {
+      appendValue(block.column[index], i < parts.size() ? parts[i].*member : T{});
     }
     ++index;
   }
@@ -102,18 +102,18 @@ struct ExtractVisitor {
     for (const T& v : values) check(v);
     ++index;
   }
-  template <class T>
-  void organs(const char*, const char*, const char*, std::vector<OrganResult>& organ, T OrganResult::*member) {
-    organ.resize(layout.organs);
-    for (std::size_t i = 0; i < organ.size(); ++i) {
+  template <class Part, class T>
+  void each(const char*, const char*, const char*, std::vector<Part>& parts, T Part::*member) {
+    parts.resize(layout.countOf(parts));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
       const std::byte* place = at() + i * sizeof(T);
       if constexpr (std::is_same_v<T, bool>) {
         const auto byte = std::to_integer<unsigned>(*place);
         if (byte > 1) fail("is neither 0 nor 1");
-        organ[i].*member = byte != 0;
+        parts[i].*member = byte != 0;
       } else {
-        std::memcpy(&(organ[i].*member), place, sizeof(T));
-        check(organ[i].*member);
+        std::memcpy(&(parts[i].*member), place, sizeof(T));
+        check(parts[i].*member);
       }
     }
     ++index;

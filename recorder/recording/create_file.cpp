@@ -159,6 +159,7 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
     builder.group(name);
   }
   if (layout.organs > 0) builder.group("/observables/organs");
+  if (layout.tissues > 0) builder.group("/observables/connective");
   if (layout.deviceSamples) {
     for (const char* name : {"/device", "/device/left", "/device/right"}) builder.group(name);
   }

@@ -60,13 +60,16 @@ struct TitleVisitor {
       title(folder, fmt::format("{}[{}]", name, of), unit);
     }
   }
-  template <class T>
-  void organs(const char* folder, const char* name, const char* unit, const std::vector<OrganResult>&,
-              T OrganResult::*) {
-    for (const std::string& organ : header.organs) title(folder, fmt::format("{}[{}]", name, organ), unit);
+  template <class Part, class T>
+  void each(const char* folder, const char* name, const char* unit, const std::vector<Part>& parts, T Part::*) {
+    for (const std::string& part : namesOf(parts)) title(folder, fmt::format("{}[{}]", name, part), unit);
   }
 
  private:
+  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<OrganResult>&) const { return header.organs; }
+  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<ConnectiveResult>&) const {
+    return connectiveNames(header);
+  }
   void title(const std::string& folder, const std::string& name, const char* unit) {
     CsvTable* table = find(tables, folder);
     if (table == nullptr) {
@@ -104,10 +107,9 @@ struct ValueVisitor {
   void list(const char* folder, const char*, const char*, const std::vector<T>& values, std::size_t) {
     for (const T& v : values) to(folder).put(v);
   }
-  template <class T>
-  void organs(const char* folder, const char*, const char*, const std::vector<OrganResult>& organ,
-              T OrganResult::*member) {
-    for (const OrganResult& o : organ) to(folder).put(o.*member);
+  template <class Part, class T>
+  void each(const char* folder, const char*, const char*, const std::vector<Part>& parts, T Part::*member) {
+    for (const Part& part : parts) to(folder).put(part.*member);
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace calot::recorder {
 
@@ -96,10 +97,9 @@ struct Collect {
   void list(const char* folder, const char* name, const char* unit, const std::vector<T>&, std::size_t width) {
     add<T>(folder, name, unit, true, width);
   }
-  template <class T>
-  void organs(const char* folder, const char* name, const char* unit, const std::vector<OrganResult>&,
-              T OrganResult::*) {
-    add<T>(folder, name, unit, true, layout.organs);
+  template <class Part, class T>
+  void each(const char* folder, const char* name, const char* unit, const std::vector<Part>& parts, T Part::*) {
+    add<T>(folder, name, unit, true, layout.countOf(parts));
   }
 
  private:
@@ -119,10 +119,20 @@ struct Collect {
 
 }  // namespace
 
+std::vector<std::string> connectiveNames(const AttemptHeader& header) {
+  static constexpr std::string_view prefix = "connective.";
+  std::vector<std::string> names;
+  for (const std::string& component : header.layout.components) {
+    if (component.starts_with(prefix)) names.push_back(component.substr(prefix.size()));
+  }
+  return names;
+}
+
 Layout::Layout(const AttemptHeader& header)
     : deviceSamples(header.deviceSamples),
       ticksPerStep(header.ticksPerStep),
       organs(header.organs.size()),
+      tissues(connectiveNames(header).size()),
       components(header.layout.components.size()),
       fields(header.layout.fields.size()),
       resultVersion(header.stepResultVersion) {

@@ -63,11 +63,18 @@ struct Layout {
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;
   std::uint64_t keyframeInterval = 100;  ///< steps
-  std::size_t organs = 0, components = 0, fields = 0;
+  std::size_t organs = 0, tissues = 0, components = 0, fields = 0;
   std::uint32_t resultVersion = 1;  ///< of StepResult: which columns there are
 
   explicit Layout(const AttemptHeader& header);
+
+  /// How many there are of what a step tells something of.
+  [[nodiscard]] std::size_t countOf(const std::vector<OrganResult>&) const { return organs; }
+  [[nodiscard]] std::size_t countOf(const std::vector<ConnectiveResult>&) const { return tissues; }
 };
+
+/// Names of the scene's connective tissues, as the State's components say.
+std::vector<std::string> connectiveNames(const AttemptHeader& header);
 
 /// Lists what one tick stores. A visitor is called with (folder, name, unit, value); `outside` is for what the chain
 /// leaves out.
@@ -109,12 +116,12 @@ void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
     visit.list(folder[h], "organ_force", "N", r.hand[h].organForce, visit.layout.organs);
   }
   static constexpr const char* organs = "/observables/organs";
-  visit.organs(organs, "volume", "m^3", r.organ, &OrganResult::volume);
-  visit.organs(organs, "largest_displacement", "m", r.organ, &OrganResult::largestDisplacement);
-  visit.organs(organs, "largest_speed", "m/s", r.organ, &OrganResult::largestSpeed);
-  visit.organs(organs, "residual", "", r.organ, &OrganResult::residual);
-  visit.organs(organs, "iterations", "", r.organ, &OrganResult::iterations);
-  visit.organs(organs, "asleep", "", r.organ, &OrganResult::asleep);
+  visit.each(organs, "volume", "m^3", r.organ, &OrganResult::volume);
+  visit.each(organs, "largest_displacement", "m", r.organ, &OrganResult::largestDisplacement);
+  visit.each(organs, "largest_speed", "m/s", r.organ, &OrganResult::largestSpeed);
+  visit.each(organs, "residual", "", r.organ, &OrganResult::residual);
+  visit.each(organs, "iterations", "", r.organ, &OrganResult::iterations);
+  visit.each(organs, "asleep", "", r.organ, &OrganResult::asleep);
   static constexpr const char* contact = "/observables/contact";
   visit(contact, "rows", "", r.contact.rows);
   visit(contact, "iterations", "", r.contact.iterations);
@@ -134,6 +141,13 @@ void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
   visit(contact, "violation", "m", r.contact.violation);
   visit(contact, "pinched_depth", "m", r.contact.pinchedDepth);
   visit(contact, "tissue_depth", "m", r.contact.tissueDepth);
+  if (visit.layout.tissues == 0) return;
+  static constexpr const char* connective = "/observables/connective";
+  visit.each(connective, "attached", "", r.connective, &ConnectiveResult::attached);
+  visit.each(connective, "burned", "", r.connective, &ConnectiveResult::burned);
+  visit.each(connective, "torn", "", r.connective, &ConnectiveResult::torn);
+  visit.each(connective, "largest_pull", "Pa", r.connective, &ConnectiveResult::largestPull);
+  visit.each(connective, "hook_touches", "", r.connective, &ConnectiveResult::hookTouches);
 }
 
 }  // namespace calot::recorder

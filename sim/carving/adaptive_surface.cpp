@@ -4,7 +4,7 @@
 #include "sim/carving/adaptive_surface.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 
 #include "sim/carving/carved_surface.h"
 #include "sim/carving/field_sample.h"
@@ -137,7 +137,8 @@ void AdaptiveSurface::makeCell(const CarvedField& field, Part& part, const Index
       split += m[k] >= 0 ? 1 : 0;
     }
     const auto add = [&part](int a, int b, int c) {
-      part.triangle.push_back({static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), static_cast<std::uint8_t>(c)});
+      part.triangle.push_back(
+          {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), static_cast<std::uint8_t>(c)});
     };
     if (split == 0) {
       add(v[0], v[1], v[2]);
@@ -246,14 +247,18 @@ TriangleMesh AdaptiveSurface::mesh() const {
 }
 
 bool AdaptiveSurface::operator==(const AdaptiveSurface& other) const {
-  const auto sameVertex = [](const Vertex& x, const Vertex& y) {
-    return x.key == y.key && std::memcmp(x.position.data(), y.position.data(), 3 * sizeof(double)) == 0 &&
-           std::memcmp(x.normal.data(), y.normal.data(), 3 * sizeof(double)) == 0;
+  const auto sameBits = [](const Vec3& x, const Vec3& y) {
+    bool same = true;
+    for (int k = 0; k < 3; ++k) same = same && std::bit_cast<std::uint64_t>(x[k]) == std::bit_cast<std::uint64_t>(y[k]);
+    return same;
+  };
+  const auto sameVertex = [&sameBits](const Vertex& x, const Vertex& y) {
+    return x.key == y.key && sameBits(x.position, y.position) && sameBits(x.normal, y.normal);
   };
   return part_.size() == other.part_.size() &&
          std::equal(part_.begin(), part_.end(), other.part_.begin(), [&](const Part& x, const Part& y) {
-           return x.triangle == y.triangle && std::equal(x.vertex.begin(), x.vertex.end(), y.vertex.begin(),
-                                                         y.vertex.end(), sameVertex);
+           return x.triangle == y.triangle &&
+                  std::equal(x.vertex.begin(), x.vertex.end(), y.vertex.begin(), y.vertex.end(), sameVertex);
          });
 }
 

@@ -29,9 +29,9 @@ class AdaptiveSurface {
   static constexpr double tolerance = 0.2;  ///< cells
 
   struct Vertex {
-    std::uint64_t key = 0;          ///< v << 32 | v on lattice edge v; v << 32 | w, v < w, in the middle of side v-w
-    Vec3 position = Vec3::Zero();   ///< m, in rest space
-    Vec3 normal = Vec3::Zero();     ///< outward along the field's gradient, unit; zero where there is none
+    std::uint64_t key = 0;         ///< v << 32 | v on lattice edge v; v << 32 | w, v < w, in the middle of side v-w
+    Vec3 position = Vec3::Zero();  ///< m, in rest space
+    Vec3 normal = Vec3::Zero();    ///< outward along the field's gradient, unit; zero where there is none
   };
   struct Part {
     std::vector<Vertex> vertex;

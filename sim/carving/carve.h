@@ -46,9 +46,9 @@ inline constexpr double carveDepth = 2.0;
 /// The box of nodes within bounds given in rest space (m), for tissue at rest.
 [[nodiscard]] NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds);
 
-/// phi = max(phi, the potential of the tool's swept capsules) at all nodes of the boxes where that potential is at least
-/// -depth (toolPotential()). Every node is on its own: neither the order of boxes nor how nodes are dealt into them
-/// matters. Between CarvedField::begin() and commit(). Allocates nothing.
+/// phi = max(phi, the potential of the tool's swept capsules) at all nodes of the boxes where that potential is at
+/// least -depth (toolPotential()). Every node is on its own: neither the order of boxes nor how nodes are dealt into
+/// them matters. Between CarvedField::begin() and commit(). Allocates nothing.
 /// @param tool capsules in W
 /// @param boxes within the lattice; a node in two of them is carved by both
 /// @param depth m; more than a cell, at most the field's band; carveDepth cells are enough for all that is made of it

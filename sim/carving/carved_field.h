@@ -20,7 +20,8 @@ struct FieldModel {
   double band = 0.0;          ///< m
   std::vector<double> value;  ///< m, by BrickLattice::node()
 
-  /// Why it cannot be carved: sizes, values that are not finite or beyond the band, inside on the border. Empty: it can.
+  /// Why it cannot be carved: sizes, values that are not finite or beyond the band, inside on the border. Empty: it
+  /// can.
   [[nodiscard]] std::string fault() const;
 };
 

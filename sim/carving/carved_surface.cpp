@@ -177,8 +177,8 @@ void CarvedSurface::makeBlock(std::uint32_t brick, std::uint32_t octant) {
                                         signs_[z + 1][y + 1] & mask};
       if ((row[0] | row[1] | row[2] | row[3]) == 0 || (row[0] & row[1] & row[2] & row[3]) == mask) continue;
       for (std::uint32_t x = x0; x < x0 + 4; ++x) {
-        const unsigned inside = (row[0] >> x & 3U) | (row[1] >> x & 3U) << 2U | (row[2] >> x & 3U) << 4U |
-                                (row[3] >> x & 3U) << 6U;
+        const unsigned inside =
+            (row[0] >> x & 3U) | (row[1] >> x & 3U) << 2U | (row[2] >> x & 3U) << 4U | (row[3] >> x & 3U) << 6U;
         if (inside != 0 && inside != 0xFF) addCell(block, inside, {x, y, z});
       }
     }

@@ -106,10 +106,10 @@ class CarvedSurface {
   std::vector<std::uint32_t> changedBlock_;
   std::vector<std::uint32_t> brick_;
   // Of the brick at hand.
-  Signs signs_{};                                           ///< [z][y], bit x
+  Signs signs_{};                                            ///< [z][y], bit x
   std::array<std::array<std::uint32_t, rows>, 3> offset_{};  ///< index of a node: a sum over its coordinates
-  std::vector<std::uint8_t> local_;                         ///< of a lattice edge in the open patch, plus one
-  std::vector<std::uint16_t> used_;                         ///< which of these are set
+  std::vector<std::uint8_t> local_;                          ///< of a lattice edge in the open patch, plus one
+  std::vector<std::uint16_t> used_;                          ///< which of these are set
   std::size_t triangles_ = 0;
   std::size_t patches_ = 0;
   std::size_t growths_ = 0;

@@ -119,7 +119,7 @@ void findAcross(CubeCase& c) {
         }
       }
       assert(found != never);
-      c.across[t][k] = static_cast<std::int8_t>(found);
+      c.across[t][k] = static_cast<std::int16_t>(found);
     }
   }
 }

@@ -16,7 +16,7 @@ struct CubeCase {
   std::array<std::array<std::uint8_t, 3>, most> edge{};  ///< which edges a triangle's corners cut; outward
   /// Side k of triangle t, from corner k to k + 1: the triangle of this cell across it, or -1 - f where the side lies
   /// on face f and the triangle across it is the next cell's.
-  std::array<std::array<std::int8_t, 3>, most> across{};
+  std::array<std::array<std::int16_t, 3>, most> across{};
 };
 
 /// Marching cubes (Lorensen and Cline 1987) with loops traced over the faces of the cell instead of a table from

@@ -10,9 +10,9 @@
 
 namespace calot {
 
-/// Coarse hexahedra of k^3 lattice cells: hexahedron h spans cells k h to k h + k - 1 along each axis. A node belongs to
-/// exactly one: along each axis to number min(n / k, last), so that of k + 1 nodes the last is its neighbour's, but for
-/// the last hexahedron. The fill is the integer count of inside nodes, a function of the field alone; k^3 is full.
+/// Coarse hexahedra of k^3 lattice cells: hexahedron h spans cells k h to k h + k - 1 along each axis. A node belongs
+/// to exactly one: along each axis to number min(n / k, last), so that of k + 1 nodes the last is its neighbour's, but
+/// for the last hexahedron. The fill is the integer count of inside nodes, a function of the field alone; k^3 is full.
 ///
 /// Follows from the field; never saved. Allocates in its constructor only.
 class Fill {
@@ -27,9 +27,7 @@ class Fill {
   [[nodiscard]] std::uint32_t hexahedron(const Index3& h) const {
     return static_cast<std::uint32_t>(h[0] + size_[0] * (h[1] + size_[1] * h[2]));
   }
-  [[nodiscard]] Index3 hexahedronOfNode(const Index3& node) const {
-    return (node.array() / k_).min(size_.array() - 1);
-  }
+  [[nodiscard]] Index3 hexahedronOfNode(const Index3& node) const { return (node.array() / k_).min(size_.array() - 1); }
   /// Nodes that belong to a hexahedron: lower <= n < upper.
   [[nodiscard]] Index3 lower(const Index3& h) const { return k_ * h; }
   [[nodiscard]] Index3 upper(const Index3& h) const {

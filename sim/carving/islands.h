@@ -47,10 +47,10 @@ class Islands {
   std::vector<std::pair<std::uint32_t, BrickBits>> anchor_;
   std::vector<std::int32_t> anchorOf_;  ///< of a brick, into anchor_; -1: none
   std::vector<std::uint8_t> held_;      ///< does a brick have an inside anchor?
-  std::vector<std::uint16_t> count_;  ///< components of each brick
-  std::vector<std::uint8_t> link_;    ///< bit a: whole bricks hang together with the next along axis a
-  std::vector<std::uint8_t> label_;   ///< of each node, where its brick has several components
-  std::vector<std::uint32_t> base_;   ///< number of a brick's first component
+  std::vector<std::uint16_t> count_;    ///< components of each brick
+  std::vector<std::uint8_t> link_;      ///< bit a: whole bricks hang together with the next along axis a
+  std::vector<std::uint8_t> label_;     ///< of each node, where its brick has several components
+  std::vector<std::uint32_t> base_;     ///< number of a brick's first component
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint8_t> anchored_;
   std::vector<std::uint32_t> work_;

@@ -47,7 +47,8 @@ std::uint32_t SurfaceAdjacency::across(std::uint32_t triangle, std::size_t k) co
   if (across >= 0) return 8 * cell + static_cast<std::uint32_t>(across);
   const auto face = static_cast<unsigned>(-1 - across);
   const int axis = static_cast<int>(face / 2);
-  const std::uint32_t beyond = (face & 1U) != 0 ? field_.lattice().next(cell, axis) : field_.lattice().previous(cell, axis);
+  const std::uint32_t beyond =
+      (face & 1U) != 0 ? field_.lattice().next(cell, axis) : field_.lattice().previous(cell, axis);
   const unsigned from = edgeFromBeyond(here.edge[t][k], face);
   const unsigned to = edgeFromBeyond(here.edge[t][(k + 1) % 3], face);
   const CubeCase& there = table_[caseOf(beyond)];

@@ -53,7 +53,8 @@ CALOT_INLINE void offerFace(Nearest& best, const V& a, const V& b, const V& c) {
   const double wa = dot(n, cross(b, c));
   const double wb = dot(n, cross(c, a));
   // A sliver's normal is noise; its sides are enough.
-  const bool inside = bool(int(wa > 0.0) & int(wb > 0.0) & int(wc > 0.0) & int(area2 > 1e-20 * (dot(ab, ab) * dot(ac, ac))));
+  const bool inside =
+      bool(int(wa > 0.0) & int(wb > 0.0) & int(wc > 0.0) & int(area2 > 1e-20 * (dot(ab, ab) * dot(ac, ac))));
   const double height = dot(a, n) / (inside ? area2 : 1.0);
   const V p{height * n.x, height * n.y, height * n.z};
   offer(best, dot(p, p), p, inside);
@@ -87,8 +88,8 @@ CALOT_LANE_KERNEL int anyNear(const SweptCapsule& c, const NodeLanes& n, double 
     for (int k = 0; k < 3; ++k) {
       row = most(row, magnitude(n.gradient[3 * k][i]) + magnitude(n.gradient[3 * k + 1][i]) +
                           magnitude(n.gradient[3 * k + 2][i]));
-      column = most(column, magnitude(n.gradient[k][i]) + magnitude(n.gradient[k + 3][i]) +
-                                magnitude(n.gradient[k + 6][i]));
+      column =
+          most(column, magnitude(n.gradient[k][i]) + magnitude(n.gradient[k + 3][i]) + magnitude(n.gradient[k + 6][i]));
     }
     const double limit = c.radius + reach * std::sqrt(row * column);
     near[i] = limit * limit - distance2;

@@ -24,11 +24,19 @@ Stretch stretchOf(const Strand& strand, const Vec3& a, const Vec3& b) {
   return {way / length, length};
 }
 
-/// Squared distance between a segment and the quadrilateral that the hook's axis sweeps.
-double squaredDistance(const Vec3& p, const Vec3& q, const HookSweep& hook) {
-  const double first = closestSegmentTriangle(p, q, hook.before[0], hook.before[1], hook.now[1]).squaredDistance;
-  const double second = closestSegmentTriangle(p, q, hook.before[0], hook.now[1], hook.now[0]).squaredDistance;
-  return std::min(first, second);
+/// Does a segment come within `limit` of the quadrilateral that the part's axis sweeps?
+bool within(const Vec3& p, const Vec3& q, const HookSweep& part, double limit) {
+  Box reach;
+  for (const Vec3& x : part.before) reach.include(x);
+  for (const Vec3& x : part.now) reach.include(x);
+  reach.grow(limit);
+  Box box;
+  box.include(p);
+  box.include(q);
+  if (!box.overlaps(reach)) return false;
+  const double first = closestSegmentTriangle(p, q, part.before[0], part.before[1], part.now[1]).squaredDistance;
+  const double second = closestSegmentTriangle(p, q, part.before[0], part.now[1], part.now[0]).squaredDistance;
+  return std::min(first, second) <= limit * limit;
 }
 
 }  // namespace
@@ -99,38 +107,21 @@ double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state,
 }
 
 std::size_t burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
-                        std::span<const Vec3> positionB, const HookSweep& hook, double step,
+                        std::span<const Vec3> positionB, std::span<const HookSweep> hook, double step,
                         std::vector<std::uint32_t>& burned) {
   const ConnectiveMaterial& m = tissue.material();
-  Box reach;
-  for (const Vec3& p : hook.before) reach.include(p);
-  for (const Vec3& p : hook.now) reach.include(p);
-  reach.grow(hook.radius);
   std::size_t touched = 0;
   for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
     if (state.condition[s] == StrandCondition::burned) continue;
     const Strand& strand = tissue.strands()[s];
     const Vec3 a = strand.a.of(positionA);
     const Vec3 b = strand.b.of(positionB);
-    const double limit = hook.radius * hook.radius;
-    bool touches = false;
-    if (state.condition[s] == StrandCondition::attached) {
-      Box box;
-      box.include(a);
-      box.include(b);
-      touches = box.overlaps(reach) && squaredDistance(a, b, hook) <= limit;
-    } else {
-      const double stump = std::max(0.5 * strand.restLength, hook.radius);
-      Box boxA;
-      boxA.include(a);
-      boxA.grow(stump);
-      Box boxB;
-      boxB.include(b);
-      boxB.grow(stump);
-      const double far = (hook.radius + stump) * (hook.radius + stump);
-      touches = (boxA.overlaps(reach) && squaredDistance(a, a, hook) <= far) ||
-                (boxB.overlaps(reach) && squaredDistance(b, b, hook) <= far);
-    }
+    const bool attached = state.condition[s] == StrandCondition::attached;
+    const bool touches = std::any_of(hook.begin(), hook.end(), [&](const HookSweep& part) {
+      if (attached) return within(a, b, part, part.radius);
+      const double stump = part.radius + std::max(0.5 * strand.restLength, part.radius);
+      return within(a, a, part, stump) || within(b, b, part, stump);
+    });
     if (!touches) continue;
     ++touched;
     state.alpha[s] -= step / m.fadeTime * (1.0 - m.goneBelow);
@@ -146,7 +137,7 @@ ConnectiveShares sharesOf(const ConnectiveTissue& tissue, const ConnectiveState&
   ConnectiveShares shares;
   if (!(tissue.area() > 0.0)) return shares;
   for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
-    const double share = tissue.strands()[s].area / tissue.area();
+    const double share = tissue.strands()[s].area;
     switch (state.condition[s]) {
       case StrandCondition::attached:
         shares.attached += share;
@@ -159,6 +150,10 @@ ConnectiveShares sharesOf(const ConnectiveTissue& tissue, const ConnectiveState&
         break;
     }
   }
+  // All of one kind is 1 to the bit: the sums run in the order of the area's.
+  shares.attached /= tissue.area();
+  shares.burned /= tissue.area();
+  shares.torn /= tissue.area();
   return shares;
 }
 

@@ -99,18 +99,18 @@ double strandTension(const ConnectiveTissue& tissue, const ConnectiveState& stat
 double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
                          std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn);
 
-/// The energised hook's tip as a capsule that moves from one place to another during a step.
+/// A part of the energised hook: a capsule that moves from one place to another during a step.
 struct HookSweep {
   std::array<Vec3, 2> before{Vec3::Zero(), Vec3::Zero()};  ///< ends of its axis at the step's beginning (m)
   std::array<Vec3, 2> now{Vec3::Zero(), Vec3::Zero()};     ///< and at its end
   double radius = 0.0;                                     ///< m
 };
 
-/// Fades what the hook touches during a step: attached strands along their length, the stumps of torn ones at their
-/// organs (half of the rest length, at least `radius`). Indices of strands that this burned through are appended,
-/// ascending. @return how many strands it touched
+/// Fades what any part of the hook touches during a step: attached strands along their length, the stumps of torn ones
+/// at their organs (half of the rest length, at least `radius`). Indices of strands that this burned through are
+/// appended, ascending. @return how many strands it touched
 std::size_t burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
-                        std::span<const Vec3> positionB, const HookSweep& hook, double step,
+                        std::span<const Vec3> positionB, std::span<const HookSweep> hook, double step,
                         std::vector<std::uint32_t>& burned);
 
 /// Shares of the bed's area.

@@ -21,9 +21,9 @@ namespace calot {
 /// The cell of a node is the cube whose lowest corner it is.
 class BrickLattice {
  public:
-  static constexpr int side = 8;           ///< nodes along a brick
-  static constexpr int brickNodes = 512;   ///< side^3
-  static constexpr int mostNodes = 1 << 9; ///< along an axis: every index used below fits 32 bits
+  static constexpr int side = 8;            ///< nodes along a brick
+  static constexpr int brickNodes = 512;    ///< side^3
+  static constexpr int mostNodes = 1 << 9;  ///< along an axis: every index used below fits 32 bits
 
   BrickLattice() = default;
   /// @param origin node (0, 0, 0) (m) @param cell distance of neighbours (m) @param nodes along each axis

@@ -75,15 +75,20 @@ class Transform {
     const double height = face.normal.dot(*p[0]);
     scan.add(face.normal, height - band_);
     scan.add(-face.normal, -height - band_);
-    for (std::size_t k = 0; k < 3; ++k) scan.add(face.inward[k], *p[k]);
+    std::array<double, 3> border{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      border[k] = face.inward[k].dot(*p[k]);
+      scan.add(face.inward[k], border[k]);
+    }
     scan.run(box, [&](const Index3& n) {
       const Vec3 x = point(n);
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (face.inward[k].dot(x - *p[k]) < 0.0) return;
-      }
-      const double d = face.normal.dot(x - *p[0]);
+      const double d = face.normal.dot(x) - height;
       double& value = at(n);
-      if (std::abs(d) < std::abs(value)) value = d;
+      if (!(std::abs(d) < std::abs(value))) return;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (face.inward[k].dot(x) < border[k]) return;
+      }
+      value = d;
     });
   }
 
@@ -224,15 +229,15 @@ class Transform {
   std::vector<Vec3> ray_;
 };
 
-std::string fault(const std::vector<Vec3>& vertex, const TriangleMesh& mesh, const BrickLattice& lattice,
-                  double band) {
+std::string fault(const std::vector<Vec3>& vertex, const TriangleMesh& mesh, const BrickLattice& lattice, double band) {
   if (mesh.triangle.empty()) return "the surface has no triangles";
   if (!(band > 1.0)) return "the band must be wider than one cell";
   const Vec3 last = (lattice.nodes().array() - 1).cast<double>();
   for (std::size_t v = 0; v < vertex.size(); ++v) {
     if (!vertex[v].allFinite()) return "vertex " + std::to_string(v) + " is not finite";
     if ((vertex[v].array() < 1.0).any() || (vertex[v].array() > last.array() - 1.0).any()) {
-      return "vertex " + std::to_string(v) + " is less than a cell from the lattice's border: a wider lattice is needed";
+      return "vertex " + std::to_string(v) +
+             " is less than a cell from the lattice's border: a wider lattice is needed";
     }
   }
   return {};

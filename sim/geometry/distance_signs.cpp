@@ -11,17 +11,21 @@ namespace {
 
 constexpr double tolerance = 1e-9;  // cells
 
-/// Signs along one row of a brick's length. @return false at a contradiction
-bool spreadRow(double* row, int count, double band, bool& inside) {
+/// Signs along one row of a brick; unknown values (the band) are like their neighbour. @return the row's signs as bits
+unsigned spreadRow(double* row, int count, double band, bool& inside) {
+  bool known = false;
+  for (int x = 0; x < 8; ++x) known |= row[x] != band;
+  if (!known && !inside) return 0;
+  unsigned bits = 0;
   for (int x = 0; x < count; ++x) {
-    const double value = row[x];
-    if (value == band) {  // unknown: like its neighbour
-      if (inside) row[x] = -band;
-      continue;
+    if (row[x] != band) {
+      inside = row[x] < 0.0;
+    } else if (inside) {
+      row[x] = -band;
     }
-    inside = value < 0.0;
+    bits |= static_cast<unsigned>(row[x] < 0.0) << static_cast<unsigned>(x);
   }
-  return true;
+  return bits;
 }
 
 /// Neighbours of unlike sign a surface apart?
@@ -36,25 +40,30 @@ bool spreadSigns(const BrickLattice& lattice, double band, std::vector<double>& 
   // Signs of a row of a brick as a byte, so that rows can be compared whole.
   const std::size_t rows = lattice.storage() / 8;
   std::vector<std::uint8_t> sign(rows, 0);
-  for (int z = 0; z < nodes[2]; ++z) {
-    for (int y = 0; y < nodes[1]; ++y) {
-      bool inside = false;
-      std::uint32_t at = lattice.node({0, y, z});
-      for (int bx = 0; bx < bricks[0]; ++bx, at += brickNodes) {
-        double* row = value.data() + at;
-        const bool before = inside;
-        spreadRow(row, std::min(8, nodes[0] - 8 * bx), band, inside);
-        unsigned bits = 0;
-        for (unsigned x = 0; x < 8; ++x) bits |= static_cast<unsigned>(row[x] < 0.0) << x;
-        sign[at / 8] = static_cast<std::uint8_t>(bits);
-        const unsigned change = bits ^ ((bits << 1U) | static_cast<unsigned>(before));
-        for (unsigned x = 0; x < 8; ++x) {
+  // Brick by brick, as it lies in memory, with the state of the 64 rows that run through a line of bricks.
+  for (int line = 0; line < bricks[1] * bricks[2]; ++line) {
+    const int by = line % bricks[1];
+    const int bz = line / bricks[1];
+    std::array<bool, 64> inside{};
+    for (int bx = 0; bx < bricks[0]; ++bx) {
+      double* brick = value.data() + std::size_t{lattice.brick({bx, by, bz})} * brickNodes;
+      const int count = std::min(8, nodes[0] - 8 * bx);
+      for (int i = 0; i < 64; ++i) {
+        if (8 * by + (i & 7) >= nodes[1] || 8 * bz + (i >> 3) >= nodes[2]) continue;
+        double* row = brick + 8 * i;
+        const bool before = inside[slot(i)];
+        const unsigned bits = spreadRow(row, count, band, inside[slot(i)]);
+        sign[slot(static_cast<int>((row - value.data()) / 8))] = static_cast<std::uint8_t>(bits);
+        const unsigned change = (bits ^ ((bits << 1U) | static_cast<unsigned>(before))) & 0xFFU;
+        for (unsigned x = 0; x < 8 && change >> x != 0; ++x) {
           if ((change >> x & 1U) == 0) continue;
           const double left = x > 0 ? row[x - 1] : (bx > 0 ? (row - brickNodes)[7] : band);
           if (!agree(left, row[x])) return false;
         }
       }
-      if (inside) return false;  // the border is outside
+    }
+    for (const bool in : inside) {
+      if (in) return false;  // the border is outside
     }
   }
   // Across rows.

@@ -15,8 +15,8 @@ namespace calot {
 class SurfaceFeatures {
  public:
   struct Face {
-    Vec3 normal = Vec3::Zero();     ///< unit, outward; zero for a sliver (sine of its angle below 1e-10)
-    std::array<Vec3, 3> inward{};   ///< unit, in the plane, across edge k to the inside; zero for a sliver
+    Vec3 normal = Vec3::Zero();    ///< unit, outward; zero for a sliver (sine of its angle below 1e-10)
+    std::array<Vec3, 3> inward{};  ///< unit, in the plane, across edge k to the inside; zero for a sliver
     [[nodiscard]] bool flat() const { return normal.squaredNorm() > 0.5; }
   };
   struct Edge {

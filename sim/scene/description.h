@@ -81,6 +81,32 @@ struct OrganDescription {
   }
 };
 
+/// Connective tissue over the bed where one organ lies on another (sim/connective/connective_bed.h).
+struct ConnectiveDescription {
+  std::string name;
+  std::string first;            ///< organ whose surface the bed is part of
+  std::string second;           ///< organ that it lies on
+  double reach = 0.004;         ///< triangles of the first organ no farther from the second are the bed (m)
+  std::uint32_t strands = 200;  ///< at least so many
+  double stiffness = 2e5;       ///< of a unit area of bed (N/m^3)
+  double damping = 2e3;         ///< (N s/m^3)
+  double strength = 4e3;        ///< pull per area at which it tears (Pa)
+  double fadeTime = 0.4;        ///< in which the energised hook burns a strand through (s)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name);
+    visit("first", self.first);
+    visit("second", self.second);
+    visit("reach", self.reach);
+    visit("strands", self.strands);
+    visit("stiffness", self.stiffness);
+    visit("damping", self.damping);
+    visit("strength", self.strength);
+    visit("fadeTime", self.fadeTime);
+  }
+};
+
 /// Where a hand's instrument enters, and how it is coupled.
 struct HandDescription {
   Vec3 port = Vec3::Zero();  ///< p_WP, the trocar's pivot (m)
@@ -137,6 +163,7 @@ struct SceneDescription {
   double timeLimit = 0.0;           ///< s; 0: none
   std::array<Vec3, 2> workspace{Vec3::Constant(-0.5), Vec3::Constant(0.5)};  ///< lower and upper corner for tips (m)
   std::vector<OrganDescription> organs;
+  std::vector<ConnectiveDescription> connective;
   std::array<HandDescription, handCount> hands;
   CameraSample camera;               ///< at the start
   double verticalFieldOfView = 1.0;  ///< rad
@@ -152,6 +179,7 @@ struct SceneDescription {
     visit("timeLimit", self.timeLimit);
     visit("workspace", self.workspace);
     visit("organs", self.organs);
+    visit("connective", self.connective);
     visit("hands", self.hands);
     visit("cameraPosition", self.camera.position);
     visit("cameraOrientation", self.camera.orientation);

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "sim/connective/connective_bed.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/math/floating_point.h"
 #include "sim/scene/state.h"
@@ -93,10 +94,49 @@ Model::Built Model::build(SceneDescription scene) {
   for (std::size_t o = 0; o < organs.size(); ++o) {
     model->tissuePairs_.push_back({o, o, std::nullopt});
   }
-  model->layout_ = digestLayout(names);
+  std::vector<std::string> tissues;
+  for (const ConnectiveDescription& description : scene.connective) {
+    built.error = model->addConnective(scene, description);
+    if (!built.error.empty()) return built;
+    tissues.push_back(description.name);
+  }
+  model->layout_ = digestLayout(names, tissues);
   model->scene_ = std::move(scene);
   built.model = std::move(model);
   return built;
+}
+
+/// @return what is wrong with it, or nothing
+std::string Model::addConnective(const SceneDescription& scene, const ConnectiveDescription& description) {
+  const auto index = [&](const std::string& name) {
+    std::size_t o = 0;
+    while (o < organs_.size() && organs_[o].name != name) ++o;
+    return o;
+  };
+  const std::string what = "connective tissue '" + description.name + "': ";
+  const std::size_t a = index(description.first);
+  const std::size_t b = index(description.second);
+  for (const auto& [organ, name] : {std::pair{a, description.first}, std::pair{b, description.second}}) {
+    if (organ == organs_.size()) return what + "the scene has no organ '" + name + "'";
+  }
+  if (a == b) return what + "joins organ '" + description.first + "' to itself";
+  const auto meshOf = [&](std::size_t o) {
+    return TetrahedralMesh{organs_[o].solid.rest(), organs_[o].solid.tetrahedra()};
+  };
+  const TriangleMesh skinA = triangleMesh(scene.organs[a].surface);
+  const TriangleMesh skinB = triangleMesh(scene.organs[b].surface);
+  const TetrahedralMesh meshA = meshOf(a);
+  const TetrahedralMesh meshB = meshOf(b);
+  ConnectiveBed bed = makeBed({skinA, meshA}, {skinB, meshB}, description.reach, description.strands);
+  if (!bed.ok()) return what + bed.error;
+  ConnectiveMaterial material;
+  material.stiffness = description.stiffness;
+  material.damping = description.damping;
+  material.strength = description.strength;
+  material.fadeTime = description.fadeTime;
+  connective_.push_back(
+      {description.name, a, b, ConnectiveTissue(std::move(bed.strands), std::move(bed.sheets), material)});
+  return {};
 }
 
 }  // namespace calot

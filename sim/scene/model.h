@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/connective/connective_tissue.h"
 #include "sim/contact/surface_patches.h"
 #include "sim/contact/surface_surface.h"
 #include "sim/geometry/embedding.h"
@@ -37,6 +38,14 @@ struct TissuePair {
   std::optional<SurfacePair> rest;
 };
 
+/// Connective tissue between organs `a` and `b`.
+struct ConnectiveModel {
+  std::string name;
+  std::size_t a = 0;
+  std::size_t b = 0;
+  ConnectiveTissue tissue;
+};
+
 /// Everything that is built from the scene and never changes afterwards: a pure function of the description.
 class Model {
  public:
@@ -51,14 +60,17 @@ class Model {
   [[nodiscard]] const std::vector<OrganModel>& organs() const { return organs_; }
   /// Every ordered pair of organs, then each organ with itself.
   [[nodiscard]] const std::vector<TissuePair>& tissuePairs() const { return tissuePairs_; }
+  [[nodiscard]] const std::vector<ConnectiveModel>& connective() const { return connective_; }
   [[nodiscard]] const DigestLayout& layout() const { return layout_; }
   [[nodiscard]] double stepSeconds() const { return tickLength * scene_.ticksPerStep; }
 
  private:
   Model() = default;
+  std::string addConnective(const SceneDescription& scene, const ConnectiveDescription& description);
   SceneDescription scene_;
   std::vector<OrganModel> organs_;
   std::vector<TissuePair> tissuePairs_;
+  std::vector<ConnectiveModel> connective_;
   DigestLayout layout_;
 };
 

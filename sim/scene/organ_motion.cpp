@@ -34,6 +34,7 @@ void Stepper::Workspace::wake(State& state) {
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     moved[o] = !(model.scene().solver.sleeping && state.organ[o].quietSteps >= quietSteps);
   }
+  wakeJoined(state);
 }
 
 /// Free motion of all organs that are awake, under the contact forces that the last step left.
@@ -46,8 +47,9 @@ void Stepper::Workspace::moveFreely(State& state) {
     if (out.asleep) continue;
     nodal[o].clear();
     addForces(o, carried, 1.0, nodal[o]);
+    gatherAttachments(state, o);
     const SolveReport report = solver[o].freeMotion(model.organs()[o].solid, state.organ[o], model.scene().gravity,
-                                                    nodal[o], settings, executor);
+                                                    nodal[o], settings, executor, {attachments, {}});
     out.residual = report.residual;
     out.iterations = report.iterations;
     if (!report.converged) {

@@ -21,6 +21,19 @@ SceneView viewOf(const Model& model, const State& state) {
     surface.triangle = organ.surface.triangles();
     view.surface.push_back(std::move(surface));
   }
+  for (std::size_t c = 0; c < model.connective().size(); ++c) {
+    const ConnectiveModel& tie = model.connective()[c];
+    const ConnectiveState& tissue = state.connective[c];
+    ConnectiveView connective;
+    connective.name = tie.name;
+    connective.condition = tissue.condition;
+    connective.sheet = tie.tissue.sheets();
+    for (const Strand& strand : tie.tissue.strands()) {
+      connective.strand.push_back({strand.a.of(state.organ[tie.a].position), strand.b.of(state.organ[tie.b].position)});
+    }
+    for (const double alpha : tissue.alpha) connective.alpha.push_back(static_cast<float>(alpha));
+    view.connective.push_back(std::move(connective));
+  }
   for (std::size_t h = 0; h < handCount; ++h) {
     InstrumentView& instrument = view.instrument[h];
     const HandDescription& description = model.scene().hands[h];

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/connective/connective_tissue.h"
 #include "sim/scene/samples.h"
 #include "sim/scene/step_result.h"
 
@@ -18,6 +19,15 @@ struct SurfaceView {
   std::vector<Vec3> position;    ///< deformed vertices (m)
   std::vector<Vec3> rest;        ///< the same vertices at rest, for textures that stick to the tissue
   std::vector<Index3> triangle;  ///< outward (counter-clockwise from outside)
+};
+
+/// Connective tissue between two organs, in W: strands, and sheets between neighbouring strands.
+struct ConnectiveView {
+  std::string name;                                 ///< in the scene: "bed"
+  std::vector<std::array<Vec3, 2>> strand;          ///< ends on the first and on the second organ (m)
+  std::vector<StrandCondition> condition;           ///< per strand
+  std::vector<float> alpha;                         ///< per strand: 1 intact, falling while the hook burns it
+  std::vector<std::array<std::uint32_t, 2>> sheet;  ///< pairs of strands that a sheet joins while both are attached
 };
 
 struct InstrumentView {
@@ -33,6 +43,7 @@ struct SceneView {
   std::uint64_t step = 0;
   double time = 0.0;  ///< since the attempt's start (s)
   std::vector<SurfaceView> surface;
+  std::vector<ConnectiveView> connective;
   std::array<InstrumentView, handCount> instrument;
   CameraSample camera;
   double verticalFieldOfView = 1.0;  ///< rad

@@ -108,15 +108,19 @@ State initialState(const Model& model, std::uint64_t seed) {
     state.organ.push_back(restState(organ.solid));
     if (!scene.gravity.isZero(0.0)) state.organ.back().quietSteps = 0;
   }
+  for (const ConnectiveModel& connective : model.connective())
+    state.connective.push_back(intactState(connective.tissue));
   return state;
 }
 
-DigestLayout digestLayout(const std::vector<std::string>& organNames) {
+DigestLayout digestLayout(const std::vector<std::string>& organNames, const std::vector<std::string>& connectiveNames) {
   DigestLayout layout;
   layout.components = {"clock", "camera", "hand.left", "hand.right", "tissue"};
   for (const std::string& name : organNames) layout.components.push_back("organ." + name);
+  for (const std::string& name : connectiveNames) layout.components.push_back("connective." + name);
   State state;
   state.organ.resize(organNames.size());
+  state.connective.resize(connectiveNames.size());
   std::uint32_t component = 0;
   State::components(state, [&](const auto& part) {
     NameVisitor visitor{layout, component++};
@@ -160,6 +164,7 @@ std::vector<std::byte> saveState(const State& state) {
 bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state) {
   State read;
   read.organ.resize(model.organs().size());
+  read.connective.resize(model.connective().size());
   ByteReader reader(bytes);
   State::components(read, [&](auto& part) { reader.read(part); });
   if (!reader.complete()) return false;
@@ -186,6 +191,15 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     const SolidModel& solid = model.organs()[o].solid;
     if (read.organ[o].position.size() != solid.nodes() || read.organ[o].velocity.size() != solid.nodes()) return false;
     if (read.organ[o].rotation.size() != solid.groups()) return false;
+  }
+  for (std::size_t c = 0; c < read.connective.size(); ++c) {
+    const ConnectiveState& connective = read.connective[c];
+    const std::size_t strands = model.connective()[c].tissue.strands().size();
+    if (connective.condition.size() != strands || connective.alpha.size() != strands) return false;
+    for (std::size_t s = 0; s < strands; ++s) {
+      if (connective.condition[s] > StrandCondition::torn) return false;
+      if (!(connective.alpha[s] >= 0.0) || connective.alpha[s] > 1.0) return false;
+    }
   }
   state = std::move(read);
   return true;

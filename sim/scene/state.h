@@ -124,6 +124,7 @@ struct State {
   std::array<HandState, handCount> hand;
   TissueContactState tissue;
   std::vector<SolidState> organ;
+  std::vector<ConnectiveState> connective;
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
   template <class Self, class Visit>
@@ -133,6 +134,7 @@ struct State {
     for (auto& h : self.hand) visit(h);
     visit(self.tissue);
     for (auto& o : self.organ) visit(o);
+    for (auto& c : self.connective) visit(c);
   }
 };
 
@@ -140,7 +142,7 @@ struct State {
 State initialState(const Model& model, std::uint64_t seed);
 
 /// Names of components and fields of a model's State.
-DigestLayout digestLayout(const std::vector<std::string>& organNames);
+DigestLayout digestLayout(const std::vector<std::string>& organNames, const std::vector<std::string>& connectiveNames);
 
 /// Hashes every field of every component.
 StateDigest digestOf(const State& state);
@@ -162,7 +164,8 @@ class IncrementalDigest {
 std::vector<std::byte> saveState(const State& state);
 
 /// Takes bytes of saveState(). @returns false, leaving `state` as it was, when they are not a State of this model
-/// (missing or surplus bytes, other numbers of organs, nodes or elements, numbers that are not finite or above 1e6).
+/// (missing or surplus bytes, other numbers of organs, nodes, elements or strands, numbers that are not finite or above
+/// 1e6).
 bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state);
 
 }  // namespace calot

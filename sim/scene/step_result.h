@@ -25,6 +25,9 @@ enum class EventKind : std::uint16_t {
   graspEnd = 10,           ///< tissue let go; subject: organ index; value: how long it was held (s)
   graspSlip = 11,          ///< held tissue begins to slip; subject: organ index; value: pull (N)
   tissueTear = 12,         ///< held tissue tore out of the jaws; subject: organ index; value: pull (N)
+  strandsBurned = 17,      ///< strands of connective tissue burned through; subject: tissue; value: share of the bed
+  strandsTorn = 18,        ///< strands of connective tissue tore; subject: tissue; value: share of the bed
+  connectiveFreed = 19,    ///< the last strand is gone; subject: tissue; value: share of the bed that is residue
   clockStretched =
       16,  ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
 };
@@ -75,6 +78,15 @@ struct OrganResult {
   bool asleep = false;               ///< untouched and at rest: not solved in this step
 };
 
+/// One connective tissue at the end of a step, as shares of its bed's area.
+struct ConnectiveResult {
+  double attached = 0.0;
+  double burned = 0.0;
+  double torn = 0.0;              ///< hangs on the organs as residue
+  double largestPull = 0.0;       ///< on any strand, per area (Pa)
+  std::uint32_t hookTouches = 0;  ///< strands that the energised hook touched in this step
+};
+
 /// The contact problem of a step.
 struct ContactResult {
   std::uint32_t blocks = 0;       ///< places of contact and of hold
@@ -100,6 +112,7 @@ struct StepResult {
   std::uint64_t step = 0;  ///< n; the state after ticks [n T, (n + 1) T) with T ticks a step
   std::array<HandResult, handCount> hand;
   std::vector<OrganResult> organ;
+  std::vector<ConnectiveResult> connective;
   ContactResult contact;
   std::uint32_t misses = 0;
   std::vector<Event> events;

@@ -168,6 +168,8 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
     rest[o] = std::make_unique<RestCompliance>(model.organs()[o].solid, settings, executor);
   }
   result.organ.resize(organs);
+  result.connective.resize(model.connective().size());
+  frayed.assign(model.connective().size(), false);
   for (HandResult& hand : result.hand) hand.organForce.resize(organs);
   invalidate();
 }
@@ -209,6 +211,7 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.result.misses = 0;
   w.result.events.clear();
   w.result.contact = {};
+  for (std::size_t h = 0; h < handCount; ++h) w.poseBefore[h] = w.simulated(state, h);
   w.readSamples(state, samples);
   w.refreshBounds(state);
   for (std::size_t h = 0; h < handCount; ++h) w.openJaws(state, h);
@@ -227,6 +230,7 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.publish(state);
   w.refreshBounds(state);
   for (std::size_t h = 0; h < handCount; ++h) w.withdraw(state, h);
+  w.finishConnective(state);
   w.finishOrgans(state);
   w.finishHolds(state);
   w.finishHands(state);
@@ -239,6 +243,7 @@ const ContactSet& Stepper::contactSet(std::size_t hand) const { return w_->conta
 const StateDigest& Stepper::digest(const State& state) {
   std::vector<bool> written(State::organsFrom, true);
   written.insert(written.end(), w_->moved.begin(), w_->moved.end());
+  written.insert(written.end(), w_->frayed.begin(), w_->frayed.end());
   const StateDigest& digest = w_->digest.update(state, written);
   assert(digest == digestOf(state));
   return digest;

@@ -91,6 +91,11 @@ struct Stepper::Workspace {
   void moveFreely(State& state);
   void finishOrgans(State& state);
 
+  // connective_step.cpp
+  void wakeJoined(const State& state);
+  void gatherAttachments(const State& state, std::size_t organ);
+  void finishConnective(State& state);
+
   // contact_problem.cpp
   void recallForces(const State& state);
   void poseProblem(const State& state);
@@ -120,8 +125,13 @@ struct Stepper::Workspace {
   std::vector<std::unique_ptr<RestCompliance>> rest;
   std::vector<std::unique_ptr<const SurfacePair>> selfRest;  // per organ; empty until it folds
   std::vector<std::unique_ptr<BroadPhase>> broad;
-  std::vector<bool> bounded;             // per organ: broad phase holds bounds of the current positions
-  std::vector<bool> moved;               // per organ: solved in this step
+  std::vector<bool> bounded;               // per organ: broad phase holds bounds of the current positions
+  std::vector<bool> moved;                 // per organ: solved in this step
+  std::vector<Attachment> attachments;     // of the organ at hand
+  std::vector<bool> frayed;                // per connective tissue: changed in this step
+  std::array<Pose, handCount> poseBefore;  // of the simulated instruments, at the step's beginning
+  std::vector<std::uint32_t> strands;
+  std::vector<HookSweep> sweeps;
   std::vector<std::vector<Vec3>> skin;   // per organ: surface points of the current positions
   std::vector<std::vector<Box>> bounds;  // per organ and patch
   std::vector<bool> refittable;          // per organ: the broad phase knows earlier bounds

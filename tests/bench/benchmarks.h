@@ -10,6 +10,7 @@ void registerContactBudget();  ///< contact/budget: time against error over the 
 void registerContactSolver();  ///< contact/solver: the complementarity problem against dense methods
 void registerDetection();      ///< contact/narrow, contact/broad
 void registerHaptics();        ///< haptics/tick
+void registerCarving();        ///< carving/transform, carving/stroke, carving/growth
 
 inline void registerAll() {
   registerContactStep();
@@ -17,6 +18,7 @@ inline void registerAll() {
   registerContactSolver();
   registerDetection();
   registerHaptics();
+  registerCarving();
 }
 
 }  // namespace calot::bench

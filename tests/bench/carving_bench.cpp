@@ -31,12 +31,12 @@ constexpr double side = 0.048;     // of the lattice (m)
 constexpr double radius = 0.0015;  // of the tool (m)
 constexpr double wire = 0.004;     // its length (m)
 
-/// A lump of fat, 40 x 32 x 18 mm with waves, in rings of equal triangles' number.
-TriangleMesh fat(int rings, int sectors) {
+/// A lump of fat, 40 x 32 x 18 mm at scale 1, with waves; twice as many triangles as rings times sectors, nearly.
+TriangleMesh fat(int rings, int sectors, double scale = 1.0) {
   TriangleMesh mesh;
-  const auto add = [&mesh](const Vec3& d) {
+  const auto add = [&mesh, scale](const Vec3& d) {
     const double wave = 1.0 + 0.06 * std::sin(9.0 * d[0] + 1.0) * std::cos(8.0 * d[1]) + 0.04 * std::sin(11.0 * d[2]);
-    mesh.vertex.emplace_back(wave * Vec3(0.020 * d[0], 0.016 * d[1], 0.009 * d[2]));
+    mesh.vertex.emplace_back(scale * wave * Vec3(0.020 * d[0], 0.016 * d[1], 0.009 * d[2]));
   };
   add(Vec3::UnitZ());
   for (int j = 1; j < rings; ++j) {
@@ -60,7 +60,7 @@ TriangleMesh fat(int rings, int sectors) {
   return mesh;
 }
 
-/// Lattice of nodes^3 over a cube of 48 mm or, at fixed cell, of so many nodes.
+/// Lattice of nodes^3 about the origin.
 BrickLattice lattice(int nodes, double cell) {
   return {Vec3::Constant(-0.5 * cell * (nodes - 1)), cell, Index3::Constant(nodes)};
 }
@@ -122,8 +122,8 @@ struct Carving {
     surface.rebuild(field);
     adaptive.rebuild(field);
   }
-  static FieldModel modelOf(const BrickLattice& nodes) {
-    const DistanceTransform t = closestPointTransform(fat(50, 100), nodes, 3.0);
+  static FieldModel modelOf(const BrickLattice& nodes, double scale = 1.0) {
+    const DistanceTransform t = closestPointTransform(fat(50, 100, scale), nodes, 3.0);
     return {nodes, t.band, t.value};
   }
   /// The underside is held.
@@ -140,6 +140,13 @@ struct Carving {
   }
 };
 
+Vec3 direction(Random& random) {
+  const double x = random.normal();
+  const double y = random.normal();
+  const double z = random.normal();
+  return Vec3(x, y, z).normalized();
+}
+
 struct Times {
   std::vector<double> step;      ///< carve, islands, State, fast surface (s)
   std::vector<double> adaptive;  ///< s
@@ -148,9 +155,10 @@ struct Times {
 };
 
 /// Strokes along the upper side, 1 to 2 mm each; those that take something off.
-Times strokes(Carving& body, int count, double toolRadius) {
+Times strokes(Carving& body, int count, double toolRadius, double scale = 1.0) {
   Random random(12, 3);
   Times times;
+  const double overhead = clockOverhead();
   const double depth = carveDepth * body.model.lattice.cell();
   const RestingTissue tissue(body.model.lattice);
   for (int i = 0; i < count; ++i) {
@@ -158,10 +166,11 @@ Times strokes(Carving& body, int count, double toolRadius) {
     c.radius = toolRadius;
     const double x = random.uniform(-0.015, 0.015);
     const double y = random.uniform(-0.011, 0.011);
-    c.p0 = Vec3(x, y, random.uniform(0.002, 0.008));
-    const Vec3 axis = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    const double z = random.uniform(0.002, 0.008);
+    c.p0 = scale * Vec3(x, y, z);
+    const Vec3 axis = direction(random);
     c.p1 = c.p0 + wire * axis;
-    const Vec3 way = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    const Vec3 way = direction(random);
     c.q0 = c.p0 + random.uniform(0.001, 0.002) * way;
     c.q1 = c.q0 + wire * axis;
     const std::array<SweptCapsule, 1> tool{c};
@@ -176,8 +185,8 @@ Times strokes(Carving& body, int count, double toolRadius) {
     body.adaptive.update(body.field);
     const double end = threadSeconds();
     if (body.surface.changedBlocks().empty()) continue;
-    times.step.push_back(middle - start - clockOverhead());
-    times.adaptive.push_back(end - middle - clockOverhead());
+    times.step.push_back(middle - start - overhead);
+    times.adaptive.push_back(end - middle - overhead);
     times.bricks.push_back(static_cast<double>(body.field.changed().size()));
     times.share.push_back(static_cast<double>(body.adaptive.triangles()) /
                           static_cast<double>(body.surface.triangles()));
@@ -221,7 +230,7 @@ void stroke(benchmark::State& bench) {
   figures().add(name + ".adaptive_share", quantile(times.share, 0.5));
 }
 
-/// At fixed cell: over the tool's radius (touched bricks) and over the lattice's size (the rest).
+/// At fixed cell: over the tool's radius (changed bricks), and over the size of body and lattice (the rest).
 void growth(benchmark::State& bench) {
   const double cell = side / 127.0;
   std::vector<double> bricks;
@@ -239,9 +248,10 @@ void growth(benchmark::State& bench) {
       bricks.push_back(quantile(times.bricks, 0.5));
       byTool.push_back(quantile(times.step, 0.5));
     }
-    for (const int nodes : {128, 160, 192, 256}) {
-      Carving body(Carving::modelOf(lattice(nodes, cell)));
-      const Times times = strokes(body, 60, radius);
+    for (const int nodes : {96, 128, 160, 192}) {
+      const double scale = nodes / 128.0;
+      Carving body(Carving::modelOf(lattice(nodes, cell), scale));
+      const Times times = strokes(body, 60, radius, scale);
       sizes.push_back(static_cast<double>(nodes) * nodes * nodes);
       bySize.push_back(quantile(times.step, 0.5));
       bench.counters["us_" + std::to_string(nodes)] = 1e6 * bySize.back();

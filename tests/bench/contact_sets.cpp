@@ -53,7 +53,7 @@ std::optional<PublishedSet> setOfLaidShaft(std::size_t contacts) {
   return std::nullopt;
 }
 
-PublishedSet rowOfContacts(std::size_t contacts) {
+PublishedSet rowOfContacts(std::size_t contacts, bool allDeep) {
   constexpr double apart = 0.002;       // m
   constexpr double coupled = 2e-3;      // compliance of a place under itself (m/N)
   constexpr double half = 0.004;        // m
@@ -69,7 +69,8 @@ PublishedSet rowOfContacts(std::size_t contacts) {
     const Vec3 normal = Vec3(0.3 * static_cast<double>(i % 3) - 0.3, 1.0, 0.0).normalized();
     for (const Vec3& way : {normal, Vec3(Vec3::UnitZ()), Vec3(normal.cross(Vec3::UnitZ()))}) {
       set.direction.push_back(toolRow(port, {}, place, way));
-      set.free.push_back(way == normal && i % 2 == 0 ? -1e-4 : 0.0);
+      const double gap = allDeep ? -5e-3 : (i % 2 == 0 ? -1e-4 : 0.0);
+      set.free.push_back(way == normal ? gap : 0.0);
       set.rate.push_back(0.0);
       set.lambda.push_back(0.0);
     }
@@ -78,7 +79,9 @@ PublishedSet rowOfContacts(std::size_t contacts) {
   set.compliance.assign(rows * rows, 0.0);
   for (std::size_t i = 0; i < rows; ++i) {
     for (std::size_t j = 0; j < rows; ++j) {
-      const double distance = apart * (static_cast<double>(i / 3) - static_cast<double>(j / 3));
+      const std::size_t place = i / 3;
+      const std::size_t other = j / 3;
+      const double distance = apart * (static_cast<double>(place) - static_cast<double>(other));
       double& w = set.compliance[i * rows + j];
       if (i % 3 == j % 3) w = (i % 3 == 0 ? 1.0 : 0.7) * coupled / (1.0 + distance * distance / (half * half));
       w += set.direction[i].head<3>().dot(set.direction[j].head<3>()) / stiffness;

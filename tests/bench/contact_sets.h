@@ -22,7 +22,8 @@ struct PublishedSet {
 std::optional<PublishedSet> setOfLaidShaft(std::size_t contacts);
 
 /// Frictional contacts every 2 mm along a shaft on a surface whose places know the less of each other the farther they
-/// are apart (4 mm: half), as on an elastic surface; half of them pressed. For growth: any number of contacts.
-PublishedSet rowOfContacts(std::size_t contacts);
+/// are apart (4 mm: half), as on an elastic surface; every second one 0.1 mm deep, or all 5 mm. For growth: any number
+/// of contacts.
+PublishedSet rowOfContacts(std::size_t contacts, bool allDeep = false);
 
 }  // namespace calot::bench

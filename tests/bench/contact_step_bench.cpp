@@ -35,6 +35,7 @@ void contactStep(benchmark::State& bench, bool prepared) {
   };
   const auto p99 = [&](auto value) {
     std::vector<double> all;
+    all.reserve(costs.size());
     for (const StepCost& cost : costs) all.push_back(value(cost));
     return quantile(all, 0.99);
   };

@@ -78,25 +78,18 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Thirty contacts of one step; the peer is a tick with a single one of them.
-void hapticTail(benchmark::State& bench) {
-  constexpr std::size_t contacts = 30;
-  static const std::optional<PublishedSet> thirty = setOfLaidShaft(contacts);
-  static const std::optional<PublishedSet> one = setOfLaidShaft(1);
-  if (!thirty || !one) {
-    bench.SkipWithError("no step of the laid shaft has 30 contacts");
-    return;
-  }
+/// Mean and tail of a set's ticks; the peer is a tick with a single contact.
+void hapticTail(benchmark::State& bench, const PublishedSet& published, const PublishedSet& one, bool headline) {
   std::vector<double> seconds;
   double pressed = 0.0;
   for (auto _ : bench) {
-    seconds = timed(*thirty, tailTicks, pressed);
+    seconds = timed(published, tailTicks, pressed);
     bench.SetIterationTime(mean(seconds));
   }
   double ignored = 0.0;
-  const double single = mean(timed(*one, tailTicks / 10, ignored));
-  bench.counters["contacts"] = static_cast<double>(thirty->set.kind.size());
-  bench.counters["rows"] = static_cast<double>(thirty->set.free.size());
+  const double single = mean(timed(one, tailTicks / 10, ignored));
+  bench.counters["contacts"] = static_cast<double>(published.set.kind.size());
+  bench.counters["rows"] = static_cast<double>(published.set.free.size());
   bench.counters["pressed"] = pressed;
   bench.counters["mean_us"] = 1e6 * mean(seconds);
   bench.counters["p50_us"] = 1e6 * quantile(seconds, 0.5);
@@ -105,9 +98,24 @@ void hapticTail(benchmark::State& bench) {
   bench.counters["max_us"] = 1e6 * quantile(seconds, 1.0);
   bench.counters["clock_us"] = 1e6 * clockOverhead();
   bench.counters["vs_one_contact"] = mean(seconds) / single;
+  if (!headline) return;
   figures().add("haptics.tick_mean_ms", 1e3 * mean(seconds));
   figures().add("haptics.tick_p999_ms", 1e3 * quantile(seconds, 0.999));
 }
+
+/// Thirty contacts of one step, a third of them pressed.
+void hapticThirty(benchmark::State& bench) {
+  static const std::optional<PublishedSet> thirty = setOfLaidShaft(30);
+  static const std::optional<PublishedSet> one = setOfLaidShaft(1);
+  if (thirty && one) {
+    hapticTail(bench, *thirty, *one, true);
+  } else {
+    bench.SkipWithError("no step of the laid shaft has 30 contacts");
+  }
+}
+
+/// Thirty contacts in a row, each of which starts 5 mm deep: more are pressed than steps leave.
+void hapticDeep(benchmark::State& bench) { hapticTail(bench, rowOfContacts(30, true), rowOfContacts(1), false); }
 
 /// Growth over contacts in rows made for it; the last line has the fitted exponent from ten contacts on.
 void hapticGrowth(benchmark::State& bench) {
@@ -135,7 +143,8 @@ void hapticGrowth(benchmark::State& bench) {
 }  // namespace
 
 void registerHaptics() {
-  repeated(benchmark::RegisterBenchmark("haptics/tick/thirty_contacts", hapticTail), 5);
+  repeated(benchmark::RegisterBenchmark("haptics/tick/thirty_contacts", hapticThirty), 5);
+  repeated(benchmark::RegisterBenchmark("haptics/tick/thirty_deep", hapticDeep), 5);
   repeated(benchmark::RegisterBenchmark("haptics/tick/growth", hapticGrowth), 5);
 }
 

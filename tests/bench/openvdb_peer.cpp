@@ -32,7 +32,7 @@ OpenvdbField openvdbField(const TriangleMesh& mesh, const Vec3& origin, double c
   const auto width = static_cast<float>(band);
   OpenvdbField field;
   const double start = threadSeconds();
-  const auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::DoubleGrid>(
+  const auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
       *transform, points, triangles, std::vector<openvdb::Vec4I>(), width, width);
   field.seconds = threadSeconds() - start;
   field.activeVoxels = static_cast<long long>(grid->activeVoxelCount());
@@ -40,7 +40,7 @@ OpenvdbField openvdbField(const TriangleMesh& mesh, const Vec3& origin, double c
     const openvdb::Coord at = voxel.getCoord();
     const double truth = distance(context, Index3(at.x(), at.y(), at.z())) / cell;
     if (std::abs(truth) > band - 1.0) continue;
-    field.largestError = std::max(field.largestError, std::abs(*voxel - truth));
+    field.largestError = std::max(field.largestError, std::abs(static_cast<double>(*voxel) - truth));
   }
   return field;
 }

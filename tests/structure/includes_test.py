@@ -11,13 +11,16 @@ import tempfile
 import cpp_text
 
 # Room -> rooms whose headers it may include, besides its own. A room is a folder; its longest matching name counts.
-SIM = ("sim/math", "sim/geometry", "sim/solid", "sim/vessel", "sim/contact", "sim/haptics", "sim/instruments", "sim/scene")
+SIM = ("sim/math", "sim/geometry", "sim/solid", "sim/vessel", "sim/connective", "sim/contact", "sim/haptics", "sim/instruments", "sim/scene")
 MAY_SEE = {
     "sim/math": (),
     "sim/geometry": ("sim/math",),
     "sim/vessel": ("sim/math", "sim/geometry"),
+    "sim/solid": ("sim/math", "sim/geometry"),
+    "sim/connective": ("sim/math", "sim/geometry", "sim/solid"),
     # These are one library; what the step is made of may not reach up to recorder or beyond.
-    "sim/solid": SIM, "sim/contact": SIM, "sim/haptics": SIM, "sim/instruments": SIM, "sim/scene": SIM,
+    "sim/contact": SIM, "sim/haptics": SIM, "sim/instruments": SIM, "sim/scene": SIM,
+    "sim/carving": ("sim/math", "sim/geometry"),  # a library of its own below the core
     "sim/bullet": SIM,  # a library of its own above the core
     "recorder contracts": ("sim",),
     "recorder/formats": ("sim", "recorder contracts"),
@@ -35,6 +38,8 @@ MAY_SEE = {
     "gui/trainer": ("sim", "recorder", "analytics", "gui/render"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui"),
+    "apps/calot-bench": ("recorder", "tests/bench"),
+    "tests/bench": ("sim", "recorder"),
     "assets": ("sim", "recorder"),
 }
 # What lies at the top of recorder/ and belongs to all of its folders.

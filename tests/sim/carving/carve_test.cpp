@@ -122,14 +122,15 @@ TEST(Carve, StampingLeavesRidgesSweepingNone) {
     std::cout << "steps of " << 1e3 * step << " mm: stamped ridges " << 1e3 * stamped << " mm (expected "
               << 1e3 * expected << "), swept " << 1e3 * swept << " mm\n";
     EXPECT_NEAR(stamped, expected, 0.00012);  // their sharp tops fall between nodes
-    EXPECT_LT(swept, 0.00006);  // what a cell of 0.25 mm leaves of the groove's curve
+    EXPECT_LT(swept, 0.00006);                // what a cell of 0.25 mm leaves of the groove's curve
   }
 }
 
 /// Affine tissue: x = A X + b now, and carried along from before.
 class Affine final : public TissueMotion {
  public:
-  Affine(const BrickLattice& lattice, const Mat3& now, const Vec3& shiftNow, const Mat3& before, const Vec3& shiftBefore)
+  Affine(const BrickLattice& lattice, const Mat3& now, const Vec3& shiftNow, const Mat3& before,
+         const Vec3& shiftBefore)
       : lattice_(lattice), now_(now), before_(before), shiftNow_(shiftNow), shiftBefore_(shiftBefore) {}
   void place(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const override {
     for (int i = 0; i < count; ++i) {

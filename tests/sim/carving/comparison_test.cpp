@@ -14,9 +14,10 @@ namespace {
 
 constexpr int strokes = 90;
 
-/// Half axes of the body of both (m).
+/// The body of both: a slab of 40 x 30 x 16 mm.
 bool insideSlab(const Vec3& p) {
-  return (p.array() > -Vec3(0.020, 0.015, 0.008).array()).all() && (p.array() < Vec3(0.020, 0.015, 0.008).array()).all();
+  return (p.array() > -Vec3(0.020, 0.015, 0.008).array()).all() &&
+         (p.array() < Vec3(0.020, 0.015, 0.008).array()).all();
 }
 
 std::vector<SweptCapsule> stroke(Random& random) {
@@ -38,8 +39,8 @@ TEST(Comparison, FieldAgainstRemovalOfTetrahedra) {
     test::TetrahedraRemoval baseline({{-0.020, -0.015, -0.008}, {0.020, 0.0151, 0.0081}}, cell, insideSlab);
     for (int i = 0; i < strokes; ++i) baseline.stroke(stroke(random));
     const test::TetrahedraRemoval::Quality q = baseline.quality();
-    std::cout << "removal of tetrahedra      " << 1e3 * cell << "        " << q.tetrahedra << "      " << q.smallClusters
-              << "              " << q.dangling << "\n";
+    std::cout << "removal of tetrahedra      " << 1e3 * cell << "        " << q.tetrahedra << "      "
+              << q.smallClusters << "              " << q.dangling << "\n";
     EXPECT_GT(q.smallClusters, 3);
     EXPECT_GT(q.dangling, 20);
   }
@@ -47,9 +48,8 @@ TEST(Comparison, FieldAgainstRemovalOfTetrahedra) {
     for (const int nodes : {33, 65}) {
       Random random(seed, 11);
       const BrickLattice lattice(Vec3::Constant(-0.024), 0.048 / (nodes - 1), Index3::Constant(nodes));
-      const FieldModel model = test::fieldOf(lattice, 3.0, [](const Vec3& p) {
-        return (p.cwiseAbs() - Vec3(0.020, 0.015, 0.008)).maxCoeff();
-      });
+      const FieldModel model = test::fieldOf(
+          lattice, 3.0, [](const Vec3& p) { return (p.cwiseAbs() - Vec3(0.020, 0.015, 0.008)).maxCoeff(); });
       CarvedField field(model);
       CarvedBricks state;
       Islands islands(lattice, test::floorAnchors(lattice));

@@ -37,9 +37,8 @@ TEST(Islands, EqualAFloodOnNoise) {
 
 TEST(Islands, CheckerboardHasTheMostComponents) {
   const BrickLattice lattice(Vec3::Zero(), 1.0, Index3::Constant(18));
-  const FieldModel model = test::fieldOf(lattice, 1.0, [](const Vec3& p) {
-    return static_cast<int>(p.sum()) % 2 == 0 ? -0.5 : 0.5;
-  });
+  const FieldModel model =
+      test::fieldOf(lattice, 1.0, [](const Vec3& p) { return static_cast<int>(p.sum()) % 2 == 0 ? -0.5 : 0.5; });
   CarvedField field(model);
   const std::int64_t before = field.insideNodes();
   EXPECT_EQ(before, 2048);

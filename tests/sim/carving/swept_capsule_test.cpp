@@ -57,13 +57,13 @@ TEST(SweptCapsule, DistanceIsThatToItsTwoTrianglesInEveryDegenerateCase) {
     c.q0 = point(random);
     c.q1 = point(random);
     const int kind = i % 8;
-    if (kind == 1) c.q0 = c.p0, c.q1 = c.p1;                                     // at rest
-    if (kind == 2) c.p1 = c.p0, c.q1 = c.q0;                                     // a sphere
-    if (kind == 3) c.p1 = c.q0 = c.q1 = c.p0;                                    // a sphere at rest
+    if (kind == 1) c.q0 = c.p0, c.q1 = c.p1;                                      // at rest
+    if (kind == 2) c.p1 = c.p0, c.q1 = c.q0;                                      // a sphere
+    if (kind == 3) c.p1 = c.q0 = c.q1 = c.p0;                                     // a sphere at rest
     if (kind == 4) c.q0 = c.p0 + 0.7 * (c.p1 - c.p0), c.q1 = c.q0 + c.p1 - c.p0;  // along its axis
-    if (kind == 5) c.q0 = c.p1;                                                  // a shared end
-    if (kind == 6) c.q1 = c.p1;                                                  // turning about one end
-    if (kind == 7) c.q0 = c.p1, c.q1 = c.p0;                                     // end for end
+    if (kind == 5) c.q0 = c.p1;                                                   // a shared end
+    if (kind == 6) c.q1 = c.p1;                                                   // turning about one end
+    if (kind == 7) c.q0 = c.p1, c.q1 = c.p0;                                      // end for end
     const Lanes nodes(random, (i / 8) % 2 == 1);
     double out[laneCount];
     std::fill(out, out + laneCount, -1e300);

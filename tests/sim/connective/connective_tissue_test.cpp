@@ -216,13 +216,13 @@ TEST(Connective, HookBurnsWhatItSweepsOver) {
   sweep.radius = 0.001;
   sweep.before = {Vec3(-0.005, 0.02, 0.0215), Vec3(-0.005, 0.02, 0.0216)};
   sweep.now = {Vec3(0.025, 0.02, 0.0215), Vec3(0.025, 0.02, 0.0216)};
-  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, sweep, 0.01, burned), 3U);
+  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, {&sweep, 1}, 0.01, burned), 3U);
   EXPECT_TRUE(burned.empty());
   HookSweep still = sweep;
   still.before = still.now = {Vec3(0.02, 0.02, 0.0215), Vec3(0.02, 0.02, 0.0216)};
   int steps = 1;
   while (burned.empty() && steps < 1000) {
-    EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, still, 0.01, burned), 1U);
+    EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, {&still, 1}, 0.01, burned), 1U);
     ++steps;
   }
   EXPECT_NEAR(0.01 * steps, m.fadeTime, 0.011);
@@ -230,7 +230,7 @@ TEST(Connective, HookBurnsWhatItSweepsOver) {
   EXPECT_EQ(burned[0], 12U);  // i = 2, j = 2
   EXPECT_EQ(pair.state.alpha[12], 0.0);
   EXPECT_EQ(pair.state.alpha[13], 1.0);
-  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, still, 0.01, burned), 0U);
+  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, {&still, 1}, 0.01, burned), 0U);
 }
 
 /// Residue: a torn strand is no longer in the way between the organs, but burns at either of them.
@@ -242,10 +242,10 @@ TEST(Connective, ResidueBurnsAtItsStumps) {
   HookSweep hook;
   hook.radius = 0.001;
   hook.before = hook.now = {Vec3(0.02, 0.02, 0.038), Vec3(0.02, 0.02, 0.038)};  // between the organs
-  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, hook, 0.01, burned), 0U);
+  EXPECT_EQ(burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, {&hook, 1}, 0.01, burned), 0U);
   hook.before = hook.now = {Vec3(0.02, 0.02, 0.052), Vec3(0.02, 0.02, 0.052)};  // at the upper one
   for (int i = 0; i < 100; ++i) {
-    burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, hook, 0.01, burned);
+    burnStrands(pair.tissue, pair.state, pair.a.position, pair.b.position, {&hook, 1}, 0.01, burned);
   }
   ASSERT_EQ(burned.size(), 1U);
   EXPECT_EQ(burned[0], 12U);

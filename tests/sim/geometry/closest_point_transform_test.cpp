@@ -73,9 +73,8 @@ TEST(ClosestPointTransform, FindsEveryNodeOfTheBandOnRandomSurfaces) {
     ASSERT_EQ(field.error, "");
     const Compared c = compare(mesh, lattice, field);
     std::cout << "seed " << seed << ": " << mesh.triangles() << " triangles, roughness " << roughness << ", band "
-              << band << ": " << c.band << " nodes, missed " << c.missed << ", wrong sign " << c.wrongSign
-              << ", error " << c.error << " cells, rule " << (field.rule == SignRule::regions ? "regions" : "normals")
-              << "\n";
+              << band << ": " << c.band << " nodes, missed " << c.missed << ", wrong sign " << c.wrongSign << ", error "
+              << c.error << " cells, rule " << (field.rule == SignRule::regions ? "regions" : "normals") << "\n";
     EXPECT_GT(c.band, 500);
     EXPECT_EQ(c.missed, 0);
     EXPECT_EQ(c.wrongSign, 0);
@@ -97,9 +96,8 @@ TEST(ClosestPointTransform, HoldsOnNodesOfTheLatticeAndFlatSides) {
 }
 
 TEST(ClosestPointTransform, TakesTheUnionOfOverlappingParts) {
-  const TriangleMesh mesh =
-      test::together(test::boxSurface({-0.61, -0.6, -0.6}, {0.2, 0.63, 0.6}),
-                     test::turned(test::turned(test::sphereSurface({0.4, 0.1, 0.0}, 0.7, 3))));
+  const TriangleMesh mesh = test::together(test::boxSurface({-0.61, -0.6, -0.6}, {0.2, 0.63, 0.6}),
+                                           test::turned(test::turned(test::sphereSurface({0.4, 0.1, 0.0}, 0.7, 3))));
   const BrickLattice lattice = BrickLattice::around(bounds(mesh), 0.1, 3);
   const DistanceTransform field = closestPointTransform(mesh, lattice, 3.0);
   ASSERT_EQ(field.error, "");

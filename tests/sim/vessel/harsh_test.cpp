@@ -42,7 +42,7 @@ TEST(HarshVessels, StayFiniteAndComeToRest) {
     int limited = 0;
     double strain = 0.0;
     double speed = 0.0;
-    for (int k = 0; k < 3000; ++k) {
+    for (int k = 0; k < 2000; ++k) {
       if (k % 15 == 0) {
         std::fill(force.begin(), force.end(), Vec3::Zero());
         attachments.clear();
@@ -54,7 +54,7 @@ TEST(HarshVessels, StayFiniteAndComeToRest) {
                                model.rest()[static_cast<std::size_t>(node)] + vectorOf(random, 0.02),
                                vectorOf(random, 1.0)});
       }
-      if (k > 2000) {
+      if (k > 1400) {
         std::fill(force.begin(), force.end(), Vec3::Zero());
         attachments.clear();
       }

@@ -180,8 +180,8 @@ TEST(BlockTree, SolvesWhatADenseSolverSolves) {
     if (parent[i] < 0) off.setZero();
     for (int r = 0; r < 6; ++r) {
       for (int c = 0; c < 6; ++c) {
-        tree.diagonal(i)[static_cast<std::size_t>(6 * r + c)] = own(r, c);
-        tree.coupling(i)[static_cast<std::size_t>(6 * r + c)] = off(r, c);
+        tree.diagonal(i)[6 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)] = own(r, c);
+        tree.coupling(i)[6 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)] = off(r, c);
       }
     }
     const int at = static_cast<int>(6 * i);

@@ -55,7 +55,8 @@ FieldModel lump(int nodes, double bandCells) {
 FieldModel noise(Random& random, int nodes) {
   const BrickLattice lattice(Vec3::Zero(), 1.0, Index3::Constant(nodes));
   const double share = random.uniform(0.3, 0.9);
-  return fieldOf(lattice, 1.0, [&](const Vec3&) { return random.uniform() < share ? -random.uniform(1e-9, 1.0) : random.uniform(); });
+  return fieldOf(lattice, 1.0,
+                 [&](const Vec3&) { return random.uniform() < share ? -random.uniform(1e-9, 1.0) : random.uniform(); });
 }
 
 std::vector<std::uint32_t> floorAnchors(const BrickLattice& lattice) {
@@ -88,7 +89,8 @@ void carveAtRest(CarvedField& field, const std::vector<SweptCapsule>& tool) {
 
 TriangleMesh meshOf(const CarvedField& field, const CarvedSurface& surface) {
   std::vector<std::uint32_t> name;
-  surface.forEachPatch([&](const SurfacePatch& p) { name.insert(name.end(), p.vertex.begin(), p.vertex.begin() + p.vertexCount); });
+  surface.forEachPatch(
+      [&](const SurfacePatch& p) { name.insert(name.end(), p.vertex.begin(), p.vertex.begin() + p.vertexCount); });
   std::sort(name.begin(), name.end());
   name.erase(std::unique(name.begin(), name.end()), name.end());
   TriangleMesh mesh;
@@ -113,7 +115,8 @@ EdgeFaults edgeFaults(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const auto from = static_cast<std::uint64_t>(mesh.triangle[t][k]);
       const auto to = static_cast<std::uint64_t>(mesh.triangle[t][(k + 1) % 3]);
-      side.push_back({std::min(from, to) << 32U | std::max(from, to), static_cast<std::uint32_t>(2 * t + (from < to ? 1 : 0))});
+      side.push_back(
+          {std::min(from, to) << 32U | std::max(from, to), static_cast<std::uint32_t>(2 * t + (from < to ? 1 : 0))});
     }
   }
   std::sort(side.begin(), side.end());

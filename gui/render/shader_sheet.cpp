@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Areolar tissue: translucent films with fibres, wet, whitish yellow; brown and then black where the hook heats it.
+#include "gui/render/shader_sources.h"
+
+namespace calot::gui::glsl {
+
+const char* const sheetVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 along;
+layout(location = 3) in vec4 look;
+layout(location = 4) in float erosion;
+out vec3 vPosition;
+out vec3 vNormal;
+out vec3 vAlong;
+out vec4 vLook;
+out float vErosion;
+void main() {
+  vPosition = position;
+  vNormal = normal;
+  vAlong = along;
+  vLook = look;
+  vErosion = erosion;
+  gl_Position = project(position, focal);
+}
+)";
+
+const char* const sheetFragment = R"(
+in vec3 vPosition;
+in vec3 vNormal;
+in vec3 vAlong;
+in vec4 vLook;
+in float vErosion;
+layout(location = 0) out vec4 radiance;  // multiplied by the opacity
+
+uniform vec3 light;              // position in C (m)
+uniform float referenceDistance; // where the exposure is right (m)
+uniform vec2 pixels;             // size of this target
+uniform sampler2D fibreMap;
+uniform sampler2D occlusionMap;
+uniform sampler2D shadowMap;
+uniform vec2 shadowFocal;
+
+vec3 unit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-12)); }
+
+// Hard where one tap is taken, soft at the edge where there are four.
+float shadow(vec3 p) {
+  vec3 q = p - light;
+  vec4 clip = project(q, shadowFocal);
+  vec2 uv = clip.xy / clip.w * 0.5 + 0.5;
+  // What stands less than 2 mm in front is the organ that the tissue hangs on.
+  vec4 nearer = project(q * (1.0 - 0.002 / max(q.z, 0.004)), shadowFocal);
+  float depth = nearer.z / nearer.w * 0.5 + 0.5;
+  float lit = 0.0;
+  for (int i = 0; i < SHEET_SHADOW_SAMPLES; ++i) {
+    float a = 2.39996 * float(i);
+    vec2 offset = SHEET_SHADOW_SAMPLES == 1 ? vec2(0.0) : 0.5 * shadowFocal * 0.0008 / q.z * vec2(cos(a), sin(a));
+    lit += texture(shadowMap, uv + offset).x < depth ? 0.0 : 1.0;
+  }
+  return lit / float(SHEET_SHADOW_SAMPLES);
+}
+
+void main() {
+  vec4 f = texture(fibreMap, vLook.xy);
+  float fibre = smoothstep(vErosion, vErosion + 0.45, f.r);
+  float film = smoothstep(vErosion + 0.05, vErosion + 0.75, f.g);
+  vec3 v = -normalize(vPosition);
+  vec3 n = unit(vNormal);
+  float facing = abs(dot(n, v));
+  // The more a film is seen along itself, the more of it lies behind a pixel.
+  film = clamp(0.20 * film / (0.30 + 0.70 * facing), 0.0, 0.5);
+  float opacity = vLook.z * (1.0 - (1.0 - 0.62 * fibre) * (1.0 - film));
+  if (opacity < 0.006) discard;
+
+  vec3 toLight = light - vPosition;
+  float d2 = dot(toLight, toLight);
+  vec3 l = toLight * inversesqrt(d2);
+  vec3 h = normalize(l + v);
+  float received = lightAt(l, d2, referenceDistance);
+  float occlusion = mix(0.45, 1.0, texture(occlusionMap, gl_FragCoord.xy / pixels).x);
+  float lit = received * mix(0.12, 1.0, shadow(vPosition));
+
+  vec3 t = unit(vAlong);
+  vec3 aside = cross(n, t);
+  n = unit(n + aside * 1.1 * (f.b - 0.5));
+  // Light passes through: either side is lit, the far one a little less.
+  float nl = dot(n, l) * (dot(n, v) < 0.0 ? -1.0 : 1.0);
+  float wrapped = 0.35 + 0.65 * (nl > 0.0 ? nl : -0.6 * nl);
+
+  vec3 albedo = mix(vec3(0.42, 0.30, 0.19), vec3(0.74, 0.63, 0.43), clamp(0.25 + 0.85 * fibre, 0.0, 1.0));
+  albedo *= 0.85 + 0.3 * f.a;
+  float burnt = vLook.w;
+  albedo = mix(albedo, vec3(0.125, 0.055, 0.022), smoothstep(0.0, 0.65, burnt));
+  albedo = mix(albedo, vec3(0.012, 0.009, 0.008), smoothstep(0.45, 1.0, burnt));
+  vec3 open = vec3(occlusion, occlusion * occlusion, occlusion * occlusion);
+  vec3 diffuse = albedo * open * (1.25 * wrapped * lit + vec3(0.16, 0.085, 0.075) * (0.25 + 0.75 * min(received, 1.0)));
+
+  // A glint along each fibre (Kajiya and Kay, SIGGRAPH 1989), and the wet film's.
+  float across = 1.0 - dot(t, h) * dot(t, h);
+  float silk = pow(max(across, 0.0), 40.0) * (0.25 + 0.75 * fibre);
+  float nh = abs(dot(n, h));
+  float wet = pow(nh, 90.0);
+  float gloss = (0.10 * silk + 0.55 * wet) * min(lit, 1.6) * occlusion * (1.0 - 0.8 * burnt);
+  radiance = vec4(diffuse * opacity + vec3(gloss * min(1.0, 1.6 * opacity)), opacity);
+}
+)";
+
+}  // namespace calot::gui::glsl

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/render/sheet_list.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "sim/math/random.h"
+
+namespace calot::gui {
+namespace {
+
+constexpr std::array<double, 6> rows{0.0, 0.12, 0.35, 0.65, 0.88, 1.0};  // along a strand
+constexpr double sag = 0.07;             // largest deviation of a strand from its chord, over its length
+constexpr double thinningLength = 4e-3;  // m; longer tissue is stretched, and thinner
+constexpr double tuftLength = 3.2e-3, tuftWidth = 2.4e-3;
+constexpr double stumpLength = 1.0e-3, stumpWidth = 1.3e-3;
+constexpr double goneAlpha = 0.2;  // where a strand in the hook's heat looks burnt through
+
+Vec3 unitOr(const Vec3& v, const Vec3& other) {
+  const double length = v.norm();
+  return length > 1e-12 ? Vec3(v / length) : other;
+}
+
+/// A strand bent between its ends, in C.
+struct Curve {
+  std::array<Vec3, rows.size()> point, along;
+  double length = 0.0;  // of the chord
+  double alpha = 0.0;
+};
+
+class SheetBuilder {
+ public:
+  explicit SheetBuilder(const CameraSample& camera)
+      : origin_(camera.position), toCamera_(camera.orientation.normalized().conjugate().toRotationMatrix()) {}
+
+  void add(const ConnectiveView& view) {
+    std::vector<Curve> curves;
+    curves.reserve(view.strand.size());
+    for (std::size_t s = 0; s < view.strand.size(); ++s) curves.push_back(curveOf(view, s));
+    for (std::size_t p = 0; p < view.sheet.size(); ++p) {
+      const auto [i, j] = view.sheet[p];
+      if (view.condition[i] != StrandCondition::attached || view.condition[j] != StrandCondition::attached) continue;
+      addSheet(curves[i], curves[j], p);
+    }
+    for (std::size_t s = 0; s < view.strand.size(); ++s) {
+      if (view.condition[s] == StrandCondition::attached) continue;
+      const bool burned = view.condition[s] == StrandCondition::burned;
+      for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) addRemnant(view, s, end, burned);
+    }
+  }
+
+  SheetList finish() {
+    std::sort(piece_.begin(), piece_.end(), [](const Piece& a, const Piece& b) {
+      return a.depth != b.depth ? a.depth > b.depth : a.firstVertex < b.firstVertex;
+    });
+    for (const Piece& piece : piece_)
+      for (std::uint32_t r = 0; r + 1 < piece.rows; ++r)
+        for (std::uint32_t c = 0; c + 1 < piece.columns; ++c) {
+          const std::uint32_t v = piece.firstVertex + r * piece.columns + c;
+          list_.index.insert(list_.index.end(),
+                             {v, v + 1, v + piece.columns, v + 1, v + piece.columns + 1, v + piece.columns});
+        }
+    return std::move(list_);
+  }
+
+ private:
+  struct Piece {
+    double depth = 0.0;  // z of its middle in C
+    std::uint32_t firstVertex = 0;
+    std::uint32_t rows = 0, columns = 0;
+  };
+
+  [[nodiscard]] Vec3 toCamera(const Vec3& p_W) const { return toCamera_ * (p_W - origin_); }
+
+  [[nodiscard]] Curve curveOf(const ConnectiveView& view, std::size_t s) const {
+    Curve curve;
+    const Vec3 a = view.strand[s][0], chord = view.strand[s][1] - a;
+    Random random(s);
+    const Vec3 any(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    const double skew = random.uniform(-0.6, 0.6);
+    curve.length = chord.norm();
+    curve.alpha = static_cast<double>(view.alpha[s]);
+    const Vec3 direction = unitOr(chord, Vec3::UnitZ());
+    const Vec3 aside = sag * curve.length * (any - any.dot(direction) * direction);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const double v = rows[r];
+      curve.point[r] = toCamera(a + v * chord + 4.0 * v * (1.0 - v) * (1.0 + skew * (2.0 * v - 1.0)) * aside);
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Vec3 step = curve.point[std::min(r + 1, rows.size() - 1)] - curve.point[r == 0 ? 0 : r - 1];
+      curve.along[r] = unitOr(step, Vec3::UnitZ());
+    }
+    return curve;
+  }
+
+  void begin(const Vec3& middle, std::size_t rowCount, std::size_t columnCount) {
+    piece_.push_back({middle.z(), static_cast<std::uint32_t>(list_.vertex.size()), static_cast<std::uint32_t>(rowCount),
+                      static_cast<std::uint32_t>(columnCount)});
+  }
+
+  void vertex(const Vec3& p, const Vec3& normal, const Vec3& along, const std::array<double, 4>& look, double erosion) {
+    SheetVertex v{};
+    for (int a = 0; a < 3; ++a) {
+      v.position[a] = static_cast<float>(p[a]);
+      v.normal[a] = static_cast<float>(normal[a]);
+      v.along[a] = static_cast<float>(along[a]);
+    }
+    for (std::size_t a = 0; a < look.size(); ++a) v.look[a] = static_cast<float>(look[a]);
+    v.erosion = static_cast<float>(erosion);
+    list_.vertex.push_back(v);
+  }
+
+  void addSheet(const Curve& left, const Curve& right, std::size_t number) {
+    Random random(number, 1);
+    const double s = random.uniform(), t = random.uniform();
+    const double across = (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(0.18, 0.28);
+    const double shear = random.uniform(-0.06, 0.06), wear = random.uniform(-0.10, 0.18);
+    begin(0.25 * (left.point.front() + left.point.back() + right.point.front() + right.point.back()), rows.size(), 2);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Vec3 between = right.point[r] - left.point[r];
+      const Vec3 normal = unitOr(between.cross(left.along[r] + right.along[r]), Vec3::UnitZ());
+      const double foot = std::abs(2.0 * rows[r] - 1.0);  // matted where it is attached, worn in the middle
+      for (const Curve* curve : {&left, &right}) {
+        const double burnt = std::clamp((1.0 - curve->alpha) / (1.0 - goneAlpha), 0.0, 1.0);
+        const double thinned = std::sqrt(thinningLength / (thinningLength + curve->length));
+        const bool second = curve == &right;
+        vertex(curve->point[r], normal, curve->along[r],
+               {s + (second ? across : 0.0) + shear * rows[r], t + 0.25 * rows[r], curve->alpha * thinned, burnt},
+               wear + 0.45 * burnt + 0.16 - 0.42 * foot * foot * foot);
+      }
+    }
+  }
+
+  /// What is left of a strand at one of its ends: a ribbon that faces the camera, frayed towards its tip.
+  void addRemnant(const ConnectiveView& view, std::size_t s, std::size_t end, bool burned) {
+    Random random(2 * s + end, 2);
+    const Vec3 from = view.strand[s][end], chord = view.strand[s][1 - end] - from;
+    const Vec3 any(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    const double alpha = burned ? 0.75 : static_cast<double>(view.alpha[s]);
+    const double burnt = burned ? 1.0 : std::clamp((1.0 - alpha) / (1.0 - goneAlpha), 0.0, 1.0);
+    const double length = (burned ? stumpLength : tuftLength) * random.uniform(0.6, 1.2);
+    const double width = (burned ? stumpWidth : tuftWidth) * random.uniform(0.7, 1.2);
+    const Vec3 direction = toCamera_ * unitOr(unitOr(chord, Vec3::UnitZ()) + 0.45 * any, Vec3::UnitZ());
+    const Vec3 droop = toCamera_ * (0.35 * Vec3(any.y(), any.z(), any.x()));
+    const Vec3 root = toCamera(from);
+    const Vec3 aside = unitOr(direction.cross(root), Vec3::UnitX());
+    const double texS = random.uniform(), texT = random.uniform();
+    begin(root + 0.5 * length * direction, 3, 3);
+    for (int r = 0; r < 3; ++r) {
+      const double v = 0.5 * r;
+      const Vec3 middle = root + length * (v * direction + v * v * droop);
+      const Vec3 along = unitOr(direction + 2.0 * v * droop, direction);
+      const Vec3 normal = unitOr(along.cross(aside), Vec3::UnitZ());
+      for (int c = -1; c <= 1; ++c)
+        vertex(middle + 0.5 * c * width * (1.0 - 0.35 * v) * aside, normal, along,
+               {texS + 0.10 * c, texT + 0.2 * v, alpha, burnt}, (burned ? -0.5 : -0.35) + 1.1 * v * v + 0.7 * c * c);
+    }
+  }
+
+  Vec3 origin_;
+  Mat3 toCamera_;
+  SheetList list_;
+  std::vector<Piece> piece_;
+};
+
+}  // namespace
+
+SheetList makeSheetList(const SceneView& view) {
+  SheetBuilder builder(view.camera);
+  for (const ConnectiveView& connective : view.connective) builder.add(connective);
+  return builder.finish();
+}
+
+}  // namespace calot::gui
