@@ -73,14 +73,15 @@ std::vector<std::uint8_t> makeFibreTexture() {
       // In cells; multiples of noiseCells over the whole texture, so that it repeats.
       const double s = noiseCells * (column + 0.5) / fibreColumns, t = noiseCells * (row + 0.5) / fibreRows;
       const auto bend = noise(s, t, 0.3), film = noise(2.0 * s, t, 6.2), tone = noise(2.0 * s, t, 4.4);
-      const double bent = s + 0.30 * bend[3] + 0.08 * bend[0];
-      const Fibre bundle = fibres(noise(2.0 * bent, t, 1.7), 0.11);
-      const Fibre middle = fibres(noise(4.0 * s + 0.9 * bend[3], t, 2.9), 0.13);
-      const Fibre oblique = fibres(noise(3.0 * s + 2.0 * t, t, 5.1), 0.07);
-      const Fibre fine = fibres(noise(8.0 * s + 0.6 * film[3], 2.0 * t, 3.6), 0.17);
+      const double bent = s + 0.45 * bend[3] + 0.10 * tone[3];
+      const Fibre bundle = fibres(noise(2.0 * bent, t, 1.7), 0.14);
+      const Fibre middle = fibres(noise(4.0 * s + 1.6 * bend[3] + 0.5 * film[3], t, 2.9), 0.12);
+      const Fibre oblique = fibres(noise(3.0 * s + 2.0 * t + 0.8 * bend[3], t, 5.1), 0.07);
+      const Fibre fine = fibres(noise(7.0 * s + 1.8 * bend[3] + 0.9 * film[3], 2.0 * t, 3.6), 0.20);
       const double strong = smoothstep(-0.35, 0.35, bend[3] + 0.4 * tone[3]);
-      const double cover = std::max({bundle.cover * (0.55 + 0.45 * strong), 0.75 * middle.cover * (0.4 + 0.6 * strong),
-                                     0.55 * oblique.cover, 0.45 * fine.cover});
+      const double cover =
+          std::max({bundle.cover * (0.55 + 0.45 * strong), 0.70 * middle.cover * (0.25 + 0.75 * strong),
+                    0.55 * oblique.cover, 0.26 * fine.cover});
       const double slope = 0.5 * bundle.side * bundle.cover + 0.3 * middle.side * middle.cover +
                            0.2 * fine.side * fine.cover + 0.25 * film[0];
       const double thickness = 0.5 + 0.75 * film[3] + 0.25 * bend[3];

@@ -125,8 +125,8 @@ void ScenePainter::drawParts(const DrawList& list, const ShaderProgram& program,
 }
 
 void ScenePainter::drawSheets(const SheetList& sheets) {
-  if (!sheets_) sheets_ = std::make_unique<SheetPainter>(gl_);
-  sheets_->draw(sheets, fibreUnit);
+  if (!sheets_) sheets_ = std::make_unique<SheetPainter>(gl_, fibreUnit);
+  sheets_->draw(sheets);
 }
 
 void ScenePainter::drawPicture() {

@@ -68,8 +68,8 @@ void main() {
   vec3 n = unit(vNormal);
   float facing = abs(dot(n, v));
   // The more a film is seen along itself, the more of it lies behind a pixel.
-  film = clamp(0.20 * film / (0.30 + 0.70 * facing), 0.0, 0.5);
-  float opacity = vLook.z * (1.0 - (1.0 - 0.62 * fibre) * (1.0 - film));
+  film = clamp(0.12 * film / (0.30 + 0.70 * facing), 0.0, 0.5);
+  float opacity = vLook.z * (1.0 - (1.0 - 0.38 * fibre) * (1.0 - film));
   if (opacity < 0.006) discard;
 
   vec3 toLight = light - vPosition;
@@ -77,7 +77,7 @@ void main() {
   vec3 l = toLight * inversesqrt(d2);
   vec3 h = normalize(l + v);
   float received = lightAt(l, d2, referenceDistance);
-  float occlusion = mix(0.45, 1.0, texture(occlusionMap, gl_FragCoord.xy / pixels).x);
+  float occlusion = mix(0.62, 1.0, texture(occlusionMap, gl_FragCoord.xy / pixels).x);
   float lit = received * mix(0.12, 1.0, shadow(vPosition));
 
   vec3 t = unit(vAlong);
@@ -87,20 +87,20 @@ void main() {
   float nl = dot(n, l) * (dot(n, v) < 0.0 ? -1.0 : 1.0);
   float wrapped = 0.35 + 0.65 * (nl > 0.0 ? nl : -0.6 * nl);
 
-  vec3 albedo = mix(vec3(0.42, 0.30, 0.19), vec3(0.74, 0.63, 0.43), clamp(0.25 + 0.85 * fibre, 0.0, 1.0));
+  vec3 albedo = mix(vec3(0.47, 0.33, 0.20), vec3(0.76, 0.64, 0.44), clamp(0.25 + 0.85 * fibre, 0.0, 1.0));
   albedo *= 0.85 + 0.3 * f.a;
   float burnt = vLook.w;
-  albedo = mix(albedo, vec3(0.125, 0.055, 0.022), smoothstep(0.0, 0.65, burnt));
+  albedo = mix(albedo, vec3(0.125, 0.055, 0.022), smoothstep(0.0, 0.55, burnt));
   albedo = mix(albedo, vec3(0.012, 0.009, 0.008), smoothstep(0.45, 1.0, burnt));
-  vec3 open = vec3(occlusion, occlusion * occlusion, occlusion * occlusion);
-  vec3 diffuse = albedo * open * (1.25 * wrapped * lit + vec3(0.16, 0.085, 0.075) * (0.25 + 0.75 * min(received, 1.0)));
+  vec3 open = vec3(occlusion, vec2(occlusion * mix(1.0, occlusion, 0.5)));
+  vec3 diffuse = albedo * open * (1.0 * wrapped * lit + vec3(0.16, 0.085, 0.075) * (0.25 + 0.75 * min(received, 1.0)));
 
   // A glint along each fibre (Kajiya and Kay, SIGGRAPH 1989), and the wet film's.
   float across = 1.0 - dot(t, h) * dot(t, h);
   float silk = pow(max(across, 0.0), 40.0) * (0.25 + 0.75 * fibre);
   float nh = abs(dot(n, h));
-  float wet = pow(nh, 90.0);
-  float gloss = (0.10 * silk + 0.55 * wet) * min(lit, 1.6) * occlusion * (1.0 - 0.8 * burnt);
+  float wet = pow(nh, 60.0);
+  float gloss = (0.07 * silk + 0.5 * wet) * min(lit, 1.6) * occlusion * (1.0 - smoothstep(0.0, 0.6, burnt));
   radiance = vec4(diffuse * opacity + vec3(gloss * min(1.0, 1.6 * opacity)), opacity);
 }
 )";

@@ -12,10 +12,10 @@ namespace calot::gui {
 namespace {
 
 constexpr std::array<double, 6> rows{0.0, 0.12, 0.35, 0.65, 0.88, 1.0};  // along a strand
-constexpr double sag = 0.07;             // largest deviation of a strand from its chord, over its length
+constexpr double sag = 0.13;             // largest deviation of a strand from its chord, over its length
 constexpr double thinningLength = 4e-3;  // m; longer tissue is stretched, and thinner
-constexpr double tuftLength = 3.2e-3, tuftWidth = 2.4e-3;
-constexpr double stumpLength = 1.0e-3, stumpWidth = 1.3e-3;
+constexpr double tuftLength = 2.4e-3, tuftWidth = 1.8e-3;
+constexpr double stumpLength = 0.9e-3, stumpWidth = 1.5e-3;
 constexpr double goneAlpha = 0.2;  // where a strand in the hook's heat looks burnt through
 
 Vec3 unitOr(const Vec3& v, const Vec3& other) {
@@ -115,19 +115,21 @@ class SheetBuilder {
   void addSheet(const Curve& left, const Curve& right, std::size_t number) {
     Random random(number, 1);
     const double s = random.uniform(), t = random.uniform();
-    const double across = (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(0.18, 0.28);
-    const double shear = random.uniform(-0.06, 0.06), wear = random.uniform(-0.10, 0.18);
+    const double across = (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(0.09, 0.15);
+    const double shear = random.uniform(-0.05, 0.05), wear = random.uniform(-0.10, 0.22);
     begin(0.25 * (left.point.front() + left.point.back() + right.point.front() + right.point.back()), rows.size(), 2);
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Vec3 between = right.point[r] - left.point[r];
       const Vec3 normal = unitOr(between.cross(left.along[r] + right.along[r]), Vec3::UnitZ());
       const double foot = std::abs(2.0 * rows[r] - 1.0);  // matted where it is attached, worn in the middle
+      const double feather = r == 0 || r + 1 == rows.size() ? 0.3 : 1.0;
       for (const Curve* curve : {&left, &right}) {
         const double burnt = std::clamp((1.0 - curve->alpha) / (1.0 - goneAlpha), 0.0, 1.0);
         const double thinned = std::sqrt(thinningLength / (thinningLength + curve->length));
         const bool second = curve == &right;
         vertex(curve->point[r], normal, curve->along[r],
-               {s + (second ? across : 0.0) + shear * rows[r], t + 0.25 * rows[r], curve->alpha * thinned, burnt},
+               {s + (second ? across : 0.0) + shear * rows[r], t + 0.36 * rows[r], curve->alpha * thinned * feather,
+                burnt},
                wear + 0.45 * burnt + 0.16 - 0.42 * foot * foot * foot);
       }
     }
@@ -138,8 +140,9 @@ class SheetBuilder {
     Random random(2 * s + end, 2);
     const Vec3 from = view.strand[s][end], chord = view.strand[s][1 - end] - from;
     const Vec3 any(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-    const double alpha = burned ? 0.75 : static_cast<double>(view.alpha[s]);
-    const double burnt = burned ? 1.0 : std::clamp((1.0 - alpha) / (1.0 - goneAlpha), 0.0, 1.0);
+    const double alpha = burned ? 0.75 : 0.65 * static_cast<double>(view.alpha[s]);
+    const double burnt =
+        burned ? 1.0 : std::clamp((1.0 - static_cast<double>(view.alpha[s])) / (1.0 - goneAlpha), 0.0, 1.0);
     const double length = (burned ? stumpLength : tuftLength) * random.uniform(0.6, 1.2);
     const double width = (burned ? stumpWidth : tuftWidth) * random.uniform(0.7, 1.2);
     const Vec3 direction = toCamera_ * unitOr(unitOr(chord, Vec3::UnitZ()) + 0.45 * any, Vec3::UnitZ());
@@ -155,7 +158,8 @@ class SheetBuilder {
       const Vec3 normal = unitOr(along.cross(aside), Vec3::UnitZ());
       for (int c = -1; c <= 1; ++c)
         vertex(middle + 0.5 * c * width * (1.0 - 0.35 * v) * aside, normal, along,
-               {texS + 0.10 * c, texT + 0.2 * v, alpha, burnt}, (burned ? -0.5 : -0.35) + 1.1 * v * v + 0.7 * c * c);
+               {texS + 0.11 * c, texT + 0.10 * v, alpha, burnt},
+               burned ? -0.5 + 1.1 * v * v + 0.7 * c * c : 0.70 * v + 0.45 * c * c);
     }
   }
 

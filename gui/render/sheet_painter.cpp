@@ -7,7 +7,7 @@
 
 namespace calot::gui {
 
-SheetPainter::SheetPainter(const GlFunctions& gl) : gl_(gl) {
+SheetPainter::SheetPainter(const GlFunctions& gl, int fibreUnit) : gl_(gl) {
   gl_.GenVertexArrays(1, &vertexArray_);
   gl_.GenBuffers(1, &vertexBuffer_);
   gl_.GenBuffers(1, &indexBuffer_);
@@ -28,6 +28,7 @@ SheetPainter::SheetPainter(const GlFunctions& gl) : gl_(gl) {
 
   const std::vector<std::uint8_t> texels = makeFibreTexture();
   gl_.GenTextures(1, &fibres_);
+  gl_.ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + fibreUnit));
   gl_.BindTexture(GL_TEXTURE_2D, fibres_);
   gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, fibreColumns, fibreRows, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
   gl_.GenerateMipmap(GL_TEXTURE_2D);
@@ -42,15 +43,13 @@ SheetPainter::~SheetPainter() {
   gl_.DeleteVertexArrays(1, &vertexArray_);
 }
 
-void SheetPainter::draw(const SheetList& list, int fibreUnit) const {
+void SheetPainter::draw(const SheetList& list) const {
   gl_.BindVertexArray(vertexArray_);
   gl_.BindBuffer(GL_ARRAY_BUFFER, vertexBuffer_);
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list.vertex.size() * sizeof(SheetVertex)), list.vertex.data(),
                  GL_STREAM_DRAW);
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(list.index.size() * sizeof(std::uint32_t)),
                  list.index.data(), GL_STREAM_DRAW);
-  gl_.ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + fibreUnit));
-  gl_.BindTexture(GL_TEXTURE_2D, fibres_);
   // Colours come multiplied by their opacity; the list is in order of depth, and hides nothing itself.
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);

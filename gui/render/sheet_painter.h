@@ -10,14 +10,15 @@ namespace calot::gui {
 class SheetPainter {
  public:
   /// @pre the context of `gl` is current, here and in every call; `gl` outlives this
-  explicit SheetPainter(const GlFunctions& gl);
+  /// @param fibreUnit a texture unit that nobody else uses: it holds the fibre texture from here on
+  SheetPainter(const GlFunctions& gl, int fibreUnit);
   ~SheetPainter();
   SheetPainter(const SheetPainter&) = delete;
   SheetPainter& operator=(const SheetPainter&) = delete;
 
-  /// @param fibreUnit a texture unit that nobody else uses
-  /// @pre the sheets' program is in use with its uniforms set, "fibreMap" to fibreUnit; the target is bound, with depth
-  void draw(const SheetList& list, int fibreUnit) const;
+  /// @pre the sheets' program is in use with its uniforms set, "fibreMap" to fibreUnit; the target is bound, with
+  /// depth
+  void draw(const SheetList& list) const;
 
  private:
   const GlFunctions& gl_;
