@@ -19,8 +19,10 @@ constexpr float occlusionReach = 0.016F;              // m
 
 enum Unit : int { noiseUnit = 0, occlusionUnit = 1, shadowUnit = 2, depthUnit = 3, fibreUnit = 4 };
 
-const char* const filmCounts = "#define OCCLUSION_SAMPLES 24\n#define BLOCKERS 8\n#define SHADOW_SAMPLES 16\n#define SHEET_SHADOW_SAMPLES 4\n";
-const char* const interactiveCounts = "#define OCCLUSION_SAMPLES 8\n#define BLOCKERS 3\n#define SHADOW_SAMPLES 4\n#define SHEET_SHADOW_SAMPLES 1\n";
+const char* const filmCounts =
+    "#define OCCLUSION_SAMPLES 24\n#define BLOCKERS 8\n#define SHADOW_SAMPLES 16\n#define SHEET_SHADOW_SAMPLES 4\n";
+const char* const interactiveCounts =
+    "#define OCCLUSION_SAMPLES 8\n#define BLOCKERS 3\n#define SHADOW_SAMPLES 4\n#define SHEET_SHADOW_SAMPLES 1\n";
 
 int samplesAside(Quality quality) { return quality == Quality::film ? 2 : 1; }
 

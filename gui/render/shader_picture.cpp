@@ -83,7 +83,8 @@ void main() {
     for (int x = 0; x < samples; ++x) {
       vec4 s = texelFetch(radianceMap, pixel * samples + ivec2(x, y), 0);
       // Translucent tissue over nothing leaves its colour multiplied by its opacity.
-      sum += vec4(tone(0.85 * s.rgb / max(s.a, 1e-3)) * s.a, s.a);
+      vec3 whole = s.a < 1.0 ? s.rgb / max(s.a, 1e-3) : s.rgb;
+      sum += vec4(tone(0.85 * whole) * s.a, s.a);
     }
   float covered = sum.a / float(samples * samples);
   vec3 linear = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);

@@ -219,10 +219,7 @@ void main() {
   float nh = clamp(dot(n, h), 0.0, 1.0);
   float vh = clamp(dot(v, h), 0.0, 1.0);
 
-  // Inverse square from the tip of the endoscope, in a cone that fades; the exposure is right at the reference.
-  float cone = pow(clamp(-l.z, 0.0, 1.0), 2.5);
-  float received = cone * referenceDistance * referenceDistance / max(d2, 0.0004);
-  received = 1.25 * received / (1.0 + 0.35 * received);  // a camera's knee for what comes too close
+  float received = lightAt(l, d2, referenceDistance);
   float occlusion = texture(occlusionMap, gl_FragCoord.xy / pixels).x;
   float lit = received * shadow(vPosition, n0);
 

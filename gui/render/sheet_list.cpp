@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<double, 6> rows{0.0, 0.12, 0.35, 0.65, 0.88, 1.0};  // along a strand
 constexpr double sag = 0.13;             // largest deviation of a strand from its chord, over its length
 constexpr double thinningLength = 4e-3;  // m; longer tissue is stretched, and thinner
-constexpr double tuftLength = 2.4e-3, tuftWidth = 1.8e-3;
+constexpr double tuftLength = 2.8e-3, tuftWidth = 2.2e-3;
 constexpr double stumpLength = 0.9e-3, stumpWidth = 1.5e-3;
 constexpr double goneAlpha = 0.2;  // where a strand in the hook's heat looks burnt through
 
@@ -130,7 +130,7 @@ class SheetBuilder {
         vertex(curve->point[r], normal, curve->along[r],
                {s + (second ? across : 0.0) + shear * rows[r], t + 0.36 * rows[r], curve->alpha * thinned * feather,
                 burnt},
-               wear + 0.45 * burnt + 0.16 - 0.42 * foot * foot * foot);
+               wear + 0.28 * burnt + 0.16 - 0.42 * foot * foot * foot);
       }
     }
   }
@@ -140,7 +140,7 @@ class SheetBuilder {
     Random random(2 * s + end, 2);
     const Vec3 from = view.strand[s][end], chord = view.strand[s][1 - end] - from;
     const Vec3 any(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-    const double alpha = burned ? 0.75 : 0.65 * static_cast<double>(view.alpha[s]);
+    const double alpha = burned ? 0.75 : 0.8 * static_cast<double>(view.alpha[s]);
     const double burnt =
         burned ? 1.0 : std::clamp((1.0 - static_cast<double>(view.alpha[s])) / (1.0 - goneAlpha), 0.0, 1.0);
     const double length = (burned ? stumpLength : tuftLength) * random.uniform(0.6, 1.2);
@@ -159,7 +159,7 @@ class SheetBuilder {
       for (int c = -1; c <= 1; ++c)
         vertex(middle + 0.5 * c * width * (1.0 - 0.35 * v) * aside, normal, along,
                {texS + 0.11 * c, texT + 0.10 * v, alpha, burnt},
-               burned ? -0.5 + 1.1 * v * v + 0.7 * c * c : 0.70 * v + 0.45 * c * c);
+               burned ? -0.5 + 1.1 * v * v + 0.7 * c * c : -0.2 + 0.85 * v + 0.55 * c * c);
     }
   }
 

@@ -94,7 +94,8 @@ class Checker:
         count = lambda name: file[name].shape[0] if name in file else 0
         self.counts = {"O": count("/scene/organs"), "C": count("/steps/component_names"), "F": count("/steps/field_names"),
                        "V2": int(file.attrs["step_result_version"]) >= 2, "D": int("/device" in file),
-                       "K": sum(1 for name in file["/steps/component_names"][()] if name.startswith(b"connective."))}
+                       "K": sum(name.startswith(b"connective.") for name in file["/steps/component_names"][()])
+                       if "/steps/component_names" in file else 0}
         ticks = int(file.attrs["ticks_per_step"])
         self.block = max(1, 250 // ticks)
         self.ticks = ticks

@@ -127,20 +127,22 @@ TEST(ConnectiveSheets, IntactTissueIsPaleAndYellowish) {
 }
 
 TEST(ConnectiveSheets, TornStrandsLeaveTuftsAtBothEndsAndBurnedOnesDarkStumps) {
-  SceneView view = bed(1);
-  view.connective[0].condition[0] = StrandCondition::torn;
+  SceneView view = bed(9);
+  view.connective[0].condition.assign(9, StrandCondition::torn);
   const Image torn = renderer().render(view, width, height, bare);
-  const double upper = coverage(torn, -0.004, 0.004, -0.009, -0.001);
-  const double lower = coverage(torn, -0.004, 0.004, 0.001, 0.009);
-  EXPECT_GT(upper, 10.0);
-  EXPECT_GT(lower, 10.0);
+  const double upper = coverage(torn, -0.02, 0.02, -0.009, -0.001);
+  const double lower = coverage(torn, -0.02, 0.02, 0.001, 0.009);
+  EXPECT_GT(upper, 50.0);
+  EXPECT_GT(lower, 50.0);
   EXPECT_EQ(coverage(torn, -1.0, 1.0, -0.0001, 0.0001), 0.0) << "nothing between them";
 
-  view.connective[0].condition[0] = StrandCondition::burned;
-  view.connective[0].alpha[0] = 0.19F;
+  view.connective[0].condition.assign(9, StrandCondition::burned);
+  view.connective[0].alpha.assign(9, 0.19F);
   const Image burned = renderer().render(view, width, height, bare);
-  EXPECT_GT(coverage(burned), 2.0);
-  EXPECT_LT(coverage(burned), 0.6 * coverage(torn));
+  EXPECT_GT(coverage(burned), 20.0);
+  const auto inside = [](const Image& image) { return coverage(image, -0.02, 0.02, -0.0035, 0.0035); };
+  EXPECT_GT(inside(torn), 5.0);
+  EXPECT_EQ(inside(burned), 0.0) << "a stump is short";
   EXPECT_LT(brightness(burned), 0.4 * brightness(torn));
 }
 

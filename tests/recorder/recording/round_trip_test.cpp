@@ -55,6 +55,12 @@ void expectSame(const Step& made, const RecordedStep& read) {
                 a.largestSpeed == b.largestSpeed);
     EXPECT_TRUE(a.residual == b.residual && a.iterations == b.iterations && a.asleep == b.asleep);
   }
+  ASSERT_EQ(made.result.connective.size(), read.result.connective.size());
+  for (std::size_t t = 0; t < made.result.connective.size(); ++t) {
+    const ConnectiveResult &a = made.result.connective[t], &b = read.result.connective[t];
+    EXPECT_TRUE(a.attached == b.attached && a.burned == b.burned && a.torn == b.torn);
+    EXPECT_TRUE(a.largestPull == b.largestPull && a.hookTouches == b.hookTouches);
+  }
   EXPECT_EQ(made.result.step, read.result.step);
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandResult &a = made.result.hand[h], &b = read.result.hand[h];

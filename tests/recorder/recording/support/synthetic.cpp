@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "recorder/recording/layout.h"
 #include "recorder/recording/writer.h"
 #include "sim/scene/version.h"
 
@@ -89,6 +90,11 @@ AttemptHeader makeHeader(std::uint32_t ticksPerStep, std::size_t organs) {
     h.layout.fields.push_back({c, h.layout.components.back() + "/position"});
     h.layout.fields.push_back({c, h.layout.components.back() + "/velocity"});
   }
+  if (organs > 1) {
+    h.layout.components.emplace_back("connective.bed");
+    const auto c = static_cast<std::uint32_t>(h.layout.components.size() - 1);
+    h.layout.fields.push_back({c, "connective.bed/alpha"});
+  }
   return h;
 }
 
@@ -134,13 +140,16 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
   for (std::size_t o = 0; o < organs; ++o) {
     s.result.organ.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next(), r.next() % 2 == 0});
   }
+  for (std::size_t t = 0; t < connectiveNames(header).size(); ++t) {
+    s.result.connective.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next()});
+  }
   s.result.contact = {r.next(),    r.next(),    r.next(),    r.next(),    r.next(),   r.uniform(),
                       r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform()};
   s.result.misses = r.next();
   for (std::uint32_t e = r.next() % 3; e > 0; --e) {
     Event event;
     event.step = n;
-    event.kind = static_cast<EventKind>(1 + r.next() % 12);
+    event.kind = static_cast<EventKind>(1 + r.next() % 19);
     event.hand = static_cast<std::uint8_t>(r.next());
     event.subject = static_cast<std::uint16_t>(r.next());
     event.position = randomVector(r);
