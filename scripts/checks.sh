@@ -9,7 +9,7 @@ stages=(format lint clang asan-ubsan tsan tidy matrix)
 if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
-fastTests=(test_math test_geometry test_sim test_formats test_recording test_recorder test_sources test_statistics
+fastTests=(test_math test_geometry test_vessel test_carving test_connective test_sim test_formats test_recording test_recorder test_sources test_statistics
   test_analytics test_checkpoints)
 threadTests=(test_recording test_recorder)
 
@@ -46,7 +46,7 @@ for stage in "${stages[@]}"; do
       ;;
     asan-ubsan)
       export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1
-      fast asan-ubsan '^(Branch|Live|Blend)\.' "${fastTests[@]}"
+      fast asan-ubsan '^(Branch|Live|Blend|Strokes|HarshVessels)\.' "${fastTests[@]}"
       ;;
     tsan)
       export TSAN_OPTIONS=second_deadlock_stack=1:halt_on_error=1
