@@ -34,9 +34,11 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    const CLI::App* at = &app;
-    while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
-    std::string name = at == &app ? "calot" : "calot " + at->get_name();
+    std::string name = "calot";
+    for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+      at = at->get_subcommands().front();
+      name += " " + at->get_name();
+    }
     return fail(ExitCode::usage, std::string(e.what()) + " (try: " + name + " --help)");
   }
   try {
