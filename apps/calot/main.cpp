@@ -30,6 +30,9 @@ int main(int argc, char** argv) {
         apps::addMesh, apps::addScenes, apps::addCheckpoints, apps::addDevices}) {
     add(app, run);
   }
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr) {
+    return fail(ExitCode::usage, std::string("there is no command '") + argv[1] + "' (try: calot --help)");
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
