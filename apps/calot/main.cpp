@@ -30,7 +30,10 @@ int main(int argc, char** argv) {
         apps::addMesh, apps::addScenes, apps::addCheckpoints, apps::addDevices}) {
     add(app, run);
   }
-  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr) {
+  const auto isCommand = [&app](const std::string& word) {
+    return !app.get_subcommands([&word](const CLI::App* command) { return command->get_name() == word; }).empty();
+  };
+  if (argc > 1 && argv[1][0] != '-' && !isCommand(argv[1])) {
     return fail(ExitCode::usage, std::string("there is no command '") + argv[1] + "' (try: calot --help)");
   }
   try {
