@@ -14,7 +14,7 @@ namespace {
 
 constexpr int largestWithdrawals = 6;       ///< passes of withdraw()
 constexpr double wantedDepth = 2e-5;        ///< m; deeper is worth another pass
-constexpr double largestWithdrawal = 0.01;  ///< of a tip, by all passes of one step (m)
+constexpr double largestWithdrawal = 0.02;  ///< of a tip, by all passes of one step (m): the first may lead astray
 
 }  // namespace
 
