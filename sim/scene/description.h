@@ -107,6 +107,93 @@ struct ConnectiveDescription {
   }
 };
 
+/// How an end of a vessel is held.
+struct VesselEndDescription {
+  enum class Kind : std::uint8_t {
+    free,   ///< not at all
+    fixed,  ///< at its place at rest
+    organ,  ///< grown to an organ: goes where the tissue there goes
+    vessel  ///< grows out of an earlier vessel, at its node nearest to the end; starts only
+  };
+  Kind kind = Kind::free;
+  std::string to;  ///< name of that organ or vessel
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("kind", self.kind);
+    visit("to", self.to);
+  }
+};
+
+/// A duct or an artery: a tube along a curve (sim/vessel/beam_model.h).
+struct VesselDescription {
+  std::string name;
+  std::string appearance;
+  std::vector<Vec3> path;        ///< points that the centre line passes at rest, from start to end, in W (m)
+  std::uint32_t elements = 40;   ///< of equal length
+  double radius = 0.0015;        ///< outer (m)
+  double wall = 0.0005;          ///< thickness (m)
+  MaterialDescription material;  ///< of the wall
+  double ultimateStrain = 0.6;   ///< stretch at which it tears
+  double friction = 0.1;         ///< Coulomb coefficient of an instrument on it
+  VesselEndDescription start, end;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name);
+    visit("appearance", self.appearance);
+    visit("path", self.path);
+    visit("elements", self.elements);
+    visit("radius", self.radius);
+    visit("wall", self.wall);
+    visit("material", self.material);
+    visit("ultimateStrain", self.ultimateStrain);
+    visit("friction", self.friction);
+    visit("start", self.start);
+    visit("end", self.end);
+  }
+};
+
+/// How fat hangs on an organ or a vessel: springs over what of it is no farther than `distance`.
+struct FatAttachmentDescription {
+  std::string to;           ///< name of an organ or a vessel
+  double distance = 0.002;  ///< from its rest surface (m)
+  double stiffness = 2e6;   ///< of a unit volume of fat that hangs on it (N/m^4)
+  double damping = 2e4;     ///< (N s/m^4)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("to", self.to);
+    visit("distance", self.distance);
+    visit("stiffness", self.stiffness);
+    visit("damping", self.damping);
+  }
+};
+
+/// Fat that the energised hook carves: a potential field over coarse cubes (sim/carving, sim/solid).
+struct FatDescription {
+  std::string name;
+  std::string appearance;
+  SurfaceDescription surface;
+  double cellSize = 0.00075;       ///< of the potential field (m)
+  std::uint32_t cellsPerCube = 3;  ///< edge of a mechanical cube in cells
+  MaterialDescription material{1000.0, 0.4, 920.0, 2.0, 0.01};
+  double friction = 0.1;  ///< Coulomb coefficient of an instrument on it
+  std::vector<FatAttachmentDescription> attachments;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name);
+    visit("appearance", self.appearance);
+    visit("surface", self.surface);
+    visit("cellSize", self.cellSize);
+    visit("cellsPerCube", self.cellsPerCube);
+    visit("material", self.material);
+    visit("friction", self.friction);
+    visit("attachments", self.attachments);
+  }
+};
+
 /// Where a hand's instrument enters, and how it is coupled.
 struct HandDescription {
   Vec3 port = Vec3::Zero();  ///< p_WP, the trocar's pivot (m)
@@ -164,6 +251,8 @@ struct SceneDescription {
   std::array<Vec3, 2> workspace{Vec3::Constant(-0.5), Vec3::Constant(0.5)};  ///< lower and upper corner for tips (m)
   std::vector<OrganDescription> organs;
   std::vector<ConnectiveDescription> connective;
+  std::vector<VesselDescription> vessels;
+  std::vector<FatDescription> fat;
   std::array<HandDescription, handCount> hands;
   CameraSample camera;               ///< at the start
   double verticalFieldOfView = 1.0;  ///< rad
@@ -180,6 +269,8 @@ struct SceneDescription {
     visit("workspace", self.workspace);
     visit("organs", self.organs);
     visit("connective", self.connective);
+    visit("vessels", self.vessels);
+    visit("fat", self.fat);
     visit("hands", self.hands);
     visit("cameraPosition", self.camera.position);
     visit("cameraOrientation", self.camera.orientation);
