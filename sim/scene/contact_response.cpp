@@ -15,6 +15,7 @@ namespace {
 constexpr int largestWithdrawals = 6;       ///< passes of withdraw()
 constexpr double wantedDepth = 2e-5;        ///< m; deeper is worth another pass
 constexpr double largestWithdrawal = 0.02;  ///< of a tip, by all passes of one step (m): the first may lead astray
+constexpr std::array<double, 3> retreats{0.005, 0.01, 0.02};  ///< along the shaft, where the nearest way out fails (m)
 
 }  // namespace
 
@@ -83,99 +84,103 @@ void Stepper::Workspace::move(State& state) {
   }
 }
 
-/// Rows are linear, tissue is not: what an instrument is still inside of after the step, it leaves by the shortest
-/// motion of its own (a small complementarity problem without organs). Where tissue presses from two sides there may be
-/// no way out: that depth is told as pinched.
-void Stepper::Workspace::withdraw(State& state, std::size_t hand) {
-  HandState& s = state.hand[hand];
-  if (s.instrument == InstrumentKind::none) return;
-  const HandDescription& description = model.scene().hands[hand];
-  struct Inside {
-    ToolRow row;
-    Vec3 normal;
-    double gap;
-  };
-  std::vector<Inside> inside;
-  std::vector<double> w;
-  std::vector<double> free;
-  std::vector<double> force;
-  std::vector<double> gaps;
-  std::vector<BlockKind> kind;
-  std::vector<double> none;
+/// The deepest an instrument in `shape` stands in any organ, and all places where it does.
+/// @pre refreshBounds() since organs moved
+double Stepper::Workspace::findInside(const HandState& hand, const Vec3& port, const Pose& pose) {
+  inside.clear();
+  double depth = 0.0;
+  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    found.clear();
+    for (const Capsule& c : shape) {
+      Box box;
+      box.include(c.p0);
+      box.include(c.p1);
+      box.grow(capsuleSearch(c.radius, 0.0));
+      const std::size_t before = found.size();
+      capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece,
+                      found);
+      if (const double allowed = allowance(hand, c, o); allowed > 0.0) allow(allowed, 0.0, before);
+    }
+    for (const SurfaceContact& contact : found) {
+      if (!(contact.gap < 0.0)) continue;
+      inside.push_back({toolRow(port, pose, contact.onAxis, contact.normal), contact.normal, contact.gap});
+      depth = std::max(depth, -contact.gap);
+    }
+  }
+  return depth;
+}
+
+/// The shortest motion of the instrument that leaves every place in `inside`: a small complementarity problem without
+/// organs. Tip motion costs as its square; a roll as the motion of a point 5 mm from the axis.
+ToolRow Stepper::Workspace::wayOut() {
+  constexpr double arm2 = 0.005 * 0.005;
+  const std::size_t n = inside.size();
+  const std::vector<double> none(n, 0.0);
+  const std::vector<BlockKind> kind(n, BlockKind::unilateral);
+  std::vector<double> w(n * n);
+  std::vector<double> free(n);
+  std::vector<double> gaps(n);
+  std::vector<double> force(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    free[i] = inside[i].gap;
+    for (std::size_t j = 0; j < n; ++j) {
+      w[i * n + j] = inside[i].row.head<3>().dot(inside[j].row.head<3>()) + inside[i].row[3] * inside[j].row[3] / arm2;
+    }
+    w[i * n + i] *= 1.01;
+  }
+  sweepContacts({kind, none, w, free}, force, gaps, 0.1 * wantedDepth, 50);
+  ToolRow q = ToolRow::Zero();
+  for (std::size_t i = 0; i < n; ++i) q += force[i] * inside[i].row;
+  q[3] /= arm2;
+  return q;
+}
+
+/// Follows wayOut() from a pose, pass by pass. Keeps the best place met: folds and pinches may lead a pass astray.
+Stepper::Workspace::Withdrawal Stepper::Workspace::withdrawFrom(const State& state, std::size_t hand, Pose pose) {
+  const HandState& s = state.hand[hand];
+  const Vec3& port = model.scene().hands[hand].port;
+  Withdrawal best{pose, 1e300, false};
   double gone = 0.0;
-  // What is kept is the best place met: folds and pinches may lead a pass astray.
-  Pose best = simulated(state, hand);
-  double least = 1e300;
-  bool bestPinched = false;
   for (int pass = 0;; ++pass) {
-    const Pose pose = simulated(state, hand);
     shapeAt(state, hand, pose, s.jaw);
-    inside.clear();
-    double depth = 0.0;
-    for (std::size_t o = 0; o < model.organs().size(); ++o) {
-      found.clear();
-      for (const Capsule& c : shape) {
-        Box box;
-        box.include(c.p0);
-        box.include(c.p1);
-        box.grow(capsuleSearch(c.radius, 0.0));
-        const std::size_t before = found.size();
-        capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece,
-                        found);
-        if (const double allowed = allowance(s, c, o); allowed > 0.0) allow(allowed, 0.0, before);
-      }
-      for (const SurfaceContact& contact : found) {
-        if (!(contact.gap < 0.0)) continue;
-        inside.push_back(
-            {toolRow(description.port, pose, contact.onAxis, contact.normal), contact.normal, contact.gap});
-        depth = std::max(depth, -contact.gap);
+    const double depth = findInside(s, port, pose);
+    if (depth < best.depth) {
+      best = {pose, depth, false};
+      for (const Inside& a : inside) {
+        for (const Inside& b : inside) best.pinched = best.pinched || a.normal.dot(b.normal) < -0.25;
       }
     }
-    bool pinched = false;
-    for (const Inside& a : inside) {
-      for (const Inside& b : inside) pinched = pinched || a.normal.dot(b.normal) < -0.25;
-    }
-    if (depth < least) {
-      least = depth;
-      best = pose;
-      bestPinched = pinched;
-    }
-    if (depth <= wantedDepth || pass >= largestWithdrawals || gone >= largestWithdrawal) {
-      s.simulatedPosition = best.position;
-      s.simulatedOrientation = best.orientation;
-      double& told = bestPinched ? result.contact.pinchedDepth : result.contact.largestDepth;
-      told = std::max(told, least);
-      return;
-    }
-    const std::size_t n = inside.size();
-    // Tip motion costs as its square; a roll as the motion of a point 5 mm from the axis.
-    constexpr double arm2 = 0.005 * 0.005;
-    w.assign(n * n, 0.0);
-    free.resize(n);
-    gaps.resize(n);
-    force.assign(n, 0.0);
-    kind.assign(n, BlockKind::unilateral);
-    none.assign(n, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-      free[i] = inside[i].gap;
-      for (std::size_t j = 0; j < n; ++j) {
-        w[i * n + j] =
-            inside[i].row.head<3>().dot(inside[j].row.head<3>()) + inside[i].row[3] * inside[j].row[3] / arm2;
-      }
-      w[i * n + i] *= 1.01;
-    }
-    sweepContacts({kind, none, w, free}, force, gaps, 0.1 * wantedDepth, 50);
-    ToolRow q = ToolRow::Zero();
-    for (std::size_t i = 0; i < n; ++i) q += force[i] * inside[i].row;
+    if (depth <= wantedDepth || pass >= largestWithdrawals || gone >= largestWithdrawal) return best;
+    const ToolRow q = wayOut();
     Vec3 way = q.head<3>();
     const double size = way.norm();
     const double most = std::min(largestWithdrawal - gone, 3.0 * depth);
     if (size > most) way *= most / size;
     gone += std::min(size, most);
-    const Pose next = movedTool(description.port, pose, way, std::clamp(q[3] / arm2, -0.2, 0.2));
-    s.simulatedPosition = next.position;
-    s.simulatedOrientation = next.orientation;
+    pose = movedTool(port, pose, way, std::clamp(q[3], -0.2, 0.2));
   }
+}
+
+/// Rows are linear, tissue is not: what an instrument is still inside of after the step, it leaves by the shortest
+/// motion of its own. In a fold the nearest surface may lie deeper in: then it goes back along its shaft, the way it
+/// came in, and looks again. Where tissue presses from two sides there may be no way out: that depth is told as
+/// pinched.
+void Stepper::Workspace::withdraw(State& state, std::size_t hand) {
+  HandState& s = state.hand[hand];
+  if (s.instrument == InstrumentKind::none) return;
+  const Vec3& port = model.scene().hands[hand].port;
+  const Pose from = simulated(state, hand);
+  Withdrawal best = withdrawFrom(state, hand, from);
+  for (const double retreat : retreats) {
+    if (best.depth <= wantedDepth) break;
+    const Vec3 back = from.orientation * Vec3(0.0, 0.0, -retreat);
+    const Withdrawal other = withdrawFrom(state, hand, movedTool(port, from, back, 0.0));
+    if (other.depth < best.depth) best = other;
+  }
+  s.simulatedPosition = best.pose.position;
+  s.simulatedOrientation = best.pose.orientation;
+  double& told = best.pinched ? result.contact.pinchedDepth : result.contact.largestDepth;
+  told = std::max(told, best.depth);
 }
 
 /// The problem of this step, reduced to each hand, for the ticks to come. The other hand's forces, and those among

@@ -57,6 +57,19 @@ SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& wei
 Vec3 axisOf(const Vec3& port, const Vec3& tip);
 
 struct Stepper::Workspace {
+  /// A place where an instrument stands inside an organ.
+  struct Inside {
+    ToolRow row;
+    Vec3 normal;
+    double gap;
+  };
+  /// Where a withdrawal led.
+  struct Withdrawal {
+    Pose pose;
+    double depth;  ///< that is left (m)
+    bool pinched;  ///< between tissue on two sides
+  };
+
   Workspace(const Model& model_, Executor& executor_, MakeBroadPhase make);
   void invalidate();
 
@@ -65,7 +78,7 @@ struct Stepper::Workspace {
   // contact_detection.cpp
   void refreshBounds(const State& state);
   std::span<const std::uint32_t> patchesNear(std::size_t organ, const Box& box);
-  /// Capsules of a hand's instrument at a pose, in W.
+  /// Capsules of a hand's instrument at a pose, in W, into `local` and `shape`.
   void shapeAt(const State& state, std::size_t hand, const Pose& pose, double jaw);
   /// How deep this part of the instrument may stand in an organ (m): jaws in what they hold, for a mesh does not fold
   /// between them; nothing else.
@@ -108,6 +121,9 @@ struct Stepper::Workspace {
   void addForces(std::size_t organ, std::span<const double> forces, double scale, std::vector<Vec3>& nodal) const;
   void carryOut(std::span<const double> change);
   void move(State& state);
+  double findInside(const HandState& hand, const Vec3& port, const Pose& pose);
+  ToolRow wayOut();
+  Withdrawal withdrawFrom(const State& state, std::size_t hand, Pose pose);
   void withdraw(State& state, std::size_t hand);
   void publish(const State& state);
 
@@ -139,6 +155,7 @@ struct Stepper::Workspace {
   std::vector<BroadPhase::Pair> pairs;
   std::vector<std::uint32_t> patches;
   std::vector<SurfaceContact> found;
+  std::vector<Inside> inside;
   std::vector<VertexContact> foundVertices;
   InstrumentShape local;       // of the instrument at hand, in I
   std::vector<Capsule> shape;  // the same in W

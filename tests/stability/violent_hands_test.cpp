@@ -72,7 +72,7 @@ struct Shaking {
 /// What a run met with.
 struct Record {
   double deepest = 0.0;          ///< outside pinches, measured without the contact search (m)
-  double pinched = 0.0;          ///< the same in steps that tell of a pinch, and of hands that hold tissue (m)
+  double pinched = 0.0;          ///< the same in steps that tell of a pinch (m)
   double told = 0.0;             ///< what the steps told (m)
   double strongest = 0.0;        ///< contact force (N)
   double strongestTick = 0.0;    ///< what the device gave out (N)
@@ -132,13 +132,9 @@ Record shake(const Model& model, std::uint64_t seed, int steps, int measureEvery
       record.holds += result.hand[h].grasping != 0 ? 1 : 0;
       if (step % measureEvery != 0) continue;
       const double depth = test::instrumentDepth(model, loop.rig.state, h);
-      // In a pinch, or tied to what it holds, an instrument may have no way out; then the step must tell how deep it
-      // is.
-      const bool tied = loop.rig.state.hand[h].grasped != noOrgan;
-      double& kept = result.contact.pinchedDepth > 0.0 || tied ? record.pinched : record.deepest;
-      if (tied && depth > 2e-4) {
-        EXPECT_GT(std::max(result.contact.largestDepth, result.contact.pinchedDepth), 0.5 * depth);
-      }
+      // In a pinch an instrument may have no way out; then the step must tell how deep it is. Jaws that hold tissue are
+      // left out of the measure, the rest of their instrument is not.
+      double& kept = result.contact.pinchedDepth > 0.0 ? record.pinched : record.deepest;
       if (depth > std::max(kept, 2e-4)) {
         std::printf("  seed %llu step %d hand %zu instrument %d: %.3f mm deep, told %.3f, pinched %.3f\n",
                     static_cast<unsigned long long>(seed), step, h, static_cast<int>(loop.rig.state.hand[h].instrument),
