@@ -68,7 +68,12 @@ AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Pr
   header.sceneMajor = model.scene().majorVersion;
   header.sceneMinor = model.scene().minorVersion;
   header.assets = std::move(assets);
-  for (const OrganModel& organ : model.organs()) header.organs.push_back(organ.name);
+  for (const StructureModel& structure : model.structures()) {
+    std::vector<std::string>& names = structure.kind == StructureKind::organ    ? header.organs
+                                      : structure.kind == StructureKind::vessel ? header.vessels
+                                                                                : header.fat;
+    names.push_back(structure.name);
+  }
   header.layout = model.layout();
   header.deviceSamples = !provenance.device.empty();
   return header;

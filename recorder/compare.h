@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -17,8 +18,23 @@ std::optional<Divergence> compareTick(std::uint64_t step, std::uint64_t tick, co
 std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& layout, const StateDigest& recorded,
                                         const StateDigest& here);
 
-/// The first difference of observables and events.
-std::optional<Divergence> compareResult(const StepResult& recorded, const StepResult& here);
+/// Compares the observables and events of one step after the other, in the recording's version of them. Names of fields
+/// are those of schemas/observables.md: "left/tip_real[2]"; the index is that of the column, of an event's field that
+/// of the event comes first.
+class ResultComparison {
+ public:
+  explicit ResultComparison(const AttemptHeader& header);
+  ~ResultComparison();
+  ResultComparison(const ResultComparison&) = delete;
+  ResultComparison& operator=(const ResultComparison&) = delete;
+
+  /// The first difference, bit for bit. Makes no strings and, after the first steps, no memory, where there is none.
+  std::optional<Divergence> operator()(const StepResult& recorded, const StepResult& here);
+
+ private:
+  struct Buffers;
+  std::unique_ptr<Buffers> buffers_;
+};
 
 /// The first difference of two keyframes' States, or of their haptic bytes.
 std::optional<Divergence> compareKeyframe(const Model& model, const Keyframe& recorded, const Keyframe& here);

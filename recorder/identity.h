@@ -53,10 +53,19 @@ struct AttemptHeader {
   std::uint32_t ticksPerStep = 10;
   std::string sceneName;
   std::uint32_t sceneMajor = 0, sceneMinor = 0;
-  std::vector<Asset> assets;        ///< the scene file first
-  std::vector<std::string> organs;  ///< names in the Model's order (columns of the observables)
+  std::vector<Asset> assets;  ///< the scene file first
+  /// Names in the Model's order: columns of the observables. Vessels and fat: since version 3 of StepResult.
+  std::vector<std::string> organs, vessels, fat;
   DigestLayout layout;
   bool deviceSamples = false;  ///< the recording has a place for a device's raw samples (/device); no attribute
+
+  /// Organs, then vessels, then bodies of fat: what subjects of events and bits of `touching` and `grasping` count.
+  [[nodiscard]] std::vector<std::string> structures() const {
+    std::vector<std::string> names = organs;
+    names.insert(names.end(), vessels.begin(), vessels.end());
+    names.insert(names.end(), fat.begin(), fat.end());
+    return names;
+  }
 };
 
 }  // namespace calot::recorder

@@ -18,7 +18,8 @@ namespace {
 /// Keeps the newest record's parts that the comparison needs.
 class Comparer final : public Observer {
  public:
-  Comparer(Recording& recording, const Model& model) : recording_(recording), model_(model) {}
+  Comparer(Recording& recording, const Model& model)
+      : recording_(recording), model_(model), compareResult_(recording.header()) {}
 
   void onStep(const StepRecord& record) override {
     if (first_) {
@@ -30,7 +31,7 @@ class Comparer final : public Observer {
       first_ = compareTick(record.step, record.step * record.ticks.size() + i, recorded.ticks[i], record.ticks[i]);
     }
     if (!first_) first_ = compareDigest(record.step, recording_.header().layout, recorded.digest, record.digest);
-    if (!first_) first_ = compareResult(recorded.result, record.result);
+    if (!first_) first_ = compareResult_(recorded.result, record.result);
     if (first_) {
       resolved_ = !first_->detail.empty();
       if (!resolved_) resolveAtKeyframe(record);
@@ -72,6 +73,7 @@ class Comparer final : public Observer {
 
   Recording& recording_;
   const Model& model_;
+  ResultComparison compareResult_;
   std::optional<Divergence> first_;
   bool resolved_ = false;
 };

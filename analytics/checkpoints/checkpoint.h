@@ -81,7 +81,7 @@ struct CheckpointValue {
 struct AttemptContext {
   double tickSeconds = tickLength;
   std::uint32_t ticksPerStep = 10;
-  std::vector<std::string> organs;  ///< in the Model's order
+  std::vector<std::string> organs;  ///< and vessels, and fat: the scene's structures, as bits of `touching` count them
 };
 
 struct Motion;

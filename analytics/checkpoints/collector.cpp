@@ -13,7 +13,7 @@ namespace calot::analytics {
 struct CheckpointCollector::Storage {
   Storage(const recorder::AttemptHeader& header, Origin from)
       : origin(from), track{MotionTrack(header.tickSeconds), MotionTrack(header.tickSeconds)} {
-    const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.organs};
+    const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures()};
     for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint.push_back(entry.make(context));
   }
   Origin origin;

@@ -96,6 +96,8 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
   recorder::visitAttributes(header, visit);
   out["attempt"] = attributes;
   out["organs"] = header.organs;
+  out["vessels"] = header.vessels;
+  out["fat"] = header.fat;
   ordered_json assets = ordered_json::array();
   for (const recorder::Asset& asset : header.assets)
     assets.push_back({{"name", asset.name}, {"bytes", asset.bytes.size()}});

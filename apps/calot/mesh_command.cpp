@@ -8,7 +8,7 @@
 #include "apps/calot/commands.h"
 #include "recorder/errors.h"
 #include "recorder/formats/mesh_report.h"
-#include "recorder/formats/obj.h"
+#include "recorder/formats/surface_file.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/vtk.h"
 
@@ -25,8 +25,8 @@ struct MeshOptions {
 };
 
 int meshSurface(const MeshOptions& options) {
-  if (!options.input.ends_with(".obj") && !options.input.ends_with(".OBJ")) {
-    throw Error(ExitCode::usage, options.input + ": this build reads surfaces from .obj files only");
+  if (!recorder::isSurfaceName(options.input)) {
+    throw Error(ExitCode::usage, options.input + ": surfaces are read from .obj, .stl and .ply files");
   }
   if (!options.output.ends_with(".vtk"))
     throw Error(ExitCode::usage, options.output + ": the output's name must end in .vtk");
@@ -35,7 +35,7 @@ int meshSurface(const MeshOptions& options) {
   recorder::MeshReport report;
   report.input = options.input;
   report.unit = options.unit;
-  const TriangleMesh surface = recorder::readObj(options.input, recorder::parseLengthUnit(options.unit));
+  const TriangleMesh surface = recorder::readSurface(options.input, recorder::parseLengthUnit(options.unit));
   report.found = inspectSurface(surface);
   report.repair = repairSurface(surface);
   report.stuffed = stuffToCount(report.repair.mesh, options.tetrahedra);
@@ -54,7 +54,7 @@ int meshSurface(const MeshOptions& options) {
 void addMesh(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("mesh", "Fill a closed surface with tetrahedra (isosurface stuffing)");
   const auto options = std::make_shared<MeshOptions>();
-  command->add_option("surface", options->input, "the surface, a .obj file")->required();
+  command->add_option("surface", options->input, "the surface, a .obj, .stl or .ply file")->required();
   command->add_option("--unit", options->unit, "of the file's coordinates: m, cm or mm")
       ->required()
       ->check(CLI::IsMember({"m", "cm", "mm"}));

@@ -34,6 +34,7 @@ int record(const Options& o) {
   stopOnSignals();
   refuseExisting(o.output, o.force);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
   const Model::Built built = Model::build(scene.description);
   if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", o.scene, built.error));
   SourceOptions who = o.source;

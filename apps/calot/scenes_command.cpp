@@ -65,6 +65,9 @@ void addScenes(CLI::App& app, Run& run) {
       for (const std::filesystem::path& file : files) {
         try {
           scenes.push_back(recorder::loadScene(file));
+          for (const std::string& warning : scenes.back().warnings) {
+            fmt::print(stderr, "calot: warning: {}\n", warning);
+          }
         } catch (const Error& fault) {
           if (fault.code() != ExitCode::damaged) throw;
           fmt::print(stderr, "calot: {}\n", fault.what());

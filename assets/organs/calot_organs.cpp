@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot-organs: writes the organ surfaces of this folder, or checks that they are what it would write.
+// calot-organs: writes the organ surfaces of this folder, or checks that they are what it would write; prints the
+// vessels' paths as scenes hold them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,10 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "assets/organs/fat_shape.h"
 #include "assets/organs/organ_shapes.h"
+#include "assets/organs/vessel_paths.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/obj.h"
+#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 
 namespace {
@@ -25,12 +29,16 @@ struct Organ {
 int run(const std::filesystem::path& folder, bool check, bool force) {
   using namespace calot;
   const std::vector<Organ> organs{{"liver.obj", organs::makeLiver(), organs::liverHead},
-                                  {"gallbladder.obj", organs::makeGallbladder(), organs::gallbladderHead}};
+                                  {"gallbladder.obj", organs::makeGallbladder(), organs::gallbladderHead},
+                                  {"fat.obj", organs::makeFat(), organs::fatHead}};
   int result = 0;
   for (const Organ& organ : organs) {
     const SurfaceReport report = inspectSurface(organ.mesh);
     if (!report.closedManifold() || report.components != 1) {
       throw Error(ExitCode::failure, organ.file + ": the shape's surface is not one closed manifold");
+    }
+    if (findSelfCrossing(organ.mesh).pairs > 0) {
+      throw Error(ExitCode::failure, organ.file + ": the shape's surface passes through itself");
     }
     const Vec3 size = 1000.0 * (report.box.upper - report.box.lower);
     fmt::print("{}: {} triangles, {:.1f} mL, {:.0f} x {:.0f} x {:.0f} mm\n", organ.file, report.triangles,
@@ -50,14 +58,30 @@ int run(const std::filesystem::path& folder, bool check, bool force) {
   return result;
 }
 
+/// The values of "path", "radius", "wall" and "elements" of each vessel of a scene file.
+int printVessels() {
+  using namespace calot;
+  for (const organs::VesselPath& vessel : organs::vesselPaths()) {
+    fmt::print("\"name\": \"{}\", \"elements\": {}, \"radius\": {}, \"wall\": {},\n  \"path\": [", vessel.name,
+               organs::vesselElements, vessel.radius, vessel.wall);
+    for (const Vec3& p : vessel.point) {
+      fmt::print("{}[{}, {}, {}]", &p == vessel.point.data() ? "" : ", ", p[0], p[1], p[2]);
+    }
+    fmt::print("]\n");
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Makes the organ surfaces liver.obj and gallbladder.obj from implicit shapes.");
+  CLI::App app("Makes the organ surfaces liver.obj, gallbladder.obj and fat.obj from implicit shapes.");
   std::string folder;
   bool check = false;
   bool force = false;
-  app.add_option("folder", folder, "where to write them")->required();
+  bool vessels = false;
+  app.add_option("folder", folder, "where to write them");
+  app.add_flag("--vessels", vessels, "print the vessels' paths for scene files, and write nothing");
   app.add_flag("--check", check, "write nothing; exit 3 where a file differs from what would be written");
   app.add_flag("--force", force, "replace files that are there");
   try {
@@ -66,6 +90,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(calot::ExitCode::usage);
   }
   try {
+    if (vessels) return printVessels();
+    if (folder.empty()) throw calot::Error(calot::ExitCode::usage, "name the folder, or ask for --vessels");
     return run(folder, check, force);
   } catch (const calot::Error& error) {
     fmt::print(stderr, "calot-organs: {}\n", error.what());

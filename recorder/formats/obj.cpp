@@ -14,43 +14,14 @@
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/text_output.h"
+#include "recorder/formats/text_words.h"
 
 namespace calot::recorder {
 namespace {
 
-/// Farther than this nothing is an organ, and sums of squares stay far from overflow (m).
-constexpr double farthest = 1000.0;
-
 constexpr std::array<std::string_view, 17> passedOver = {"vt",     "vn",     "vp",       "g",      "o",       "s",
                                                          "usemtl", "mtllib", "l",        "p",      "mg",      "lod",
                                                          "bevel",  "usemap", "c_interp", "maplib", "d_interp"};
-
-/// Words of one line; a comment ends it.
-class Words {
- public:
-  explicit Words(std::string_view line) : rest_(line.substr(0, line.find('#'))) {}
-
-  /// @return an empty word at the end
-  std::string_view next() {
-    const std::size_t begin = std::min(rest_.find_first_not_of(" \t\r\v\f"), rest_.size());
-    rest_.remove_prefix(begin);
-    const std::size_t end = std::min(rest_.find_first_of(" \t\r\v\f"), rest_.size());
-    const std::string_view word = rest_.substr(0, end);
-    rest_.remove_prefix(end);
-    return word;
-  }
-
- private:
-  std::string_view rest_;
-};
-
-/// A word for a message: short, and without control characters.
-std::string shown(std::string_view word) {
-  std::string text(word.substr(0, 40));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return word.size() > 40 ? text + "..." : text;
-}
 
 class ObjParser {
  public:
@@ -60,9 +31,7 @@ class ObjParser {
   TriangleMesh parse(std::string_view text) {
     while (!text.empty()) {
       ++line_;
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      readLine(text.substr(0, end));
-      text.remove_prefix(std::min(end + 1, text.size()));
+      readLine(takeLine(text));
     }
     // A positive index may name a vertex that comes later.
     for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
@@ -84,7 +53,7 @@ class ObjParser {
 
   void readLine(std::string_view line) {
     if (line.find('\0') != std::string_view::npos) fail("a zero byte; this is not a text file");
-    Words words(line);
+    Words words(line, '#');
     const std::string_view keyword = words.next();
     if (keyword.empty()) return;
     if (line.back() == '\\' || (line.size() > 1 && line.back() == '\r' && line[line.size() - 2] == '\\')) {
@@ -100,12 +69,9 @@ class ObjParser {
   }
 
   double readNumber(std::string_view word) const {
-    double value = 0.0;
-    if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault != std::errc() || end != word.data() + word.size())
-      fail(fmt::format("\"{}\" is not a number", shown(word)));
-    if (!std::isfinite(value)) fail(fmt::format("\"{}\" is not a finite number", shown(word)));
+    std::string fault;
+    const double value = readFiniteNumber(word, fault);
+    if (!fault.empty()) fail(fault);
     return value;
   }
 
@@ -116,7 +82,7 @@ class ObjParser {
       const std::string_view word = words.next();
       if (word.empty()) fail(fmt::format("a vertex with {} of 3 coordinates", k));
       p[k] = readNumber(word) * scale_;
-      if (!(std::abs(p[k]) <= farthest)) fail(fmt::format("a coordinate of {} m: is the unit right?", p[k]));
+      if (!(std::abs(p[k]) <= farthestCoordinate)) fail(fmt::format("a coordinate of {} m: is the unit right?", p[k]));
     }
     // A weight or a colour may follow.
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) static_cast<void>(readNumber(word));
@@ -169,25 +135,6 @@ class ObjParser {
 };
 
 }  // namespace
-
-double metres(LengthUnit unit) {
-  switch (unit) {
-    case LengthUnit::centimetre:
-      return 0.01;
-    case LengthUnit::millimetre:
-      return 0.001;
-    case LengthUnit::metre:
-      break;
-  }
-  return 1.0;
-}
-
-LengthUnit parseLengthUnit(const std::string& word) {
-  if (word == "m") return LengthUnit::metre;
-  if (word == "cm") return LengthUnit::centimetre;
-  if (word == "mm") return LengthUnit::millimetre;
-  throw Error(ExitCode::usage, fmt::format("unit \"{}\": m, cm or mm is wanted", shown(word)));
-}
 
 TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                       const ObjLimits& limits) {

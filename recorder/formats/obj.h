@@ -9,25 +9,12 @@
 #include <span>
 #include <string>
 
+#include "recorder/formats/surface_limits.h"
 #include "sim/geometry/triangle_mesh.h"
 
 namespace calot::recorder {
 
-/// An OBJ file says no unit: whoever names the file must.
-enum class LengthUnit { metre, centimetre, millimetre };
-
-/// Metres in one unit.
-double metres(LengthUnit unit);
-
-/// "m", "cm" or "mm". @throws Error (usage)
-LengthUnit parseLengthUnit(const std::string& word);
-
-/// What a file may hold. Beyond it is refused, at the line where it happens.
-struct ObjLimits {
-  std::size_t bytes = std::size_t{256} << 20U;
-  std::size_t vertices = 5'000'000;
-  std::size_t triangles = 10'000'000;
-};
+using ObjLimits = SurfaceLimits;
 
 /// A surface from an OBJ file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised
 /// (surface_report.h says what is wrong with it).

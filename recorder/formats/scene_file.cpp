@@ -9,9 +9,11 @@
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/json_reader.h"
 #include "recorder/formats/scene_connective.h"
+#include "recorder/formats/scene_fat.h"
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_organs.h"
 #include "recorder/formats/scene_rules.h"
+#include "recorder/formats/scene_vessels.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
@@ -99,10 +101,17 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   const JsonObject hands = object.at("hands").object(sceneRule("hands"));
   for (std::size_t h = 0; h < handCount; ++h) scene.hands[h] = readHand(hands.at(handNames[h]), scene.workspace);
 
-  for (const JsonPlace& organ : object.at("organs").list(1, mostOrgans))
+  for (const JsonPlace& organ : object.at("organs").list(1, mostBodies))
     scene.organs.push_back(readOrgan(organ, fetch));
   checkOrgans(object.at("organs"), scene.organs);
   if (object.has("connective")) scene.connective = readConnective(object.at("connective"), scene.organs);
+  if (object.has("vessels")) scene.vessels = readVessels(object.at("vessels"), scene.organs);
+  if (object.has("fat")) {
+    scene.fat = readFat(object.at("fat"), scene.organs, scene.vessels, fetch, loaded.warnings);
+  }
+  if (scene.organs.size() + scene.vessels.size() + scene.fat.size() > mostBodies) {
+    object.fail(fmt::format("more than {} organs, vessels and fat together", mostBodies));
+  }
 
   if (object.has("solver")) {
     const JsonObject solver = object.at("solver").object(sceneRule("solver"));
@@ -125,7 +134,7 @@ LoadedScene loadScene(const fs::path& sceneFile) {
   const fs::path root = inScenes ? folder / ".." : folder;
   const std::string base = sceneFile.filename().string();
   std::vector<Asset> assets;
-  assets.reserve(mostOrgans + 1);  // references to the elements stay good
+  assets.reserve(mostBodies + 1);  // references to the elements stay good
   assets.push_back({inScenes ? "scenes/" + base : base, {}});
   assets[0].bytes = readFileBytes(sceneFile, assets[0].name, largestMesh);
 

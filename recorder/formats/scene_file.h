@@ -14,9 +14,11 @@ namespace calot::recorder {
 
 /// A scene with everything that it names.
 struct LoadedScene {
-  SceneDescription description;  ///< what a Model is built from
-  std::string summary;           ///< one sentence for people
-  std::vector<Asset> assets;     ///< the scene file first, then each mesh in the order of the organs; bytes as read
+  SceneDescription description;       ///< what a Model is built from
+  std::string summary;                ///< one sentence for people
+  std::vector<std::string> warnings;  ///< what was put right, one line each: repaired surfaces
+  std::vector<Asset>
+      assets;  ///< the scene file first, then each mesh in the order of the organs and the fat; bytes as read
 };
 
 /// Reads a scene file and the meshes that it names.

@@ -29,8 +29,8 @@ std::vector<ObjectRule> makeRules() {
       {"",
        {required("format"), required("formatVersion", 1, sceneFormatVersion), required("name"), required("version"),
         required("summary"), required("workspace"), required("camera"), required("hands"), required("organs"),
-        optional("connective"), optional("ticksPerStep", 1, 100), optional("timeLimit", 0, 86400),
-        optional("gravity", -20, 20), optional("solver")}},
+        optional("connective"), optional("vessels"), optional("fat"), optional("ticksPerStep", 1, 100),
+        optional("timeLimit", 0, 86400), optional("gravity", -20, 20), optional("solver")}},
       {"version", {required("major", 1, 1000000), required("minor", 0, 1000000)}},
       {"workspace", {required("lower", -reach, reach), required("upper", -reach, reach)}},
       {"camera",
@@ -56,6 +56,17 @@ std::vector<ObjectRule> makeRules() {
        {required("name"), required("first"), required("second"), openBelow(required("reach", 0, 0.05)),
         required("strands", 1, 20000), openBelow(optional("stiffness", 0, 1e10)), optional("damping", 0, 1e8),
         openBelow(optional("strength", 0, 1e9)), openBelow(optional("fadeTime", 0, 100))}},
+      {"vessel",
+       {required("name"), required("appearance"), required("path", -reach, reach), optional("elements", 2, 400),
+        required("radius", 0.0002, 0.02), required("wall", 0.00005, 0.02), required("material"),
+        openBelow(optional("ultimateStrain", 0, 10)), optional("friction", 0, 2), required("start"), required("end")}},
+      {"vesselEnd", {required("kind"), optional("to")}},
+      {"fat",
+       {required("name"), required("appearance"), required("mesh"), required("cellSize", 0.0001, 0.01),
+        optional("cellsPerCube", 1, 8), required("material"), optional("friction", 0, 2), required("attachments")}},
+      {"fatAttachment",
+       {required("to"), openBelow(required("distance", 0, 0.05)), openBelow(required("stiffness", 0, 1e12)),
+        required("damping", 0, 1e10)}},
       {"solver",
        {openBelow(optional("tolerance", 0, 0.1)), optional("iterations", 1, 100000),
         openBelow(optional("responseTolerance", 0, 0.1)), openBelow(optional("contactTolerance", 0, 0.001)),
@@ -69,6 +80,8 @@ const std::vector<ObjectRule>& sceneRules() {
   static const std::vector<ObjectRule> rules = makeRules();
   return rules;
 }
+
+KeyRule sceneCoordinate() { return required("", -reach, reach); }
 
 const ObjectRule& sceneRule(const std::string& definition) {
   const std::vector<ObjectRule>& rules = sceneRules();

@@ -14,6 +14,9 @@ inline constexpr int sceneFormatVersion = 1;
 /// All kinds of object of a scene file; the root is the one without a definition.
 const std::vector<ObjectRule>& sceneRules();
 
+/// The bounds of a coordinate (m).
+KeyRule sceneCoordinate();
+
 /// @pre there is a rule of that definition.
 const ObjectRule& sceneRule(const std::string& definition);
 

@@ -71,10 +71,13 @@ struct ExtractVisitor {
     ++index;
   }
   void operator()(const char*, const char*, const char*, InstrumentKind& value) {
-    const auto code = std::to_integer<unsigned>(*at());
-    if (code > static_cast<unsigned>(InstrumentKind::scissors)) fail("is no known instrument");
-    value = static_cast<InstrumentKind>(code);
-    ++index;
+    choice(value, InstrumentKind::scissors, "is no known instrument");
+  }
+  void operator()(const char*, const char*, const char*, Cautery& value) {
+    choice(value, Cautery::onTissue, "is no known state of the cautery");
+  }
+  void operator()(const char*, const char*, const char*, Phase& value) {
+    choice(value, Phase::done, "is no known phase");
   }
   void operator()(const char*, const char*, const char*, Vec3& v) {
     std::memcpy(v.data(), at(), 3 * sizeof(double));
@@ -122,6 +125,14 @@ struct ExtractVisitor {
  private:
   [[nodiscard]] const std::byte* at() const {
     return block.column[index].data() + static_cast<std::size_t>(row) * layout.columns[index].rowBytes();
+  }
+  /// A number from 0 to that of the last name.
+  template <class Choice>
+  void choice(Choice& value, Choice last, const char* why) {
+    const auto code = std::to_integer<unsigned>(*at());
+    if (code > static_cast<unsigned>(last)) fail(why);
+    value = static_cast<Choice>(code);
+    ++index;
   }
   template <class T>
   void check(const T& value) {

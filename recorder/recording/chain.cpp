@@ -58,6 +58,11 @@ struct HashAttributes {
   }
 };
 
+void appendNames(Hash& hash, const std::vector<std::string>& names) {
+  hash.number(static_cast<std::uint64_t>(names.size()));
+  for (const std::string& name : names) hash.string(name);
+}
+
 void appendCounts(Hash& hash, const StatusRow& row) {
   hash.number(row.ticks);
   hash.number(row.steps);
@@ -82,10 +87,12 @@ ChainHead chainStart(const AttemptHeader& header) {
     hash.number(static_cast<std::uint64_t>(asset.bytes.size()));
     hash.bytes(asset.bytes.data(), asset.bytes.size());
   }
-  hash.number(static_cast<std::uint64_t>(header.organs.size()));
-  for (const std::string& name : header.organs) hash.string(name);
-  hash.number(static_cast<std::uint64_t>(header.layout.components.size()));
-  for (const std::string& name : header.layout.components) hash.string(name);
+  appendNames(hash, header.organs);
+  if (tellsOfStructures(header.stepResultVersion)) {
+    appendNames(hash, header.vessels);
+    appendNames(hash, header.fat);
+  }
+  appendNames(hash, header.layout.components);
   hash.number(static_cast<std::uint64_t>(header.layout.fields.size()));
   for (const DigestLayout::Field& field : header.layout.fields) {
     hash.number(field.component);

@@ -160,6 +160,9 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
   }
   if (layout.organs > 0) builder.group("/observables/organs");
   if (layout.tissues > 0) builder.group("/observables/connective");
+  if (layout.vessels > 0) builder.group("/observables/vessels");
+  if (layout.fat > 0) builder.group("/observables/fat");
+  if (layout.procedure) builder.group("/observables/procedure");
   if (layout.deviceSamples) {
     for (const char* name : {"/device", "/device/left", "/device/right"}) builder.group(name);
   }
@@ -175,6 +178,8 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
     const Id d = builder.dataset(column.path, type.get(), shape, column.chunkRows, column.deflate, true);
   }
   builder.names("/scene/organs", header.organs);
+  builder.names("/scene/vessels", header.vessels);
+  builder.names("/scene/fat", header.fat);
   builder.names("/steps/component_names", header.layout.components);
   std::vector<std::string> fieldNames;
   std::vector<std::uint32_t> fieldComponents;
@@ -220,7 +225,10 @@ void checkHeader(const AttemptHeader& header) {
   if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
   if (header.ticksPerStep < 1 || header.ticksPerStep > largestTicksPerStep) refuse("ticks a step must lie in 1..1000");
   if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");
-  if (header.organs.size() > largestOrganCount) refuse("more than 32 organs");
+  if (header.organs.size() + header.vessels.size() + header.fat.size() > mostRecordedStructures)
+    refuse("more than 32 organs, vessels and bodies of fat");
+  if (!tellsOfStructures(header.stepResultVersion) && !(header.vessels.empty() && header.fat.empty()))
+    refuse("vessels or fat in a version of StepResult that does not tell of them");
   if (header.layout.components.size() > 4096 || header.layout.fields.size() > 65536) refuse("too many digests");
   for (const DigestLayout::Field& f : header.layout.fields) {
     if (f.component >= header.layout.components.size())

@@ -27,7 +27,9 @@ class CsvTable {
   void put(double v) { value("{:.17g}", v); }
   void put(float v) { value("{:.9g}", v); }
   void put(bool v) { value("{}", v ? 1 : 0); }
-  void put(InstrumentKind v) { value("{}", static_cast<unsigned>(v)); }
+  template <class T>
+  requires std::is_enum_v<T>
+  void put(T v) { value("{}", static_cast<unsigned>(v)); }
   void put(const std::string& v);
   template <class T>
   requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) void put(T v) { value("{}", v); }

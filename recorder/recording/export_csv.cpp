@@ -53,10 +53,11 @@ struct TitleVisitor {
   }
   template <class T>
   void list(const char* folder, const char* name, const char* unit, const std::vector<T>&, std::size_t width) {
+    const std::vector<std::string> structures = header.structures();
     for (std::size_t i = 0; i < width; ++i) {
       const std::string of = std::string(name) == "component_digest" ? header.layout.components[i]
                              : std::string(name) == "field_digest"   ? header.layout.fields[i].name
-                                                                     : header.organs[i];
+                                                                     : structures[i];
       title(folder, fmt::format("{}[{}]", name, of), unit);
     }
   }
@@ -70,6 +71,8 @@ struct TitleVisitor {
   [[nodiscard]] std::vector<std::string> namesOf(const std::vector<ConnectiveResult>&) const {
     return connectiveNames(header);
   }
+  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<VesselResult>&) const { return header.vessels; }
+  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<FatResult>&) const { return header.fat; }
   void title(const std::string& folder, const std::string& name, const char* unit) {
     CsvTable* table = find(tables, folder);
     if (table == nullptr) {

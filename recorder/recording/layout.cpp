@@ -53,6 +53,14 @@ struct Stored<InstrumentKind> {
   static constexpr Element element = Element::u1;
 };
 template <>
+struct Stored<Cautery> {
+  static constexpr Element element = Element::u1;
+};
+template <>
+struct Stored<Phase> {
+  static constexpr Element element = Element::u1;
+};
+template <>
 struct Stored<std::uint32_t> {
   static constexpr Element element = Element::u4;
 };
@@ -128,13 +136,22 @@ std::vector<std::string> connectiveNames(const AttemptHeader& header) {
   return names;
 }
 
+bool hasProcedure(const AttemptHeader& header) {
+  const std::vector<std::string>& components = header.layout.components;
+  return std::find(components.begin(), components.end(), "procedure") != components.end();
+}
+
 Layout::Layout(const AttemptHeader& header)
     : deviceSamples(header.deviceSamples),
       ticksPerStep(header.ticksPerStep),
       organs(header.organs.size()),
-      tissues(connectiveNames(header).size()),
+      tissues(header.stepResultVersion >= 2 ? connectiveNames(header).size() : 0),
       components(header.layout.components.size()),
       fields(header.layout.fields.size()),
+      vessels(tellsOfStructures(header.stepResultVersion) ? header.vessels.size() : 0),
+      fat(tellsOfStructures(header.stepResultVersion) ? header.fat.size() : 0),
+      structures(organs + vessels + fat),
+      procedure(tellsOfStructures(header.stepResultVersion) && hasProcedure(header)),
       resultVersion(header.stepResultVersion) {
   stepsPerBlock = std::max<std::uint64_t>(1, 250 / ticksPerStep);
   ticksPerBlock = stepsPerBlock * ticksPerStep;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The columns of a recording, listed once (schemas/recording.md): data sets, writer, reader, recovery, export and chain
-// all run over this list. Internal to this folder.
+// The columns of a recording, listed once (schemas/recording.md): data sets, writer, reader, recovery, export chain
+// and comparison all run over this list. Internal to the recorder.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace calot::recorder {
 inline constexpr std::uint32_t formatVersion = 1;
 inline constexpr const char* formatName = "calot-recording";
 inline constexpr std::uint32_t largestTicksPerStep = 1000;
-inline constexpr std::size_t largestOrganCount = 32;  // HandResult::touching has a bit for each
+inline constexpr std::size_t mostRecordedStructures = 32;  // HandResult::touching has a bit for each
 inline constexpr std::uint64_t keyframeChunkWords = 8192;
 inline constexpr std::uint64_t rawChunkRows = 64;
 inline constexpr const char* rawCountsPath = "/device/counts";
@@ -64,17 +64,28 @@ struct Layout {
   std::uint64_t ticksPerBlock = 250;
   std::uint64_t keyframeInterval = 100;  ///< steps
   std::size_t organs = 0, tissues = 0, components = 0, fields = 0;
-  std::uint32_t resultVersion = 1;  ///< of StepResult: which columns there are
+  std::size_t vessels = 0, fat = 0;  ///< 0 before version 3 of StepResult
+  std::size_t structures = 0;        ///< organs, vessels and fat
+  bool procedure = false;            ///< the scene has one
+  std::uint32_t resultVersion = 1;   ///< of StepResult: which columns there are
 
   explicit Layout(const AttemptHeader& header);
 
   /// How many there are of what a step tells something of.
   [[nodiscard]] std::size_t countOf(const std::vector<OrganResult>&) const { return organs; }
   [[nodiscard]] std::size_t countOf(const std::vector<ConnectiveResult>&) const { return tissues; }
+  [[nodiscard]] std::size_t countOf(const std::vector<VesselResult>&) const { return vessels; }
+  [[nodiscard]] std::size_t countOf(const std::vector<FatResult>&) const { return fat; }
 };
 
 /// Names of the scene's connective tissues, as the State's components say.
 std::vector<std::string> connectiveNames(const AttemptHeader& header);
+
+/// Whether the scene has a procedure, as the State's components say.
+bool hasProcedure(const AttemptHeader& header);
+
+/// Whether steps tell of vessels, fat and procedure: from version 3 of StepResult on.
+inline bool tellsOfStructures(std::uint32_t stepResultVersion) { return stepResultVersion >= 3; }
 
 /// Lists what one tick stores. A visitor is called with (folder, name, unit, value); `outside` is for what the chain
 /// leaves out.
@@ -97,12 +108,58 @@ void visitTick(Samples& s, Outcome& o, Visitor& visit) {
   visit.outside("/ticks", "lateness", "s", o.lateness);
 }
 
-/// Lists what one step stores, but for its events.
-template <class Digest, class Lateness, class Result, class Visitor>
-void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
-  visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
-  visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);
-  visit.outside("/steps", "lateness", "s", lateness);
+template <class Result, class Visitor>
+void visitConnective(Result& r, Visitor& visit) {
+  static constexpr const char* connective = "/observables/connective";
+  visit.each(connective, "attached", "", r.connective, &ConnectiveResult::attached);
+  visit.each(connective, "burned", "", r.connective, &ConnectiveResult::burned);
+  visit.each(connective, "torn", "", r.connective, &ConnectiveResult::torn);
+  visit.each(connective, "largest_pull", "Pa", r.connective, &ConnectiveResult::largestPull);
+  visit.each(connective, "hook_touches", "", r.connective, &ConnectiveResult::hookTouches);
+}
+
+template <class Result, class Visitor>
+void visitVessels(Result& r, Visitor& visit) {
+  static constexpr const char* vessels = "/observables/vessels";
+  visit.each(vessels, "largest_strain", "", r.vessel, &VesselResult::largestStrain);
+  visit.each(vessels, "largest_tension", "N", r.vessel, &VesselResult::largestTension);
+  visit.each(vessels, "largest_displacement", "m", r.vessel, &VesselResult::largestDisplacement);
+  visit.each(vessels, "clips", "", r.vessel, &VesselResult::clips);
+  visit.each(vessels, "partings", "", r.vessel, &VesselResult::partings);
+  visit.each(vessels, "charred", "", r.vessel, &VesselResult::charred);
+  visit.each(vessels, "asleep", "", r.vessel, &VesselResult::asleep);
+}
+
+template <class Result, class Visitor>
+void visitFat(Result& r, Visitor& visit) {
+  static constexpr const char* fat = "/observables/fat";
+  visit.each(fat, "volume", "m^3", r.fat, &FatResult::volume);
+  visit.each(fat, "to_clear", "m^3", r.fat, &FatResult::toClear);
+  visit.each(fat, "carved", "m^3", r.fat, &FatResult::carved);
+  visit.each(fat, "islands", "m^3", r.fat, &FatResult::islands);
+  visit.each(fat, "largest_displacement", "m", r.fat, &FatResult::largestDisplacement);
+  visit.each(fat, "largest_speed", "m/s", r.fat, &FatResult::largestSpeed);
+  visit.each(fat, "residual", "", r.fat, &FatResult::residual);
+  visit.each(fat, "iterations", "", r.fat, &FatResult::iterations);
+  visit.each(fat, "asleep", "", r.fat, &FatResult::asleep);
+}
+
+template <class Result, class Visitor>
+void visitProcedure(Result& r, Visitor& visit) {
+  static constexpr const char* procedure = "/observables/procedure";
+  visit(procedure, "phase", "", r.procedure.phase);
+  visit(procedure, "triangle_cleared", "", r.procedure.triangleCleared);
+  visit(procedure, "lower_third_freed", "", r.procedure.lowerThirdFreed);
+  visit(procedure, "two_structures", "", r.procedure.twoStructures);
+  visit(procedure, "critical_view_frozen", "", r.procedure.criticalViewFrozen);
+  visit(procedure, "lower_third_attached", "", r.procedure.lowerThirdAttached);
+  visit(procedure, "errors", "", r.procedure.errors);
+  visit(procedure, "critical_errors", "", r.procedure.criticalErrors);
+}
+
+/// Lists what a StepResult stores, but for its events.
+template <class Result, class Visitor>
+void visitResult(Result& r, Visitor& visit) {
   static constexpr std::array<const char*, handCount> folder{"/observables/left", "/observables/right"};
   for (std::size_t h = 0; h < folder.size(); ++h) {
     visit(folder[h], "instrument", "", r.hand[h].instrument);
@@ -113,7 +170,7 @@ void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
     visit(folder[h], "insertion", "m", r.hand[h].insertion);
     visit(folder[h], "contact_force", "N", r.hand[h].contactForce);
     visit(folder[h], "touching", "", r.hand[h].touching);
-    visit.list(folder[h], "organ_force", "N", r.hand[h].organForce, visit.layout.organs);
+    visit.list(folder[h], "organ_force", "N", r.hand[h].structureForce, visit.layout.structures);
   }
   static constexpr const char* organs = "/observables/organs";
   visit.each(organs, "volume", "m^3", r.organ, &OrganResult::volume);
@@ -141,13 +198,25 @@ void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
   visit(contact, "violation", "m", r.contact.violation);
   visit(contact, "pinched_depth", "m", r.contact.pinchedDepth);
   visit(contact, "tissue_depth", "m", r.contact.tissueDepth);
-  if (visit.layout.tissues == 0) return;
-  static constexpr const char* connective = "/observables/connective";
-  visit.each(connective, "attached", "", r.connective, &ConnectiveResult::attached);
-  visit.each(connective, "burned", "", r.connective, &ConnectiveResult::burned);
-  visit.each(connective, "torn", "", r.connective, &ConnectiveResult::torn);
-  visit.each(connective, "largest_pull", "Pa", r.connective, &ConnectiveResult::largestPull);
-  visit.each(connective, "hook_touches", "", r.connective, &ConnectiveResult::hookTouches);
+  if (visit.layout.tissues > 0) visitConnective(r, visit);
+  if (!tellsOfStructures(visit.layout.resultVersion)) return;
+  for (std::size_t h = 0; h < folder.size(); ++h) {
+    visit(folder[h], "cautery", "", r.hand[h].cautery);
+    visit(folder[h], "clips", "", r.hand[h].clips);
+  }
+  visit.each(organs, "charred_area", "m^2", r.organ, &OrganResult::charredArea);
+  if (visit.layout.vessels > 0) visitVessels(r, visit);
+  if (visit.layout.fat > 0) visitFat(r, visit);
+  if (visit.layout.procedure) visitProcedure(r, visit);
+}
+
+/// Lists what one step stores, but for its events.
+template <class Digest, class Lateness, class Result, class Visitor>
+void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
+  visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
+  visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);
+  visit.outside("/steps", "lateness", "s", lateness);
+  visitResult(r, visit);
 }
 
 }  // namespace calot::recorder

@@ -39,7 +39,8 @@ Vec3 pseudonormal(const ContactSurface& surface, std::span<const Vec3> position,
   const int node = surface.triangles()[triangle][f - 4];
   const Vec3& p = position[static_cast<std::size_t>(node)];
   Vec3 sum = Vec3::Zero();
-  for (const std::uint32_t i : surface.trianglesAround(node)) {
+  ContactSurface::Fan fan;
+  for (const std::uint32_t i : surface.trianglesAround(node, fan)) {
     const Index3& t = surface.triangles()[i];
     const int k = t[0] == node ? 0 : (t[1] == node ? 1 : 2);
     const Vec3 u = position[static_cast<std::size_t>(t[(k + 1) % 3])] - p;
@@ -66,7 +67,8 @@ bool isLocalMinimum(const ContactSurface& surface, std::span<const Vec3> positio
     inward -= edge * (inward.dot(edge) / edge.squaredNorm());
     return away.dot(inward) <= slack;
   }
-  for (const int n : surface.neighbours(t[f - 4])) {
+  ContactSurface::Fan fan;
+  for (const int n : surface.neighbours(t[f - 4], fan)) {
     if (away.dot(at(n) - at(t[f - 4])) > slack) return false;
   }
   return true;
@@ -75,8 +77,8 @@ bool isLocalMinimum(const ContactSurface& surface, std::span<const Vec3> positio
 std::uint64_t featureKey(const ContactSurface& surface, std::size_t triangle, TriangleFeature feature) {
   const Index3& t = surface.triangles()[triangle];
   const auto f = static_cast<int>(feature);
-  // A face's place among the triangles is fixed in Model, as its patches are.
-  if (f == 0) return (std::uint64_t{1} << 50U) | triangle;
+  // A face's place among the triangles of an organ is fixed in Model, as its patches are.
+  if (f == 0) return (std::uint64_t{1} << 50U) | surface.name(triangle);
   if (f <= 3) {
     const auto u = static_cast<std::uint64_t>(std::min(t[f - 1], t[f % 3]));
     const auto v = static_cast<std::uint64_t>(std::max(t[f - 1], t[f % 3]));

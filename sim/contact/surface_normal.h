@@ -27,7 +27,7 @@ bool isLocalMinimum(const ContactSurface& surface, std::span<const Vec3> positio
                     TriangleFeature feature, const Vec3& away);
 
 /// Name of a feature, the same whichever of its triangles it was met from: faces, edges and vertices in the two bits
-/// from 50 up (1, 2, 3), below them the triangle's place, the edge's nodes, the node.
+/// from 50 up (1, 2, 3), below them the triangle's name (ContactSurface::name()), the edge's nodes, the node.
 std::uint64_t featureKey(const ContactSurface& surface, std::size_t triangle, TriangleFeature feature);
 
 /// The nearest point of the given patches' triangles to p.

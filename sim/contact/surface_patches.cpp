@@ -114,6 +114,26 @@ ContactSurface::ContactSurface(std::span<const Vec3> rest, std::span<const Index
   }
 }
 
+int ContactSurface::oppositeNow(std::size_t triangle, int k) const {
+  const Index3& mine = triangle_[triangle];
+  const Index3& other = triangle_[topology_->across(triangle, k)];
+  for (int j = 0; j < 3; ++j) {
+    if (other[j] != mine[k] && other[j] != mine[(k + 1) % 3]) return other[j];
+  }
+  return -1;
+}
+
+std::span<const int> ContactSurface::neighbours(int node, Fan& fan) const {
+  if (topology_ == nullptr) return neighbours(node);
+  std::size_t count = 0;
+  for (const std::uint32_t t : trianglesAround(node, fan)) {
+    for (int k = 0; k < 3; ++k) {
+      if (triangle_[t][k] != node) fan.node[count++] = triangle_[t][k];
+    }
+  }
+  return {fan.node.data(), count};
+}
+
 void patchBounds(const ContactSurface& surface, std::span<const Vec3> position, double margin, std::vector<Box>& out) {
   out.resize(surface.patches().size());
   for (std::size_t p = 0; p < out.size(); ++p) {

@@ -20,9 +20,9 @@ double shareOf(const ConnectiveTissue& tissue, std::span<const std::uint32_t> st
 
 }  // namespace
 
-/// Organs that are tied together are awake together.
+/// Bodies that are tied together are awake together.
 void Stepper::Workspace::wakeJoined(const State& state) {
-  bool changed = !model.connective().empty();
+  bool changed = true;
   while (changed) {
     changed = false;
     for (std::size_t c = 0; c < model.connective().size(); ++c) {
@@ -31,13 +31,17 @@ void Stepper::Workspace::wakeJoined(const State& state) {
       moved[tie.a] = moved[tie.b] = true;
       changed = true;
     }
+    for (const Tie& tie : model.ties()) {
+      if (moved[tie.body[0]] == moved[tie.body[1]] || !(shareLeft(tie) > 0.0)) continue;
+      moved[tie.body[0]] = moved[tie.body[1]] = true;
+      changed = true;
+    }
   }
 }
 
 /// Attachments of an organ by all tissues that join it to others. Those of lower number have moved already in this
 /// step: their new velocities count.
 void Stepper::Workspace::gatherAttachments(const State& state, std::size_t organ) {
-  attachments.clear();
   for (std::size_t c = 0; c < model.connective().size(); ++c) {
     const ConnectiveModel& tie = model.connective()[c];
     if (tie.a != organ && tie.b != organ) continue;
@@ -47,14 +51,15 @@ void Stepper::Workspace::gatherAttachments(const State& state, std::size_t organ
     const bool known = other < organ && moved[other];
     addConnectiveLoads(tie.tissue, state.connective[c], tie.a == organ ? ConnectiveSide::a : ConnectiveSide::b,
                        {own.position, own.velocity},
-                       {their.position, known ? solver[other].freeVelocity() : their.velocity}, settings.step,
-                       attachments);
+                       {their.position, known ? body[other]->freeVelocity() : std::span<const Vec3>(their.velocity)},
+                       settings.step, attachments);
   }
 }
 
 /// Burns what the energised hooks touch, tears what is pulled too hard. @pre organs and instruments are where the step
 /// leads them
 void Stepper::Workspace::finishConnective(State& state) {
+  burnedTissue.fill(noStructure);
   for (std::size_t c = 0; c < model.connective().size(); ++c) {
     const ConnectiveModel& tie = model.connective()[c];
     ConnectiveState& tissue = state.connective[c];
@@ -65,27 +70,15 @@ void Stepper::Workspace::finishConnective(State& state) {
     out.hookTouches = 0;
     frayed[c] = false;
     for (std::size_t h = 0; h < handCount; ++h) {
-      const HandState& hand = state.hand[h];
-      const bool energised = (hand.buttons & (button::cutPedal | button::coagulatePedal)) != 0;
-      if (hand.instrument != InstrumentKind::hook || !energised) continue;
-      const HandDescription& description = model.scene().hands[h];
-      const Pose now = simulated(state, h);
-      const InstrumentShape hook =
-          instrumentShape(hand.instrument, hand.jaw, description.shaftRadius, (now.position - description.port).norm());
-      const InstrumentShape before = placed(hook, poseBefore[h]);
-      const InstrumentShape after = placed(hook, now);
-      sweeps.clear();
+      sweepHook(state, h);
+      if (sweeps.empty()) continue;
       strands.clear();
-      for (std::size_t k = 0; k < after.capsules().size(); ++k) {
-        const Capsule& from = before.capsules()[k];
-        const Capsule& to = after.capsules()[k];
-        if (to.part != Capsule::Part::hook) continue;
-        sweeps.push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
-      }
-      out.hookTouches +=
-          static_cast<std::uint32_t>(burnStrands(tie.tissue, tissue, a, b, sweeps, settings.step, strands));
+      const std::size_t touches = burnStrands(tie.tissue, tissue, a, b, sweeps, settings.step, strands);
+      out.hookTouches += static_cast<std::uint32_t>(touches);
+      if (touches > 0 && burnedTissue[h] == noStructure) burnedTissue[h] = static_cast<std::uint32_t>(c);
       if (!strands.empty()) {
-        emit(EventKind::strandsBurned, h, static_cast<std::uint16_t>(c), now.position, shareOf(tie.tissue, strands));
+        emit(EventKind::strandsBurned, h, static_cast<std::uint16_t>(c), state.hand[h].simulatedPosition,
+             shareOf(tie.tissue, strands));
       }
     }
     strands.clear();
@@ -103,7 +96,9 @@ void Stepper::Workspace::finishConnective(State& state) {
       emit(EventKind::connectiveFreed, 255, static_cast<std::uint16_t>(c), Vec3::Zero(), shares.torn);
     }
     // What was let loose moves.
-    if (frayed[c]) state.organ[tie.a].quietSteps = state.organ[tie.b].quietSteps = 0;
+    if (!frayed[c]) continue;
+    disturb(state, tie.a);
+    disturb(state, tie.b);
   }
 }
 

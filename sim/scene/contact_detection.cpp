@@ -17,41 +17,26 @@ constexpr double foldDisplacement = 0.01;  ///< an organ that moved less from re
 
 }  // namespace
 
-SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight, const Embedding& embedding) {
-  SolidSolver::Impulse out;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Embedding::Anchor& anchor = embedding.anchors()[static_cast<std::size_t>(corner[c])];
-    for (std::size_t a = 0; a < 4; ++a) {
-      const double share = weight[static_cast<int>(c)] * anchor.weight[a];
-      if (share == 0.0) continue;
-      std::size_t k = 0;
-      while (k < out.count && out.node[k] != anchor.node[a]) ++k;
-      if (k == out.count) out.node[out.count++] = anchor.node[a];
-      out.weight[k] += share;
-    }
-  }
-  return out;
-}
-
 void Stepper::Workspace::refreshBounds(const State& state) {
-  for (std::size_t o = 0; o < model.organs().size(); ++o) {
-    if (bounded[o]) continue;
-    model.organs()[o].embedding.map(state.organ[o].position, skin[o]);
-    earlierBounds.swap(bounds[o]);
-    patchBounds(model.organs()[o].surface, skin[o], 0.0, bounds[o]);
-    if (earlierBounds.size() == bounds[o].size() && refittable[o]) {
-      changedBounds(earlierBounds, bounds[o], patches);
-      broad[o]->refit(bounds[o], patches);
+  for (std::size_t s = 0; s < skinOf.size(); ++s) {
+    if (bounded[s]) continue;
+    if (skinOf[s]->follow(state)) refittable[s] = false;
+    skinOf[s]->place(state, skin[s]);
+    earlierBounds.swap(bounds[s]);
+    patchBounds(skinOf[s]->surface(), skin[s], 0.0, bounds[s]);
+    if (earlierBounds.size() == bounds[s].size() && refittable[s]) {
+      changedBounds(earlierBounds, bounds[s], patches);
+      broad[s]->refit(bounds[s], patches);
     } else {
-      broad[o]->update(bounds[o]);
+      broad[s]->update(bounds[s]);
     }
-    refittable[o] = true;
-    bounded[o] = true;
+    refittable[s] = true;
+    bounded[s] = true;
   }
 }
 
-std::span<const std::uint32_t> Stepper::Workspace::patchesNear(std::size_t organ, const Box& box) {
-  broad[organ]->pairs({&box, 1}, pairs);
+std::span<const std::uint32_t> Stepper::Workspace::patchesNear(std::size_t structure, const Box& box) {
+  broad[structure]->pairs({&box, 1}, pairs);
   patches.clear();
   for (const BroadPhase::Pair& p : pairs) patches.push_back(p.leaf);
   return patches;
@@ -65,25 +50,25 @@ void Stepper::Workspace::shapeAt(const State& state, std::size_t hand, const Pos
   shape.assign(world.capsules().begin(), world.capsules().end());
 }
 
-double Stepper::Workspace::allowance(const HandState& hand, const Capsule& capsule, std::size_t organ) {
+double Stepper::Workspace::allowance(const HandState& hand, const Capsule& capsule, std::size_t structure) {
   const bool jaw = capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw;
-  return jaw && hand.grasped == organ ? heldDepth : 0.0;
+  return jaw && hand.grasped == structure ? heldDepth : 0.0;
 }
 
-/// Least gap between the instrument in `shape` and all organs, at most `reach_`. @pre refreshBounds() since organs
-/// moved
+/// Least gap between the instrument in `shape` and all structures, at most `reach_`. @pre refreshBounds() since
+/// they moved
 double Stepper::Workspace::gapOf(const HandState& hand, double reach_) {
   double least = reach_;
-  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+  for (std::size_t s = 0; s < skinOf.size(); ++s) {
     for (const Capsule& c : shape) {
-      const double allowed = allowance(hand, c, o);
+      const double allowed = allowance(hand, c, s);
       Box box;
       box.include(c.p0);
       box.include(c.p1);
       box.grow(capsuleSearch(c.radius, std::max(least - allowed, 0.0)));
-      const std::span<const std::uint32_t> near = patchesNear(o, box);
+      const std::span<const std::uint32_t> near = patchesNear(s, box);
       if (near.empty()) continue;
-      least = allowed + leastGap(model.organs()[o].surface, skin[o], near, c.p0, c.p1, c.radius, least - allowed);
+      least = allowed + leastGap(skinOf[s]->surface(), skin[s], near, c.p0, c.p1, c.radius, least - allowed);
     }
   }
   return least;
@@ -136,17 +121,18 @@ void Stepper::Workspace::advanceFreely(State& state, std::size_t hand) {
   contactSet[hand].reference = simulated(state, hand);
 }
 
-void Stepper::Workspace::addInstrumentBlock(const State& state, std::size_t hand, std::size_t organ,
+void Stepper::Workspace::addInstrumentBlock(const State& state, std::size_t hand, std::size_t structure,
                                             const SurfaceContact& contact) {
-  const OrganDescription& description = model.scene().organs[organ];
+  const StructureModel& touched = model.structures()[structure];
   const Pose tool = simulated(state, hand);
   ContactBlock block;
-  block.kind = description.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
-  block.limit = description.friction;
+  block.kind = touched.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
+  block.limit = touched.friction;
   block.hand = hand;
-  block.organ = organ;
-  block.place = influence(contact.node, contact.weight, model.organs()[organ].embedding);
-  block.key = contact.key | static_cast<std::uint64_t>(organ) << 52U;
+  block.body = touched.body;
+  block.structure = structure;
+  block.place = skinOf[structure]->influence(contact.node, contact.weight);
+  block.key = contact.key | static_cast<std::uint64_t>(structure) << 52U;
   // Slip along and across the shaft, as far as the surface allows.
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
   block.direction = {contact.normal, frame.col(0), frame.col(1)};
@@ -165,14 +151,14 @@ void Stepper::Workspace::allow(double allowed, double far, std::size_t from) {
               found.end());
 }
 
-/// Blocks of every instrument near every organ, in order of hand, organ and place.
+/// Blocks of every instrument near every structure, in order of hand, structure and place.
 void Stepper::Workspace::detectInstruments(const State& state) {
   blocks.clear();
   for (std::size_t h = 0; h < handCount; ++h) {
     shapeAt(state, h, simulated(state, h), state.hand[h].jaw);
-    for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    for (std::size_t o = 0; o < skinOf.size(); ++o) {
       double speed = 0.0;
-      for (const Vec3& v : state.organ[o].velocity) speed = std::max(speed, v.squaredNorm());
+      for (const Vec3& v : body[model.structures()[o].body]->velocity(state)) speed = std::max(speed, v.squaredNorm());
       const double far = reach[h] + std::min(std::sqrt(speed) * settings.step, largestSlide);
       found.clear();
       for (const Capsule& c : shape) {
@@ -182,8 +168,7 @@ void Stepper::Workspace::detectInstruments(const State& state) {
         box.include(c.p1);
         box.grow(capsuleSearch(c.radius, far));
         const std::size_t before = found.size();
-        capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, far, c.piece,
-                        found);
+        capsuleContacts(skinOf[o]->surface(), skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, far, c.piece, found);
         if (allowed > 0.0) allow(allowed, far, before);
       }
       for (const SurfaceContact& contact : found) addInstrumentBlock(state, h, o, contact);
@@ -225,12 +210,11 @@ void Stepper::Workspace::detectTissue(const State& state) {
       result.contact.tissueDepth = std::max(result.contact.tissueDepth, -contact.gap);
       ContactBlock block;
       block.kind = BlockKind::unilateral;
-      block.organ = pair.b;
+      block.body = block.structure = pair.b;
       block.other = pair.a;
       block.direction[0] = contact.normal;
-      block.place = influence(contact.node, contact.weight, model.organs()[pair.b].embedding);
-      block.otherPlace = influence({contact.vertex, contact.vertex, contact.vertex}, Vec3(1.0, 0.0, 0.0),
-                                   model.organs()[pair.a].embedding);
+      block.place = skinOf[pair.b]->influence(contact.node, contact.weight);
+      block.otherPlace = skinOf[pair.a]->influence({contact.vertex, contact.vertex, contact.vertex}, Vec3::UnitX());
       // Deep overlaps part over several steps, or they would be thrown apart.
       block.gap[0] = std::max(contact.gap + tissueSlop, -largestRecovery);
       block.key = contact.key | static_cast<std::uint64_t>(i) << 40U;

@@ -19,7 +19,7 @@ namespace {
 constexpr double skinShare = 1e-4;
 
 /// A nodal quantity at a place.
-Vec3 at(const SolidSolver::Impulse& place, const std::vector<Vec3>& values) {
+Vec3 at(const SolidSolver::Impulse& place, std::span<const Vec3> values) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k < place.count; ++k)
     sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
@@ -31,7 +31,7 @@ Vec3 at(const SolidSolver::Impulse& place, const std::vector<Vec3>& values) {
 /// Numbers the rows and looks up the forces that the last step left at the same places.
 void Stepper::Workspace::recallForces(const State& state) {
   std::erase_if(blocks, [&](const ContactBlock& block) {
-    return !moved[block.organ] && (block.other == ContactBlock::nobody || !moved[block.other]);
+    return !moved[block.body] && (block.other == ContactBlock::nobody || !moved[block.other]);
   });
   rows = 0;
   kinds.clear();
@@ -69,9 +69,9 @@ void Stepper::Workspace::measureGaps() {
   trueGap.resize(rows);
   for (const ContactBlock& block : blocks) {
     Vec3 apart = Vec3::Zero();
-    if (moved[block.organ]) apart -= h * at(block.place, solver[block.organ].freeVelocity());
+    if (moved[block.body]) apart -= h * at(block.place, body[block.body]->freeVelocity());
     if (block.other != ContactBlock::nobody && moved[block.other]) {
-      apart += h * at(block.otherPlace, solver[block.other].freeVelocity());
+      apart += h * at(block.otherPlace, body[block.other]->freeVelocity());
     }
     ToolRow q = ToolRow::Zero();
     if (block.hand != ContactBlock::nobody) {
@@ -129,26 +129,24 @@ void Stepper::Workspace::poseProblem(const State& state) {
 /// Compliance of the rest shapes, turned with the nodes, and that of the virtual couplings.
 void Stepper::Workspace::assembleCompliance(const State& state) {
   const double h2 = settings.step * settings.step;
-  /// One organ's part of a block: its nodes with weight and rotation, and the sign with which it opens the gap.
+  /// One body's part of a block: its nodes with weight and rotation, and the sign with which it opens the gap.
   struct Part {
-    std::size_t block, organ;
+    std::size_t block, body;
     double sign;
     const SolidSolver::Impulse* place;
-    std::array<Mat3, 12> turn;  // weight times rotation
+    std::array<Mat3, SolidSolver::Impulse::mostNodes> turn;  // weight times rotation
   };
   std::vector<Part> parts;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const auto add = [&](std::size_t organ, const SolidSolver::Impulse& place, double sign) {
-      if (organ == ContactBlock::nobody || !moved[organ]) return;
-      parts.push_back({b, organ, sign, &place, {}});
-      const SolidModel& solid = model.organs()[organ].solid;
-      rest[organ]->require({place.node.data(), place.count}, executor);
+    const auto add = [&](std::size_t which, const SolidSolver::Impulse& place, double sign) {
+      if (which == ContactBlock::nobody || !moved[which]) return;
+      parts.push_back({b, which, sign, &place, {}});
+      body[which]->require({place.node.data(), place.count});
       for (std::size_t k = 0; k < place.count; ++k) {
-        parts.back().turn[k] =
-            place.weight[k] * nodeRotation(solid, state.organ[organ], place.node[k]).toRotationMatrix();
+        parts.back().turn[k] = place.weight[k] * body[which]->turn(state, place.node[k]);
       }
     };
-    add(blocks[b].organ, blocks[b].place, -1.0);
+    add(blocks[b].body, blocks[b].place, -1.0);
     add(blocks[b].other, blocks[b].otherPlace, 1.0);
   }
   tissueCompliance.assign(rows * rows, 0.0);
@@ -156,11 +154,11 @@ void Stepper::Workspace::assembleCompliance(const State& state) {
     for (std::size_t q = p; q < parts.size(); ++q) {
       const Part& a = parts[p];
       const Part& b = parts[q];
-      if (a.organ != b.organ) continue;
+      if (a.body != b.body) continue;
       Mat3 c = Mat3::Zero();
       for (std::size_t i = 0; i < a.place->count; ++i) {
         for (std::size_t j = 0; j < b.place->count; ++j) {
-          c += a.turn[i] * rest[a.organ]->block(a.place->node[i], b.place->node[j]) * b.turn[j].transpose();
+          c += a.turn[i] * body[a.body]->block(a.place->node[i], b.place->node[j]) * b.turn[j].transpose();
         }
       }
       c *= h2 * a.sign * b.sign;

@@ -19,16 +19,16 @@ constexpr std::array<double, 3> retreats{0.005, 0.01, 0.02};  ///< along the sha
 
 }  // namespace
 
-/// Adds what forces do to an organ's nodes; leaves `nodal_` empty where that is nothing.
-void Stepper::Workspace::addForces(std::size_t organ, std::span<const double> forces, double scale,
+/// Adds what forces do to a body's nodes; leaves `nodal_` empty where that is nothing.
+void Stepper::Workspace::addForces(std::size_t which, std::span<const double> forces, double scale,
                                    std::vector<Vec3>& nodal_) const {
   for (const ContactBlock& block : blocks) {
     for (const bool other : {false, true}) {
-      if ((other ? block.other : block.organ) != organ) continue;
+      if ((other ? block.other : block.body) != which) continue;
       Vec3 force = Vec3::Zero();
       for (std::size_t k = 0; k < block.rows(); ++k) force += forces[block.row + k] * block.direction[k];
       if (force.isZero(0.0)) continue;
-      if (nodal_.empty()) nodal_.assign(model.organs()[organ].solid.nodes(), Vec3::Zero());
+      if (nodal_.empty()) nodal_.assign(body[which]->nodes(), Vec3::Zero());
       const SolidSolver::Impulse& place = other ? block.otherPlace : block.place;
       const double sign = other ? scale : -scale;
       for (std::size_t k = 0; k < place.count; ++k) {
@@ -38,14 +38,14 @@ void Stepper::Workspace::addForces(std::size_t organ, std::span<const double> fo
   }
 }
 
-/// Lets the organs follow a change of forces, all rows at once.
+/// Lets the bodies follow a change of forces, all rows at once.
 void Stepper::Workspace::carryOut(std::span<const double> change_) {
-  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+  for (std::size_t o = 0; o < body.size(); ++o) {
     if (!moved[o]) continue;
     nodal[o].clear();
     addForces(o, change_, settings.step, nodal[o]);
     if (nodal[o].empty()) continue;
-    const SolveReport report = solver[o].push(model.organs()[o].solid, nodal[o], responseSettings, executor);
+    const SolveReport report = body[o]->push(nodal[o]);
     if (!report.converged && (result.misses & miss::solver) == 0) {
       result.misses |= miss::solver;
       emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), report.residual);
@@ -53,15 +53,17 @@ void Stepper::Workspace::carryOut(std::span<const double> change_) {
   }
 }
 
-/// Organs and instruments go where the step leads them.
+/// Bodies and instruments go where the step leads them.
 void Stepper::Workspace::move(State& state) {
-  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+  for (std::size_t o = 0; o < body.size(); ++o) {
     if (!moved[o]) continue;
-    if (!solver[o].advance(model.organs()[o].solid, state.organ[o], {}, settings.step)) {
+    if (!body[o]->advance(state)) {
       result.misses |= miss::solver;
       emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), 1e300);
     }
-    bounded[o] = false;
+  }
+  for (std::size_t s = 0; s < skinOf.size(); ++s) {
+    if (moved[model.structures()[s].body]) bounded[s] = false;
   }
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     HandState& s = state.hand[hand];
@@ -89,7 +91,7 @@ void Stepper::Workspace::move(State& state) {
 double Stepper::Workspace::findInside(const HandState& hand, const Vec3& port, const Pose& pose) {
   inside.clear();
   double depth = 0.0;
-  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+  for (std::size_t o = 0; o < skinOf.size(); ++o) {
     found.clear();
     for (const Capsule& c : shape) {
       Box box;
@@ -97,8 +99,7 @@ double Stepper::Workspace::findInside(const HandState& hand, const Vec3& port, c
       box.include(c.p1);
       box.grow(capsuleSearch(c.radius, 0.0));
       const std::size_t before = found.size();
-      capsuleContacts(model.organs()[o].surface, skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece,
-                      found);
+      capsuleContacts(skinOf[o]->surface(), skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece, found);
       if (const double allowed = allowance(hand, c, o); allowed > 0.0) allow(allowed, 0.0, before);
     }
     for (const SurfaceContact& contact : found) {
@@ -186,11 +187,11 @@ void Stepper::Workspace::withdraw(State& state, std::size_t hand) {
 /// The problem of this step, reduced to each hand, for the ticks to come. The other hand's forces, and those among
 /// organs, stay as they are.
 void Stepper::Workspace::publish(const State& state) {
-  const auto velocityAt = [&](std::size_t organ, const SolidSolver::Impulse& place) {
+  const auto velocityAt = [&](std::size_t which, const SolidSolver::Impulse& place) {
     Vec3 v = Vec3::Zero();
-    if (organ == ContactBlock::nobody) return v;
+    if (which == ContactBlock::nobody) return v;
     for (std::size_t k = 0; k < place.count; ++k)
-      v += place.weight[k] * state.organ[organ].velocity[static_cast<std::size_t>(place.node[k])];
+      v += place.weight[k] * body[which]->velocity(state)[static_cast<std::size_t>(place.node[k])];
     return v;
   };
   for (std::size_t h = 0; h < handCount; ++h) {
@@ -207,7 +208,7 @@ void Stepper::Workspace::publish(const State& state) {
       if (block.hand != h) continue;
       set.kind.push_back(block.kind);
       set.limit.push_back(block.limit);
-      const Vec3 velocity = velocityAt(block.organ, block.place);
+      const Vec3 velocity = velocityAt(block.body, block.place);
       for (std::size_t k = 0; k < block.rows(); ++k) {
         const std::size_t i = block.row + k;
         double free = freeGap[i] - block.tool[k].dot(stretch[h]);

@@ -66,7 +66,8 @@ struct OrganDescription {
   SurfaceDescription surface;
   std::uint32_t tetrahedra = 0;  ///< requested number
   MaterialDescription material;
-  double friction = 0.1;  ///< Coulomb coefficient of an instrument on this organ
+  double friction = 0.1;     ///< Coulomb coefficient of an instrument on this organ
+  double burnThrough = 0.0;  ///< cautery at one spot that perforates its wall (s); 0: it has none
   std::vector<AnchorDescription> anchors;
 
   template <class Self, class Visitor>
@@ -77,6 +78,7 @@ struct OrganDescription {
     visit("tetrahedra", self.tetrahedra);
     visit("material", self.material);
     visit("friction", self.friction);
+    visit("burnThrough", self.burnThrough);
     visit("anchors", self.anchors);
   }
 };
@@ -135,6 +137,7 @@ struct VesselDescription {
   double wall = 0.0005;          ///< thickness (m)
   MaterialDescription material;  ///< of the wall
   double ultimateStrain = 0.6;   ///< stretch at which it tears
+  double burnThrough = 1.0;      ///< cautery at one spot that parts it (s)
   double friction = 0.1;         ///< Coulomb coefficient of an instrument on it
   VesselEndDescription start, end;
 
@@ -148,6 +151,7 @@ struct VesselDescription {
     visit("wall", self.wall);
     visit("material", self.material);
     visit("ultimateStrain", self.ultimateStrain);
+    visit("burnThrough", self.burnThrough);
     visit("friction", self.friction);
     visit("start", self.start);
     visit("end", self.end);
@@ -180,6 +184,9 @@ struct FatDescription {
   MaterialDescription material{1000.0, 0.4, 920.0, 2.0, 0.01};
   double friction = 0.1;  ///< Coulomb coefficient of an instrument on it
   std::vector<FatAttachmentDescription> attachments;
+  /// What is to be cleared, at rest: what lies over or under this triangle (m), no farther from its plane than
+  std::array<Vec3, 3> triangle{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  double triangleDepth = 0.0;  ///< m; 0: nothing
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -191,6 +198,8 @@ struct FatDescription {
     visit("material", self.material);
     visit("friction", self.friction);
     visit("attachments", self.attachments);
+    visit("triangle", self.triangle);
+    visit("triangleDepth", self.triangleDepth);
   }
 };
 
@@ -204,6 +213,7 @@ struct HandDescription {
   double rollStiffness = 0.2;         ///< of the virtual coupling about the shaft (N m/rad)
   double largestForce = 8.0;          ///< what the device, and so the virtual coupling, can do (N)
   double slipForce = 4.0;             ///< pull at which closed jaws begin to lose tissue (N)
+  std::uint32_t clips = 8;            ///< in its clip applier
   double tearForce = 6.0;             ///< pull at which tissue tears that is held faster (locked jaws) (N)
 
   template <class Self, class Visitor>
@@ -216,7 +226,42 @@ struct HandDescription {
     visit("rollStiffness", self.rollStiffness);
     visit("largestForce", self.largestForce);
     visit("slipForce", self.slipForce);
+    visit("clips", self.clips);
     visit("tearForce", self.tearForce);
+  }
+};
+
+/// Clips, and from how near on they are too near.
+struct ClipDescription {
+  double width = 0.0012;            ///< along the vessel (m)
+  double legs = 0.0085;             ///< from the crotch to the tips (m)
+  double leastGap = 0.001;          ///< between two clips (m)
+  double leastJunctionGap = 0.002;  ///< to a place where vessels meet (m)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("width", self.width);
+    visit("legs", self.legs);
+    visit("leastGap", self.leastGap);
+    visit("leastJunctionGap", self.leastJunctionGap);
+  }
+};
+
+/// What the energised hook does to what it touches.
+struct CauteryDescription {
+  double power = 30.0;    ///< W, all of it taken to go into the tissue touched
+  double reach = 0.0003;  ///< farther than this from the hook's metal nothing is touched (m)
+  double carve = 0.0008;  ///< fat goes that is no farther from the hook's metal (m)
+  double spot = 2e-6;     ///< area that one touch covers (m^2)
+  double charTime = 0.3;  ///< cautery at one spot from which on it counts as charred (s)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("power", self.power);
+    visit("reach", self.reach);
+    visit("carve", self.carve);
+    visit("spot", self.spot);
+    visit("charTime", self.charTime);
   }
 };
 
@@ -256,6 +301,8 @@ struct SceneDescription {
   std::array<HandDescription, handCount> hands;
   CameraSample camera;               ///< at the start
   double verticalFieldOfView = 1.0;  ///< rad
+  ClipDescription clip;
+  CauteryDescription cautery;
   SolverDescription solver;
 
   template <class Self, class Visitor>
@@ -275,6 +322,8 @@ struct SceneDescription {
     visit("cameraPosition", self.camera.position);
     visit("cameraOrientation", self.camera.orientation);
     visit("verticalFieldOfView", self.verticalFieldOfView);
+    visit("clip", self.clip);
+    visit("cautery", self.cautery);
     visit("solver", self.solver);
   }
 };

@@ -12,8 +12,6 @@ using namespace stepping;
 
 namespace {
 
-constexpr double openJaw = 0.35;        ///< jaws opened wider may grasp when they close (rad)
-constexpr double closedJaw = 0.25;      ///< jaws closed further hold what is between them (rad)
 constexpr double lockedGrip = 2.0;      ///< the ratchet holds so much harder than a hand that just closes
 constexpr double searchRadius = 0.004;  ///< of a place to hold, about each station along the jaws (m)
 constexpr double apart = 0.0015;        ///< places held are no nearer to each other (m)
@@ -33,57 +31,76 @@ Vec3 skinPoint(const std::vector<Vec3>& skin, const std::array<std::uint32_t, 3>
 
 }  // namespace
 
+/// Places of fat that are gone are held no longer.
+void Stepper::Workspace::dropLostPlaces(State& state, std::size_t hand) {
+  HandState& h = state.hand[hand];
+  if (h.grasped == noStructure) return;
+  const Skin& held = *skinOf[h.grasped];
+  std::size_t kept = 0;
+  for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
+    const auto there = [&](std::uint32_t node) { return held.exists(static_cast<int>(node)); };
+    if (!std::all_of(h.graspNode[a].begin(), h.graspNode[a].end(), there)) continue;
+    h.graspNode[kept] = h.graspNode[a];
+    h.graspWeight[kept] = h.graspWeight[a];
+    h.graspForce[kept] = h.graspForce[a];
+    h.graspPlace[kept++] = h.graspPlace[a];
+  }
+  h.graspNode.resize(kept);
+  h.graspWeight.resize(kept);
+  h.graspForce.resize(kept);
+  h.graspPlace.resize(kept);
+  if (kept > 0) return;
+  letGo(state, hand, EventKind::graspEnd, static_cast<double>(state.clock.step - h.graspSince) * settings.step);
+}
+
 /// Ends a hold where the jaws open, or the instrument is taken away.
 void Stepper::Workspace::openJaws(State& state, std::size_t hand) {
   const HandState& h = state.hand[hand];
-  if (h.grasped == noOrgan || (h.instrument == InstrumentKind::grasper && h.realJaw <= openJaw)) return;
+  if (h.grasped == noStructure || (h.instrument == InstrumentKind::grasper && h.realJaw <= openJaw)) return;
   letGo(state, hand, EventKind::graspEnd, static_cast<double>(state.clock.step - h.graspSince) * settings.step);
 }
 
 /// Begins a hold where jaws that were open close on tissue.
 void Stepper::Workspace::closeJaws(State& state, std::size_t hand) {
   HandState& h = state.hand[hand];
-  if (h.instrument != InstrumentKind::grasper) {
-    h.jawsOpened = false;
-    return;
-  }
-  if (h.realJaw > openJaw) h.jawsOpened = true;
+  if (h.realJaw > (h.instrument == InstrumentKind::scissors ? cuttingJaw : openJaw)) h.jawsOpened = true;
+  if (h.instrument != InstrumentKind::grasper) return;
   if (h.realJaw > closedJaw || !h.jawsOpened) return;
   h.jawsOpened = false;
   const Pose tool = simulated(state, hand);
   const auto [from, to] = graspRegion(closedJaw, model.scene().hands[hand].shaftRadius).line();
-  std::size_t organ = ContactBlock::nobody;
+  std::size_t structure = ContactBlock::nobody;
   std::vector<Vec3> held;
   for (const double station : stations) {
     const Vec3 target = tool.position + tool.orientation * Vec3(from + station * (to - from));
     double nearest = searchRadius * searchRadius;
-    std::size_t nearestOrgan = ContactBlock::nobody;
+    std::size_t nearestStructure = ContactBlock::nobody;
     Index3 triangle = Index3::Zero();
     PointTriangle best;
-    for (std::size_t o = 0; o < model.organs().size(); ++o) {
-      if (organ != ContactBlock::nobody && o != organ) continue;
+    for (std::size_t o = 0; o < skinOf.size(); ++o) {
+      if (structure != ContactBlock::nobody && o != structure) continue;
       Box box;
       box.include(target);
       box.grow(searchRadius);
       for (const std::uint32_t p : patchesNear(o, box)) {
-        const ContactSurface& surface = model.organs()[o].surface;
+        const ContactSurface& surface = skinOf[o]->surface();
         for (std::size_t t = surface.patches()[p].first; t < surface.patches()[p].last; ++t) {
           const Index3& corner = surface.triangles()[t];
           const auto at = [&](int k) -> const Vec3& { return skin[o][static_cast<std::size_t>(corner[k])]; };
           const PointTriangle found_ = closestOnTriangle(target, at(0), at(1), at(2));
           if (!(found_.squaredDistance < nearest)) continue;
           nearest = found_.squaredDistance;
-          nearestOrgan = o;
+          nearestStructure = o;
           triangle = corner;
           best = found_;
         }
       }
     }
-    if (nearestOrgan == ContactBlock::nobody) continue;
+    if (nearestStructure == ContactBlock::nobody) continue;
     const bool near =
         std::any_of(held.begin(), held.end(), [&](const Vec3& p) { return (p - best.point).norm() < apart; });
     if (near) continue;
-    organ = nearestOrgan;
+    structure = nearestStructure;
     held.push_back(best.point);
     h.graspNode.push_back({static_cast<std::uint32_t>(triangle[0]), static_cast<std::uint32_t>(triangle[1]),
                            static_cast<std::uint32_t>(triangle[2])});
@@ -92,16 +109,16 @@ void Stepper::Workspace::closeJaws(State& state, std::size_t hand) {
     h.graspForce.push_back(Vec3::Zero());
   }
   if (held.empty()) return;
-  h.grasped = static_cast<std::uint32_t>(organ);
+  h.grasped = static_cast<std::uint32_t>(structure);
   h.graspSince = state.clock.step;
   h.slipping = false;
-  emit(EventKind::graspBegin, hand, static_cast<std::uint16_t>(organ), h.simulatedPosition, h.realJaw);
+  emit(EventKind::graspBegin, hand, static_cast<std::uint16_t>(structure), h.simulatedPosition, h.realJaw);
 }
 
 void Stepper::Workspace::addHolds(const State& state) {
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     const HandState& h = state.hand[hand];
-    if (h.grasped == noOrgan) continue;
+    if (h.grasped == noStructure) continue;
     const Pose tool = simulated(state, hand);
     const double each = model.scene().hands[hand].slipForce * gripOf(h) / static_cast<double>(h.graspNode.size());
     for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
@@ -111,11 +128,13 @@ void Stepper::Workspace::addHolds(const State& state) {
       block.kind = BlockKind::ball;
       block.limit = each;
       block.hand = hand;
-      block.organ = h.grasped;
+      block.body = model.structures()[h.grasped].body;
+      block.structure = h.grasped;
       block.anchor = a;
-      block.place = influence({static_cast<int>(h.graspNode[a][0]), static_cast<int>(h.graspNode[a][1]),
-                               static_cast<int>(h.graspNode[a][2])},
-                              h.graspWeight[a], model.organs()[h.grasped].embedding);
+      block.place =
+          skinOf[h.grasped]->influence({static_cast<int>(h.graspNode[a][0]), static_cast<int>(h.graspNode[a][1]),
+                                        static_cast<int>(h.graspNode[a][2])},
+                                       h.graspWeight[a]);
       for (std::size_t k = 0; k < 3; ++k) {
         block.direction[k] = Vec3::Unit(static_cast<int>(k));
         block.gap[k] = inJaws[static_cast<int>(k)] - onSkin[static_cast<int>(k)];
@@ -129,7 +148,7 @@ void Stepper::Workspace::addHolds(const State& state) {
 void Stepper::Workspace::letGo(State& state, std::size_t hand, EventKind why, double value) {
   HandState& h = state.hand[hand];
   emit(why, hand, static_cast<std::uint16_t>(h.grasped), h.simulatedPosition, value);
-  h.grasped = noOrgan;
+  h.grasped = noStructure;
   h.slipping = false;
   h.graspNode.clear();
   h.graspWeight.clear();
@@ -144,14 +163,15 @@ void Stepper::Workspace::finishHolds(State& state) {
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     HandState& h = state.hand[hand];
     HandResult& out = result.hand[hand];
-    out.grasping = h.grasped == noOrgan ? 0 : 1U << h.grasped;
+    out.grasping = h.grasped == noStructure ? 0 : 1U << h.grasped;
     out.graspForce = 0.0;
-    if (h.grasped == noOrgan) continue;
+    if (h.grasped == noStructure) continue;
     const HandDescription& description = model.scene().hands[hand];
     Vec3 pull = Vec3::Zero();
     for (const Vec3& f : h.graspForce) pull += f;
     out.graspForce = pull.norm();
     if (out.graspForce > description.tearForce) {
+      if (h.grasped < model.organs().size()) perforate(state, h.grasped, h.simulatedPosition, 0.0);
       letGo(state, hand, EventKind::tissueTear, out.graspForce);
       continue;
     }

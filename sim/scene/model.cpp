@@ -31,13 +31,27 @@ std::vector<bool> anchoredNodes(const OrganDescription& organ, const std::vector
   return fixed;
 }
 
+std::vector<double> vertexAreas(const SurfaceDescription& surface) {
+  std::vector<double> area(surface.vertex.size(), 0.0);
+  for (const Index3& t : surface.triangle) {
+    const Vec3& a = surface.vertex[static_cast<std::size_t>(t[0])];
+    const Vec3& b = surface.vertex[static_cast<std::size_t>(t[1])];
+    const Vec3& c = surface.vertex[static_cast<std::size_t>(t[2])];
+    const double third = (b - a).cross(c - a).norm() / 6.0;
+    for (int k = 0; k < 3; ++k) area[static_cast<std::size_t>(t[k])] += third;
+  }
+  return area;
+}
+
 }  // namespace
 
 Model::Built Model::build(SceneDescription scene) {
   const FloatingPointScope scope;
   Built built;
-  if (scene.organs.size() > 15) {
-    built.error = "a scene has at most 15 organs, this one has " + std::to_string(scene.organs.size());
+  const std::size_t structures = scene.organs.size() + scene.vessels.size() + scene.fat.size();
+  if (structures > largestStructureCount) {
+    built.error = "a scene has at most " + std::to_string(largestStructureCount) +
+                  " organs, vessels and bodies of fat, this one has " + std::to_string(structures);
     return built;
   }
   std::unique_ptr<Model> model(new Model);
@@ -81,7 +95,8 @@ Model::Built Model::build(SceneDescription scene) {
     }
     names.push_back(organ.name);
     model->organs_.push_back({organ.name, organ.appearance, std::move(solid), organ.surface.vertex,
-                              std::move(embedding), std::move(contact), stuffed.cellSize, stuffed.report});
+                              std::move(embedding), std::move(contact), vertexAreas(organ.surface), stuffed.cellSize,
+                              stuffed.report});
   }
   const std::vector<OrganModel>& organs = model->organs_;
   for (std::size_t a = 0; a < organs.size(); ++a) {
@@ -100,7 +115,17 @@ Model::Built Model::build(SceneDescription scene) {
     if (!built.error.empty()) return built;
     tissues.push_back(description.name);
   }
-  model->layout_ = digestLayout(names, tissues);
+  built.error = model->addVessels(scene);
+  if (!built.error.empty()) return built;
+  DigestNames digested{names, tissues, {}, {}};
+  for (const FatDescription& description : scene.fat) {
+    built.error = model->addFat(scene, description);
+    if (!built.error.empty()) return built;
+    digested.fat.push_back(description.name);
+  }
+  model->listStructures(scene);
+  for (const VesselTree& tree : model->vesselTree_) digested.vesselTrees.push_back(tree.name);
+  model->layout_ = digestLayout(digested);
   model->scene_ = std::move(scene);
   built.model = std::move(model);
   return built;

@@ -12,13 +12,14 @@
 
 namespace calot {
 
-/// One organ's outer surface, in W. Built only when an observer asks for it.
+/// One structure's outer surface, in W. Built only when an observer asks for it.
 struct SurfaceView {
-  std::string organ;             ///< name in the scene: "liver"
-  std::string appearance;        ///< "liver", "gallbladder", ...: which look the renderer gives it
+  std::string organ;             ///< name in the scene: "liver", "cystic_duct"
+  std::string appearance;        ///< "liver", "gallbladder", "duct", "artery", ...: which look the renderer gives it
   std::vector<Vec3> position;    ///< deformed vertices (m)
   std::vector<Vec3> rest;        ///< the same vertices at rest, for textures that stick to the tissue
   std::vector<Index3> triangle;  ///< outward (counter-clockwise from outside)
+  std::vector<float> charred;    ///< per vertex: 0 not at all, 1 as it counts as charred, more beyond; empty: nowhere
 };
 
 /// Connective tissue between two organs, in W: strands, and sheets between neighbouring strands.
@@ -28,6 +29,14 @@ struct ConnectiveView {
   std::vector<StrandCondition> condition;           ///< per strand
   std::vector<float> alpha;                         ///< per strand: 1 intact, falling while the hook burns it
   std::vector<std::array<std::uint32_t, 2>> sheet;  ///< pairs of strands that a sheet joins while both are attached
+};
+
+/// A clip on a vessel.
+struct ClipView {
+  Pose pose;             ///< of its middle in W: z along the vessel, x in the direction in which it flattens it
+  double width = 0.0;    ///< along the vessel (m)
+  double legs = 0.0;     ///< their length, along y (m)
+  double halfGap = 0.0;  ///< half of what it leaves to the vessel, along x (m)
 };
 
 struct InstrumentView {
@@ -44,6 +53,7 @@ struct SceneView {
   double time = 0.0;  ///< since the attempt's start (s)
   std::vector<SurfaceView> surface;
   std::vector<ConnectiveView> connective;
+  std::vector<ClipView> clip;
   std::array<InstrumentView, handCount> instrument;
   CameraSample camera;
   double verticalFieldOfView = 1.0;  ///< rad

@@ -5,6 +5,7 @@
 
 #include "sim/instruments/port.h"
 #include "sim/math/fields.h"
+#include "sim/vessel/tube_surface.h"
 
 namespace calot {
 
@@ -87,6 +88,15 @@ std::size_t fieldCount() {
   return layout.fields.size();
 }
 
+/// @pre vessels fit
+std::size_t skinVertices(const Model& model, const State& state, std::size_t structure) {
+  const StructureModel& s = model.structures()[structure];
+  if (s.kind == StructureKind::organ) return model.organs()[s.index].skin.size();
+  TubeSurface tube(model.vesselTrees()[s.index].beams, s.branch, tubeSettings);
+  tube.update(state.vessel[s.index]);
+  return tube.vertices();
+}
+
 }  // namespace
 
 State initialState(const Model& model, std::uint64_t seed) {
@@ -102,25 +112,45 @@ State initialState(const Model& model, std::uint64_t seed) {
     const Pose pose = throughPort(hand.port, hand.home, Quat::Identity(), Vec3(0.0, 0.0, -1.0));
     s.realPosition = s.simulatedPosition = pose.position;
     s.realOrientation = s.simulatedOrientation = pose.orientation;
-    s.touchingSince.assign(model.organs().size(), 0);
+    s.clips = hand.clips;
+    s.touchingSince.assign(model.structures().size(), 0);
   }
   for (const OrganModel& organ : model.organs()) {
     state.organ.push_back(restState(organ.solid));
     if (!scene.gravity.isZero(0.0)) state.organ.back().quietSteps = 0;
+    state.charred.emplace_back().exposure.assign(organ.skin.size(), 0.0F);
   }
   for (const ConnectiveModel& connective : model.connective())
     state.connective.push_back(intactState(connective.tissue));
+  for (const VesselTree& tree : model.vesselTrees()) {
+    state.vessel.push_back(restState(tree.beams));
+    if (!scene.gravity.isZero(0.0)) state.vessel.back().quietSteps = 0;
+  }
+  for (const std::unique_ptr<const FatModel>& fat : model.fat()) {
+    state.fat.push_back(restState(*fat));
+    if (!scene.gravity.isZero(0.0)) state.fat.back().solid.quietSteps = 0;
+  }
   return state;
 }
 
-DigestLayout digestLayout(const std::vector<std::string>& organNames, const std::vector<std::string>& connectiveNames) {
+DigestLayout digestLayout(const DigestNames& names) {
   DigestLayout layout;
   layout.components = {"clock", "camera", "hand.left", "hand.right", "tissue"};
-  for (const std::string& name : organNames) layout.components.push_back("organ." + name);
-  for (const std::string& name : connectiveNames) layout.components.push_back("connective." + name);
+  const auto add = [&](const char* prefix, const std::vector<std::string>& of) {
+    for (const std::string& name : of) layout.components.push_back(prefix + name);
+  };
+  add("organ.", names.organs);
+  add("connective.", names.connective);
+  add("vessels.", names.vesselTrees);
+  add("charred.", names.organs);
+  add("fat.", names.fat);
+  add("carved.", names.fat);
   State state;
-  state.organ.resize(organNames.size());
-  state.connective.resize(connectiveNames.size());
+  state.organ.resize(names.organs.size());
+  state.connective.resize(names.connective.size());
+  state.vessel.resize(names.vesselTrees.size());
+  state.charred.resize(names.organs.size());
+  state.fat.resize(names.fat.size());
   std::uint32_t component = 0;
   State::components(state, [&](const auto& part) {
     NameVisitor visitor{layout, component++};
@@ -165,24 +195,38 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
   State read;
   read.organ.resize(model.organs().size());
   read.connective.resize(model.connective().size());
+  read.vessel.resize(model.vesselTrees().size());
+  read.charred.resize(model.organs().size());
+  read.fat.resize(model.fat().size());
   ByteReader reader(bytes);
   State::components(read, [&](auto& part) { reader.read(part); });
   if (!reader.complete()) return false;
   FiniteVisitor finite;
   State::components(read, [&](const auto& part) { std::remove_cvref_t<decltype(part)>::fields(part, finite); });
   if (!finite.finite) return false;
+  for (std::size_t t = 0; t < read.vessel.size(); ++t) {
+    if (!fits(model.vesselTrees()[t].beams, read.vessel[t])) return false;
+  }
+  for (std::size_t f = 0; f < read.fat.size(); ++f) {
+    if (!fits(*model.fat()[f], read.fat[f])) return false;
+  }
   for (const HandState& hand : read.hand) {
-    if (hand.touchingSince.size() != model.organs().size()) return false;
+    const std::size_t burnable = smokeOfConnective + model.connective().size();
+    if (hand.burning != noStructure && hand.burning >= burnable) return false;
+    if (hand.touchingSince.size() != model.structures().size()) return false;
     if (hand.contactKey.size() != hand.contactForce.size()) return false;
     const std::size_t held = hand.graspNode.size();
     if (hand.graspWeight.size() != held || hand.graspPlace.size() != held || hand.graspForce.size() != held)
       return false;
-    if ((hand.grasped == noOrgan) != (held == 0)) return false;
+    if ((hand.grasped == noStructure) != (held == 0)) return false;
     if (held == 0) continue;
-    if (hand.grasped >= model.organs().size()) return false;
+    if (hand.grasped >= model.structures().size()) return false;
+    // Of fat, who steps it drops places that are not there.
+    if (model.structures()[hand.grasped].kind == StructureKind::fat) continue;
+    const std::size_t vertices = skinVertices(model, read, hand.grasped);
     for (const std::array<std::uint32_t, 3>& corners : hand.graspNode) {
       for (const std::uint32_t corner : corners) {
-        if (corner >= model.organs()[hand.grasped].skin.size()) return false;
+        if (corner >= vertices) return false;
       }
     }
   }
@@ -191,6 +235,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     const SolidModel& solid = model.organs()[o].solid;
     if (read.organ[o].position.size() != solid.nodes() || read.organ[o].velocity.size() != solid.nodes()) return false;
     if (read.organ[o].rotation.size() != solid.groups()) return false;
+    if (read.charred[o].exposure.size() != model.organs()[o].skin.size()) return false;
   }
   for (std::size_t c = 0; c < read.connective.size(); ++c) {
     const ConnectiveState& connective = read.connective[c];

@@ -9,11 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "sim/fat/fat_state.h"
 #include "sim/math/random.h"
 #include "sim/scene/digests.h"
 #include "sim/scene/model.h"
 #include "sim/scene/samples.h"
+#include "sim/scene/step_result.h"
 #include "sim/solid/solid.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
 
@@ -43,7 +46,7 @@ struct CameraState {
 };
 
 /// HandState::grasped of jaws that hold nothing.
-inline constexpr std::uint32_t noOrgan = 0xFFFFFFFFU;
+inline constexpr std::uint32_t noStructure = 0xFFFFFFFFU;
 
 struct HandState {
   InstrumentKind instrument = InstrumentKind::none;
@@ -57,12 +60,16 @@ struct HandState {
   bool valid = true;                         ///< the newest sample was a measurement
   bool outside = false;                      ///< the newest sample lay outside the workspace
   std::uint64_t invalidSince = 0;            ///< step in which measurements stopped
-  std::uint32_t touching = 0;                ///< bit o: organ o
-  std::vector<std::uint64_t> touchingSince;  ///< per organ: step in which the touch began
+  std::uint32_t touching = 0;                ///< bit s: structure s
+  std::vector<std::uint64_t> touchingSince;  ///< per structure: step in which the touch began
   std::vector<std::uint64_t> contactKey;     ///< the last step's contacts: where,
   std::vector<Vec3> contactForce;            ///< its normal and tangential parts (N); warm start of the next problem
-  std::uint32_t grasped = noOrgan;           ///< organ that the jaws hold
-  bool jawsOpened = false;                   ///< since they last closed: only then do they grasp when they close
+  std::uint32_t grasped = noStructure;       ///< structure that the jaws hold
+  bool jawsOpened = false;  ///< since they last closed: only then do they grasp, clip or cut when they close
+  std::uint32_t clips = 0;  ///< left in the clip applier
+  /// What the hook burns (a structure, or 100 + connective tissue), and energy put into it so far (J).
+  std::uint32_t burning = noStructure;
+  double burnedEnergy = 0.0;
   /// Places of its skin that the jaws hold: corners of a triangle and barycentric coordinates,
   std::vector<std::array<std::uint32_t, 3>> graspNode;
   std::vector<Vec3> graspWeight;
@@ -93,6 +100,9 @@ struct HandState {
     visit("contactForce", self.contactForce);
     visit("grasped", self.grasped);
     visit("jawsOpened", self.jawsOpened);
+    visit("clips", self.clips);
+    visit("burning", self.burning);
+    visit("burnedEnergy", self.burnedEnergy);
     visit("graspNode", self.graspNode);
     visit("graspWeight", self.graspWeight);
     visit("graspPlace", self.graspPlace);
@@ -115,6 +125,20 @@ struct TissueContactState {
   }
 };
 
+/// Where cautery has charred an organ. Irreversible.
+struct CharState {
+  std::vector<float> exposure;  ///< per vertex of its skin: cautery per spot (s)
+  double area = 0.0;            ///< charred (m^2)
+  bool perforated = false;      ///< burned or torn open
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("exposure", self.exposure);
+    visit("area", self.area);
+    visit("perforated", self.perforated);
+  }
+};
+
 struct State {
   /// Components that are written in every step stand before the organs.
   static constexpr std::size_t organsFrom = 5;
@@ -125,6 +149,9 @@ struct State {
   TissueContactState tissue;
   std::vector<SolidState> organ;
   std::vector<ConnectiveState> connective;
+  std::vector<BeamState> vessel;   ///< per tree
+  std::vector<CharState> charred;  ///< per organ
+  std::vector<FatState> fat;
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
   template <class Self, class Visit>
@@ -135,14 +162,22 @@ struct State {
     visit(self.tissue);
     for (auto& o : self.organ) visit(o);
     for (auto& c : self.connective) visit(c);
+    for (auto& v : self.vessel) visit(v);
+    for (auto& c : self.charred) visit(c);
+    for (auto& f : self.fat) visit(f.solid);
+    for (auto& f : self.fat) visit(f.carved);
   }
 };
 
 /// The state before the first step: organs at rest, instruments at home, camera in place.
 State initialState(const Model& model, std::uint64_t seed);
 
+/// What a Model's components are named after.
+struct DigestNames {
+  std::vector<std::string> organs, connective, vesselTrees, fat;
+};
 /// Names of components and fields of a model's State.
-DigestLayout digestLayout(const std::vector<std::string>& organNames, const std::vector<std::string>& connectiveNames);
+DigestLayout digestLayout(const DigestNames& names);
 
 /// Hashes every field of every component.
 StateDigest digestOf(const State& state);

@@ -9,6 +9,7 @@
 #include "sim/instruments/port.h"
 #include "sim/math/fields.h"
 #include "sim/math/floating_point.h"
+#include "sim/scene/organ_body.h"
 #include "sim/scene/stepper_workspace.h"
 
 namespace calot {
@@ -89,6 +90,7 @@ void Stepper::Workspace::readSamples(State& state, std::span<const TickSamples> 
       emit(EventKind::instrumentExchange, h, static_cast<std::uint16_t>(newest->instrument), hand.realPosition,
            static_cast<double>(hand.instrument));
       hand.instrument = newest->instrument;
+      hand.jawsOpened = false;
     }
     const double outside = (newest->position - clampedToWorkspace(scene, newest->position)).norm();
     if (outside > 0.0 && !hand.outside) emit(EventKind::outOfWorkspace, h, 0, newest->position, outside);
@@ -123,20 +125,21 @@ void Stepper::Workspace::finishHands(State& state) {
     out.tipSimulated = hand.simulatedPosition;
     out.orientation = hand.simulatedOrientation;
     out.jaw = hand.jaw;
+    out.clips = hand.clips;
     out.insertion = (hand.simulatedPosition - description.port).norm();
-    std::fill(out.organForce.begin(), out.organForce.end(), 0.0);
+    std::fill(out.structureForce.begin(), out.structureForce.end(), 0.0);
     for (const ContactBlock& block : blocks) {
-      if (block.hand == h && block.kind != BlockKind::ball) out.organForce[block.organ] += lambda[block.row];
+      if (block.hand == h && block.kind != BlockKind::ball) out.structureForce[block.structure] += lambda[block.row];
     }
     out.touching = 0;
-    for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    for (std::size_t o = 0; o < model.structures().size(); ++o) {
       const std::uint32_t bit = 1U << o;
       const bool touched = (hand.touching & bit) != 0;
-      const bool now = out.organForce[o] > leastForce;
+      const bool now = out.structureForce[o] > leastForce;
       if (now) out.touching |= bit;
       if (now && !touched) {
         hand.touchingSince[o] = state.clock.step;
-        emit(EventKind::contactBegin, h, static_cast<std::uint16_t>(o), hand.simulatedPosition, out.organForce[o]);
+        emit(EventKind::contactBegin, h, static_cast<std::uint16_t>(o), hand.simulatedPosition, out.structureForce[o]);
       } else if (touched && !now) {
         emit(EventKind::contactEnd, h, static_cast<std::uint16_t>(o), hand.simulatedPosition,
              static_cast<double>(state.clock.step - hand.touchingSince[o]) * settings.step);
@@ -149,14 +152,13 @@ void Stepper::Workspace::finishHands(State& state) {
 Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroadPhase make)
     : model(model_), executor(executor_) {
   const std::size_t organs = model.organs().size();
-  solver.resize(organs);
-  skin.resize(organs);
-  bounds.resize(organs);
-  nodal.resize(organs);
-  rest.resize(organs);
+  const std::size_t structures = model.structures().size();
+  skin.resize(structures);
+  bounds.resize(structures);
+  nodal.resize(model.bodies());
   selfRest.resize(organs);
-  moved.assign(organs, false);
-  for (std::size_t o = 0; o < organs; ++o) {
+  moved.assign(model.bodies(), false);
+  for (std::size_t s = 0; s < structures; ++s) {
     broad.push_back(make != nullptr ? make() : std::make_unique<SortedGrid>(broadCell));
   }
   settings.step = model.stepSeconds();
@@ -165,19 +167,47 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
   responseSettings = settings;
   responseSettings.tolerance = model.scene().solver.responseTolerance;
   for (std::size_t o = 0; o < organs; ++o) {
-    rest[o] = std::make_unique<RestCompliance>(model.organs()[o].solid, settings, executor);
+    body.push_back(std::make_unique<OrganBody>(model, o, settings, responseSettings, executor));
+    skinOf.push_back(std::make_unique<OrganSkin>(model, o));
+  }
+  for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
+    auto vessels = std::make_unique<VesselBody>(model, t, settings.step);
+    vesselBody.push_back(vessels.get());
+    body.push_back(std::move(vessels));
+  }
+  for (std::size_t f = 0; f < model.fat().size(); ++f) {
+    auto fat = std::make_unique<FatMotion>(model, f, settings, responseSettings, executor);
+    fatMotion.push_back(fat.get());
+    body.push_back(std::move(fat));
+  }
+  for (std::size_t s = organs; s < structures; ++s) {
+    const StructureModel& structure = model.structures()[s];
+    if (structure.kind == StructureKind::vessel) {
+      skinOf.push_back(std::make_unique<TubeSkin>(model, structure.index, structure.branch));
+    } else {
+      skinOf.push_back(std::make_unique<FatSkin>(*fatMotion[structure.index]));
+    }
+  }
+  tiesOf.resize(body.size());
+  for (std::size_t t = 0; t < model.ties().size(); ++t) {
+    for (const std::size_t side : {0, 1}) tiesOf[model.ties()[t].body[side]].emplace_back(t, side);
   }
   result.organ.resize(organs);
   result.connective.resize(model.connective().size());
+  result.vessel.resize(model.scene().vessels.size());
+  result.fat.resize(model.fat().size());
+  carved.assign(model.fat().size(), false);
+  charred.assign(organs, false);
   frayed.assign(model.connective().size(), false);
-  for (HandResult& hand : result.hand) hand.organForce.resize(organs);
+  for (HandResult& hand : result.hand) hand.structureForce.resize(structures);
   invalidate();
 }
 
 void Stepper::Workspace::invalidate() {
-  bounded.assign(model.organs().size(), false);
-  refittable.assign(model.organs().size(), false);
+  bounded.assign(model.structures().size(), false);
+  refittable.assign(model.structures().size(), false);
   digest.reset();
+  for (FatMotion* fat : fatMotion) fat->invalidate();
   for (ContactSet& set : contactSet) set = {};
 }
 
@@ -199,7 +229,7 @@ void Stepper::prepare() {
     }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    w.rest[o]->require(nodes, w.executor);
+    w.body[o]->require(nodes);
   }
 }
 
@@ -211,9 +241,13 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.result.misses = 0;
   w.result.events.clear();
   w.result.contact = {};
+  std::fill(w.charred.begin(), w.charred.end(), false);
+  std::fill(w.carved.begin(), w.carved.end(), false);
+  for (FatMotion* fat : w.fatMotion) fat->beginStep(state);
   for (std::size_t h = 0; h < handCount; ++h) w.poseBefore[h] = w.simulated(state, h);
   w.readSamples(state, samples);
   w.refreshBounds(state);
+  for (std::size_t h = 0; h < handCount; ++h) w.dropLostPlaces(state, h);
   for (std::size_t h = 0; h < handCount; ++h) w.openJaws(state, h);
   for (std::size_t h = 0; h < handCount; ++h) w.advanceFreely(state, h);
   for (std::size_t h = 0; h < handCount; ++h) w.closeJaws(state, h);
@@ -231,7 +265,11 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.refreshBounds(state);
   for (std::size_t h = 0; h < handCount; ++h) w.withdraw(state, h);
   w.finishConnective(state);
+  for (std::size_t h = 0; h < handCount; ++h) w.closeOnVessels(state, h);
+  w.burn(state);
   w.finishOrgans(state);
+  w.finishVessels(state);
+  w.finishFat(state);
   w.finishHolds(state);
   w.finishHands(state);
   ++state.clock.step;
@@ -242,8 +280,14 @@ const ContactSet& Stepper::contactSet(std::size_t hand) const { return w_->conta
 
 const StateDigest& Stepper::digest(const State& state) {
   std::vector<bool> written(State::organsFrom, true);
-  written.insert(written.end(), w_->moved.begin(), w_->moved.end());
+  const auto vessels = w_->written.begin() + static_cast<std::ptrdiff_t>(w_->model.organs().size());
+  const auto fat = w_->written.begin() + static_cast<std::ptrdiff_t>(w_->firstFat());
+  written.insert(written.end(), w_->written.begin(), vessels);
   written.insert(written.end(), w_->frayed.begin(), w_->frayed.end());
+  written.insert(written.end(), vessels, fat);
+  written.insert(written.end(), w_->charred.begin(), w_->charred.end());
+  written.insert(written.end(), fat, w_->written.end());
+  written.insert(written.end(), w_->carved.begin(), w_->carved.end());
   const StateDigest& digest = w_->digest.update(state, written);
   assert(digest == digestOf(state));
   return digest;

@@ -13,8 +13,10 @@
 #include "sim/contact/surface_surface.h"
 #include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/port.h"
+#include "sim/scene/body.h"
+#include "sim/scene/fat_motion.h"
 #include "sim/scene/stepper.h"
-#include "sim/solid/rest_compliance.h"
+#include "sim/scene/vessel_body.h"
 
 namespace calot {
 
@@ -28,20 +30,24 @@ inline constexpr std::uint32_t quietSteps = 50;    ///< before an organ sleeps
 inline constexpr double leastForce = 1e-6;         ///< N; below, nothing counts as touching
 inline constexpr double heldDepth = 0.0035;        ///< that jaws may sink into what they hold (m)
 inline constexpr double broadCell = 0.02;          ///< m
+inline constexpr double openJaw = 0.35;            ///< jaws opened wider act when they close (rad)
+inline constexpr double cuttingJaw = 0.7;          ///< the same for scissors: blades that close further cut (rad)
+inline constexpr double closedJaw = 0.25;          ///< jaws closed further hold, clip or cut what is between them (rad)
 }  // namespace stepping
 
-/// One block of the contact problem: an instrument on an organ, an organ on an organ, or held tissue.
+/// One block of the contact problem: an instrument on a structure, an organ on an organ, or held tissue.
 struct ContactBlock {
   static constexpr std::size_t nobody = ~std::size_t{0};
 
   BlockKind kind = BlockKind::frictional;
   double limit = 0.0;           ///< friction coefficient; force of a hold (N)
   std::size_t hand = nobody;    ///< whose instrument is pushed along +direction,
-  std::size_t other = nobody;   ///< or which organ is,
-  std::size_t organ = 0;        ///< and which organ along -direction
+  std::size_t other = nobody;   ///< or which body is,
+  std::size_t body = 0;         ///< and which body along -direction
+  std::size_t structure = 0;    ///< whose skin that is
   std::size_t anchor = nobody;  ///< of a hold: index of the held place
   std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  SolidSolver::Impulse place, otherPlace;  ///< where the organs are pushed
+  SolidSolver::Impulse place, otherPlace;  ///< where the bodies are pushed
   std::array<ToolRow, 3> tool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
   std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
   std::uint64_t key = 0;        ///< names the place: equal in two steps means the same one
@@ -49,9 +55,6 @@ struct ContactBlock {
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
 };
-
-/// A place on an organ's skin in terms of its solid's nodes: corner weights times anchor weights.
-SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight, const Embedding& embedding);
 
 /// Direction from the port to a tip, unit.
 Vec3 axisOf(const Vec3& port, const Vec3& tip);
@@ -77,12 +80,12 @@ struct Stepper::Workspace {
 
   // contact_detection.cpp
   void refreshBounds(const State& state);
-  std::span<const std::uint32_t> patchesNear(std::size_t organ, const Box& box);
+  std::span<const std::uint32_t> patchesNear(std::size_t structure, const Box& box);
   /// Capsules of a hand's instrument at a pose, in W, into `local` and `shape`.
   void shapeAt(const State& state, std::size_t hand, const Pose& pose, double jaw);
-  /// How deep this part of the instrument may stand in an organ (m): jaws in what they hold, for a mesh does not fold
-  /// between them; nothing else.
-  [[nodiscard]] static double allowance(const HandState& hand, const Capsule& capsule, std::size_t organ);
+  /// How deep this part of the instrument may stand in a structure (m): jaws in what they hold, for a mesh does not
+  /// fold between them; nothing else.
+  [[nodiscard]] static double allowance(const HandState& hand, const Capsule& capsule, std::size_t structure);
   double gapOf(const HandState& hand, double reach);
   void advanceFreely(State& state, std::size_t hand);
   void detectInstruments(const State& state);
@@ -90,24 +93,63 @@ struct Stepper::Workspace {
   /// Rest tables of a tissue pair; those of an organ with itself are worked out when first asked for.
   const SurfacePair& restOf(std::size_t pair);
   void allow(double allowed, double far, std::size_t from);
-  void addInstrumentBlock(const State& state, std::size_t hand, std::size_t organ, const SurfaceContact& contact);
+  void addInstrumentBlock(const State& state, std::size_t hand, std::size_t structure, const SurfaceContact& contact);
 
   // grasping.cpp
+  void dropLostPlaces(State& state, std::size_t hand);
   void openJaws(State& state, std::size_t hand);
   void closeJaws(State& state, std::size_t hand);
   void addHolds(const State& state);
   void letGo(State& state, std::size_t hand, EventKind why, double value);
   void finishHolds(State& state);
 
-  // organ_motion.cpp
+  // body_motion.cpp
   void wake(State& state);
   void moveFreely(State& state);
+  void gatherTies(const State& state, std::size_t which);
+  void disturb(State& state, std::size_t which);
+  void countQuiet(State& state, std::size_t which, double speed);
+  [[nodiscard]] std::size_t structureOf(std::size_t tree, std::size_t branch) const {
+    return model.organs().size() + model.vesselTrees()[tree].vessel[branch];
+  }
+  [[nodiscard]] std::size_t firstStructure(std::size_t which) const;
+  [[nodiscard]] std::size_t firstFat() const { return model.organs().size() + model.vesselTrees().size(); }
   void finishOrgans(State& state);
+  void finishVessels(State& state);
+  void finishFat(State& state);
+  [[nodiscard]] double shareLeft(const Tie& tie) const;
+  [[nodiscard]] Vec3 endOf(const State& state, const Tie& tie, std::size_t side) const;
 
   // connective_step.cpp
   void wakeJoined(const State& state);
   void gatherAttachments(const State& state, std::size_t organ);
   void finishConnective(State& state);
+
+  // vessel_tools.cpp
+  /// Where a vessel runs between jaws.
+  struct Crossing {
+    std::size_t structure = ContactBlock::nobody;
+    BeamPlace place;
+    double depth = 0.0;  ///< of its centre line from the jaws' crotch (m)
+    double sine = 1.0;   ///< of the angle between vessel and jaws
+    Pose frame;          ///< centre line there
+    Stump stump = Stump::none;
+  };
+  [[nodiscard]] Crossing vesselBetween(const State& state, std::size_t hand, double length) const;
+  bool isGripped(const State& state, std::size_t hand, const Crossing& crossing);
+  void closeOnVessels(State& state, std::size_t hand);
+  void setClipOn(State& state, std::size_t hand, const Crossing& crossing);
+  void cutVessel(State& state, std::size_t hand, const Crossing& crossing);
+  void partVessel(State& state, std::size_t structure, const BeamPlace& where, Parting how, EventKind kind,
+                  std::size_t hand);
+
+  // cautery.cpp
+  void sweepHook(const State& state, std::size_t hand);
+  void burn(State& state);
+  bool carve(State& state, std::size_t hand, std::size_t fat);
+  void burnSkin(State& state, std::size_t hand, std::size_t structure, const SurfaceContact& contact, double share);
+  void perforate(State& state, std::size_t organ, const Vec3& where, double exposure);
+  void tellSmoke(State& state, std::size_t hand, std::uint32_t source, double energy);
 
   // contact_problem.cpp
   void recallForces(const State& state);
@@ -118,7 +160,7 @@ struct Stepper::Workspace {
   void keepForces(State& state);
 
   // contact_response.cpp
-  void addForces(std::size_t organ, std::span<const double> forces, double scale, std::vector<Vec3>& nodal) const;
+  void addForces(std::size_t which, std::span<const double> forces, double scale, std::vector<Vec3>& nodal) const;
   void carryOut(std::span<const double> change);
   void move(State& state);
   double findInside(const HandState& hand, const Vec3& port, const Pose& pose);
@@ -137,20 +179,29 @@ struct Stepper::Workspace {
   Executor& executor;
   SolidSolver::Settings settings;
   SolidSolver::Settings responseSettings;
-  std::vector<SolidSolver> solver;  // per organ
-  std::vector<std::unique_ptr<RestCompliance>> rest;
-  std::vector<std::unique_ptr<const SurfacePair>> selfRest;  // per organ; empty until it folds
+  std::vector<std::unique_ptr<Body>> body;  // organs, then vessel trees
+  std::vector<FatMotion*> fatMotion;
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> tiesOf;  // per body: ties, and which of their sides
+  std::vector<VesselBody*> vesselBody;                                   // per tree
+  std::vector<std::unique_ptr<Skin>> skinOf;                             // per structure
+  std::vector<std::unique_ptr<const SurfacePair>> selfRest;              // per organ; empty until it folds
   std::vector<std::unique_ptr<BroadPhase>> broad;
-  std::vector<bool> bounded;               // per organ: broad phase holds bounds of the current positions
-  std::vector<bool> moved;                 // per organ: solved in this step
+  std::vector<bool> bounded;               // per structure: broad phase holds bounds of the current positions
+  std::vector<bool> moved;                 // per body: solved in this step
+  std::vector<bool> written;               // per body: its State is not that of the step before
   std::vector<Attachment> attachments;     // of the organ at hand
+  std::vector<TieLoad> tieLoads;           // of the body at hand
   std::vector<bool> frayed;                // per connective tissue: changed in this step
+  std::vector<bool> charred;               // per organ: charred in this step
+  std::vector<bool> carved;                // per body of fat: carved in this step
+  std::vector<SweptCapsule> blades;        // of the hook, as fat feels them
   std::array<Pose, handCount> poseBefore;  // of the simulated instruments, at the step's beginning
   std::vector<std::uint32_t> strands;
   std::vector<HookSweep> sweeps;
-  std::vector<std::vector<Vec3>> skin;   // per organ: surface points of the current positions
-  std::vector<std::vector<Box>> bounds;  // per organ and patch
-  std::vector<bool> refittable;          // per organ: the broad phase knows earlier bounds
+  std::array<std::uint32_t, handCount> burnedTissue{};  // connective tissue that the hook burns in this step
+  std::vector<std::vector<Vec3>> skin;                  // per structure: surface points of the current positions
+  std::vector<std::vector<Box>> bounds;                 // per structure and patch
+  std::vector<bool> refittable;                         // per structure: the broad phase knows earlier bounds
   std::vector<Box> earlierBounds;
   std::vector<BroadPhase::Pair> pairs;
   std::vector<std::uint32_t> patches;
@@ -172,7 +223,7 @@ struct Stepper::Workspace {
   std::vector<double> lambda, carried;   // forces: decided, and those that organs move under already
   std::vector<double> trueGap;           // with the forces carried out
   std::vector<double> freeGap, gap, change;
-  std::vector<std::vector<Vec3>> nodal;  // per organ
+  std::vector<std::vector<Vec3>> nodal;  // per body
   std::array<ContactSet, handCount> contactSet;
   IncrementalDigest digest;
   StepResult result;

@@ -10,6 +10,6 @@ namespace calot {
 inline constexpr std::uint32_t simulationVersion = 4;
 
 /// Version of StepResult, and so of /observables.
-inline constexpr std::uint32_t stepResultVersion = 2;
+inline constexpr std::uint32_t stepResultVersion = 3;
 
 }  // namespace calot

@@ -18,7 +18,10 @@ namespace calot {
 class RestCompliance {
  public:
   /// @param model outlives this. Assembles A at rest; columns come when they are asked for.
-  RestCompliance(const SolidModel& model, const SolidSolver::Settings& settings, Executor& executor);
+  /// @param surroundings what holds the solid besides fixed nodes, and how full its cubes are, at rest: without its
+  /// springs, a solid that hangs on nothing else would answer as if it flew freely
+  RestCompliance(const SolidModel& model, const SolidSolver::Settings& settings, Executor& executor,
+                 const Surroundings& surroundings = {});
 
   /// Works out the columns of these nodes that are not known yet, eight right-hand sides at a time. A column is a
   /// function of the model alone: in which order and company it is asked for changes nothing.

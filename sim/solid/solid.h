@@ -184,8 +184,9 @@ class SolidSolver {
   /// Velocity responses to up to eight unit impulses, each spread over nodes: column k answers impulse[k].
   /// @pre freeMotion() of this step was called.
   struct Impulse {
-    std::array<int, 12> node{};
-    std::array<double, 12> weight{};  ///< share of each node
+    static constexpr std::size_t mostNodes = 24;  ///< a triangle whose corners lie in three cubes
+    std::array<int, mostNodes> node{};
+    std::array<double, mostNodes> weight{};  ///< share of each node
     std::size_t count = 0;            ///< how many of them count
     Vec3 impulse = Vec3::Zero();      ///< N s
   };

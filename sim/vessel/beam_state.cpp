@@ -27,6 +27,7 @@ BeamState restState(const BeamModel& model) {
   state.parting.assign(elements, Parting::none);
   state.partedAt.assign(elements, 0.0);
   state.peakStrain.assign(elements, 0.0);
+  state.exposure.assign(elements, 0.0);
   state.sleeve.assign(elements, 0.0);
   state.sleeveStretch.assign(elements, Vec3::Zero());
   state.sleeveBend.assign(elements, Vec3::Zero());
@@ -52,7 +53,7 @@ bool fits(const BeamModel& model, const BeamState& state) {
   const std::size_t clips = state.clips();
   if (state.position.size() != nodes || state.orientation.size() != nodes || state.velocity.size() != nodes ||
       state.angularVelocity.size() != nodes || state.parting.size() != elements || state.partedAt.size() != elements ||
-      state.peakStrain.size() != elements || state.sleeve.size() != elements ||
+      state.peakStrain.size() != elements || state.exposure.size() != elements || state.sleeve.size() != elements ||
       state.sleeveStretch.size() != elements || state.sleeveBend.size() != elements ||
       state.clipBranch.size() != clips || state.clipWidth.size() != clips || state.clipRoll.size() != clips ||
       state.clipClosure.size() != clips || state.clipEnclosed.size() != clips) {
@@ -66,8 +67,8 @@ bool fits(const BeamModel& model, const BeamState& state) {
     }
   }
   for (std::size_t e = 0; e < elements; ++e) {
-    const bool parted = state.parting[e] == Parting::cut || state.parting[e] == Parting::torn;
-    if (!parted && state.parting[e] != Parting::none) return false;
+    if (state.parting[e] > Parting::burned) return false;
+    const bool parted = state.parting[e] != Parting::none;
     if (parted && !within(state.partedAt[e], leastStump, 1.0 - leastStump)) return false;
     if (!within(state.sleeve[e], 0.0, 1e6) || !state.sleeveStretch[e].allFinite() || !state.sleeveBend[e].allFinite()) {
       return false;

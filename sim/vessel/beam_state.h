@@ -12,7 +12,7 @@
 namespace calot {
 
 /// How an element was parted. A parted element carries nothing; what is left of it stays on its two nodes.
-enum class Parting : std::uint8_t { none, cut, torn };
+enum class Parting : std::uint8_t { none, cut, torn, burned };
 
 struct BeamState {
   std::vector<Vec3> position;         ///< of the nodes in W (m)
@@ -22,6 +22,7 @@ struct BeamState {
   std::vector<Parting> parting;       ///< per element
   std::vector<double> partedAt;       ///< per element: where, as a share of its length from its first node
   std::vector<double> peakStrain;     ///< per element: largest stretch so far
+  std::vector<double> exposure;       ///< per element: cautery so far (s)
   /// Per element: what clips on it add to its stiffness, in multiples of its own; 0 without clips.
   std::vector<double> sleeve;
   std::vector<Vec3> sleeveStretch;  ///< R_m^T d / L at which the sleeves are without force
@@ -47,6 +48,7 @@ struct BeamState {
     visit("parting", self.parting);
     visit("partedAt", self.partedAt);
     visit("peakStrain", self.peakStrain);
+    visit("exposure", self.exposure);
     visit("sleeve", self.sleeve);
     visit("sleeveStretch", self.sleeveStretch);
     visit("sleeveBend", self.sleeveBend);

@@ -74,7 +74,7 @@ TEST(Press, ForcesBalance) {
     const Vec3 coupling = scene.hands[0].couplingStiffness * (hand.tipSimulated - hand.tipReal);
     EXPECT_LT((coupling - force).norm(), 1e-9 * force.norm()) << "the coupling holds against the contact";
     const double mu = scene.organs[0].friction;
-    EXPECT_GE(hand.organForce[0] * std::sqrt(1.0 + mu * mu), force.norm() * 0.99)
+    EXPECT_GE(hand.structureForce[0] * std::sqrt(1.0 + mu * mu), force.norm() * 0.99)
         << "normal forces and what friction may add are no less than the sum";
     const Vec3 held = reaction(model->organs()[0], state.organ[0]);
     EXPECT_NEAR(held[2], force[2], 0.01 * force[2]) << "the block rests on its held nodes";

@@ -11,6 +11,7 @@ void registerContactSolver();  ///< contact/solver: the complementarity problem 
 void registerDetection();      ///< contact/narrow, contact/broad
 void registerHaptics();        ///< haptics/tick
 void registerCarving();        ///< carving/transform, carving/stroke, carving/growth
+void registerFat();            ///< fat/step, fat/stroke
 
 inline void registerAll() {
   registerContactStep();
@@ -19,6 +20,7 @@ inline void registerAll() {
   registerDetection();
   registerHaptics();
   registerCarving();
+  registerFat();
 }
 
 }  // namespace calot::bench

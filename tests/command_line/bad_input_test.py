@@ -80,14 +80,15 @@ class WrongFiles(program.ProgramTest):
     def test_surfaces(self):
         names = self.wrong_files()
         for name in names:
-            source, file = self.path(name), self.path(f"{name}.obj")
-            if source.is_dir():
-                file.mkdir()
-            elif source.exists():
-                shutil.copyfile(source, file)
-            with self.subTest(file=name):
-                self.refused(4, "mesh", file, "--unit", "m", "--tetrahedra", 100, "-o", self.path("o.vtk"), names=(file,))
-                self.assertFalse(self.path("o.vtk").exists())
+            for kind in ("obj", "stl", "ply"):
+                source, file = self.path(name), self.path(f"{name}.{kind}")
+                if source.is_dir():
+                    file.mkdir()
+                elif source.exists():
+                    shutil.copyfile(source, file)
+                with self.subTest(file=name, kind=kind):
+                    self.refused(4, "mesh", file, "--unit", "m", "--tetrahedra", 100, "-o", self.path("o.vtk"), names=(file,))
+                    self.assertFalse(self.path("o.vtk").exists())
 
     def test_surfaces_with_holes_or_numbers_that_are_none(self):
         liver = (program.SOURCE / "assets/organs/liver.obj").read_text().splitlines()
@@ -171,7 +172,7 @@ class WrongUse(program.ProgramTest):
                           ["participant"], ["participant", "add", "P"], ["participant", "remove", "P", "--cohort", o],
                           ["mesh", "x.obj", "--unit", "ft", "--tetrahedra", "100", "-o", "x.vtk"],
                           ["mesh", "x.obj", "--unit", "m", "--tetrahedra", "0", "-o", "x.vtk"],
-                          ["mesh", "x.stl", "--unit", "m", "--tetrahedra", "100", "-o", "x.vtk"],
+                          ["mesh", "x.off", "--unit", "m", "--tetrahedra", "100", "-o", "x.vtk"],
                           ["mesh", "x.obj", "--unit", "m", "--tetrahedra", "100", "-o", "x.obj"], ["scenes", "x"], ["checkpoints", "--no"]):
             with self.subTest(" ".join(map(str, arguments))):
                 try:

@@ -92,10 +92,16 @@ class Checker:
     def __init__(self, file, rows):
         self.file, self.rows, self.faults = file, rows, []
         count = lambda name: file[name].shape[0] if name in file else 0
-        self.counts = {"O": count("/scene/organs"), "C": count("/steps/component_names"), "F": count("/steps/field_names"),
-                       "V2": int(file.attrs["step_result_version"]) >= 2, "D": int("/device" in file),
-                       "K": sum(name.startswith(b"connective.") for name in file["/steps/component_names"][()])
-                       if "/steps/component_names" in file else 0}
+        version = int(file.attrs["step_result_version"])
+        components = list(file["/steps/component_names"][()]) if "/steps/component_names" in file else []
+        organs, vessels, fat = count("/scene/organs"), count("/scene/vessels"), count("/scene/fat")
+        self.counts = {"O": organs, "V": vessels, "A": fat, "S": organs + vessels + fat, "C": len(components),
+                       "F": count("/steps/field_names"), "V2": version >= 2, "V3": version >= 3,
+                       "O3": organs if version >= 3 else 0, "P": int(version >= 3 and b"procedure" in components),
+                       "D": int("/device" in file),
+                       "K": sum(name.startswith(b"connective.") for name in components) if version >= 2 else 0}
+        if version < 3 and vessels + fat > 0:
+            self.fault(f"/scene: version {version} has neither vessels nor fat")
         ticks = int(file.attrs["ticks_per_step"])
         self.block = max(1, 250 // ticks)
         self.ticks = ticks
@@ -121,6 +127,8 @@ class Checker:
                 self.fault(f"{row['name']}: the schema does not say whether it is required")
             if needed and not any(p.match(name) for name in found):
                 self.fault(f"{row['name']}: is required and not in the file")
+            if row["presence"].startswith("required if ") and not needed and any(p.match(name) for name in found):
+                self.fault(f"{row['name']}: is in the file, though {row['presence'].split()[-1]} is 0")
 
     def thing(self, name, kind, thing, row):
         if kind == "group":
@@ -213,6 +221,9 @@ def chain_heads(file, rows):
     names = lambda path: [as_text(n) for n in file[path][:]] if path in file else []
     organs, components, fields = names("/scene/organs"), names("/steps/component_names"), names("/steps/field_names")
     data += struct.pack("<Q", len(organs)) + b"".join(map(string, organs))
+    if int(file.attrs["step_result_version"]) >= 3:
+        for more in (names("/scene/vessels"), names("/scene/fat")):
+            data += struct.pack("<Q", len(more)) + b"".join(map(string, more))
     data += struct.pack("<Q", len(components)) + b"".join(map(string, components))
     data += struct.pack("<Q", len(fields))
     for component, name in zip(file["/steps/field_component"][:] if fields else [], fields):

@@ -29,7 +29,7 @@ class Liar final : public Observer {
 
   /// Index of a field among the digests, liver being the first organ.
   static std::size_t placeOf(const std::string& name) {
-    const DigestLayout layout = digestLayout({"liver"}, {});
+    const DigestLayout layout = digestLayout({{"liver"}, {}, {}, {}});
     std::size_t place = 0;
     while (layout.fields[place].name != name) ++place;
     return place;
@@ -141,7 +141,7 @@ TEST_F(Replay, NamesStepTickComponentAndBothValues) {
   const ReplayReport volume = replayRecording(record("v.h5", {{Liar::About::volume, 152}}), {});
   ASSERT_TRUE(volume.divergence) << volume.message;
   EXPECT_EQ(volume.divergence->component, "observables");
-  EXPECT_EQ(volume.divergence->field, "organ[0]/volume");
+  EXPECT_EQ(volume.divergence->field, "organs/volume[0]");
 
   const ReplayReport keyframe = replayRecording(record("k.h5", {{Liar::About::keyframe, 199}}), {});
   ASSERT_TRUE(keyframe.divergence) << keyframe.message;

@@ -8,6 +8,7 @@
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"
+#include "tests/recorder/recording/support/same_structures.h"
 #include "tests/recorder/recording/support/synthetic.h"
 
 namespace calot::recorder {
@@ -46,7 +47,9 @@ void expectSame(const Step& made, const RecordedStep& read) {
     const HandResult &a = made.result.hand[h], &b = read.result.hand[h];
     EXPECT_TRUE(a.instrument == b.instrument && same(a.tipReal, b.tipReal) && same(a.tipSimulated, b.tipSimulated));
     EXPECT_TRUE(same(a.orientation, b.orientation) && same(a.jaw, b.jaw) && same(a.insertion, b.insertion));
-    EXPECT_TRUE(same(a.contactForce, b.contactForce) && a.touching == b.touching && a.organForce == b.organForce);
+    EXPECT_TRUE(same(a.contactForce, b.contactForce) && a.touching == b.touching);
+    EXPECT_EQ(a.structureForce, b.structureForce);
+    EXPECT_TRUE(a.cautery == b.cautery && a.clips == b.clips);
   }
   ASSERT_EQ(made.result.organ.size(), read.result.organ.size());
   for (std::size_t o = 0; o < made.result.organ.size(); ++o) {
@@ -54,7 +57,9 @@ void expectSame(const Step& made, const RecordedStep& read) {
     EXPECT_TRUE(a.volume == b.volume && a.largestDisplacement == b.largestDisplacement &&
                 a.largestSpeed == b.largestSpeed);
     EXPECT_TRUE(a.residual == b.residual && a.iterations == b.iterations && a.asleep == b.asleep);
+    EXPECT_EQ(a.charredArea, b.charredArea);
   }
+  test::expectSameStructures(made.result, read.result);
   ASSERT_EQ(made.result.connective.size(), read.result.connective.size());
   for (std::size_t t = 0; t < made.result.connective.size(); ++t) {
     const ConnectiveResult &a = made.result.connective[t], &b = read.result.connective[t];
@@ -116,6 +121,8 @@ void expectSame(const AttemptHeader& a, const AttemptHeader& b) {
   EXPECT_EQ(a.sceneMajor, b.sceneMajor);
   EXPECT_EQ(a.sceneMinor, b.sceneMinor);
   EXPECT_EQ(a.organs, b.organs);
+  EXPECT_EQ(a.vessels, b.vessels);
+  EXPECT_EQ(a.fat, b.fat);
   ASSERT_EQ(a.assets.size(), b.assets.size());
   for (std::size_t i = 0; i < a.assets.size(); ++i) {
     EXPECT_EQ(a.assets[i].name, b.assets[i].name);
@@ -133,6 +140,7 @@ struct Shape {
   std::uint32_t ticksPerStep;
   std::size_t organs;
   std::uint64_t steps;
+  std::size_t vessels = 0, fat = 0;  // with a procedure, where there are any
 };
 
 class RoundTrip : public testing::TestWithParam<Shape> {};
@@ -140,7 +148,8 @@ class RoundTrip : public testing::TestWithParam<Shape> {};
 TEST_P(RoundTrip, KeepsEveryBit) {
   const Shape shape = GetParam();
   const Folder folder;
-  const AttemptHeader header = makeHeader(shape.ticksPerStep, shape.organs);
+  AttemptHeader header = makeHeader(shape.ticksPerStep, shape.organs);
+  if (shape.vessels + shape.fat > 0) header = test::withStructures(header, shape.vessels, shape.fat);
   test::writeRecording(folder / "r.h5", header, shape.steps);
   EXPECT_FALSE(std::filesystem::exists(folder / "r.h5.part"));
 
@@ -172,7 +181,8 @@ TEST_P(RoundTrip, KeepsEveryBit) {
 INSTANTIATE_TEST_SUITE_P(Shapes, RoundTrip,
                          testing::Values(Shape{10, 2, 533}, Shape{10, 2, 500}, Shape{10, 0, 60}, Shape{1, 1, 1100},
                                          Shape{7, 3, 200}, Shape{300, 1, 9}, Shape{10, 2, 1}, Shape{10, 2, 0},
-                                         Shape{1000, 32, 3}));
+                                         Shape{1000, 32, 3}, Shape{10, 2, 260, 3, 1}, Shape{7, 1, 90, 0, 2},
+                                         Shape{10, 0, 60, 1, 0}, Shape{10, 13, 30, 16, 3}));
 
 /// Recordings from before StepResult grew are read as they are; what they do not hold stays at nothing.
 TEST(EarlierVersion, OfStepResultIsRead) {
@@ -184,7 +194,7 @@ TEST(EarlierVersion, OfStepResultIsRead) {
   EXPECT_TRUE(r.verifyChain().intact);
   const Step made = randomStep(header, 59, 1);
   EXPECT_EQ(r.step(59).result.contact.rows, made.result.contact.rows);
-  EXPECT_EQ(r.step(59).result.hand[1].organForce, made.result.hand[1].organForce);
+  EXPECT_EQ(r.step(59).result.hand[1].structureForce, made.result.hand[1].structureForce);
   EXPECT_EQ(r.step(59).result.contact.blocks, 0U);
   EXPECT_EQ(r.step(59).result.hand[1].graspForce, 0.0);
 }

@@ -29,6 +29,17 @@ TEST(Schema, NamesAllThatIsThereAndNothingElse) {
   EXPECT_EQ(check(folder / "b.h5"), 0);
   test::writeRecording(folder / "c.h5", test::makeHeader(7, 1), 40);
   EXPECT_EQ(check(folder / "c.h5"), 0);
+  const AttemptHeader whole = test::withStructures(test::makeHeader(), 3, 2);
+  test::writeRecording(folder / "f.h5", whole, 60);
+  EXPECT_EQ(check(folder / "f.h5"), 0);
+  test::writeRecording(folder / "g.h5", test::withStructures(test::makeHeader(10, 0), 0, 0), 30);
+  EXPECT_EQ(check(folder / "g.h5"), 0);
+  for (const std::uint32_t version : {1U, 2U}) {
+    AttemptHeader earlier = test::makeHeader();
+    earlier.stepResultVersion = version;
+    test::writeRecording(folder / "h.h5", earlier, 30);
+    EXPECT_EQ(check(folder / "h.h5"), 0) << "version " << version;
+  }
   AttemptHeader bare = test::makeHeader(1, 0);
   bare.layout = {};
   bare.assets.resize(1);
@@ -56,6 +67,8 @@ TEST(Schema, CheckerSeesWhatIsTooMuchAndTooLittle) {
   EXPECT_EQ(change("f.create_group('/device')"), 1);
   EXPECT_EQ(change("f['/ticks'].attrs['extra'] = 1"), 1);
   EXPECT_EQ(change("del f['/observables/misses']"), 1);
+  EXPECT_EQ(change("f.create_group('/observables/procedure')"), 1);
+  EXPECT_EQ(change("f['/scene/vessels'] = f['/scene/organs'][()]"), 1);
   EXPECT_EQ(change("del f.attrs['seed']; f.attrs['seed'] = 1.0"), 1);
   EXPECT_EQ(change("f['/ticks/left/position'][7, 1] = 0.5"), 1);
   EXPECT_EQ(change("f['/ticks/lateness'][7] = 0.5"), 0);  // outside the chain

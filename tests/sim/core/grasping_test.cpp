@@ -93,7 +93,7 @@ TEST_F(Grasping, HeldTissueFollowsAndPullsBack) {
   for (int i = 0; i < 150; ++i) step(hold_ + Vec3(0.0, 0.0, 0.02), 0.6);
   EXPECT_EQ(count(EventKind::graspEnd), 1);
   EXPECT_EQ(count(EventKind::tissueTear), 0);
-  EXPECT_EQ(rig_->state.hand[0].grasped, noOrgan);
+  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
   EXPECT_LT(rig_->state.organ[0].largestDisplacement, 2e-4);
 }
 
@@ -101,7 +101,7 @@ TEST_F(Grasping, SlipsOverTheStatedForce) {
   grasp();
   const double limit = model_->scene().hands[0].slipForce;
   double strongest = 0.0;
-  for (int i = 0; i < 250 && rig_->state.hand[0].grasped != noOrgan; ++i) {
+  for (int i = 0; i < 250 && rig_->state.hand[0].grasped != noStructure; ++i) {
     strongest = std::max(strongest, step(hold_ + Vec3(0.0, 0.0, 2e-4 * i), 0.0).hand[0].graspForce);
     if (count(EventKind::graspSlip) == 0) {
       EXPECT_LT(strongest, limit * 1.001) << "below the stated force nothing slips";
@@ -112,7 +112,7 @@ TEST_F(Grasping, SlipsOverTheStatedForce) {
   EXPECT_GT(strongest, 0.9 * limit);
   EXPECT_EQ(count(EventKind::tissueTear), 0);
   EXPECT_EQ(count(EventKind::graspEnd), 1) << "pulled on, the tissue leaves the jaws";
-  EXPECT_EQ(rig_->state.hand[0].grasped, noOrgan);
+  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
 }
 
 TEST_F(Grasping, TearsOverTheStatedForceWhenLocked) {
@@ -130,7 +130,7 @@ TEST_F(Grasping, TearsOverTheStatedForceWhenLocked) {
   const auto tear =
       std::find_if(events_.begin(), events_.end(), [](const Event& e) { return e.kind == EventKind::tissueTear; });
   EXPECT_GT(tear->value, limit);
-  EXPECT_EQ(rig_->state.hand[0].grasped, noOrgan);
+  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
   // Closed jaws do not take hold again.
   for (int i = 0; i < 50; ++i) step(hold_, 0.0, button::lock);
   EXPECT_EQ(count(EventKind::graspBegin), 1);
@@ -158,7 +158,7 @@ TEST_F(Grasping, ARestoredHoldGoesOnWithTheSameBits) {
       ASSERT_EQ(digestOf(rig_->state).component, digestOf(other.state).component) << "step " << i;
     }
   }
-  EXPECT_EQ(rig_->state.hand[0].grasped, noOrgan);
+  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
   EXPECT_EQ(other.state.hand[0].grasped, 0U) << "its jaws stayed closed";
 }
 

@@ -192,7 +192,7 @@ TEST_F(StateTest, RefusesBytesThatAreNoStateOfThisModel) {
   refuses(saveState(state), "a held corner that the organ does not have");
   hold(2, 0);
   refuses(saveState(state), "a held organ that there is not");
-  hold(noOrgan, 0);
+  hold(noStructure, 0);
   refuses(saveState(state), "a held place of no organ");
   hold(0, 0);
   state.hand[1].graspForce.clear();

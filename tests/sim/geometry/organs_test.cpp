@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <string>
 
+#include "assets/organs/fat_shape.h"
 #include "assets/organs/organ_shapes.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/obj.h"
+#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/geometry/surface_report.h"
 
@@ -32,6 +34,19 @@ const TriangleMesh& gallbladderMesh() {
 TEST(Organs, ProgramMakesTheSameBytes) {
   EXPECT_TRUE(recorder::formatObj(liverMesh(), organs::liverHead) == kept("liver.obj"));
   EXPECT_TRUE(recorder::formatObj(gallbladderMesh(), organs::gallbladderHead) == kept("gallbladder.obj"));
+  EXPECT_TRUE(recorder::formatObj(organs::makeFat(), organs::fatHead) == kept("fat.obj"));
+}
+
+TEST(Organs, FatIsAPadOfOnePieceThatDoesNotCrossItself) {
+  const TriangleMesh mesh = organs::makeFat();
+  const SurfaceReport fat = inspectSurface(mesh);
+  EXPECT_TRUE(fat.closedManifold());
+  EXPECT_EQ(fat.components, 1);
+  EXPECT_EQ(findSelfCrossing(mesh).pairs, 0U);
+  EXPECT_TRUE(fat.volume > 3e-6 && fat.volume < 6e-6) << fat.volume;
+  const Vec3 size = fat.box.upper - fat.box.lower;
+  EXPECT_LT(size.maxCoeff(), 0.05);
+  EXPECT_GT(size.minCoeff(), 0.03);
 }
 
 TEST(Organs, HavePlausibleSizes) {

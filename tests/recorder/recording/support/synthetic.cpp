@@ -98,6 +98,24 @@ AttemptHeader makeHeader(std::uint32_t ticksPerStep, std::size_t organs) {
   return h;
 }
 
+AttemptHeader withStructures(AttemptHeader header, std::size_t vessels, std::size_t fat) {
+  const auto add = [&header](const std::string& component) {
+    const auto c = static_cast<std::uint32_t>(header.layout.components.size());
+    header.layout.components.push_back(component);
+    header.layout.fields.push_back({c, component + "/all"});
+  };
+  for (std::size_t v = 0; v < vessels; ++v) {
+    header.vessels.push_back("vessel" + std::to_string(v));
+    add("vessel.vessel" + std::to_string(v));
+  }
+  for (std::size_t f = 0; f < fat; ++f) {
+    header.fat.push_back("fat" + std::to_string(f));
+    add("fat.fat" + std::to_string(f));
+  }
+  add("procedure");
+  return header;
+}
+
 Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed) {
   Random r(seed * 1000003 + n, 7);
   const std::size_t organs = header.organs.size();
@@ -132,13 +150,35 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
     h.insertion = r.uniform();
     h.contactForce = randomVector(r);
     h.touching = r.next();
-    for (std::size_t o = 0; o < organs; ++o) h.organForce.push_back(r.uniform());
+    for (std::size_t o = 0; o < organs + header.vessels.size() + header.fat.size(); ++o)
+      h.structureForce.push_back(r.uniform());
     h.contactTorque = r.uniform();
     h.grasping = r.next();
     h.graspForce = r.uniform();
+    h.cautery = static_cast<Cautery>(r.next() % 3);
+    h.clips = r.next();
   }
   for (std::size_t o = 0; o < organs; ++o) {
-    s.result.organ.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next(), r.next() % 2 == 0});
+    s.result.organ.push_back(
+        {r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next(), r.next() % 2 == 0, r.uniform()});
+  }
+  for (std::size_t v = 0; v < header.vessels.size(); ++v) {
+    s.result.vessel.push_back(
+        {r.uniform(), r.uniform(), r.uniform(), r.next(), r.next(), r.uniform(), r.next() % 2 == 0});
+  }
+  for (std::size_t f = 0; f < header.fat.size(); ++f) {
+    s.result.fat.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform(),
+                            r.next(), r.next() % 2 == 0});
+  }
+  if (hasProcedure(header)) {
+    s.result.procedure = {static_cast<Phase>(r.next() % 6),
+                          static_cast<std::uint8_t>(r.next() % 3),
+                          static_cast<std::uint8_t>(r.next() % 3),
+                          static_cast<std::uint8_t>(r.next() % 3),
+                          r.next() % 2 == 0,
+                          r.uniform(),
+                          r.next(),
+                          r.next()};
   }
   for (std::size_t t = 0; t < connectiveNames(header).size(); ++t) {
     s.result.connective.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next()});
@@ -149,7 +189,7 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
   for (std::uint32_t e = r.next() % 3; e > 0; --e) {
     Event event;
     event.step = n;
-    event.kind = static_cast<EventKind>(1 + r.next() % 19);
+    event.kind = static_cast<EventKind>(1 + r.next() % 31);
     event.hand = static_cast<std::uint8_t>(r.next());
     event.subject = static_cast<std::uint16_t>(r.next());
     event.position = randomVector(r);
@@ -206,8 +246,10 @@ Step plausibleStep(const AttemptHeader& header, std::uint64_t n) {
     r.contactTorque = 1e-3 * r.contactForce[0];
     r.grasping = 0;
     r.graspForce = 0.0;
+    r.cautery = Cautery::off;
+    r.clips = 0;
     r.touching = touching ? 1 : 0;
-    for (double& f : r.organForce) f = touching ? r.contactForce.norm() : 0.0;
+    for (double& f : r.structureForce) f = touching ? r.contactForce.norm() : 0.0;
   }
   for (OrganResult& o : s.result.organ) {
     o = {1.2e-3 + (touching ? 1e-7 * std::sin(time) : 0.0),
@@ -215,7 +257,8 @@ Step plausibleStep(const AttemptHeader& header, std::uint64_t n) {
          touching ? 1e-2 * std::abs(std::cos(time)) : 0.0,
          touching ? 1e-7 * (1.0 + std::sin(99.0 * time)) : 0.0,
          touching ? 17U : 0U,
-         !touching};
+         !touching,
+         0.0};
   }
   s.result.contact = {};
   if (touching) {

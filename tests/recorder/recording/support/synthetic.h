@@ -34,6 +34,9 @@ class Folder {
 /// A header with every field set.
 AttemptHeader makeHeader(std::uint32_t ticksPerStep = 10, std::size_t organs = 2);
 
+/// The same with vessels, bodies of fat and a procedure (all of it since version 3 of StepResult).
+AttemptHeader withStructures(AttemptHeader header, std::size_t vessels, std::size_t fat);
+
 /// One step with its own storage.
 struct Step {
   std::vector<TickSamples> samples;

@@ -203,7 +203,7 @@ inline bool allFinite(const StepResult& result) {
     check.look(hand.orientation);
     check.look(hand.jaw);
     check.look(hand.insertion);
-    check.look(hand.organForce);
+    check.look(hand.structureForce);
   }
   for (const OrganResult& organ : result.organ) {
     for (const double v : {organ.volume, organ.largestDisplacement, organ.largestSpeed, organ.residual}) check.look(v);

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The header of a PLY file: what its body holds. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recorder/formats/surface_limits.h"
+
+namespace calot::recorder {
+
+enum class PlyFormat : std::uint8_t { ascii, littleEndian, bigEndian };
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// Bytes of one value.
+std::size_t plyBytes(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool list = false;
+  PlyType countType = PlyType::uint8;  ///< of a list: whole numbers
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;  ///< at least one
+
+  /// Place of a property, or -1.
+  [[nodiscard]] int find(std::string_view property) const;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;  ///< names differ, as do those of each one's properties
+  std::size_t lines = 0;             ///< of the header
+};
+
+/// Takes the header off a file's text, up to and with the line "end_header". The element `vertex` has x, y and z and
+/// `face` a list of indices, both within the limits. @throws Error (damaged): "name:line: what is wrong"
+PlyHeader takePlyHeader(std::string_view& text, const std::string& name, const SurfaceLimits& limits);
+
+/// The property that holds a face's corners, or -1.
+int plyCorners(const PlyElement& face);
+
+}  // namespace calot::recorder

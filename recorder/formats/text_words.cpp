@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/text_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace calot::recorder {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\v\f";
+
+}  // namespace
+
+Words::Words(std::string_view line, char comment)
+    : rest_(comment == '\0' ? line : line.substr(0, line.find(comment))) {}
+
+std::string_view Words::next() {
+  rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
+  const std::size_t end = std::min(rest_.find_first_of(blanks), rest_.size());
+  const std::string_view word = rest_.substr(0, end);
+  rest_.remove_prefix(end);
+  return word;
+}
+
+std::string_view takeLine(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return line;
+}
+
+std::string shown(std::string_view word) {
+  std::string text(word.substr(0, 40));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return word.size() > 40 ? text + "..." : text;
+}
+
+double readFiniteNumber(std::string_view word, std::string& fault) {
+  const std::string_view whole = word;
+  double value = 0.0;
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (code != std::errc() || end != word.data() + word.size()) {
+    fault = fmt::format("\"{}\" is not a number", shown(whole));
+  } else if (!std::isfinite(value)) {
+    fault = fmt::format("\"{}\" is not a finite number", shown(whole));
+  } else {
+    return value;
+  }
+  return 0.0;
+}
+
+long long readWholeNumber(std::string_view word, std::string& fault) {
+  const std::string_view whole = word;
+  long long value = 0;
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (code == std::errc() && end == word.data() + word.size() && std::abs(value) < 1'000'000'000'000'000'000LL) {
+    return value;
+  }
+  fault = fmt::format("\"{}\" is not a whole number", shown(whole));
+  return 0;
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"
+//
+#include "sim/fat/fat_body.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "sim/math/floating_point.h"
+
+namespace calot {
+
+namespace {
+
+constexpr double mostSoftening = 8.0;  ///< of a node's compliance, however little is left around it
+
+/// Calls visit(lattice node) for each that the last stroke put outside, by bricks.
+template <class Visit>
+void forEachRemoved(const CarvedField& field, Visit&& visit) {
+  for (const std::uint32_t brick : field.changed()) {
+    forEachBit(field.removed(brick), [&](std::uint32_t local) { visit(BrickLattice::brickNodes * brick + local); });
+  }
+}
+
+}  // namespace
+
+FatBody::FatBody(const FatModel& model)
+    : model_(model),
+      field_(model.field()),
+      islands_(model.lattice(), model.anchors()),
+      surface_(model.lattice()),
+      contact_(model, field_),
+      coarse_(model.lattice(), model.cellsPerCube()),
+      volume_(model),
+      motion_(model),
+      fill_(model.solid().cubes().size(), 0.0),
+      tieShare_(model.allTies().size(), 0.0),
+      tieStart_(model.solid().cubes().size() + 1, 0) {
+  for (const FatTie& tie : model.allTies()) ++tieStart_[slot(tie.cube) + 1];
+  for (std::size_t c = 0; c < fill_.size(); ++c) tieStart_[c + 1] += tieStart_[c];
+  tieOfCube_.resize(tieShare_.size());
+  std::vector<std::size_t> next(tieStart_.begin(), tieStart_.end() - 1);
+  for (std::size_t t = 0; t < tieShare_.size(); ++t) tieOfCube_[next[slot(model.allTies()[t].cube)]++] = t;
+  rebuildAll();
+}
+
+bool FatBody::rebuild(const FatState& state) {
+  const FloatingPointScope scope;
+  const bool good = fits(model_, state);
+  const bool restored = field_.restore(good ? state.carved : CarvedBricks{});
+  assert(restored);
+  static_cast<void>(restored);
+  rebuildAll();
+  return good;
+}
+
+void FatBody::rebuildAll() {
+  islands_.rebuild(field_);
+  surface_.rebuild(field_);
+  contact_.rebuild(surface_);
+  coarse_.rebuild(field_);
+  volume_.rebuild(field_);
+  takeFill(coarse_.changed());
+  adaptive_.reset();
+  before_.clear();
+}
+
+void FatBody::takeFill(std::span<const std::uint32_t> hexahedra) {
+  for (const std::uint32_t h : hexahedra) {
+    const int cube = model_.cubeOfHexahedron(h);
+    if (cube < 0) continue;
+    fill_[slot(cube)] = std::min(1.0, static_cast<double>(coarse_.counts()[h]) / model_.fullCount());
+    measureTies(cube);
+  }
+}
+
+void FatBody::measureTies(int cube) {
+  for (std::size_t i = tieStart_[slot(cube)]; i < tieStart_[slot(cube) + 1]; ++i) {
+    const FatTie& tie = model_.allTies()[tieOfCube_[i]];
+    std::size_t there = 0;
+    for (std::size_t n = tie.firstNode; n < tie.lastNode; ++n) there += field_.inside(model_.tieNodes()[n]) ? 1 : 0;
+    tieShare_[tieOfCube_[i]] = static_cast<double>(there) / static_cast<double>(tie.lastNode - tie.firstNode);
+  }
+}
+
+void FatBody::beginStep(const FatState& state) {
+  before_.assign(state.solid.position.begin(), state.solid.position.end());
+}
+
+FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
+  const FloatingPointScope scope;
+  assert(before_.size() == state.solid.position.size());
+  const double cell = model_.lattice().cell();
+  const double depth = carveDepth * cell;
+  if (state.carved.brick.capacity() == 0) field_.prepare(state.carved);
+  FatStroke out;
+  const double volumeBefore = volume_.total();
+  motion_.choose(tool, state.solid.position, before_, fill_, depth);
+  field_.begin();
+  carve(field_, tool, motion_.boxes(), motion_, depth);
+  if (field_.changed().empty()) return out;
+  const std::int64_t loose = islands_.remove(field_);
+  field_.commit(state.carved);
+  surface_.update(field_);
+  contact_.update(surface_);
+  coarse_.update(field_);
+  volume_.update(field_);
+  if (adaptive_ != nullptr) adaptive_->update(field_);
+  takeFill(coarse_.changed());
+  for (const std::uint32_t h : coarse_.changed()) {
+    const int cube = model_.cubeOfHexahedron(h);
+    if (cube < 0 || fill_[slot(cube)] > 0.0) continue;
+    for (const int node : model_.solid().cubes()[slot(cube)]) {
+      const std::span<const std::int32_t> around = model_.cubesAt(node);
+      const bool held =
+          std::any_of(around.begin(), around.end(), [this](std::int32_t c) { return fill_[slot(c)] > 0.0; });
+      if (!held) state.solid.velocity[slot(node)].setZero();
+    }
+  }
+  out.changed = true;
+  out.islands = cell * (cell * cell) * static_cast<double>(loose);
+  out.removed = volumeBefore - volume_.total();
+  out.where = meanPlace(state, out.nodes);
+  return out;
+}
+
+/// Where what the last stroke took off was.
+Vec3 FatBody::meanPlace(const FatState& state, std::uint32_t& nodes) const {
+  Vec3 sum = Vec3::Zero();
+  nodes = 0;
+  forEachRemoved(field_, [&](std::uint32_t node) {
+    const Index3 at = model_.lattice().nodeAt(node);
+    const int cube = model_.cubeOfNode(at);
+    const std::array<double, 8> share = model_.shares(cube, at.cast<double>());
+    const Index8& corner = model_.solid().cubes()[slot(cube)];
+    for (std::size_t c = 0; c < 8; ++c) sum += share[c] * state.solid.position[slot(corner[c])];
+    ++nodes;
+  });
+  return nodes == 0 ? sum : Vec3(sum / static_cast<double>(nodes));
+}
+
+Mat3 FatBody::turn(const FatState& state, int node) const {
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  Eigen::Vector4d first = Eigen::Vector4d::Zero();
+  double atRest = 0.0;
+  double left = 0.0;
+  for (const std::int32_t cube : model_.cubesAt(node)) {
+    const auto c = slot(cube);
+    atRest += model_.restFill()[c];
+    left += fill_[c];
+    if (!(fill_[c] > 0.0)) continue;
+    Eigen::Vector4d q;
+    for (int i = 0; i < 4; ++i) q[i] = state.solid.rotation[c / laneCount][slot(i)][c % laneCount];
+    if (first.isZero(0.0)) first = q;
+    sum += q.dot(first) < 0.0 ? Eigen::Vector4d(-q) : q;
+  }
+  const double size = sum.norm();
+  const Quat q = size > 1e-6 ? Quat(sum[0] / size, sum[1] / size, sum[2] / size, sum[3] / size) : Quat::Identity();
+  const double softening = left * mostSoftening > atRest ? atRest / left : mostSoftening;
+  return std::sqrt(softening) * q.toRotationMatrix();
+}
+
+int FatBody::cubeNear(const Vec3& rest) const {
+  const BrickLattice& lattice = model_.lattice();
+  const double edge = lattice.cell() * model_.cellsPerCube();
+  const Vec3 at = (rest - lattice.origin()) / edge;
+  Index3 h;
+  for (int a = 0; a < 3; ++a)
+    h[a] = std::clamp(static_cast<int>(std::clamp(at[a], 0.0, 1e6)), 0, model_.hexahedra()[a] - 1);
+  const int own = model_.cubeAt(h);
+  if (own >= 0 && fill_[slot(own)] > 0.0) return own;
+  const auto distance = [&](const Index3& cube) {
+    Vec3 off;
+    for (int a = 0; a < 3; ++a) {
+      off[a] = std::max({0.0, static_cast<double>(cube[a]) - at[a], at[a] - static_cast<double>(cube[a] + 1)});
+    }
+    return off.squaredNorm();
+  };
+  int best = -1;
+  double least = 1e300;
+  const auto offer = [&](int cube) {
+    if (cube < 0 || !(fill_[slot(cube)] > 0.0)) return;
+    const double d = distance(model_.hexahedronOfCube(cube));
+    if (d < least) best = cube;
+    least = std::min(least, d);
+  };
+  for (int d = 0; d < 27; ++d) offer(model_.cubeAt(h + Index3(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1)));
+  if (best >= 0) return best;
+  for (std::size_t c = 0; c < fill_.size(); ++c) offer(static_cast<int>(c));
+  return std::max(best, 0);
+}
+
+void FatBody::picture(const FatState& state, FatPicture& out) {
+  const FloatingPointScope scope;
+  if (adaptive_ == nullptr) {
+    adaptive_ = std::make_unique<AdaptiveSurface>(model_.lattice());
+    adaptive_->rebuild(field_);
+  }
+  TriangleMesh mesh = adaptive_->mesh();
+  out.position.clear();
+  for (const Vec3& p : mesh.vertex) {
+    const int cube = cubeNear(p);
+    const std::array<double, 8> share =
+        model_.shares(cube, Vec3((p - model_.lattice().origin()) / model_.lattice().cell()));
+    const Index8& corner = model_.solid().cubes()[slot(cube)];
+    Vec3 x = Vec3::Zero();
+    for (std::size_t c = 0; c < 8; ++c) x += share[c] * state.solid.position[slot(corner[c])];
+    out.position.push_back(x);
+  }
+  out.rest = std::move(mesh.vertex);
+  out.triangle = std::move(mesh.triangle);
+}
+
+}  // namespace calot

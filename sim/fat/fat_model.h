@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is fixed of a body of fat: a potential field in rest space, coarse cubes that carry it, and what it hangs on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/carving/brick_bits.h"
+#include "sim/carving/carved_field.h"
+#include "sim/carving/fill.h"
+#include "sim/fat/fat_state.h"
+#include "sim/geometry/triangle_mesh.h"
+#include "sim/solid/solid.h"
+
+namespace calot {
+
+/// What fat hangs on: all of it that is no farther than `reach`.
+struct FatPartner {
+  std::string name;
+  std::function<double(const Vec3&)> distance;  ///< of a point from its surface at rest, negative inside (m)
+  double reach = 0.002;                         ///< m
+  double stiffness = 2e6;                       ///< of a unit volume of fat that hangs on it (N/m^4)
+  double damping = 2e4;                         ///< (N s/m^4)
+};
+
+/// A part of space at rest in which the fat that is left is measured by itself.
+struct FatRegion {
+  std::string name;
+  std::function<bool(const Vec3&)> contains;  ///< asked once for each node of the lattice
+};
+
+struct FatSettings {
+  double cell = 0.00075;  ///< of the potential field (m)
+  int cellsPerCube = 3;   ///< edge of a mechanical cube (cells)
+  SolidModel::Material material;
+};
+
+/// A spring and a damper from the fat in one cube to a partner.
+struct FatTie {
+  int cube = 0;
+  SolidPlace place;                         ///< the middle of the nodes that it stands for
+  Vec3 rest = Vec3::Zero();                 ///< place.of(rest positions), bit for bit: no force at rest
+  double stiffness = 0.0;                   ///< while all of its nodes are there (N/m)
+  double damping = 0.0;                     ///< N s/m
+  std::size_t firstNode = 0, lastNode = 0;  ///< lattice nodes [first, last) of FatModel::tieNodes()
+};
+
+/// Lattice and cubes share their axes: cube h spans k^3 cells, a lattice node belongs to one cube (Fill). The solid
+/// consists of the cubes to which nodes inside the fat belong, ascending; their corners are its nodes.
+///
+/// A point of the fat goes where the trilinear map of its cube takes it. A point of the surface goes with the cube to
+/// which the *inside* end of its lattice edge belongs, at most a cell beyond that cube: so nothing that is still there
+/// ever hangs on a cube that has emptied.
+class FatModel {
+ public:
+  /// @param surface closed, outward (m, W)
+  /// @return nothing and a reason in one line (without the fat's name) where there is no such fat
+  static std::unique_ptr<const FatModel> make(const TriangleMesh& surface, const FatSettings& settings,
+                                              std::span<const FatPartner> partners, std::span<const FatRegion> regions,
+                                              std::string& error);
+
+  static constexpr double bandCells = 3.0;  ///< of the field
+
+  /// Without what hung on nothing from the beginning.
+  [[nodiscard]] const FieldModel& field() const { return field_; }
+  [[nodiscard]] const BrickLattice& lattice() const { return field_.lattice; }
+  [[nodiscard]] const SolidModel& solid() const { return *solid_; }
+  [[nodiscard]] int cellsPerCube() const { return k_; }
+  /// Inside nodes of a full cube.
+  [[nodiscard]] int fullCount() const { return k_ * k_ * k_; }
+  /// Share of each cube that is there before anything is carved.
+  [[nodiscard]] const std::vector<double>& restFill() const { return restFill_; }
+  /// Lattice nodes that hang on a partner, ascending.
+  [[nodiscard]] const std::vector<std::uint32_t>& anchors() const { return anchor_; }
+
+  [[nodiscard]] std::size_t partners() const { return partnerName_.size(); }
+  [[nodiscard]] const std::string& partnerName(std::size_t partner) const { return partnerName_[partner]; }
+  /// Ties of a partner, by cubes.
+  [[nodiscard]] std::span<const FatTie> ties(std::size_t partner) const {
+    return std::span(tie_).subspan(tieStart_[partner], tieStart_[partner + 1] - tieStart_[partner]);
+  }
+  /// Number of a partner's first tie among allTies().
+  [[nodiscard]] std::size_t firstTie(std::size_t partner) const { return tieStart_[partner]; }
+  [[nodiscard]] const std::vector<FatTie>& allTies() const { return tie_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& tieNodes() const { return tieNode_; }
+  /// All springs as they are at rest, for the compliance of rest: force 0, damper h K + C. @param step h (s)
+  [[nodiscard]] std::vector<Attachment> restAttachments(double step) const;
+
+  [[nodiscard]] std::size_t regions() const { return region_.size(); }
+  [[nodiscard]] const std::string& regionName(std::size_t region) const { return regionName_[region]; }
+  /// Its lattice nodes, per brick.
+  [[nodiscard]] const std::vector<BrickBits>& region(std::size_t region) const { return region_[region]; }
+
+  /// Cube of a coarse hexahedron (Fill::hexahedron()), -1 where there is none.
+  [[nodiscard]] int cubeOfHexahedron(std::uint32_t hexahedron) const { return cubeOf_[hexahedron]; }
+  [[nodiscard]] int cubeAt(const Index3& h) const;
+  /// Cube that a lattice node belongs to, -1: to none.
+  [[nodiscard]] int cubeOfNode(const Index3& node) const {
+    return cubeAt((node.array() / k_).min(hexahedra_.array() - 1));
+  }
+  /// Place of a cube among the coarse hexahedra.
+  [[nodiscard]] const Index3& hexahedronOfCube(int cube) const { return hexahedron_[slot(cube)]; }
+  /// Coarse hexahedra along each axis.
+  [[nodiscard]] const Index3& hexahedra() const { return hexahedra_; }
+  /// Cubes at a node of the solid, ascending.
+  [[nodiscard]] std::span<const std::int32_t> cubesAt(int node) const {
+    return std::span(cubeAtNode_).subspan(cubeStart_[slot(node)], cubeStart_[slot(node) + 1] - cubeStart_[slot(node)]);
+  }
+
+  /// Shares of a cube's corners at a point given in cells from the lattice's origin.
+  [[nodiscard]] std::array<double, 8> shares(int cube, const Vec3& cells) const;
+
+  /// Blocks of 4^3 cells (SurfacePatch) on which the surface can ever lie have a rank, ascending with their number.
+  [[nodiscard]] std::int32_t rankOfBlock(std::uint32_t block) const { return rank_[block]; }
+  [[nodiscard]] const std::vector<std::uint32_t>& blocks() const { return block_; }
+
+ private:
+  FatModel() = default;
+  std::string cast(const TriangleMesh& surface, double cell);
+  void hang(std::span<const FatPartner> partners);
+  void dropLoose();
+  std::string divide(const SolidModel::Material& material);
+  void tie(std::span<const FatPartner> partners);
+  void rankBlocks();
+
+  FieldModel field_;
+  std::unique_ptr<const SolidModel> solid_;
+  int k_ = 1;
+  Index3 hexahedra_ = Index3::Zero();
+  std::vector<std::int32_t> cubeOf_;
+  std::vector<Index3> hexahedron_;
+  std::vector<std::size_t> cubeStart_;
+  std::vector<std::int32_t> cubeAtNode_;
+  std::vector<double> restFill_;
+  std::vector<std::vector<std::uint32_t>> held_;  ///< per partner: lattice nodes, ascending
+  std::vector<std::uint32_t> anchor_;
+  std::vector<std::string> partnerName_;
+  std::vector<std::size_t> tieStart_;
+  std::vector<FatTie> tie_;
+  std::vector<std::uint32_t> tieNode_;
+  std::vector<std::string> regionName_;
+  std::vector<std::vector<BrickBits>> region_;
+  std::vector<std::int32_t> rank_;
+  std::vector<std::uint32_t> block_;
+};
+
+/// Uncarved, at rest, asleep.
+[[nodiscard]] FatState restState(const FatModel& model);
+
+/// Is this a state of that fat? For what comes from outside: sizes, numbers that are finite, bricks that fit the field.
+[[nodiscard]] bool fits(const FatModel& model, const FatState& state);
+
+}  // namespace calot
