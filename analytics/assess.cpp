@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "analytics/checkpoints/registry.h"
@@ -21,8 +22,12 @@ struct MainFigure {
   const char* subject;
 };
 constexpr MainFigure mainFigures[] = {
-    {"duration s", "attempt-duration", ""}, {"path L mm", "path-length", "left"}, {"path R mm", "path-length", "right"},
-    {"p99 L N", "force-p99", "left"},       {"p99 R N", "force-p99", "right"},
+    {"elapsed s", "elapsed-time", ""},           {"path L mm", "path-length", "left"},
+    {"path R mm", "path-length", "right"},       {"fat %", "fat-remaining", ""},
+    {"in %", "fat-remaining-inside", ""},        {"out %", "fat-remaining-outside", ""},
+    {"cystic s", "cystic-contact-time", ""},     {"connective %", "connective-remaining", ""},
+    {"liver burned %", "organ-burned", "liver"}, {"gallbladder burned %", "organ-burned", "gallbladder"},
+    {"duration s", "attempt-duration", ""},
 };
 
 std::string figureText(const std::vector<CheckpointValue>& values, const MainFigure& figure) {
@@ -73,13 +78,43 @@ Imported store(CohortDatabase& database, const AssessedAttempt& assessed) {
   return database.storeAttempt(recordOf(assessed), assessed.values);
 }
 
+void printValues(const std::vector<CheckpointValue>& values, std::ostream& out) {
+  TextTable table({{"checkpoint", Align::left},
+                   {"value", Align::right},
+                   {"unit", Align::left},
+                   {"origin", Align::left},
+                   {"", Align::left}});
+  for (const CheckpointValue& v : values) {
+    const CheckpointDefinition* definition = findCheckpoint(v.name);
+    const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
+    if (!v.value) {
+      const char* missing = v.availability == Availability::notApplicable ? "not applicable" : "not available";
+      table.add({name, "-", "", "", fmt::format("{}: {}", missing, v.reason)});
+      continue;
+    }
+    table.add({name, significant(*v.value * (definition != nullptr ? definition->displayFactor : 1.0)),
+               definition != nullptr ? definition->displayUnit : v.unit, nameOf(v.origin), v.note});
+  }
+  if (table.rows() > 0) table.print(out);
+}
+
 void printAttempts(const CohortDatabase& database, std::ostream& out) {
   std::map<std::string, std::vector<CheckpointValue>> values;
   for (AttemptValue& v : database.allValues()) values[v.attempt].push_back(std::move(v.value));
   std::vector<std::pair<std::string, Align>> columns{
       {"attempt", Align::left}, {"who", Align::left},          {"scene", Align::left},    {"mode", Align::left},
       {"outcome", Align::left}, {"verification", Align::left}, {"recording", Align::left}};
-  for (const MainFigure& figure : mainFigures) columns.emplace_back(figure.title, Align::right);
+  std::vector<MainFigure> figures;  // those that some attempt has
+  for (const MainFigure& figure : mainFigures) {
+    const bool any = std::any_of(values.begin(), values.end(), [&](const auto& attempt) {
+      return std::any_of(attempt.second.begin(), attempt.second.end(), [&](const CheckpointValue& v) {
+        return v.value && v.name == figure.name && v.subject == figure.subject;
+      });
+    });
+    if (!any) continue;
+    figures.push_back(figure);
+    columns.emplace_back(figure.title, Align::right);
+  }
   columns.emplace_back("", Align::left);
   TextTable table(columns);
   std::size_t synthetic = 0;
@@ -93,7 +128,7 @@ void printAttempts(const CohortDatabase& database, std::ostream& out) {
                                    a.complete ? wordFor(a.outcome) : "incomplete",
                                    nameOf(a.verification.verdict),
                                    a.fileName};
-    for (const MainFigure& figure : mainFigures) cells.push_back(figureText(values[a.uuid], figure));
+    for (const MainFigure& figure : figures) cells.push_back(figureText(values[a.uuid], figure));
     cells.push_back(fmt::format("{}{}", a.synthetic ? "SYNTHETIC" : "", a.excluded ? " excluded" : ""));
     synthetic += a.synthetic ? 1 : 0;
     table.add(std::move(cells));

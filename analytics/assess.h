@@ -24,7 +24,7 @@ struct AssessedAttempt {
   std::uint64_t steps = 0;
   std::array<std::byte, 32> chainHead{};
   Verification verification;
-  std::vector<CheckpointValue> values;  ///< of CheckpointCollector::values(); empty where the replay failed
+  std::vector<CheckpointValue> values;  ///< of CheckpointCollector::values(); empty where the replay diverged
   std::string fileName;                 ///< base name or path; the base name is kept
 };
 
@@ -34,8 +34,11 @@ Imported store(CohortDatabase& database, const AssessedAttempt& assessed);
 /// The row that store() writes.
 AttemptRecord recordOf(const AssessedAttempt& assessed);
 
-/// Closing table of `calot assess`: every attempt of the database with outcome, verification and its main checkpoints;
-/// synthetic ones are marked.
+/// Every value of one attempt, in display units, or the reason why there is none.
+void printValues(const std::vector<CheckpointValue>& values, std::ostream& out);
+
+/// Closing table of `calot assess`: every attempt of the database with outcome, verification and the checkpoints of the
+/// paper's Table 2, without those that no attempt has; synthetic ones are marked.
 void printAttempts(const CohortDatabase& database, std::ostream& out);
 
 }  // namespace calot::analytics

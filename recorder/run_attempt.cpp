@@ -66,7 +66,7 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
       ticks[i].lateness = settings.paced ? clock.finish(tick, monotonicNow()) : 0.0F;
     }
     if (!open) {
-      report.outcome = Outcome::completed;
+      report.outcome = source.ending();
       break;
     }
     // A step is due when the next one's first tick is.
@@ -140,12 +140,15 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
 RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& settings) {
   RunReport report;
   const Nanoseconds begin = monotonicNow();
+  Observer* watcher = source.watcher();
+  if (watcher != nullptr) session.join(*watcher);
   if (settings.live) {
     runLive(session, source, settings, report);
   } else {
     runInline(session, source, settings, report);
   }
   report.steps = session.steps();
+  if (watcher != nullptr) session.leave(*watcher);
   session.end(report.outcome);
   report.wallSeconds = seconds(monotonicNow() - begin);
   return report;

@@ -49,6 +49,11 @@ std::string nameOf(Finality finality) { return finality == Finality::running ? "
 
 void Checkpoint::onStep(const recorder::StepRecord& /*record*/) {}
 
+std::string whyTooOld(const AttemptContext& context, std::uint32_t needed) {
+  if (context.resultVersion >= needed) return {};
+  return fmt::format("results of version {} do not tell of it", context.resultVersion);
+}
+
 std::string stretchNote(const AttemptEnd& end) {
   return end.stretched > 0.0 ? fmt::format("tick clock stretched by {:.3f} s", end.stretched) : std::string();
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analytics/checkpoints/scene_facts.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
 
@@ -81,8 +82,14 @@ struct CheckpointValue {
 struct AttemptContext {
   double tickSeconds = tickLength;
   std::uint32_t ticksPerStep = 10;
-  std::vector<std::string> organs;  ///< and vessels, and fat: the scene's structures, as bits of `touching` count them
+  std::vector<std::string> structures;  ///< organs, vessels, fat: as bits of `touching` and subjects of events count
+  std::uint32_t resultVersion = 0;      ///< of the StepResults
+  bool procedure = false;               ///< the scene has a procedure
+  SceneFacts scene;
 };
+
+/// Empty when results of `needed` or later are there; else why a checkpoint that reads them is not applicable.
+std::string whyTooOld(const AttemptContext& context, std::uint32_t needed);
 
 struct Motion;
 class ForceTrack;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/checkpoints/collector.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
@@ -11,9 +12,12 @@
 namespace calot::analytics {
 
 struct CheckpointCollector::Storage {
-  Storage(const recorder::AttemptHeader& header, Origin from)
+  Storage(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin from)
       : origin(from), track{MotionTrack(header.tickSeconds), MotionTrack(header.tickSeconds)} {
-    const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures()};
+    const std::vector<std::string>& components = header.layout.components;
+    const bool procedure = std::find(components.begin(), components.end(), "procedure") != components.end();
+    const AttemptContext context{header.tickSeconds,       header.ticksPerStep, header.structures(),
+                                 header.stepResultVersion, procedure,           sceneFacts(scene)};
     for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint.push_back(entry.make(context));
   }
   Origin origin;
@@ -26,8 +30,9 @@ struct CheckpointCollector::Storage {
   bool ended = false;
 };
 
-CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, Origin origin)
-    : storage_(std::make_unique<Storage>(header, origin)) {
+CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, const SceneDescription& scene,
+                                         Origin origin)
+    : storage_(std::make_unique<Storage>(header, scene, origin)) {
   assert(origin != Origin::samples);
 }
 

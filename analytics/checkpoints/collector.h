@@ -13,8 +13,10 @@ namespace calot::analytics {
 /// observables; the same steps give the same values, bit for bit.
 class CheckpointCollector final : public recorder::Observer {
  public:
+  /// @param scene the attempt's own: the Model's, or recorder::sceneFromAssets() of the recording's assets.
   /// @param origin what the StepRecords are: `resimulated` (live or replay) or `observables` (read from the file).
-  explicit CheckpointCollector(const recorder::AttemptHeader& header, Origin origin = Origin::resimulated);
+  CheckpointCollector(const recorder::AttemptHeader& header, const SceneDescription& scene,
+                      Origin origin = Origin::resimulated);
   ~CheckpointCollector() override;
   CheckpointCollector(const CheckpointCollector&) = delete;
   CheckpointCollector& operator=(const CheckpointCollector&) = delete;

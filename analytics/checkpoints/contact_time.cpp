@@ -44,9 +44,7 @@ const CheckpointDefinition& sumDefinition() {
       .finality = Finality::running,
       .version = 1,
       .definition = "C_sum(o) = step length * sum over instruments #{steps at whose end it exerts a force on organ o}",
-      .paperReading =
-          "The reading taken for \"Time colliding cystic ducts\" (41.57 s in a task of 38.86 s), which is given "
-          "for the cystic duct and artery alone: no organ of a scene without them answers to it",
+      .paperReading = "",
   };
   return d;
 }
@@ -59,9 +57,9 @@ class ContactTime final : public Checkpoint {
   ContactTime(const AttemptContext& context, bool sum)
       : tickSeconds_(context.tickSeconds),
         ticksPerStep_(context.ticksPerStep),
-        organs_(context.organs),
+        organs_(context.structures),
         sum_(sum),
-        steps_(context.organs.size(), 0) {}
+        steps_(context.structures.size(), 0) {}
 
   void onStep(const recorder::StepRecord& record) override {
     for (std::size_t o = 0; o < std::min(steps_.size(), largestOrgans); ++o) {

@@ -9,10 +9,22 @@ namespace calot::analytics {
 CheckpointEntry elapsedTimeEntry();
 CheckpointEntry attemptDurationEntry();
 CheckpointEntry pathLengthEntry();
+CheckpointEntry fatRemainingEntry();
+CheckpointEntry fatRemainingInsideEntry();
+CheckpointEntry fatRemainingOutsideEntry();
+CheckpointEntry cysticContactTimeEntry();
+CheckpointEntry connectiveRemainingEntry();
+CheckpointEntry organBurnedEntry();
 CheckpointEntry contactTimeUnionEntry();
 CheckpointEntry contactTimeSumEntry();
 CheckpointEntry forceMaximumEntry();
 CheckpointEntry forcePercentileEntry();
 CheckpointEntry forceMeanEntry();
+CheckpointEntry clipErrorsEntry();
+CheckpointEntry cauteryWithoutContactEntry();
+CheckpointEntry connectiveTornEntry();
+CheckpointEntry organPerforationsEntry();
+CheckpointEntry criticalViewEntry();
+CheckpointEntry criticalErrorsEntry();
 
 }  // namespace calot::analytics

@@ -7,8 +7,29 @@ namespace calot::analytics {
 
 const std::vector<CheckpointEntry>& checkpointRegistry() {
   static const std::vector<CheckpointEntry> registry{
-      elapsedTimeEntry(),    attemptDurationEntry(), pathLengthEntry(),      contactTimeUnionEntry(),
-      contactTimeSumEntry(), forceMaximumEntry(),    forcePercentileEntry(), forceMeanEntry(),
+      // The paper's Table 2, in its order.
+      elapsedTimeEntry(),
+      pathLengthEntry(),
+      fatRemainingEntry(),
+      fatRemainingInsideEntry(),
+      fatRemainingOutsideEntry(),
+      cysticContactTimeEntry(),
+      connectiveRemainingEntry(),
+      organBurnedEntry(),
+      // Motion, contact, force.
+      attemptDurationEntry(),
+      contactTimeUnionEntry(),
+      contactTimeSumEntry(),
+      forceMaximumEntry(),
+      forcePercentileEntry(),
+      forceMeanEntry(),
+      // Errors and safety.
+      clipErrorsEntry(),
+      cauteryWithoutContactEntry(),
+      connectiveTornEntry(),
+      organPerforationsEntry(),
+      criticalViewEntry(),
+      criticalErrorsEntry(),
   };
   return registry;
 }

@@ -177,23 +177,28 @@ void addPublished(Study& study) {
 }  // namespace
 
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
+  return makeStudy(database.listAttempts(), database.allValues(), options, database.path());
+}
+
+Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
+                const StudyOptions& options, const std::string& name) {
   Study study;
   study.heading = "exploratory";
   std::map<std::string, std::uint64_t> out, present;
   std::vector<AttemptRow> attempts;
-  for (AttemptRow& a : database.listAttempts()) {
+  for (const AttemptRow& a : recruited) {
     ++study.recruited;
     if (const std::string reason = whyOut(a, options); !reason.empty()) {
       ++out[reason];
       continue;
     }
     ++present[groupOf(a, options.grouping)];
-    attempts.push_back(std::move(a));
+    attempts.push_back(a);
   }
   for (const std::string& reason : exclusionReasons()) {
     if (out.count(reason) > 0) study.flow.push_back({reason, out[reason]});
   }
-  study.groups = chooseGroups(present, options, database.path(), study);
+  study.groups = chooseGroups(present, options, name, study);
 
   std::map<std::string, std::pair<std::size_t, std::string>> member;  // attempt -> group index, participant
   std::set<std::string> keys;
@@ -218,8 +223,8 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
   for (std::size_t g = 0; g < 2; ++g) study.participants[g] = people[g].size();
   for (const std::string& person : people[0]) {
     if (people[1].count(person) > 0) {
-      throw Error(ExitCode::no, fmt::format("{}: participant \"{}\" is in both groups, which must be independent",
-                                            database.path(), person));
+      throw Error(ExitCode::no,
+                  fmt::format("{}: participant \"{}\" is in both groups, which must be independent", name, person));
     }
   }
   study.keys.assign(keys.begin(), keys.end());
@@ -229,7 +234,7 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
           ExitCode::no,
           fmt::format(
               "{}: the attempts don't compare, they have {} comparability keys ({}); choose, or ask for --mix-keys",
-              database.path(), study.keys.size(), [&] {
+              name, study.keys.size(), [&] {
                 std::string list;
                 for (const auto& key : study.keys) list += (list.empty() ? "" : "; ") + key;
                 return list;
@@ -244,7 +249,7 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
   std::map<std::pair<std::string, std::string>, Column> columns;
   std::vector<std::pair<std::string, std::string>> order;
   std::map<std::pair<std::string, std::string>, std::string> unit;
-  for (const AttemptValue& item : database.allValues()) {
+  for (const AttemptValue& item : values) {
     const auto at = member.find(item.attempt);
     if (at == member.end()) continue;
     const std::pair<std::string, std::string> key{item.value.name, item.value.subject};
@@ -263,10 +268,10 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
     ++cell.count;
     column.reason[g].erase(person);
   }
-  const auto place = [](const std::string& name) {
+  const auto place = [](const std::string& checkpoint) {
     const auto& registry = checkpointRegistry();
     return std::find_if(registry.begin(), registry.end(),
-                        [&](const CheckpointEntry& e) { return e.definition.name == name; }) -
+                        [&](const CheckpointEntry& e) { return e.definition.name == checkpoint; }) -
            registry.begin();
   };
   std::stable_sort(order.begin(), order.end(),
@@ -279,7 +284,7 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
             ExitCode::no,
             fmt::format(
                 "{}: checkpoint {} has values of {} versions; assess the older recordings again, or ask for --mix-keys",
-                database.path(), key.first, column.versions.size()));
+                name, key.first, column.versions.size()));
       }
       study.remarks.push_back(
           fmt::format("Values of {} versions of {} are mixed, as asked.", column.versions.size(), key.first));

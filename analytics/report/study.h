@@ -78,4 +78,9 @@ struct Study {
 /// @throws Error 3 when there are not two groups, or when comparability keys or checkpoint versions would mix.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
 
+/// The same of attempts and values at hand: CohortDatabase::listAttempts() and allValues(). @param name of where they
+/// are from, for errors
+Study makeStudy(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+                const StudyOptions& options, const std::string& name);
+
 }  // namespace calot::analytics

@@ -47,6 +47,13 @@ void printStudy(const Study& study, std::ostream& out) {
   std::vector<std::string> reasons;
   for (const StudyRow& row : study.rows) {
     const GroupSummary &x = row.group[0], &y = row.group[1];
+    if (x.n == 0 && y.n == 0) {
+      // One line for what nobody has: a scene without fat has many of these.
+      std::string why = x.missingReason;
+      if (y.missingReason != why) why += (why.empty() ? "" : "; ") + y.missingReason;
+      reasons.push_back(fmt::format("{}: no value in either group ({})", nameOfRow(row), why));
+      continue;
+    }
     table.add({nameOfRow(row), row.unit, row.direction == Direction::none ? "" : nameOf(row.direction),
                fmt::format("{}", x.n), number(x.mean), number(x.median), fmt::format("{}", y.n), number(y.mean),
                number(y.median), row.shift ? significant(*row.shift) : "-",

@@ -7,6 +7,7 @@
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/from_observables.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
@@ -51,17 +52,23 @@ const char* importedName(analytics::Imported imported) {
   return "";
 }
 
+/// What one file gave, beside the replay's report.
+struct Stored {
+  std::string how = "not stored";
+  std::vector<analytics::CheckpointValue> values;
+};
+
 /// Replays one recording with the checkpoints watching and stores the result. A damaged file is no attempt of the
-/// cohort; a diverged or undecidable one is, without values.
+/// cohort; a diverged one is, without values; one of another simulation version with those of its observables.
 recorder::ReplayReport assessOne(const std::string& file, const Options& o, analytics::CohortDatabase& database,
-                                 std::string& stored) {
+                                 Stored& stored) {
   recorder::AttemptHeader header;
   std::unique_ptr<analytics::CheckpointCollector> collector;
   recorder::ReplaySettings settings;
   settings.threads = o.threads;
-  settings.observers = [&](const recorder::AttemptHeader& h, const Model&) {
+  settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
     header = h;
-    collector = std::make_unique<analytics::CheckpointCollector>(h);
+    collector = std::make_unique<analytics::CheckpointCollector>(h, model.scene());
     return std::vector<recorder::Observer*>{collector.get()};
   };
   recorder::ReplayReport report = recorder::replayRecording(file, settings);
@@ -77,9 +84,31 @@ recorder::ReplayReport assessOne(const std::string& file, const Options& o, anal
                            report.verdict == recorder::ReplayVerdict::exact ? "" : report.message,
                            recorder::softwareName()};
   if (report.verdict == recorder::ReplayVerdict::exact) assessed.values = collector->values();
+  if (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact) {
+    recorder::Recording recording(file);
+    assessed.values = analytics::valuesFromObservables(recording);
+  }
   assessed.fileName = std::filesystem::path(file).filename().string();
-  stored = importedName(analytics::store(database, assessed));
+  stored.how = importedName(analytics::store(database, assessed));
+  stored.values = std::move(assessed.values);
   return report;
+}
+
+nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const analytics::CheckpointValue& v : values) {
+    nlohmann::ordered_json row = {{"name", v.name}, {"subject", v.subject}, {"version", v.version}};
+    row["value"] = v.value ? nlohmann::ordered_json(*v.value) : nlohmann::ordered_json();
+    row["unit"] = v.unit;
+    row["origin"] = nameOf(v.origin);
+    if (!v.value) {
+      row["missing"] = v.availability == analytics::Availability::notApplicable ? "not applicable" : "not available";
+      row["reason"] = v.reason;
+    }
+    if (!v.note.empty()) row["note"] = v.note;
+    list.push_back(row);
+  }
+  return list;
 }
 
 int assess(const Options& o) {
@@ -88,7 +117,7 @@ int assess(const Options& o) {
   nlohmann::json list = nlohmann::json::array();
   Progress progress("assessing, recordings", o.json);
   for (const std::string& file : o.files) {
-    std::string stored = "not stored";
+    Stored stored;
     try {
       reports.push_back(assessOne(file, o, database, stored));
     } catch (const Error& e) {
@@ -103,10 +132,16 @@ int assess(const Options& o) {
     progress.show(reports.size(), o.files.size());
     if (o.json) {
       nlohmann::json row = reportJson(reports.back());
-      row["stored"] = stored;
+      row["stored"] = stored.how;
+      row["checkpoints"] = jsonOf(stored.values);
       list.push_back(row);
     } else {
       printReport(reports.back());
+      if (o.files.size() == 1) {
+        std::fflush(stdout);
+        analytics::printValues(stored.values, std::cout);
+        std::cout << '\n' << std::flush;
+      }
     }
   }
   if (o.json) {

@@ -4,14 +4,14 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/stop_request.h"
 #include "recorder/sources/kinematics_source.h"
-#include "recorder/sources/performer_source.h"
+#include "recorder/sources/performer.h"
 
 namespace calot::apps {
 
 CLI::Option_group* addSource(CLI::App& command, SourceOptions& options) {
   auto* source = command.add_option_group("source", "who acts");
   source->add_option("--performer", options.performer,
-                     "profile of a synthetic operator: skilled, unskilled, or a file");
+                     "profile of a synthetic operator: skilled, intermediate, unskilled, or a file");
   source->add_option("--kinematics", options.kinematics, "two-handed motion file, 76 columns at 30 Hz");
   source->add_option("--device", options.device.name,
                      "gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE or null (docs/devices.md)");
@@ -27,7 +27,7 @@ std::unique_ptr<recorder::SampleSource> makeSource(const SourceOptions& options,
   if (!options.kinematics.empty()) return std::make_unique<recorder::KinematicsSource>(options.kinematics, scene);
   const recorder::PerformerProfile profile =
       recorder::loadPerformer(recorder::findPerformer(options.performer, assetFolders()));
-  return std::make_unique<recorder::PerformerSource>(profile, scene, seed);
+  return recorder::makePerformer(profile, scene, seed);
 }
 
 }  // namespace calot::apps

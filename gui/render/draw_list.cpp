@@ -5,10 +5,14 @@
 #include <cmath>
 
 #include "gui/render/cavity_mesh.h"
+#include "gui/render/clip_mesh.h"
 #include "gui/render/instrument_mesh.h"
 
 namespace calot::gui {
 namespace {
+
+/// Beyond it, char looks the same; more at one vertex would only widen the spot to its whole triangles.
+constexpr float mostCharred = 1.6F;
 
 class Builder {
  public:
@@ -19,7 +23,8 @@ class Builder {
   [[nodiscard]] Vec3 direction(const Vec3& d_W) const { return toCamera_ * d_W; }
 
   void begin() { base_ = static_cast<std::uint32_t>(list.vertex.size()); }
-  void add(const Vec3& p_C, const Vec3& n_C, const Vec3& rest, const Vec3& restNormal) {
+  void add(const Vec3& p_C, const Vec3& n_C, const Vec3& rest, const Vec3& restNormal, float charred = 0.0F,
+           float face = 0.0F) {
     DrawVertex v{};
     for (int a = 0; a < 3; ++a) {
       v.position[a] = static_cast<float>(p_C[a]);
@@ -27,10 +32,13 @@ class Builder {
       v.rest[a] = static_cast<float>(rest[a]);
       v.restNormal[a] = static_cast<float>(restNormal[a]);
     }
+    v.charred = charred;
+    v.face = face;
     list.vertex.push_back(v);
   }
-  void end(Appearance appearance, const std::vector<Index3>& triangles) {
+  void end(Appearance appearance, const std::vector<Index3>& triangles, bool harmed = false) {
     DrawPart part;
+    part.harmed = harmed;
     part.appearance = appearance;
     part.firstIndex = static_cast<std::uint32_t>(list.index.size());
     for (const Index3& t : triangles)
@@ -73,6 +81,9 @@ float referenceDistance(const std::vector<DrawVertex>& vertices) {
 Appearance appearanceOf(const std::string& word) {
   if (word == "liver") return Appearance::liver;
   if (word == "gallbladder") return Appearance::gallbladder;
+  if (word == "duct") return Appearance::duct;
+  if (word == "artery") return Appearance::artery;
+  if (word == "fat") return Appearance::fat;
   return Appearance::tissue;
 }
 
@@ -97,10 +108,24 @@ DrawList makeDrawList(const SceneView& view, bool cavity) {
     const std::vector<Vec3> restNormal = vertexNormals(surface.rest, surface.triangle);
     builder.begin();
     for (std::size_t v = 0; v < surface.position.size(); ++v)
-      builder.add(builder.point(surface.position[v]), builder.direction(normal[v]), surface.rest[v], restNormal[v]);
-    builder.end(appearanceOf(surface.appearance), surface.triangle);
+      builder.add(builder.point(surface.position[v]), builder.direction(normal[v]), surface.rest[v], restNormal[v],
+                  surface.charred.empty() ? 0.0F : std::clamp(surface.charred[v], 0.0F, mostCharred),
+                  surface.face.empty() ? 0.0F : surface.face[v]);
+    builder.end(appearanceOf(surface.appearance), surface.triangle, !surface.charred.empty() || !surface.face.empty());
   }
   builder.list.referenceDistance = referenceDistance(builder.list.vertex);
+
+  for (const ClipView& clip : view.clip) {
+    const Mesh mesh = makeClip(clip);
+    const Quat q = clip.pose.orientation.normalized();
+    builder.begin();
+    // Metal is brushed along z of what its texture sticks to: here along the legs.
+    const auto lengthwise = [](const Vec3& p) { return Vec3(p.x(), p.z(), p.y()); };
+    for (std::size_t v = 0; v < mesh.position.size(); ++v)
+      builder.add(builder.point(clip.pose.position + q * mesh.position[v]), builder.direction(q * mesh.normal[v]),
+                  lengthwise(mesh.position[v]), lengthwise(mesh.normal[v]));
+    builder.end(Appearance::titanium, mesh.triangle);
+  }
 
   for (const InstrumentView& instrument : view.instrument) {
     if (instrument.kind == InstrumentKind::none) continue;

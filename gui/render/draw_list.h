@@ -10,12 +10,15 @@
 
 namespace calot::gui {
 
-/// Looks that the shader knows. The numbers stand in shader_surface.cpp.
+/// Looks that the shader knows. The numbers stand in shader_material.cpp.
 enum class Appearance : int {
   tissue = 0,
   liver = 1,
   gallbladder = 2,
-  cavity = 3,       ///< abdominal wall around the scene
+  cavity = 3,  ///< abdominal wall around the scene
+  duct = 4,
+  artery = 5,
+  fat = 6,
   insulation = 10,  ///< black sleeve of a shaft
   steel = 11,
   ceramic = 12,
@@ -42,10 +45,13 @@ struct DrawVertex {
   float normal[3];
   float rest[3];  ///< where textures stick: rest position in W, or position in the instrument's frame (m)
   float restNormal[3];
+  float charred;  ///< SurfaceView::charred
+  float face;     ///< SurfaceView::face
 };
 
 struct DrawPart {
   Appearance appearance = Appearance::tissue;
+  bool harmed = false;  ///< charred or parted somewhere
   std::uint32_t firstIndex = 0;
   std::uint32_t indexCount = 0;
 };

@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "gui/render/noise_texture.h"
 #include "gui/render/shader_sources.h"
@@ -32,13 +37,33 @@ struct ScenePainter::Programs {
   Programs(const GlFunctions& gl, const char* counts)
       : shadow(gl, "shadow", {glsl::common, glsl::surfaceVertex}, {glsl::shadowFragment}),
         prepass(gl, "prepass", {glsl::common, glsl::surfaceVertex}, {glsl::prepassFragment}),
-        surface(gl, "surface", {glsl::common, glsl::surfaceVertex},
-                {counts, glsl::common, glsl::surfaceMaterial, glsl::surfaceFragment}),
         sheet(gl, "sheet", {glsl::common, glsl::sheetVertex}, {counts, glsl::common, glsl::sheetFragment}),
         occlusion(gl, "occlusion", {glsl::pictureVertex}, {counts, glsl::common, glsl::occlusionFragment}),
         blur(gl, "blur", {glsl::pictureVertex}, {glsl::blurFragment}),
-        compose(gl, "compose", {glsl::pictureVertex}, {glsl::composeFragment}) {}
-  ShaderProgram shadow, prepass, surface, sheet, occlusion, blur, compose;
+        compose(gl, "compose", {glsl::pictureVertex}, {glsl::composeFragment}),
+        gl_(gl),
+        counts_(counts) {}
+
+  /// The lit surface in one look; made when it is first drawn.
+  const ShaderProgram& surface(const DrawPart& part) {
+    const int look = std::min(static_cast<int>(part.appearance), static_cast<int>(Appearance::insulation));
+    std::unique_ptr<ShaderProgram>& program = surface_[{look, part.harmed}];
+    if (!program) {
+      const std::string choice = fmt::format("#define LOOK {}\n#define HARMED {}\n", look, part.harmed ? 1 : 0);
+      program = std::make_unique<ShaderProgram>(
+          gl_, "surface", std::initializer_list<const char*>{glsl::common, glsl::surfaceVertex},
+          std::initializer_list<const char*>{choice.c_str(), counts_, glsl::common, glsl::surfaceMaterial,
+                                             glsl::surfaceFragment});
+    }
+    return *program;
+  }
+
+  ShaderProgram shadow, prepass, sheet, occlusion, blur, compose;
+
+ private:
+  const GlFunctions& gl_;
+  const char* counts_;
+  std::map<std::pair<int, bool>, std::unique_ptr<ShaderProgram>> surface_;
 };
 
 struct ScenePainter::Targets {
@@ -73,6 +98,9 @@ ScenePainter::ScenePainter(const GraphicsContext& context) : gl_(context) {
     gl_.VertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, sizeof(DrawVertex),
                             reinterpret_cast<const void*>(offset));
   }
+  gl_.EnableVertexAttribArray(4);
+  gl_.VertexAttribPointer(4, 2, GL_FLOAT, GL_FALSE, sizeof(DrawVertex),
+                          reinterpret_cast<const void*>(offsetof(DrawVertex, charred)));
   const std::vector<float> volume = makeNoiseVolume();
   gl_.GenTextures(1, &noise_);
   gl_.ActiveTexture(GL_TEXTURE0 + noiseUnit);
@@ -111,19 +139,19 @@ void ScenePainter::upload(const DrawList& list) {
                  list.index.data(), GL_STREAM_DRAW);
 }
 
-void ScenePainter::drawParts(const DrawList& list, const ShaderProgram& program, bool withCavity) {
+void ScenePainter::drawPart(const DrawPart& part) const {
+  // From outside, one looks through the near wall of the cavity. Other surfaces may be open: both sides are drawn.
+  if (part.appearance == Appearance::cavity) gl_.Enable(GL_CULL_FACE);
+  const std::size_t offset = part.firstIndex * sizeof(std::uint32_t);
+  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.indexCount), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(offset));
+  gl_.Disable(GL_CULL_FACE);
+}
+
+void ScenePainter::drawParts(const DrawList& list, bool withCavity) const {
   gl_.BindVertexArray(vertexArray_);
-  for (const DrawPart& part : list.part) {
-    const bool cavity = part.appearance == Appearance::cavity;
-    if (part.indexCount == 0 || (cavity && !withCavity)) continue;
-    // From outside, one looks through the near wall of the cavity. Other surfaces may be open: both sides are drawn.
-    if (cavity) gl_.Enable(GL_CULL_FACE);
-    program.set("appearance", static_cast<int>(part.appearance));
-    const std::size_t offset = part.firstIndex * sizeof(std::uint32_t);
-    gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.indexCount), GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(offset));
-    gl_.Disable(GL_CULL_FACE);
-  }
+  for (const DrawPart& part : list.part)
+    if (part.indexCount > 0 && (withCavity || part.appearance != Appearance::cavity)) drawPart(part);
 }
 
 void ScenePainter::drawSheets(const SheetList& sheets) {
@@ -149,7 +177,7 @@ void ScenePainter::prepareTargets(int width, int height, Quality quality) {
 Image ScenePainter::paint(const DrawList& list, double verticalFieldOfView, int width, int height,
                           const RenderSettings& settings) {
   prepareTargets(width, height, settings.quality);
-  const Programs& programs = settings.quality == Quality::film ? *film_ : *interactive_;
+  Programs& programs = settings.quality == Quality::film ? *film_ : *interactive_;
   const Targets& targets = *targets_;
   upload(list);
 
@@ -171,11 +199,11 @@ Image ScenePainter::paint(const DrawList& list, double verticalFieldOfView, int 
 
   clear(targets.shadow, GL_DEPTH_BUFFER_BIT);
   setCamera(programs.shadow, shadowFocal, shadowFocal, lightX, lightY);
-  drawParts(list, programs.shadow, false);
+  drawParts(list, false);
 
   clear(targets.prepass, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   setCamera(programs.prepass, focalX, focalY, 0.0F, 0.0F);
-  drawParts(list, programs.prepass, true);
+  drawParts(list, true);
 
   targets.open.bind();
   setCamera(programs.occlusion, focalX, focalY, 0.0F, 0.0F);
@@ -203,8 +231,14 @@ Image ScenePainter::paint(const DrawList& list, double verticalFieldOfView, int 
     program.set("referenceDistance", list.referenceDistance);
     program.set("pixels", static_cast<float>(targets.radiance.width()), static_cast<float>(targets.radiance.height()));
   };
-  setLighting(programs.surface);
-  drawParts(list, programs.surface, true);
+  for (const DrawPart& part : list.part) {
+    if (part.indexCount == 0) continue;
+    const ShaderProgram& program = programs.surface(part);
+    setLighting(program);
+    program.set("appearance", static_cast<int>(part.appearance));
+    gl_.BindVertexArray(vertexArray_);
+    drawPart(part);
+  }
   if (!list.sheets.index.empty()) {
     setLighting(programs.sheet);
     programs.sheet.set("fibreMap", static_cast<int>(fibreUnit));

@@ -32,7 +32,8 @@ class ScenePainter {
   struct Targets;
 
   void upload(const DrawList& list);
-  void drawParts(const DrawList& list, const ShaderProgram& program, bool withCavity);
+  void drawPart(const DrawPart& part) const;
+  void drawParts(const DrawList& list, bool withCavity) const;
   void drawPicture();
   void drawSheets(const SheetList& sheets);
   void prepareTargets(int width, int height, Quality quality);

@@ -42,16 +42,19 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
 layout(location = 3) in vec3 restNormal;
+layout(location = 4) in vec2 harm;  // charred, face
 uniform vec3 eye;          // origin of the projection in C: lens, or light
 out vec3 vPosition;
 out vec3 vNormal;
 out vec3 vRest;
 out vec3 vRestNormal;
+out vec2 vHarm;
 void main() {
   vPosition = position;
   vNormal = normal;
   vRest = rest;
   vRestNormal = restNormal;
+  vHarm = harm;
   gl_Position = project(position - eye, focal);
 }
 )";

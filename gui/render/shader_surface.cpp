@@ -1,135 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wet tissue and brushed metal under the light of an endoscope. The looks are functions of the rest position, so that
-// they stick to the tissue however it deforms.
+// A surface under the light of an endoscope.
 #include "gui/render/shader_sources.h"
 
 namespace calot::gui::glsl {
-
-const char* const surfaceMaterial = R"(
-struct Material {
-  vec3 albedo;     // linear
-  vec3 scatter;    // how far light wraps around an edge, per channel
-  vec3 slope;      // gradient of the height in rest coordinates (dimensionless)
-  vec3 mirror;     // reflectance at normal incidence
-  float roughness;
-  float film;      // share of a thin wet film's sharp gloss
-};
-
-// A net of vessels: the zero lines of a bent, stretched noise. Dividing by the slope gives every line the same width (in
-// cells); fading by a slower noise opens the loops into branches that thin out.
-float vessels(vec3 p, float width) {
-  vec4 bend = noise(p * 1.3 + 3.1);
-  vec4 n = noise(p + 0.11 * bend.xyz);
-  float away = abs(n.w) / max(length(n.xyz), 0.6);
-  float strength = smoothstep(-0.15, 0.40, noise(p * 0.55 + 7.7).w);
-  float w = width * (0.25 + 0.75 * strength);
-  return strength * (1.0 - smoothstep(0.35 * w, w, away));
-}
-
-Material liver(vec3 mm) {
-  vec4 wide = noise(mm / 43.0);
-  vec4 middle = noise(mm / 13.0 + 0.4 * wide.xyz);
-  vec4 lobules = noise(mm / 1.9);
-  vec4 grain = noise(mm / 0.83 + 5.0);
-  Material m;
-  float tone = 0.5 + 0.55 * wide.w + 0.35 * middle.w;
-  m.albedo = mix(vec3(0.082, 0.023, 0.017), vec3(0.165, 0.056, 0.038), clamp(tone, 0.0, 1.0));
-  m.albedo *= 1.0 + 0.20 * lobules.w + 0.10 * grain.w;
-  m.albedo = mix(m.albedo, vec3(0.245, 0.100, 0.066), 0.30 * smoothstep(0.20, 0.6, middle.w + 0.2 * lobules.w));
-  m.scatter = vec3(0.26, 0.08, 0.06);
-  m.slope = 1.10 / 13.0 * middle.xyz + 0.060 / 1.9 * lobules.xyz + 0.014 / 0.83 * grain.xyz;
-  m.mirror = vec3(0.028);
-  m.roughness = 0.40;
-  m.film = 0.95;
-  return m;
-}
-
-Material gallbladder(vec3 mm) {
-  vec4 wide = noise(mm / 24.0 + 2.0);
-  vec4 middle = noise(mm / 7.0);
-  vec4 fine = noise(mm / 1.3);
-  Material m;
-  float tone = clamp(0.5 + 0.7 * wide.w + 0.35 * middle.w, 0.0, 1.0);
-  m.albedo = mix(vec3(0.026, 0.055, 0.047), vec3(0.086, 0.108, 0.066), tone);
-  // Serosa: pale where the wall is thicker, with a little fat under it.
-  float pale = smoothstep(0.10, 0.60, noise(mm / 17.0 + 9.0).w + 0.25 * middle.w);
-  m.albedo = mix(m.albedo, vec3(0.200, 0.160, 0.080), 0.45 * pale);
-  float large = vessels(mm * vec3(1.0, 0.4, 0.7) / 10.0, 0.026);
-  float small = vessels(mm * vec3(1.0, 0.55, 0.8) / 5.0 + 4.0, 0.034);
-  m.albedo = mix(m.albedo, vec3(0.075, 0.012, 0.016), 0.50 * large);
-  m.albedo = mix(m.albedo, vec3(0.110, 0.024, 0.022), 0.38 * small);
-  m.albedo *= 1.0 + 0.10 * fine.w;
-  m.scatter = vec3(0.26, 0.24, 0.18);
-  m.slope = 0.55 / 7.0 * middle.xyz + 0.030 / 1.3 * fine.xyz;
-  m.mirror = vec3(0.030);
-  m.roughness = 0.36;
-  m.film = 1.0;
-  return m;
-}
-
-Material cavityWall(vec3 mm) {
-  vec4 wide = noise(mm / 61.0 + 1.0);
-  vec4 middle = noise(mm / 27.0 + 0.5 * wide.xyz);
-  vec4 lobes = noise(mm / 8.0 + 0.3 * middle.xyz);
-  vec4 small = noise(mm / 3.1);
-  Material m;
-  m.albedo = mix(vec3(0.200, 0.058, 0.046), vec3(0.330, 0.125, 0.095), clamp(0.5 + 0.7 * wide.w, 0.0, 1.0));
-  float fat = smoothstep(-0.15, 0.55, middle.w + 0.30 * lobes.w + 0.10 * small.w);
-  m.albedo = mix(m.albedo, vec3(0.400, 0.235, 0.105), 0.55 * fat);
-  m.albedo *= 1.0 + 0.20 * lobes.w + 0.10 * small.w;
-  m.albedo = mix(m.albedo, vec3(0.150, 0.022, 0.024), 0.40 * vessels(mm * vec3(1.0, 0.6, 0.8) / 21.0, 0.035));
-  m.scatter = vec3(0.35, 0.15, 0.10);
-  m.slope = 2.2 / 27.0 * middle.xyz + (0.5 + 0.6 * fat) / 8.0 * lobes.xyz + 0.12 / 3.1 * small.xyz;
-  m.mirror = vec3(0.026);
-  m.roughness = 0.50;
-  m.film = 0.45;
-  return m;
-}
-
-Material tissue(vec3 mm) {
-  vec4 middle = noise(mm / 9.0);
-  vec4 fine = noise(mm / 1.7);
-  Material m;
-  m.albedo = mix(vec3(0.34, 0.12, 0.09), vec3(0.45, 0.20, 0.15), clamp(0.5 + 0.8 * middle.w, 0.0, 1.0)) * (1.0 + 0.1 * fine.w);
-  m.scatter = vec3(0.35, 0.15, 0.10);
-  m.slope = 0.25 / 9.0 * middle.xyz + 0.03 / 1.7 * fine.xyz;
-  m.mirror = vec3(0.028);
-  m.roughness = 0.42;
-  m.film = 0.7;
-  return m;
-}
-
-Material solid(vec3 albedo, vec3 mirror, float roughness) {
-  return Material(albedo, vec3(0.0), vec3(0.0), mirror, roughness, 0.0);
-}
-
-// Brushed along the shaft: fine grooves across it, long along it.
-Material brushed(vec3 mm, vec3 mirror, float roughness) {
-  Material m = solid(vec3(0.0), mirror, roughness);
-  vec4 groove = noise(vec3(mm.xy * 5.5, mm.z * 0.35));
-  m.slope = 0.10 * vec3(groove.xy, 0.0);
-  m.mirror *= 1.0 + 0.10 * groove.w;
-  return m;
-}
-
-Material materialOf(int appearance, vec3 rest) {
-  vec3 mm = rest * 1000.0;
-  if (appearance == 1) return liver(mm);
-  if (appearance == 2) return gallbladder(mm);
-  if (appearance == 3) return cavityWall(mm);
-  if (appearance == 10) return solid(vec3(0.010, 0.010, 0.011), vec3(0.042), 0.33);
-  if (appearance == 11) return brushed(mm, vec3(0.60, 0.585, 0.57), 0.27);
-  if (appearance == 12) return solid(vec3(0.62, 0.58, 0.50), vec3(0.045), 0.30);
-  if (appearance == 13) return brushed(mm, vec3(0.56, 0.54, 0.60), 0.30);
-  return tissue(mm);
-}
-)";
 
 const char* const surfaceFragment = R"(
 in vec3 vPosition;
 in vec3 vNormal;
 in vec3 vRest;
 in vec3 vRestNormal;
+in vec2 vHarm;
 layout(location = 0) out vec4 radiance;
 
 uniform int appearance;
@@ -199,7 +79,7 @@ vec3 surroundings(vec3 d) {
 }
 
 void main() {
-  Material m = materialOf(appearance, vRest);
+  Material m = materialOf(appearance, vRest, vHarm);
   vec3 n0 = normalize(vNormal);
   if (!gl_FrontFacing) n0 = -n0;
   vec3 nr = normalize(vRestNormal);

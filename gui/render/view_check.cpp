@@ -32,6 +32,24 @@ void checkSurface(const SurfaceView& surface) {
       refuse(fmt::format("surface '{}', triangle {}: names a vertex outside 0 to {}", surface.organ, t, count - 1));
 }
 
+void checkHarm(const SurfaceView& surface, const std::vector<float>& values, const char* what, float most) {
+  if (values.empty()) return;
+  if (values.size() != surface.position.size())
+    refuse(fmt::format("surface '{}' has {} vertices but {} values of '{}'; give one each, or none", surface.organ,
+                       surface.position.size(), values.size(), what));
+  for (std::size_t v = 0; v < values.size(); ++v)
+    if (!(values[v] >= 0.0F && values[v] <= most))
+      refuse(fmt::format("surface '{}', vertex {}: '{}' is {}; give a number from 0 to {}", surface.organ, v, what,
+                         values[v], most));
+}
+
+void checkClip(const ClipView& clip, std::size_t number) {
+  const auto fine = [](double size) { return size > 0.0 && size < 0.1; };
+  if (!drawable(clip.pose.position) || !drawable(clip.pose.orientation) || !fine(clip.width) || !fine(clip.legs) ||
+      !(clip.halfGap >= 0.0 && clip.halfGap < 0.1))
+    refuse(fmt::format("clip {}: pose or size is not finite or out of range", number));
+}
+
 void checkConnective(const ConnectiveView& connective) {
   const std::size_t strands = connective.strand.size();
   if (connective.condition.size() != strands || connective.alpha.size() != strands)
@@ -72,7 +90,12 @@ void checkView(const SceneView& view) {
       refuse(fmt::format("{} instrument: pose, port, radius or jaw is not finite or out of range",
                          handNames[static_cast<std::size_t>(h)]));
   }
-  for (const SurfaceView& surface : view.surface) checkSurface(surface);
+  for (const SurfaceView& surface : view.surface) {
+    checkSurface(surface);
+    checkHarm(surface, surface.charred, "charred", 1e6F);
+    checkHarm(surface, surface.face, "face", 2.0F);
+  }
+  for (std::size_t c = 0; c < view.clip.size(); ++c) checkClip(view.clip[c], c);
   for (const ConnectiveView& connective : view.connective) checkConnective(connective);
 }
 

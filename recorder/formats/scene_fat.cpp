@@ -78,6 +78,17 @@ FatAttachmentDescription readAttachment(const JsonPlace& place, const std::vecto
   return attachment;
 }
 
+/// What is to be cleared.
+void readTriangle(const JsonPlace& place, FatDescription& fat) {
+  const JsonObject object = place.object(sceneRule("fatTriangle"));
+  static const KeyRule bounds = sceneCoordinate();
+  std::size_t k = 0;
+  for (const JsonPlace& corner : object.at("corners").list(3, 3)) fat.triangle[k++] = corner.vector(bounds);
+  const Vec3 normal = (fat.triangle[1] - fat.triangle[0]).cross(fat.triangle[2] - fat.triangle[0]);
+  if (!(normal.norm() >= 1e-6)) object.at("corners").fail("its corners lie on a line, or nearly");
+  object.read("depth", fat.triangleDepth);
+}
+
 }  // namespace
 
 std::vector<FatDescription> readFat(const JsonPlace& place, const std::vector<OrganDescription>& organs,
@@ -103,6 +114,7 @@ std::vector<FatDescription> readFat(const JsonPlace& place, const std::vector<Or
       if (twice) one.fail("a second attachment to \"" + attachment.to + "\"");
       fat.attachments.push_back(attachment);
     }
+    if (object.has("triangle")) readTriangle(object.at("triangle"), fat);
     fat.surface = readFatSurface(object.at("mesh"), fetch, warnings);
     checkCells(object, fat);
     all.push_back(std::move(fat));

@@ -12,6 +12,7 @@
 #include "recorder/formats/scene_fat.h"
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_organs.h"
+#include "recorder/formats/scene_procedure.h"
 #include "recorder/formats/scene_rules.h"
 #include "recorder/formats/scene_vessels.h"
 #include "sim/math/floating_point.h"
@@ -61,6 +62,7 @@ HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& work
   object.read("largestForce", hand.largestForce);
   object.read("slipForce", hand.slipForce);
   object.read("tearForce", hand.tearForce);
+  object.read("clips", hand.clips);
   if ((hand.home.array() < workspace[0].array()).any() || (hand.home.array() > workspace[1].array()).any()) {
     object.at("home").fail("outside the workspace");
   }
@@ -112,6 +114,11 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   if (scene.organs.size() + scene.vessels.size() + scene.fat.size() > mostBodies) {
     object.fail(fmt::format("more than {} organs, vessels and fat together", mostBodies));
   }
+
+  if (object.has("procedure")) scene.procedure = readProcedure(object.at("procedure"), scene);
+  if (object.has("retraction")) scene.retraction = readRetractions(object.at("retraction"), scene.organs);
+  if (object.has("clip")) scene.clip = readClip(object.at("clip"));
+  if (object.has("cautery")) scene.cautery = readCautery(object.at("cautery"));
 
   if (object.has("solver")) {
     const JsonObject solver = object.at("solver").object(sceneRule("solver"));

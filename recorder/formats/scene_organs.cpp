@@ -37,6 +37,7 @@ OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
   organ.appearance = readName(object, "appearance");
   object.read("tetrahedra", organ.tetrahedra);
   object.read("friction", organ.friction);
+  object.read("burnThrough", organ.burnThrough);
   organ.material = readMaterial(object.at("material"));
   for (const JsonPlace& anchor : object.at("anchors").list(0, mostAnchors)) organ.anchors.push_back(readAnchor(anchor));
   organ.surface = closedSurface(readMesh(object.at("mesh"), fetch), "an organ");

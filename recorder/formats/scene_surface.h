@@ -14,7 +14,7 @@
 namespace calot::recorder {
 
 /// Organs, vessels and fat together: each is a bit of HandResult::touching.
-inline constexpr std::size_t mostBodies = 32;
+inline constexpr std::size_t mostBodies = 16;
 
 /// Gives the asset of a name, or fails at the place that names it.
 using FetchAsset = std::function<const Asset&(const std::string& name, const JsonPlace& place)>;

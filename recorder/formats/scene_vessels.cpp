@@ -109,6 +109,7 @@ std::vector<VesselDescription> readVessels(const JsonPlace& place, const std::ve
     if (!(vessel.wall < vessel.radius)) object.at("wall").fail("not thinner than the radius");
     vessel.material = readMaterial(object.at("material"));
     object.read("ultimateStrain", vessel.ultimateStrain);
+    object.read("burnThrough", vessel.burnThrough);
     object.read("friction", vessel.friction);
     vessel.start = readEnd(object.at("start"), vessel.path.front(), true, organs, vessels);
     vessel.end = readEnd(object.at("end"), vessel.path.back(), false, organs, vessels);

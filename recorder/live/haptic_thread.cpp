@@ -69,7 +69,7 @@ void HapticThread::ticks() {
     }
     if (!waitForTurn(t)) return;
     if (!source_.next(t, tick.samples)) {
-      report_.outcome = Outcome::completed;
+      report_.outcome = source_.ending();
       return;
     }
     exchange_.refresh();

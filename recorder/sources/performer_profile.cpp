@@ -21,18 +21,24 @@ std::vector<ObjectRule> makeRules() {
   return {
       {"",
        {KeyRule{"format"}, bounded("formatVersion", 1, 1), KeyRule{"name"}, KeyRule{"version"}, KeyRule{"summary"},
-        KeyRule{"motor"}, KeyRule{"perception"}, KeyRule{"decision"}}},
+        KeyRule{"motor"}, KeyRule{"perception"}, KeyRule{"decision"}, KeyRule{"operation"}}},
       {"motor",
        {bounded("strokeSpeed", 0.001, 1), bounded("contactSpeed", 0.001, 0.5), bounded("shortestStroke", 0.05, 5),
         bounded("endpointNoise", 0, 0.3), bounded("tremorAmplitude", 0, 0.002), bounded("tremorLower", 2, 20),
-        bounded("tremorUpper", 2, 20), bounded("wanderAmplitude", 0, 0.005), bounded("rollSpread", 0, 1.5)}},
+        bounded("tremorUpper", 2, 20), bounded("wanderAmplitude", 0, 0.005), bounded("rollSpread", 0, 1.5),
+        bounded("workSpeed", 0.001, 0.5), bounded("overshootShare", 0, 1), bounded("overshoot", 0, 0.5)}},
       {"perception",
        {bounded("reactionTime", 0, 3), bounded("reactionSpread", 0, 1), bounded("lateralError", 0, 0.01),
-        bounded("depthError", 0, 0.02)}},
+        bounded("depthError", 0, 0.02), bounded("finestError", 0, 0.005)}},
       {"decision",
        {bounded("touches", 1, 50), bounded("pressDepth", 0, 0.02), bounded("pressSpread", 0, 0.01),
         bounded("dwell", 0, 30), bounded("pause", 0, 30), bounded("pauseSpread", 0, 10), bounded("corrections", 0, 10),
         bounded("pullBack", 0.005, 0.1), KeyRule{"bimanual"}}},
+      {"operation",
+       {bounded("hesitationShare", 0, 1), bounded("hesitation", 0, 10), bounded("pedalLag", 0, 2),
+        bounded("keepOff", 0, 0.005), bounded("layer", 0.0001, 0.005), bounded("bareShare", 0, 1),
+        bounded("strokes", 0, 200), bounded("burnSpeed", 0.0005, 0.1), bounded("pull", 0, 0.05), bounded("slipShare", 0, 1),
+        bounded("patience", 10, 3600)}},
   };
 }
 
@@ -74,6 +80,9 @@ PerformerProfile loadPerformer(const fs::path& file) {
   motor.read("tremorUpper", profile.motor.tremorUpper);
   motor.read("wanderAmplitude", profile.motor.wanderAmplitude);
   motor.read("rollSpread", profile.motor.rollSpread);
+  motor.read("workSpeed", profile.motor.workSpeed);
+  motor.read("overshootShare", profile.motor.overshootShare);
+  motor.read("overshoot", profile.motor.overshoot);
   if (profile.motor.tremorUpper < profile.motor.tremorLower) motor.at("tremorUpper").fail("below \"tremorLower\"");
 
   const JsonObject perception = object.at("perception").object(ruleOf("perception"));
@@ -81,6 +90,7 @@ PerformerProfile loadPerformer(const fs::path& file) {
   perception.read("reactionSpread", profile.perception.reactionSpread);
   perception.read("lateralError", profile.perception.lateralError);
   perception.read("depthError", profile.perception.depthError);
+  perception.read("finestError", profile.perception.finestError);
 
   const JsonObject decision = object.at("decision").object(ruleOf("decision"));
   decision.read("touches", profile.decision.touches);
@@ -92,6 +102,19 @@ PerformerProfile loadPerformer(const fs::path& file) {
   decision.read("corrections", profile.decision.corrections);
   decision.read("pullBack", profile.decision.pullBack);
   decision.read("bimanual", profile.decision.bimanual);
+
+  const JsonObject operation = object.at("operation").object(ruleOf("operation"));
+  operation.read("hesitationShare", profile.operation.hesitationShare);
+  operation.read("hesitation", profile.operation.hesitation);
+  operation.read("pedalLag", profile.operation.pedalLag);
+  operation.read("keepOff", profile.operation.keepOff);
+  operation.read("layer", profile.operation.layer);
+  operation.read("bareShare", profile.operation.bareShare);
+  operation.read("strokes", profile.operation.strokes);
+  operation.read("burnSpeed", profile.operation.burnSpeed);
+  operation.read("pull", profile.operation.pull);
+  operation.read("slipShare", profile.operation.slipShare);
+  operation.read("patience", profile.operation.patience);
   return profile;
 }
 

@@ -27,6 +27,9 @@ struct PerformerProfile {
     double tremorUpper = 12.0;
     double wanderAmplitude = 0.0;  ///< root mean square below 1 Hz, each axis (m)
     double rollSpread = 0.0;       ///< standard deviation of the roll at a target (rad)
+    double workSpeed = 0.0;        ///< mean speed of the energised hook in tissue (m/s)
+    double overshootShare = 0.0;   ///< of strokes that go too far
+    double overshoot = 0.0;        ///< by how much, per length of the stroke
   } motor;
 
   struct Perception {
@@ -34,6 +37,7 @@ struct PerformerProfile {
     double reactionSpread = 0.0;  ///< its standard deviation (s)
     double lateralError = 0.0;    ///< standard deviation of where a target seems to be, across the view (m)
     double depthError = 0.0;      ///< the same along the view (m)
+    double finestError = 0.0;     ///< what remains on each axis however often one looks (m)
   } perception;
 
   struct Decision {
@@ -47,6 +51,21 @@ struct PerformerProfile {
     double pullBack = 0.0;          ///< towards the port between targets (m)
     bool bimanual = false;          ///< both hands at once; else in turns
   } decision;
+
+  /// In scenes in which tissue is to be cleared, divided or freed.
+  struct Operation {
+    double hesitationShare = 0.0;  ///< of decisions before which the hand rests
+    double hesitation = 0.0;       ///< for so long (s)
+    double pedalLag = 0.0;         ///< the pedal comes up so much later than the hook's stroke ends (s)
+    double keepOff = 0.0;          ///< between the hook's metal and a vessel, as meant (m)
+    double layer = 0.0;            ///< of fat taken off by one stroke (m)
+    double bareShare = 0.0;        ///< of a vessel's stations that must be bare before it counts as cleared
+    std::uint32_t strokes = 0;     ///< at most, to clear one vessel
+    double burnSpeed = 0.0;        ///< mean speed of the energised hook through connective tissue (m/s)
+    double pull = 0.0;             ///< of the specimen, by the hand that holds it (m)
+    double slipShare = 0.0;        ///< of holds that are let go by mistake
+    double patience = 0.0;         ///< after which the attempt is given up (s)
+  } operation;
 };
 
 const std::vector<ObjectRule>& performerRules();

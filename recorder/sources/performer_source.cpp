@@ -6,7 +6,6 @@
 
 #include "recorder/errors.h"
 #include "recorder/sources/pointing.h"
-#include "sim/math/elementary.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
@@ -21,7 +20,6 @@ constexpr double fadeIn = 0.5;             // unsteadiness grows from nothing: t
 constexpr double wanderLower = 0.1;        // Hz
 constexpr double wanderUpper = 0.8;
 constexpr int mostDraws = 400;
-constexpr double twoPi = 6.283185307179586;
 
 }  // namespace
 
@@ -113,27 +111,6 @@ void StrokePlan::touch(const TouchTarget& target) {
 }
 
 void StrokePlan::goHome() { strokeTo(scene_.hands[hand_].home, profile_.motor.strokeSpeed, 0.0, 0.0); }
-
-Unsteadiness::Unsteadiness(double amplitude, double lower, double upper, Random& random)
-    : amplitude_(amplitude * std::sqrt(2.0 / static_cast<double>(sines))) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < sines; ++i) {
-      omega_[axis][i] = twoPi * random.uniform(lower, upper);
-      phase_[axis][i] = twoPi * random.uniform();
-    }
-  }
-}
-
-Vec3 Unsteadiness::at(double time) const {
-  Vec3 sum = Vec3::Zero();
-  if (amplitude_ == 0.0) return sum;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double total = 0.0;
-    for (std::size_t i = 0; i < sines; ++i) total += sine(omega_[axis][i] * time + phase_[axis][i]);
-    sum[static_cast<Eigen::Index>(axis)] = amplitude_ * total;
-  }
-  return sum;
-}
 
 PerformerSource::PerformerSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed)
     : hands_(scene.hands), camera_(scene.camera) {

@@ -8,6 +8,7 @@
 #include "recorder/sources/performer_profile.h"
 #include "recorder/sources/source.h"
 #include "recorder/sources/touch_targets.h"
+#include "recorder/sources/unsteadiness.h"
 #include "sim/math/random.h"
 #include "sim/scene/description.h"
 
@@ -55,19 +56,6 @@ class StrokePlan {
   std::vector<Stroke> strokes_;
   double time_ = 0.0, jaw_ = 0.0, roll_ = 0.0;
   Vec3 tip_;
-};
-
-/// Movement about the planned tip: a sum of sines with frequencies and phases drawn once.
-class Unsteadiness {
- public:
-  /// @param amplitude root mean square of each axis (m). @param lower, upper band (Hz).
-  Unsteadiness(double amplitude, double lower, double upper, Random& random);
-  [[nodiscard]] Vec3 at(double time) const;
-
- private:
-  static constexpr std::size_t sines = 4;
-  double amplitude_;
-  std::array<std::array<double, sines>, 3> omega_{}, phase_{};
 };
 
 /// A synthetic operator, open loop: touches targets on the organs with each hand and returns home; then it ends.

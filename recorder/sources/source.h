@@ -5,6 +5,7 @@
 #include <string>
 
 #include "recorder/identity.h"
+#include "recorder/observer.h"
 #include "sim/scene/samples.h"
 
 namespace calot::recorder {
@@ -43,6 +44,13 @@ class SampleSource {
   /// A device that goes in mid-step does not stop it: next() then hands out invalid samples (the last pose held) until
   /// the step has its ticks.
   virtual SourceStatus status() { return SourceStatus::ok; }
+
+  /// Who among this source's own has to be told of every step: an operator in closed loop sees. nullptr: nobody. The
+  /// loop tells it before it asks for the next step's first tick; live, from the thread that steps.
+  [[nodiscard]] virtual Observer* watcher() { return nullptr; }
+
+  /// How the attempt ended, once next() has returned false.
+  [[nodiscard]] virtual Outcome ending() const { return Outcome::completed; }
 
   /// One line on why the status is not ok; empty when it is.
   [[nodiscard]] virtual std::string statusText() const { return {}; }

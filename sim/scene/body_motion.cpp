@@ -31,6 +31,11 @@ void Stepper::Workspace::wake(State& state) {
     state.organ[model.tissuePairs()[pair].a].quietSteps = 0;
     state.organ[model.tissuePairs()[pair].b].quietSteps = 0;
   }
+  for (std::size_t r = 0; r < model.retractions().size(); ++r) {
+    const RetractionDescription& d = model.scene().retraction[r];
+    const double time = static_cast<double>(state.clock.step) * settings.step;
+    if (time >= d.start && time < d.start + d.duration) state.organ[model.retractions()[r].organ].quietSteps = 0;
+  }
   for (std::size_t b = 0; b < body.size(); ++b) {
     moved[b] = !(model.scene().solver.sleeping && body[b]->quietSteps(state) >= quietSteps);
   }
@@ -76,6 +81,28 @@ void Stepper::Workspace::gatherTies(const State& state, std::size_t which) {
   }
 }
 
+/// An assistant's springs: their far ends go where they are told, smoothly.
+void Stepper::Workspace::gatherRetractions(const State& state, std::size_t organ) {
+  const double time = static_cast<double>(state.clock.step) * settings.step;
+  for (std::size_t r = 0; r < model.retractions().size(); ++r) {
+    const RetractionModel& retraction = model.retractions()[r];
+    const RetractionDescription& d = model.scene().retraction[r];
+    if (retraction.organ != organ || time < d.start) continue;
+    const double s = std::min((time - d.start) / d.duration, 1.0);
+    const Vec3 gone = s * s * (3.0 - 2.0 * s) * d.displacement;
+    const Vec3 speed = 6.0 * s * (1.0 - s) / d.duration * d.displacement;
+    const auto share = 1.0 / static_cast<double>(retraction.node.size());
+    for (const int node : retraction.node) {
+      SolidPlace place;
+      place.node[0] = node;
+      place.weight[0] = 1.0;
+      place.count = 1;
+      const Vec3& rest_ = model.organs()[organ].solid.rest()[static_cast<std::size_t>(node)];
+      tieLoads.push_back({place, share * d.stiffness, share * d.damping, rest_ + gone, speed});
+    }
+  }
+}
+
 /// Free motion of all bodies that are awake, under the contact forces that the last step left.
 void Stepper::Workspace::moveFreely(State& state) {
   for (std::size_t b = 0; b < body.size(); ++b) {
@@ -84,8 +111,11 @@ void Stepper::Workspace::moveFreely(State& state) {
       nodal[b].clear();
       addForces(b, carried, 1.0, nodal[b]);
       attachments.clear();
-      if (b < model.organs().size()) gatherAttachments(state, b);
       gatherTies(state, b);
+      if (b < model.organs().size()) {
+        gatherAttachments(state, b);
+        gatherRetractions(state, b);
+      }
       report = body[b]->freeMotion(state, model.scene().gravity, nodal[b], tieLoads, attachments);
       if (!report.converged) {
         result.misses |= miss::solver;

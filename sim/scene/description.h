@@ -265,6 +265,64 @@ struct CauteryDescription {
   }
 };
 
+/// A vessel that is to be clipped and cut, and how many clips should close it on each side of the cut.
+struct DivideDescription {
+  std::string vessel;
+  std::uint32_t patient = 2;   ///< clips on the side that stays
+  std::uint32_t specimen = 1;  ///< clips on the side that goes
+  bool patientAtStart = true;  ///< the vessel's start is on the side that stays
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("vessel", self.vessel);
+    visit("patient", self.patient);
+    visit("specimen", self.specimen);
+    visit("patientAtStart", self.patientAtStart);
+  }
+};
+
+/// What is to be done in a scene (docs/procedure.md). Without a specimen there is nothing.
+struct ProcedureDescription {
+  std::string specimen;                   ///< organ that is to be freed
+  std::string bed;                        ///< connective tissue that holds it
+  std::string fat;                        ///< fat that hides the vessels, or nothing
+  std::vector<DivideDescription> divide;  ///< the first ends where the bed's lower third begins
+  std::vector<std::string> spare;         ///< vessels that must be neither clipped nor opened
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("specimen", self.specimen);
+    visit("bed", self.bed);
+    visit("fat", self.fat);
+    visit("divide", self.divide);
+    visit("spare", self.spare);
+  }
+};
+
+/// An assistant's pull on an organ, by springs on its nodes inside a sphere.
+struct RetractionDescription {
+  std::string organ;
+  Vec3 centre = Vec3::Zero();        ///< of the sphere, at rest (m)
+  double radius = 0.01;              ///< m
+  Vec3 displacement = Vec3::Zero();  ///< that the springs' far ends go (m)
+  double start = 0.0;                ///< s
+  double duration = 2.0;             ///< until they are there (s)
+  double stiffness = 200.0;          ///< of all springs together (N/m)
+  double damping = 2.0;              ///< (N s/m)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("organ", self.organ);
+    visit("centre", self.centre);
+    visit("radius", self.radius);
+    visit("displacement", self.displacement);
+    visit("start", self.start);
+    visit("duration", self.duration);
+    visit("stiffness", self.stiffness);
+    visit("damping", self.damping);
+  }
+};
+
 struct SolverDescription {
   double tolerance = 1e-4;          ///< relative residual of the linear solve
   std::uint32_t iterations = 200;   ///< cap of the linear solve
@@ -298,6 +356,8 @@ struct SceneDescription {
   std::vector<ConnectiveDescription> connective;
   std::vector<VesselDescription> vessels;
   std::vector<FatDescription> fat;
+  ProcedureDescription procedure;
+  std::vector<RetractionDescription> retraction;
   std::array<HandDescription, handCount> hands;
   CameraSample camera;               ///< at the start
   double verticalFieldOfView = 1.0;  ///< rad
@@ -318,6 +378,8 @@ struct SceneDescription {
     visit("connective", self.connective);
     visit("vessels", self.vessels);
     visit("fat", self.fat);
+    visit("procedure", self.procedure);
+    visit("retraction", self.retraction);
     visit("hands", self.hands);
     visit("cameraPosition", self.camera.position);
     visit("cameraOrientation", self.camera.orientation);

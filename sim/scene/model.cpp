@@ -117,7 +117,7 @@ Model::Built Model::build(SceneDescription scene) {
   }
   built.error = model->addVessels(scene);
   if (!built.error.empty()) return built;
-  DigestNames digested{names, tissues, {}, {}};
+  DigestNames digested{names, tissues, {}, {}, false};
   for (const FatDescription& description : scene.fat) {
     built.error = model->addFat(scene, description);
     if (!built.error.empty()) return built;
@@ -125,6 +125,11 @@ Model::Built Model::build(SceneDescription scene) {
   }
   model->listStructures(scene);
   for (const VesselTree& tree : model->vesselTree_) digested.vesselTrees.push_back(tree.name);
+  built.error = model->addProcedure(scene);
+  if (!built.error.empty()) return built;
+  built.error = model->addRetractions(scene);
+  if (!built.error.empty()) return built;
+  digested.procedure = model->procedure_.present;
   model->layout_ = digestLayout(digested);
   model->scene_ = std::move(scene);
   built.model = std::move(model);

@@ -75,6 +75,31 @@ struct Tie {
   double damping = 0.0;        ///< N s/m
 };
 
+/// A scene's procedure, by numbers.
+struct ProcedureModel {
+  static constexpr std::size_t none = ~std::size_t{0};
+
+  /// A vessel to be divided.
+  struct Divide {
+    std::size_t structure = 0;
+    std::size_t coverRegion = none;  ///< FatModel's region close around it
+  };
+  bool present = false;
+  std::size_t specimen = 0;               ///< organ
+  std::size_t bed = none;                 ///< connective tissue
+  std::size_t fat = none;                 ///< body of fat
+  std::size_t clearRegion = none;         ///< FatModel's region that is to be cleared
+  std::vector<Divide> divide;             ///< as the scene lists them
+  std::vector<std::size_t> spare;         ///< structures
+  std::vector<std::uint32_t> lowerThird;  ///< strands of the bed, ascending
+};
+
+/// Nodes that an assistant pulls.
+struct RetractionModel {
+  std::size_t organ = 0;
+  std::vector<int> node;
+};
+
 /// Two organs that may touch each other, or one that may touch itself: vertices of `a` against triangles of `b`.
 struct TissuePair {
   std::size_t a = 0;
@@ -109,6 +134,9 @@ class Model {
   [[nodiscard]] const std::vector<VesselTree>& vesselTrees() const { return vesselTree_; }
   [[nodiscard]] const std::vector<StructureModel>& structures() const { return structure_; }
   [[nodiscard]] const std::vector<Tie>& ties() const { return tie_; }
+  [[nodiscard]] const ProcedureModel& procedure() const { return procedure_; }
+  /// In the scene's order.
+  [[nodiscard]] const std::vector<RetractionModel>& retractions() const { return retraction_; }
   [[nodiscard]] const std::vector<std::unique_ptr<const FatModel>>& fat() const { return fat_; }
   /// Organs, then vessel trees, then fat.
   [[nodiscard]] std::size_t bodies() const { return organs_.size() + vesselTree_.size() + fat_.size(); }
@@ -120,6 +148,8 @@ class Model {
  private:
   Model() = default;
   std::string addVessels(const SceneDescription& scene);
+  std::string addProcedure(const SceneDescription& scene);
+  std::string addRetractions(const SceneDescription& scene);
   std::string addFat(const SceneDescription& scene, const FatDescription& description);
   [[nodiscard]] std::vector<SolidPlace> placesOnOrgan(std::size_t organ, const std::vector<Vec3>& points) const;
   void listStructures(const SceneDescription& scene);
@@ -132,6 +162,8 @@ class Model {
   std::vector<std::unique_ptr<const FatModel>> fat_;
   std::vector<StructureModel> structure_;
   std::vector<Tie> tie_;
+  ProcedureModel procedure_;
+  std::vector<RetractionModel> retraction_;
   DigestLayout layout_;
 };
 

@@ -81,6 +81,19 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
                          return isOverTriangle(description.triangle, description.triangleDepth, p);
                        }});
   }
+  // What hides a vessel that is to be divided.
+  constexpr double coverDepth = 0.0015;  // m
+  for (const DivideDescription& divide : scene.procedure.divide) {
+    if (scene.procedure.fat != description.name) break;
+    for (const VesselTree& tree : vesselTree_) {
+      for (std::size_t b = 0; b < tree.vessel.size(); ++b) {
+        if (scene.vessels[tree.vessel[b]].name != divide.vessel) continue;
+        regions.push_back({divide.vessel, [beams = &tree.beams, b](const Vec3& p) {
+                             return distanceFrom(*beams, b, p) <= coverDepth;
+                           }});
+      }
+    }
+  }
   const MaterialDescription& m = description.material;
   FatSettings settings;
   settings.cell = description.cellSize;

@@ -3,65 +3,27 @@
 
 #include <utility>
 
-#include "sim/math/elementary.h"
+#include "sim/scene/scene_view_parts.h"
+#include "sim/scene/scene_viewer.h"
 #include "sim/scene/stepper.h"
-#include "sim/vessel/centre_line.h"
-#include "sim/vessel/clips.h"
-#include "sim/vessel/tube_surface.h"
 
 namespace calot {
 
-namespace {
+class SceneViewer::Fat : public FatViewer {
+ public:
+  using FatViewer::FatViewer;
+};
 
-/// Rounder and smoother than contact has it.
-constexpr TubeSurface::Settings pictureTube{16, 2};
-
-void addVessels(const Model& model, const State& state, SceneView& view) {
-  for (const StructureModel& structure : model.structures()) {
-    if (structure.kind != StructureKind::vessel) continue;
-    const VesselTree& tree = model.vesselTrees()[structure.index];
-    const BeamState& vessels = state.vessel[structure.index];
-    TubeSurface tube(tree.beams, structure.branch, pictureTube);
-    tube.update(vessels);
-    SurfaceView surface;
-    surface.organ = structure.name;
-    surface.appearance = structure.appearance;
-    tube.place(vessels, surface.position);
-    BeamState rest = restState(tree.beams);
-    rest.parting = vessels.parting;
-    rest.partedAt = vessels.partedAt;
-    tube.place(rest, surface.rest);
-    surface.triangle = tube.triangles();
-    const double through = model.scene().vessels[tree.vessel[structure.branch]].burnThrough;
-    bool anywhere = false;
-    for (std::size_t v = 0; v < tube.vertices(); ++v) {
-      const double exposure = vessels.exposure[tube.where(static_cast<int>(v)).element];
-      anywhere = anywhere || exposure > 0.0;
-      surface.charred.push_back(static_cast<float>(exposure / through));
-    }
-    if (!anywhere) surface.charred.clear();
-    view.surface.push_back(std::move(surface));
-  }
-  for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
-    const BeamModel& beams = model.vesselTrees()[t].beams;
-    const BeamState& vessels = state.vessel[t];
-    for (std::size_t c = 0; c < vessels.clips(); ++c) {
-      const BeamPlace where = placeAt(beams, vessels.clipBranch[c], vessels.clipPlace[c]);
-      const Pose frame = centreLine(beams, vessels, where, stumpAt(vessels, where));
-      ClipView clip;
-      const double half = 0.5 * vessels.clipRoll[c];
-      clip.pose = {frame.position, frame.orientation * Quat(cosine(half), 0.0, 0.0, sine(half))};
-      clip.width = vessels.clipWidth[c];
-      clip.legs = model.scene().clip.legs;
-      clip.halfGap = pinchedSection(beams.branches()[where.branch].section, vessels.clipClosure[c]).thin;
-      view.clip.push_back(clip);
-    }
-  }
+SceneViewer::SceneViewer(const Model& model) : model_(model) {
+  for (const auto& fat : model.fat()) fat_.push_back(std::make_unique<Fat>(*fat));
 }
 
-}  // namespace
+SceneViewer::~SceneViewer() = default;
 
-SceneView viewOf(const Model& model, const State& state) {
+SceneView viewOf(const Model& model, const State& state) { return SceneViewer(model).view(state); }
+
+SceneView SceneViewer::view(const State& state) {
+  const Model& model = model_;
   SceneView view;
   view.step = state.clock.step;
   view.time = static_cast<double>(state.clock.step) * model.stepSeconds();
@@ -81,6 +43,14 @@ SceneView viewOf(const Model& model, const State& state) {
     view.surface.push_back(std::move(surface));
   }
   addVessels(model, state, view);
+  for (const StructureModel& structure : model.structures()) {
+    if (structure.kind != StructureKind::fat) continue;
+    SurfaceView surface;
+    surface.organ = structure.name;
+    surface.appearance = structure.appearance;
+    fat_[structure.index]->fill(state.fat[structure.index], surface);
+    view.surface.push_back(std::move(surface));
+  }
   for (std::size_t c = 0; c < model.connective().size(); ++c) {
     const ConnectiveModel& tie = model.connective()[c];
     const ConnectiveState& tissue = state.connective[c];

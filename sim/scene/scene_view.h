@@ -20,6 +20,8 @@ struct SurfaceView {
   std::vector<Vec3> rest;        ///< the same vertices at rest, for textures that stick to the tissue
   std::vector<Index3> triangle;  ///< outward (counter-clockwise from outside)
   std::vector<float> charred;    ///< per vertex: 0 not at all, 1 as it counts as charred, more beyond; empty: nowhere
+  /// Per vertex: 0 on the skin; on the face where a vessel is parted 1 at its rim to 2 in its middle. Empty: no face.
+  std::vector<float> face;
 };
 
 /// Connective tissue between two organs, in W: strands, and sheets between neighbouring strands.
@@ -33,7 +35,8 @@ struct ConnectiveView {
 
 /// A clip on a vessel.
 struct ClipView {
-  Pose pose;             ///< of its middle in W: z along the vessel, x in the direction in which it flattens it
+  Pose pose;             ///< of its middle in W: z along the vessel, x in the direction in which it flattens it, y
+                         ///< from its crotch to the tips of its legs
   double width = 0.0;    ///< along the vessel (m)
   double legs = 0.0;     ///< their length, along y (m)
   double halfGap = 0.0;  ///< half of what it leaves to the vessel, along x (m)

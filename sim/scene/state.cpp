@@ -126,6 +126,12 @@ State initialState(const Model& model, std::uint64_t seed) {
     state.vessel.push_back(restState(tree.beams));
     if (!scene.gravity.isZero(0.0)) state.vessel.back().quietSteps = 0;
   }
+  if (model.procedure().present) {
+    const ProcedureModel& procedure = model.procedure();
+    state.procedure.emplace_back().phase = procedure.fat != ProcedureModel::none ? Phase::identification
+                                           : !procedure.divide.empty()           ? Phase::clipping
+                                                                                 : Phase::dissection;
+  }
   for (const std::unique_ptr<const FatModel>& fat : model.fat()) {
     state.fat.push_back(restState(*fat));
     if (!scene.gravity.isZero(0.0)) state.fat.back().solid.quietSteps = 0;
@@ -145,12 +151,14 @@ DigestLayout digestLayout(const DigestNames& names) {
   add("charred.", names.organs);
   add("fat.", names.fat);
   add("carved.", names.fat);
+  if (names.procedure) layout.components.emplace_back("procedure");
   State state;
   state.organ.resize(names.organs.size());
   state.connective.resize(names.connective.size());
   state.vessel.resize(names.vesselTrees.size());
   state.charred.resize(names.organs.size());
   state.fat.resize(names.fat.size());
+  state.procedure.resize(names.procedure ? 1 : 0);
   std::uint32_t component = 0;
   State::components(state, [&](const auto& part) {
     NameVisitor visitor{layout, component++};
@@ -198,6 +206,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
   read.vessel.resize(model.vesselTrees().size());
   read.charred.resize(model.organs().size());
   read.fat.resize(model.fat().size());
+  read.procedure.resize(model.procedure().present ? 1 : 0);
   ByteReader reader(bytes);
   State::components(read, [&](auto& part) { reader.read(part); });
   if (!reader.complete()) return false;
@@ -206,6 +215,9 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
   if (!finite.finite) return false;
   for (std::size_t t = 0; t < read.vessel.size(); ++t) {
     if (!fits(model.vesselTrees()[t].beams, read.vessel[t])) return false;
+  }
+  for (const ProcedureState& p : read.procedure) {
+    if (p.phase > Phase::done || p.triangleCleared > 2 || p.lowerThirdFreed > 2 || p.twoStructures > 2) return false;
   }
   for (std::size_t f = 0; f < read.fat.size(); ++f) {
     if (!fits(*model.fat()[f], read.fat[f])) return false;

@@ -139,6 +139,26 @@ struct CharState {
   }
 };
 
+/// How far the procedure is.
+struct ProcedureState {
+  Phase phase = Phase::none;
+  bool frozen = false;  ///< the first clip is set: the critical view of safety is what it was then
+  std::uint8_t triangleCleared = 0, lowerThirdFreed = 0, twoStructures = 0;
+  std::uint32_t errors = 0;
+  std::uint32_t criticalErrors = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("phase", self.phase);
+    visit("frozen", self.frozen);
+    visit("triangleCleared", self.triangleCleared);
+    visit("lowerThirdFreed", self.lowerThirdFreed);
+    visit("twoStructures", self.twoStructures);
+    visit("errors", self.errors);
+    visit("criticalErrors", self.criticalErrors);
+  }
+};
+
 struct State {
   /// Components that are written in every step stand before the organs.
   static constexpr std::size_t organsFrom = 5;
@@ -152,6 +172,7 @@ struct State {
   std::vector<BeamState> vessel;   ///< per tree
   std::vector<CharState> charred;  ///< per organ
   std::vector<FatState> fat;
+  std::vector<ProcedureState> procedure;  ///< one, or none
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
   template <class Self, class Visit>
@@ -166,6 +187,7 @@ struct State {
     for (auto& c : self.charred) visit(c);
     for (auto& f : self.fat) visit(f.solid);
     for (auto& f : self.fat) visit(f.carved);
+    for (auto& p : self.procedure) visit(p);
   }
 };
 
@@ -175,6 +197,7 @@ State initialState(const Model& model, std::uint64_t seed);
 /// What a Model's components are named after.
 struct DigestNames {
   std::vector<std::string> organs, connective, vesselTrees, fat;
+  bool procedure = false;
 };
 /// Names of components and fields of a model's State.
 DigestLayout digestLayout(const DigestNames& names);

@@ -39,9 +39,12 @@ enum class EventKind : std::uint16_t {
   cutThroughClip = 28,  ///< beside vesselCut: within the width of a clip; value: as there
   vesselBurned = 29,    ///< cautery parted a vessel; subject: structure; value: as vesselCut
   organPerforated =
-      30,  ///< cautery or a tear opened an organ; subject: structure; value: cautery at the spot (s), 0: torn
-  fatCameLoose = 32,  ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
-  smoke = 31,         ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
+      30,            ///< cautery or a tear opened an organ; subject: structure; value: cautery at the spot (s), 0: torn
+  tooFewClips = 33,  ///< beside vesselCut: a side has fewer clips than it should; subject: structure; value: missing
+  criticalError = 34,  ///< a vessel to be spared was clipped or opened; subject: structure; value: kind of that event
+  phaseBegin = 35,     ///< subject: the Phase that begins; value: the one before
+  fatCameLoose = 32,   ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
+  smoke = 31,          ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
   clockStretched =
       16,  ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
 };

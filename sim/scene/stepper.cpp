@@ -188,6 +188,10 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
       skinOf.push_back(std::make_unique<FatSkin>(*fatMotion[structure.index]));
     }
   }
+  if (model.procedure().present && model.procedure().fat != ProcedureModel::none) {
+    const FatBody& fat = fatMotion[model.procedure().fat]->fat();  // uncarved yet
+    for (std::size_t r = 0; r < fat.model().regions(); ++r) wholeRegion.push_back(fat.volume().inRegion(r));
+  }
   tiesOf.resize(body.size());
   for (std::size_t t = 0; t < model.ties().size(); ++t) {
     for (const std::size_t side : {0, 1}) tiesOf[model.ties()[t].body[side]].emplace_back(t, side);
@@ -272,6 +276,7 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.finishFat(state);
   w.finishHolds(state);
   w.finishHands(state);
+  w.finishProcedure(state);
   ++state.clock.step;
   return w.result;
 }
@@ -288,6 +293,7 @@ const StateDigest& Stepper::digest(const State& state) {
   written.insert(written.end(), w_->charred.begin(), w_->charred.end());
   written.insert(written.end(), fat, w_->written.end());
   written.insert(written.end(), w_->carved.begin(), w_->carved.end());
+  written.resize(written.size() + state.procedure.size(), true);
   const StateDigest& digest = w_->digest.update(state, written);
   assert(digest == digestOf(state));
   return digest;

@@ -117,6 +117,7 @@ struct Stepper::Workspace {
   void finishOrgans(State& state);
   void finishVessels(State& state);
   void finishFat(State& state);
+  void gatherRetractions(const State& state, std::size_t organ);
   [[nodiscard]] double shareLeft(const Tie& tie) const;
   [[nodiscard]] Vec3 endOf(const State& state, const Tie& tie, std::size_t side) const;
 
@@ -150,6 +151,13 @@ struct Stepper::Workspace {
   void burnSkin(State& state, std::size_t hand, std::size_t structure, const SurfaceContact& contact, double share);
   void perforate(State& state, std::size_t organ, const Vec3& where, double exposure);
   void tellSmoke(State& state, std::size_t hand, std::uint32_t source, double energy);
+
+  // procedure_step.cpp
+  [[nodiscard]] double leftIn(std::size_t region) const;
+  [[nodiscard]] double lowerThirdAttached(const State& state) const;
+  [[nodiscard]] bool isParted(const State& state, std::size_t structure) const;
+  void judgeView(const State& state, ProcedureState& out) const;
+  void finishProcedure(State& state);
 
   // contact_problem.cpp
   void recallForces(const State& state);
@@ -193,6 +201,7 @@ struct Stepper::Workspace {
   std::vector<TieLoad> tieLoads;           // of the body at hand
   std::vector<bool> frayed;                // per connective tissue: changed in this step
   std::vector<bool> charred;               // per organ: charred in this step
+  std::vector<double> wholeRegion;         // of the procedure's fat: volumes of its regions before anything is carved
   std::vector<bool> carved;                // per body of fat: carved in this step
   std::vector<SweptCapsule> blades;        // of the hook, as fat feels them
   std::array<Pose, handCount> poseBefore;  // of the simulated instruments, at the step's beginning

@@ -165,6 +165,15 @@ void Stepper::Workspace::partVessel(State& state, std::size_t structure, const B
   if (judged.opensBefore || judged.opensAfter) {
     emit(EventKind::cutOpen, hand, subject, place, (judged.opensBefore ? 1.0 : 0.0) + (judged.opensAfter ? 2.0 : 0.0));
   }
+  for (std::size_t d = 0; d < model.procedure().divide.size(); ++d) {
+    if (kind != EventKind::vesselCut || model.procedure().divide[d].structure != structure) continue;
+    const DivideDescription& wanted = model.scene().procedure.divide[d];
+    const std::size_t patient = wanted.patientAtStart ? judged.before : judged.after;
+    const std::size_t specimen = wanted.patientAtStart ? judged.after : judged.before;
+    const std::size_t missing = wanted.patient - std::min<std::size_t>(patient, wanted.patient) + wanted.specimen -
+                                std::min<std::size_t>(specimen, wanted.specimen);
+    if (missing > 0) emit(EventKind::tooFewClips, hand, subject, place, static_cast<double>(missing));
+  }
   if (judged.throughClip) emit(EventKind::cutThroughClip, hand, subject, place, where.place);
 }
 

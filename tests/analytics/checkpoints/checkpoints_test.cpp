@@ -21,16 +21,10 @@ using recorder::Outcome;
 using recorder::TickOutcome;
 using support::feed;
 using support::header;
+using support::scene;
+using support::valueOf;
 
 const double pi = std::acos(-1.0);
-
-CheckpointValue valueOf(const CheckpointCollector& collector, const std::string& name, const std::string& subject) {
-  for (CheckpointValue& v : collector.values()) {
-    if (v.name == name && v.subject == subject) return v;
-  }
-  ADD_FAILURE() << "no value " << name << " " << subject;
-  return {};
-}
 
 const auto still = [](std::uint64_t, TickSamples&, TickOutcome&) {};
 
@@ -53,7 +47,7 @@ TEST(Registry, definitionsAreCompleteAndNamesUnique) {
 
 TEST(Registry, everyValueHasItsDefinitionsTermsAndAnAllowedOrigin) {
   for (const Origin origin : {Origin::resimulated, Origin::observables}) {
-    CheckpointCollector collector(header(), origin);
+    CheckpointCollector collector(header(), scene(), origin);
     feed(collector, 50, still);
     collector.onEnd(Outcome::completed);
     for (const CheckpointValue& v : collector.values()) {
@@ -113,7 +107,7 @@ TEST(Registry, docsAgree) {
 
 TEST(ElapsedTime, onlyOfCompletedAttempts) {
   const auto run = [](Outcome outcome) {
-    CheckpointCollector collector(header());
+    CheckpointCollector collector(header(), scene());
     feed(collector, 3886, still);
     collector.onEnd(outcome);
     return valueOf(collector, "elapsed-time", "");
@@ -125,7 +119,7 @@ TEST(ElapsedTime, onlyOfCompletedAttempts) {
   EXPECT_FALSE(run(Outcome::stopped).value);
   EXPECT_FALSE(run(Outcome::technicalFailure).value);
   EXPECT_FALSE(run(Outcome::running).value);
-  CheckpointCollector collector(header());
+  CheckpointCollector collector(header(), scene());
   feed(collector, 3886, still);
   collector.onEnd(Outcome::abandoned);
   EXPECT_DOUBLE_EQ(*valueOf(collector, "attempt-duration", "").value, 38.86);
@@ -134,7 +128,7 @@ TEST(ElapsedTime, onlyOfCompletedAttempts) {
 TEST(PathLength, ofASlowCircleIsItsCircumference) {
   // Radius 20 mm, one turn in 10 s: far below the cut-off, so the filter leaves it alone; the polygon through 100
   // points a second is shorter than the circle by (pi f / rate)^2 / 6.
-  CheckpointCollector collector(header());
+  CheckpointCollector collector(header(), scene());
   feed(collector, 1000, [](std::uint64_t tick, TickSamples& s, TickOutcome&) {
     const double angle = 2.0 * pi * static_cast<double>(tick) / 10000.0;
     s.hand[0].position = Vec3(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.1);
@@ -174,7 +168,7 @@ TEST(PathLength, withstandsTheTrackersNoise) {
 }
 
 TEST(PathLength, isNotApplicableWithoutAnInstrument) {
-  CheckpointCollector collector(header());
+  CheckpointCollector collector(header(), scene());
   feed(collector, 100,
        [](std::uint64_t, TickSamples& s, TickOutcome&) { s.hand[1].instrument = InstrumentKind::none; });
   collector.onEnd(Outcome::completed);
@@ -184,11 +178,11 @@ TEST(PathLength, isNotApplicableWithoutAnInstrument) {
 }
 
 TEST(PathLength, isNotAvailableForAnAttemptTooShort) {
-  CheckpointCollector collector(header());
+  CheckpointCollector collector(header(), scene());
   feed(collector, 9, still);
   collector.onEnd(Outcome::completed);
   EXPECT_EQ(valueOf(collector, "path-length", "left").availability, Availability::notAvailable);
-  CheckpointCollector empty(header());
+  CheckpointCollector empty(header(), scene());
   empty.onEnd(Outcome::running);
   for (const CheckpointValue& v : empty.values()) {
     if (v.value) {
@@ -241,7 +235,7 @@ TEST(Motion, anExchangeOfInstrumentsAddsNoPath) {
 }
 
 TEST(ContactTime, unionAndSumDifferWhereBothInstrumentsTouch) {
-  CheckpointCollector collector(header());
+  CheckpointCollector collector(header(), scene());
   // Left touches the liver in steps 10 to 29, right in 20 to 49; right touches the gallbladder in step 5 alone.
   feed(collector, 100, still, [](std::uint64_t step, StepResult& r) {
     if (step >= 10 && step < 30) r.hand[0].touching |= 1U;
@@ -256,7 +250,7 @@ TEST(ContactTime, unionAndSumDifferWhereBothInstrumentsTouch) {
 }
 
 TEST(Force, maximumPercentileAndMeanPerHand) {
-  CheckpointCollector collector(header());
+  CheckpointCollector collector(header(), scene());
   // Left: 1000 ticks, of which 101 push with k N, k = 1 to 101; right: nothing.
   feed(collector, 100, [](std::uint64_t tick, TickSamples&, TickOutcome& o) {
     if (tick < 101) o.hand[0].force = Vec3(0.6, 0.8, 0.0) * static_cast<double>(tick + 1);
@@ -296,7 +290,7 @@ void lively(CheckpointCollector& collector, unsigned seed, bool askOnTheWay) {
 TEST(Collector, replayGivesTheBitsOfTheLiveRun) {
   // Live, values are asked for on the way (a score on the screen); in replay only at the end.
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    CheckpointCollector live(header()), replay(header());
+    CheckpointCollector live(header(), scene()), replay(header(), scene());
     lively(live, seed, true);
     lively(replay, seed, false);
     const auto a = live.values(), b = replay.values();
@@ -313,7 +307,7 @@ TEST(Collector, replayGivesTheBitsOfTheLiveRun) {
 
 TEST(Collector, bitsAreThoseOfEveryCompilerAndMachine) {
   // Inputs from integers alone, so that no library's rounding enters.
-  CheckpointCollector collector(header());
+  CheckpointCollector collector(header(), scene());
   std::uint64_t state = 88172645463325252ULL;
   const auto next = [&] {
     state ^= state << 13U;
@@ -334,10 +328,13 @@ TEST(Collector, bitsAreThoseOfEveryCompilerAndMachine) {
       [&](std::uint64_t, StepResult& r) { r.hand[1].touching = static_cast<std::uint32_t>(state >> 60U) & 3U; });
   collector.onEnd(Outcome::completed);
   std::uint64_t mixed = 1469598103934665603ULL;
-  for (const CheckpointValue& v : collector.values()) {
-    if (!v.value) continue;
-    mixed ^= std::bit_cast<std::uint64_t>(*v.value);
-    mixed *= 1099511628211ULL;
+  for (const char* name : {"elapsed-time", "attempt-duration", "path-length", "contact-time-union", "contact-time-sum",
+                           "force-maximum", "force-p99", "force-mean"}) {
+    for (const CheckpointValue& v : collector.values()) {
+      if (v.name != name || !v.value) continue;
+      mixed ^= std::bit_cast<std::uint64_t>(*v.value);
+      mixed *= 1099511628211ULL;
+    }
   }
   EXPECT_EQ(mixed, 0xecda41fecbd10516ULL) << std::hex << "0x" << mixed;
 }

@@ -29,7 +29,7 @@ class Liar final : public Observer {
 
   /// Index of a field among the digests, liver being the first organ.
   static std::size_t placeOf(const std::string& name) {
-    const DigestLayout layout = digestLayout({{"liver"}, {}, {}, {}});
+    const DigestLayout layout = digestLayout({{"liver"}, {}, {}, {}, false});
     std::size_t place = 0;
     while (layout.fields[place].name != name) ++place;
     return place;

@@ -2,9 +2,13 @@
 // Feeds an observer with steps made by hand.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <functional>
+#include <string>
 #include <vector>
 
+#include "analytics/checkpoints/collector.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
 
@@ -19,8 +23,31 @@ struct StepContent {
 
 inline recorder::AttemptHeader header() {
   recorder::AttemptHeader h;
+  h.stepResultVersion = 3;
   h.organs = {"liver", "gallbladder"};
   return h;
+}
+
+/// The scene of that header: organs with a skin of 50 cm^2 each, nothing between or beside them.
+inline SceneDescription scene() {
+  SceneDescription s;
+  for (const char* name : {"liver", "gallbladder"}) {
+    OrganDescription& organ = s.organs.emplace_back();
+    organ.name = organ.appearance = name;
+    organ.surface.vertex = {Vec3(0.0, 0.0, 0.0), Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.1, 0.0)};
+    organ.surface.triangle = {Index3(0, 1, 2)};
+  }
+  return s;
+}
+
+/// The value of a name and subject; a failure where there is none.
+inline CheckpointValue valueOf(const CheckpointCollector& collector, const std::string& name,
+                               const std::string& subject = "") {
+  for (CheckpointValue& v : collector.values()) {
+    if (v.name == name && v.subject == subject) return v;
+  }
+  ADD_FAILURE() << "no value " << name << " " << subject;
+  return {};
 }
 
 /// Runs `steps` steps through the observer; `fill(step, tick, sample, outcome)` sets each tick, `finish(step, result)`

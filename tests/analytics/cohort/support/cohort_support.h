@@ -39,18 +39,19 @@ inline std::string uuidOf(unsigned n) { return fmt::format("00000000-0000-4000-8
 inline AttemptRecord attemptOf(unsigned n, const std::string& profile) {
   AttemptRecord a;
   a.uuid = uuidOf(n);
-  a.scene = "touch-liver";
+  a.scene = std::string("touch-liver");
   a.sceneMajor = 1;
   a.operatorKind = recorder::OperatorKind::performer;
   a.profile = profile;
-  a.profileVersion = "1";
+  a.profileVersion = std::string("1");
   a.mode = recorder::Mode::assessment;
-  a.purpose = "study";
+  a.purpose = std::string("study");
   a.outcome = recorder::Outcome::completed;
   a.startUtc = fmt::format("2026-01-01T00:{:02}:{:02}Z", n / 60 % 60, n % 60);
   a.seed = 18446744073709551615ULL - n;
   a.simulationVersion = 1;
-  a.comparabilityKey = "touch-liver/1 device=performer calibration=- simulation=1 results=1 mode=assessment";
+  a.comparabilityKey =
+      std::string("touch-liver/1 device=performer calibration=- simulation=1 results=1 mode=assessment");
   a.synthetic = true;
   a.fileName = fmt::format("{}.h5", n);
   a.complete = true;
@@ -67,8 +68,8 @@ inline AttemptRecord humanAttempt(unsigned n, const std::string& participant) {
   a.operatorKind = recorder::OperatorKind::human;
   a.profileVersion.clear();
   a.participant = participant;
-  a.device = "falcon";
-  a.comparabilityKey = "touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment";
+  a.device = std::string("falcon");
+  a.comparabilityKey = std::string("touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment");
   a.synthetic = false;
   return a;
 }

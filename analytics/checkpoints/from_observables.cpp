@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/checkpoints/from_observables.h"
+
+#include <fmt/format.h>
+
+#include "analytics/checkpoints/collector.h"
+#include "recorder/errors.h"
+#include "recorder/formats/scene_file.h"
+
+namespace calot::analytics {
+
+std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording) {
+  const recorder::AttemptHeader& header = recording.header();
+  const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
+  CheckpointCollector collector(header, scene, Origin::observables);
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    const recorder::RecordedStep& step = recording.step(n);
+    // Columns are counted by the header, structures by the scene: a checkpoint goes by the scene's.
+    if (step.result.organ.size() != scene.organs.size() ||
+        (header.stepResultVersion >= 2 && step.result.connective.size() != scene.connective.size())) {
+      throw Error(ExitCode::damaged,
+                  fmt::format("{}: /observables: has other organs or connective tissues than the scene in /scene",
+                              recording.path().string()));
+    }
+    collector.onStep({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}});
+  }
+  collector.onEnd(recording.outcome());
+  return collector.values();
+}
+
+}  // namespace calot::analytics

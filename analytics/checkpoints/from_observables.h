@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+#include "recorder/recording/reader.h"
+
+namespace calot::analytics {
+
+/// Every figure of a recording from what its steps recorded of themselves, without simulating: for recordings of other
+/// simulation versions, whose results any later software can read. Origins are `observables` and `samples`.
+/// @pre the recording's content chain was found intact.
+/// @throws Error (damaged) where the file cannot be read, or its results do not fit its scene.
+std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording);
+
+}  // namespace calot::analytics

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/checkpoints/scene_facts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calot::analytics {
+namespace {
+
+double areaOf(const SurfaceDescription& surface) {
+  double area = 0.0;
+  for (const Index3& t : surface.triangle) {
+    const Vec3& origin = surface.vertex[static_cast<std::size_t>(t[0])];
+    const Vec3 a = surface.vertex[static_cast<std::size_t>(t[1])] - origin;
+    const Vec3 b = surface.vertex[static_cast<std::size_t>(t[2])] - origin;
+    const double x = a.y() * b.z() - a.z() * b.y();
+    const double y = a.z() * b.x() - a.x() * b.z();
+    const double z = a.x() * b.y() - a.y() * b.x();
+    area += 0.5 * std::sqrt(x * x + y * y + z * z);
+  }
+  return area;
+}
+
+}  // namespace
+
+bool SceneFacts::hasCystic() const {
+  return std::any_of(vessel.begin(), vessel.end(), [](const Vessel& v) { return v.cystic; });
+}
+
+SceneFacts sceneFacts(const SceneDescription& scene) {
+  const auto isGallbladder = [&](const std::string& name) {
+    return std::any_of(scene.organs.begin(), scene.organs.end(), [&](const OrganDescription& organ) {
+      return organ.name == name && organ.appearance == "gallbladder";
+    });
+  };
+  const auto entersGallbladder = [&](const VesselEndDescription& end) {
+    return end.kind == VesselEndDescription::Kind::organ && isGallbladder(end.to);
+  };
+  SceneFacts facts;
+  for (const OrganDescription& organ : scene.organs) {
+    facts.organ.push_back({organ.name, areaOf(organ.surface), organ.burnThrough > 0.0});
+  }
+  for (const VesselDescription& vessel : scene.vessels) {
+    facts.vessel.push_back({vessel.name, entersGallbladder(vessel.start) || entersGallbladder(vessel.end)});
+  }
+  for (const ConnectiveDescription& tissue : scene.connective) {
+    facts.connective.push_back({tissue.name, isGallbladder(tissue.first) || isGallbladder(tissue.second)});
+  }
+  facts.fat = scene.fat.size();
+  facts.triangle = std::any_of(scene.fat.begin(), scene.fat.end(),
+                               [](const FatDescription& fat) { return fat.triangleDepth > 0.0; });
+  return facts;
+}
+
+}  // namespace calot::analytics

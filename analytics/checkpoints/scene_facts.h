@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What checkpoints must know of a scene: sizes at rest, and which structure plays which part in the operation.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/scene/description.h"
+
+namespace calot::analytics {
+
+/// Taken from the scene's own data, never from names or numbers of structures: so any scene answers.
+///
+/// An organ is a gallbladder by its appearance ("gallbladder"). A vessel is *cystic* when one of its ends is grown to
+/// a gallbladder: by its appearance it is then the cystic duct ("duct") or the cystic artery ("artery"). All other
+/// vessels are to be spared.
+struct SceneFacts {
+  struct Organ {
+    std::string name;
+    double skinArea = 0.0;  ///< of its surface at rest (m^2)
+    bool hasWall = false;   ///< it can be perforated
+  };
+  struct Vessel {
+    std::string name;
+    bool cystic = false;
+  };
+  struct Connective {
+    std::string name;
+    bool holdsGallbladder = false;  ///< one of the two organs that it joins is a gallbladder
+  };
+  /// In the scene's order: the columns of StepResult.
+  std::vector<Organ> organ;
+  std::vector<Vessel> vessel;
+  std::vector<Connective> connective;
+  std::size_t fat = 0;    ///< bodies
+  bool triangle = false;  ///< a region of fat that is to be cleared is marked
+
+  [[nodiscard]] bool hasCystic() const;  ///< there is a cystic vessel
+};
+
+SceneFacts sceneFacts(const SceneDescription& scene);
+
+}  // namespace calot::analytics

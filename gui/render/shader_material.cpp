@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wet tissue and brushed metal. The looks are functions of the rest position, so that they stick to the tissue however
+// it deforms.
+#include "gui/render/shader_sources.h"
+
+namespace calot::gui::glsl {
+
+const char* const surfaceMaterial = R"(
+struct Material {
+  vec3 albedo;     // linear
+  vec3 scatter;    // how far light wraps around an edge, per channel
+  vec3 slope;      // gradient of the height in rest coordinates (dimensionless)
+  vec3 mirror;     // reflectance at normal incidence
+  float roughness;
+  float film;      // share of a thin wet film's sharp gloss
+};
+
+// A net of vessels: the zero lines of a bent, stretched noise. Dividing by the slope gives every line the same width (in
+// cells); fading by a slower noise opens the loops into branches that thin out.
+float vessels(vec3 p, float width) {
+  vec4 bend = noise(p * 1.3 + 3.1);
+  vec4 n = noise(p + 0.11 * bend.xyz);
+  float away = abs(n.w) / max(length(n.xyz), 0.6);
+  float strength = smoothstep(-0.15, 0.40, noise(p * 0.55 + 7.7).w);
+  float w = width * (0.25 + 0.75 * strength);
+  return strength * (1.0 - smoothstep(0.35 * w, w, away));
+}
+
+Material liver(vec3 mm) {
+  vec4 wide = noise(mm / 43.0);
+  vec4 middle = noise(mm / 13.0 + 0.4 * wide.xyz);
+  vec4 lobules = noise(mm / 1.9);
+  vec4 grain = noise(mm / 0.83 + 5.0);
+  Material m;
+  float tone = 0.5 + 0.55 * wide.w + 0.35 * middle.w;
+  m.albedo = mix(vec3(0.082, 0.023, 0.017), vec3(0.165, 0.056, 0.038), clamp(tone, 0.0, 1.0));
+  m.albedo *= 1.0 + 0.20 * lobules.w + 0.10 * grain.w;
+  m.albedo = mix(m.albedo, vec3(0.245, 0.100, 0.066), 0.30 * smoothstep(0.20, 0.6, middle.w + 0.2 * lobules.w));
+  m.scatter = vec3(0.26, 0.08, 0.06);
+  m.slope = 1.10 / 13.0 * middle.xyz + 0.060 / 1.9 * lobules.xyz + 0.014 / 0.83 * grain.xyz;
+  m.mirror = vec3(0.028);
+  m.roughness = 0.40;
+  m.film = 0.95;
+  return m;
+}
+
+Material gallbladder(vec3 mm) {
+  vec4 wide = noise(mm / 24.0 + 2.0);
+  vec4 middle = noise(mm / 7.0);
+  vec4 fine = noise(mm / 1.3);
+  Material m;
+  float tone = clamp(0.5 + 0.7 * wide.w + 0.35 * middle.w, 0.0, 1.0);
+  m.albedo = mix(vec3(0.026, 0.055, 0.047), vec3(0.086, 0.108, 0.066), tone);
+  // Serosa: pale where the wall is thicker, with a little fat under it.
+  float pale = smoothstep(0.10, 0.60, noise(mm / 17.0 + 9.0).w + 0.25 * middle.w);
+  m.albedo = mix(m.albedo, vec3(0.200, 0.160, 0.080), 0.45 * pale);
+  float large = vessels(mm * vec3(1.0, 0.4, 0.7) / 10.0, 0.026);
+  float small = vessels(mm * vec3(1.0, 0.55, 0.8) / 5.0 + 4.0, 0.034);
+  m.albedo = mix(m.albedo, vec3(0.075, 0.012, 0.016), 0.50 * large);
+  m.albedo = mix(m.albedo, vec3(0.110, 0.024, 0.022), 0.38 * small);
+  m.albedo *= 1.0 + 0.10 * fine.w;
+  m.scatter = vec3(0.26, 0.24, 0.18);
+  m.slope = 0.55 / 7.0 * middle.xyz + 0.030 / 1.3 * fine.xyz;
+  m.mirror = vec3(0.030);
+  m.roughness = 0.36;
+  m.film = 1.0;
+  return m;
+}
+
+// Wall of a bile duct: pale, yellow-green, bile shining through, a net of fine vessels on it.
+Material duct(vec3 mm) {
+  vec4 wide = noise(mm / 11.0 + 6.0);
+  vec4 middle = noise(mm / 3.4);
+  vec4 fine = noise(mm / 0.7);
+  Material m;
+  m.albedo = mix(vec3(0.255, 0.235, 0.095), vec3(0.420, 0.370, 0.185), clamp(0.5 + 0.5 * wide.w + 0.5 * middle.w, 0.0, 1.0));
+  float net = vessels(mm / 3.0 + 2.0, 0.040);
+  m.albedo = mix(m.albedo, vec3(0.300, 0.060, 0.045), 0.45 * net);
+  m.albedo *= 1.0 + 0.08 * fine.w;
+  m.scatter = vec3(0.30, 0.28, 0.18);
+  m.slope = 0.20 / 3.4 * middle.xyz + 0.020 / 0.7 * fine.xyz;
+  m.mirror = vec3(0.032);
+  m.roughness = 0.34;
+  m.film = 1.0;
+  return m;
+}
+
+// Wall of an artery: red, with a paler sheath in streaks, smooth and wet.
+Material artery(vec3 mm) {
+  vec4 wide = noise(mm / 6.0 + 4.0);
+  vec4 fine = noise(mm / 1.1);
+  Material m;
+  m.albedo = mix(vec3(0.300, 0.030, 0.026), vec3(0.420, 0.075, 0.058), clamp(0.5 + 0.7 * wide.w, 0.0, 1.0));
+  m.albedo = mix(m.albedo, vec3(0.520, 0.240, 0.180), 0.35 * smoothstep(0.25, 0.65, fine.w));
+  m.scatter = vec3(0.30, 0.08, 0.06);
+  m.slope = 0.08 / 1.1 * fine.xyz;
+  m.mirror = vec3(0.034);
+  m.roughness = 0.30;
+  m.film = 1.0;
+  return m;
+}
+
+// Lobules: a noise folded at its zero lines, bulging between furrows, in two sizes.
+Material fat(vec3 mm) {
+  vec4 wide = noise(mm / 15.0 + 8.0);
+  vec4 bend = noise(mm / 6.5 + 3.0);
+  vec4 large = noise(mm / 4.4 + 0.25 * bend.xyz);
+  vec4 small = noise(mm / 1.7 + 0.20 * bend.zxy);
+  vec4 fine = noise(mm / 0.6);
+  float largeUp = min(abs(large.w) * 1.6, 1.0), smallUp = min(abs(small.w) * 1.6, 1.0);
+  float up = clamp(0.62 * sqrt(largeUp) + 0.38 * sqrt(smallUp), 0.0, 1.0);
+  Material m;
+  m.albedo = mix(vec3(0.400, 0.170, 0.040), vec3(0.640, 0.395, 0.105), smoothstep(0.12, 0.62, up));
+  m.albedo = mix(m.albedo, vec3(0.700, 0.490, 0.200), 0.45 * smoothstep(0.0, 0.6, wide.w));
+  float net = vessels(mm / 7.0 + 5.0, 0.026);
+  m.albedo = mix(m.albedo, vec3(0.330, 0.045, 0.030), 0.50 * net);
+  m.albedo *= 1.0 + 0.07 * fine.w;
+  m.scatter = vec3(0.42, 0.28, 0.10);
+  // The folded noise has a crease at its furrow and is round on top.
+  vec3 largeSlope = sign(large.w) * (1.0 - largeUp) * large.xyz;
+  vec3 smallSlope = sign(small.w) * (1.0 - smallUp) * small.xyz;
+  m.slope = 2.1 / 4.4 * largeSlope + 0.42 / 1.7 * smallSlope + 0.020 / 0.6 * fine.xyz;
+  m.mirror = vec3(0.032);
+  m.roughness = 0.38;
+  m.film = 0.9;
+  return m;
+}
+
+// What the hook did: first pale, cooked tissue, then brown, then a black, matt crust. Noise moves the limits, so that
+// they do not follow the mesh.
+Material charredBy(Material m, float charred, vec3 mm) {
+  if (charred <= 0.0) return m;
+  vec4 patches = noise(mm / 2.1 + 1.7);
+  vec4 crumbs = noise(mm / 0.55 + 0.3);
+  float x = charred + smoothstep(0.0, 0.25, charred) * (0.38 * patches.w + 0.20 * crumbs.w);
+  float cooked = smoothstep(0.02, 0.22, x), brown = smoothstep(0.22, 0.62, x), black = smoothstep(0.62, 1.05, x);
+  float grey = dot(m.albedo, vec3(0.3, 0.6, 0.1));
+  m.albedo = mix(m.albedo, mix(m.albedo, vec3(1.30, 1.00, 0.62) * (grey + 0.03), 0.5), cooked);
+  m.albedo = mix(m.albedo, vec3(0.105, 0.042, 0.015) * (1.0 + 0.5 * crumbs.w), 0.9 * brown);
+  m.albedo = mix(m.albedo, vec3(0.012, 0.009, 0.008) * (1.0 + 0.6 * crumbs.w), black);
+  m.scatter *= 1.0 - 0.8 * brown;
+  m.slope += (0.10 * brown + 0.25 * black) / 0.55 * 0.5 * crumbs.xyz;
+  m.mirror = mix(m.mirror, vec3(0.018), black);
+  m.roughness = mix(m.roughness, 0.72, max(0.6 * brown, black));
+  m.film *= (1.0 - 0.75 * brown) * (1.0 - black);
+  return m;
+}
+
+// The face of a parted vessel, from rim (1) to middle (2): wall, inner lining, lumen. Below 1: skin stained by blood.
+Material parted(Material m, float face) {
+  m.albedo = mix(m.albedo, vec3(0.200, 0.012, 0.010), 0.75 * smoothstep(0.0, 0.4, face));
+  if (face < 0.5) return m;
+  float inward = face - 1.0;
+  m.albedo = vec3(0.330, 0.100, 0.075);
+  m.albedo = mix(m.albedo, vec3(0.120, 0.014, 0.012), smoothstep(0.28, 0.42, inward));
+  m.albedo = mix(m.albedo, vec3(0.020, 0.002, 0.002), smoothstep(0.42, 0.75, inward));
+  m.film *= 1.0 - 0.6 * smoothstep(0.3, 0.5, inward);
+  return m;
+}
+
+Material cavityWall(vec3 mm) {
+  vec4 wide = noise(mm / 61.0 + 1.0);
+  vec4 middle = noise(mm / 27.0 + 0.5 * wide.xyz);
+  vec4 lobes = noise(mm / 8.0 + 0.3 * middle.xyz);
+  vec4 small = noise(mm / 3.1);
+  Material m;
+  m.albedo = mix(vec3(0.200, 0.058, 0.046), vec3(0.330, 0.125, 0.095), clamp(0.5 + 0.7 * wide.w, 0.0, 1.0));
+  float fat = smoothstep(-0.15, 0.55, middle.w + 0.30 * lobes.w + 0.10 * small.w);
+  m.albedo = mix(m.albedo, vec3(0.400, 0.235, 0.105), 0.55 * fat);
+  m.albedo *= 1.0 + 0.20 * lobes.w + 0.10 * small.w;
+  m.albedo = mix(m.albedo, vec3(0.150, 0.022, 0.024), 0.40 * vessels(mm * vec3(1.0, 0.6, 0.8) / 21.0, 0.035));
+  m.scatter = vec3(0.35, 0.15, 0.10);
+  m.slope = 2.2 / 27.0 * middle.xyz + (0.5 + 0.6 * fat) / 8.0 * lobes.xyz + 0.12 / 3.1 * small.xyz;
+  m.mirror = vec3(0.026);
+  m.roughness = 0.50;
+  m.film = 0.45;
+  return m;
+}
+
+Material tissue(vec3 mm) {
+  vec4 middle = noise(mm / 9.0);
+  vec4 fine = noise(mm / 1.7);
+  Material m;
+  m.albedo = mix(vec3(0.34, 0.12, 0.09), vec3(0.45, 0.20, 0.15), clamp(0.5 + 0.8 * middle.w, 0.0, 1.0)) * (1.0 + 0.1 * fine.w);
+  m.scatter = vec3(0.35, 0.15, 0.10);
+  m.slope = 0.25 / 9.0 * middle.xyz + 0.03 / 1.7 * fine.xyz;
+  m.mirror = vec3(0.028);
+  m.roughness = 0.42;
+  m.film = 0.7;
+  return m;
+}
+
+Material solid(vec3 albedo, vec3 mirror, float roughness) {
+  return Material(albedo, vec3(0.0), vec3(0.0), mirror, roughness, 0.0);
+}
+
+// Brushed along the shaft: fine grooves across it, long along it.
+Material brushed(vec3 mm, vec3 mirror, float roughness) {
+  Material m = solid(vec3(0.0), mirror, roughness);
+  vec4 groove = noise(vec3(mm.xy * 5.5, mm.z * 0.35));
+  m.slope = 0.10 * vec3(groove.xy, 0.0);
+  m.mirror *= 1.0 + 0.10 * groove.w;
+  return m;
+}
+
+// One look a program (LOOK, HARMED): a software rasterizer works out every branch for every pixel.
+Material materialOf(int appearance, vec3 rest, vec2 harm) {
+  vec3 mm = rest * 1000.0;
+#if LOOK == 3
+  return cavityWall(mm);
+#elif LOOK == 10
+  if (appearance == 10) return solid(vec3(0.010, 0.010, 0.011), vec3(0.042), 0.33);
+  if (appearance == 11) return brushed(mm, vec3(0.60, 0.585, 0.57), 0.27);
+  if (appearance == 12) return solid(vec3(0.62, 0.58, 0.50), vec3(0.045), 0.30);
+  return brushed(mm, vec3(0.56, 0.54, 0.60), 0.30);
+#else
+#if LOOK == 1
+  Material m = liver(mm);
+#elif LOOK == 2
+  Material m = gallbladder(mm);
+#elif LOOK == 4
+  Material m = duct(mm);
+#elif LOOK == 5
+  Material m = artery(mm);
+#elif LOOK == 6
+  Material m = fat(mm);
+#else
+  Material m = tissue(mm);
+#endif
+#if HARMED
+  m = charredBy(parted(m, harm.y), harm.x, mm);
+#endif
+  return m;
+#endif
+}
+)";
+
+}  // namespace calot::gui::glsl

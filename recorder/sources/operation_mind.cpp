@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/operation_mind.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recorder/sources/pointing.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr double gripJaw = 0.8;         // open, as it comes (rad)
+constexpr double closedJaw = 0.1;       // rad
+constexpr double gripApproach = 0.018;  // m
+constexpr double gripDepth = 0.004;     // tips go so far past the surface (m)
+constexpr double pullSpeed = 0.020;     // m/s
+constexpr double bedPull = 0.045;       // more pull as the bed comes free (m)
+constexpr double exchangeTime = 0.8;    // s
+constexpr double exchangeRest = 0.4;    // s
+constexpr double above = 0.006;         // over tissue, between strokes (m)
+constexpr double near = 0.008;          // goals nearer than this are gone to directly (m)
+
+}  // namespace
+
+HoldingMind::HoldingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed)
+    : tools_(tools), hand_(hand), random_(seed, 21) {}
+
+void HoldingMind::decide(const Sight& sight, double freed, bool divided) {
+  PerformerHand& hand = tools_.hand[hand_];
+  const PerformerProfile& profile = tools_.profile;
+  if (!tools_.anatomy.hasSpecimen()) {
+    ready_ = true;
+    return;
+  }
+  const Vec3 shaft = hand.shaft(sight.grip);
+  HandMove move;
+  move.aiming = HandMove::Aim::hinge;
+  move.aim = tools_.scene.camera.orientation * Vec3::UnitX();
+  if (at_ == At::pulling && !sight.hand[hand_].holds) {
+    ready_ = false;
+    at_ = At::away;
+    move.to = hand.meant() - gripApproach * shaft;
+    move.jaw = gripJaw;
+    move.speed = profile.motor.contactSpeed;
+    hand.add(move);
+  }
+  if (at_ == At::pulling && ready_ && random_.uniform() < profile.operation.slipShare) {
+    move.to = hand.meant();
+    move.jaw = gripJaw;
+    move.sure = true;
+    hand.add(move);
+    return;
+  }
+  switch (at_) {
+    case At::away: {
+      for (int a = 0; a < 3; ++a) error_[a] = profile.perception.lateralError * random_.normal();
+      move.to = sight.grip - gripApproach * shaft + error_;
+      move.jaw = gripJaw;
+      move.speed = profile.motor.strokeSpeed;
+      hand.add(move);
+      at_ = At::before;
+      break;
+    }
+    case At::before: {
+      error_ *= 0.5;
+      move.to = sight.grip + gripDepth * shaft + error_;
+      move.jaw = gripJaw;
+      move.speed = profile.motor.contactSpeed;
+      hand.add(move);
+      move.jaw = closedJaw;
+      move.buttons = button::lock;
+      move.dwell = 0.2;
+      move.sure = true;
+      hand.add(move);
+      held_ = move.to;
+      at_ = At::closed;
+      break;
+    }
+    case At::closed:
+      at_ = At::pulling;
+      pulled_ = 0.0;
+      if (!sight.hand[hand_].holds) break;
+      [[fallthrough]];
+    case At::pulling: {
+      const double wanted = (divided ? 2.5 : 1.0) * profile.operation.pull + bedPull * freed;
+      if (wanted - pulled_ > 0.002) {
+        // Off the liver, and towards the patient's right.
+        const Vec3 way = Vec3(0.35, -0.25, -0.9) / Vec3(0.35, -0.25, -0.9).norm();
+        move.to = held_ + wanted * way;
+        move.jaw = closedJaw;
+        move.buttons = button::lock;
+        move.speed = pullSpeed;
+        hand.add(move);
+        pulled_ = wanted;
+      } else {
+        ready_ = true;
+      }
+      break;
+    }
+  }
+}
+
+WorkingMind::WorkingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed)
+    : tools_(tools), hand_(hand), random_(seed, 22) {}
+
+void WorkingMind::go(const Vec3& to, double speed, double jaw, std::uint8_t buttons, double dwell) {
+  HandMove move;
+  move.to = to;
+  move.speed = speed;
+  move.jaw = jaw;
+  move.buttons = buttons;
+  move.dwell = dwell;
+  hand().add(move);
+}
+
+void WorkingMind::newError() {
+  const PerformerProfile::Perception& p = tools_.profile.perception;
+  const double across = p.lateralError * random_.normal();
+  const double down = p.lateralError * random_.normal();
+  const double along = p.depthError * random_.normal();
+  error_ = tools_.scene.camera.orientation * Vec3(across, down, along);
+  looks_ = 0;
+}
+
+bool WorkingMind::mount(InstrumentKind kind, double jaw) {
+  if (hand().instrument() == kind) return false;
+  const PerformerProfile::Motor& motor = tools_.profile.motor;
+  const Vec3& home = tools_.scene.hands[hand_].home;
+  const Vec3 out = hand().meant() - 0.02 * hand().shaft(hand().meant());
+  const double open = hand().instrument() == InstrumentKind::clipApplier ? 0.5 : 0.0;
+  go(out, motor.contactSpeed, open);
+  go(home, motor.strokeSpeed, open, 0, exchangeRest);
+  HandMove move;
+  move.to = home;
+  move.jaw = jaw;
+  move.instrument = kind;
+  move.dwell = exchangeTime;
+  move.sure = true;
+  hand().add(move);
+  return true;
+}
+
+void WorkingMind::sweep(const Vec3& from, const Vec3& to, HandMove::Aim aiming, const Vec3& aim) {
+  const PerformerProfile& profile = tools_.profile;
+  HandMove move;
+  move.aiming = aiming;
+  move.aim = aim;
+  const Vec3 over = from - above * hand().shaft(from);
+  if ((hand().meant() - over).norm() > near) {
+    const Vec3 here = hand().meant();
+    go(here - above * hand().shaft(here), profile.motor.contactSpeed, 0.0);
+  }
+  move.to = over;
+  move.speed = profile.motor.strokeSpeed;
+  hand().add(move);
+  move.to = from;
+  move.speed = profile.motor.contactSpeed;
+  move.buttons = button::cutPedal;
+  hand().add(move);
+  move.to = to;
+  move.steady = true;
+  move.speed = profile.motor.workSpeed;
+  const double lag = profile.operation.pedalLag;
+  move.dwell = std::max(0.0, lag * (1.0 + 0.3 * random_.normal()));
+  hand().add(move);
+  move.steady = false;
+  move.to = to - 0.6 * above * hand().shaft(to);
+  move.speed = profile.motor.contactSpeed;
+  move.buttons = 0;
+  move.dwell = 0.0;
+  hand().add(move);
+}
+
+bool WorkingMind::bring(const Vec3& place, const Vec3& hinge, double above_, double beyond, double jaw) {
+  const PerformerProfile& profile = tools_.profile;
+  const Vec3 shaft = hand().shaft(place);
+  HandMove move;
+  move.aiming = HandMove::Aim::hinge;
+  move.aim = hinge;
+  move.jaw = jaw;
+  const std::uint32_t corrections = profile.decision.corrections + 1;
+  if (looks_ == 0) {
+    newError();
+    move.to = place - above_ * shaft + error_;
+    move.speed = profile.motor.strokeSpeed;
+  } else {
+    error_ *= 0.5;
+    const bool over = looks_ < corrections;
+    move.to = place + (over ? -0.5 * above_ : beyond) * shaft + error_;
+    for (int a = 0; a < 3; ++a) move.to[a] += profile.perception.finestError * random_.normal();
+    move.speed = profile.motor.contactSpeed;
+  }
+  hand().add(move);
+  ++looks_;
+  return looks_ > corrections + 1;
+}
+
+void WorkingMind::closeAndLeave(double opened) {
+  const PerformerProfile::Motor& motor = tools_.profile.motor;
+  HandMove move;
+  move.to = hand().meant();
+  move.sure = true;
+  move.jaw = 0.1;
+  move.dwell = 0.25;
+  hand().add(move);
+  move.jaw = opened;
+  move.dwell = 0.0;
+  hand().add(move);
+  const Vec3 here = hand().meant();
+  go(here - 0.016 * hand().shaft(here), motor.contactSpeed, opened);
+}
+
+double WorkingMind::freed(const Sight& sight) const {
+  double attached = 0.0;
+  for (const SeenStrand& s : sight.strand) attached += s.attached ? 1.0 : 0.0;
+  return attachedAtFirst_ > 0.0 ? 1.0 - attached / attachedAtFirst_ : 0.0;
+}
+
+/// The lower part of the bed is what lies nearest to where the duct comes in.
+void WorkingMind::rankStrands(const Sight& sight) {
+  const Vec3 from = sight.vessel.empty() ? tools_.anatomy.neck() : sight.vessel[0].centre.back();
+  std::vector<std::size_t> order(sight.strand.size());
+  std::vector<double> away(sight.strand.size());
+  for (std::size_t s = 0; s < order.size(); ++s) {
+    order[s] = s;
+    away[s] = (sight.strand[s].end[0] - from).norm();
+    attachedAtFirst_ += sight.strand[s].attached ? 1.0 : 0.0;
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return away[a] != away[b] ? away[a] < away[b] : a < b; });
+  share_.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    share_[order[i]] = static_cast<double>(i) / static_cast<double>(order.size());
+  }
+}
+
+void WorkingMind::decide(const Sight& sight) {
+  if (share_.empty() && !sight.strand.empty()) rankStrands(sight);
+  const PerformerProfile::Operation& operation = tools_.profile.operation;
+  if (random_.uniform() < operation.hesitationShare) {
+    HandMove rest;
+    rest.to = hand().meant();
+    rest.jaw = 0.0;
+    rest.sure = true;
+    rest.dwell = operation.hesitation * (0.5 + random_.uniform());
+    if (hand().instrument() == InstrumentKind::hook) hand().add(rest);
+  }
+  switch (stage_) {
+    case Stage::clear:
+      clear(sight);
+      break;
+    case Stage::lowerThird:
+      burn(sight, true);
+      break;
+    case Stage::clip:
+      clip(sight);
+      break;
+    case Stage::cut:
+      cut(sight);
+      break;
+    case Stage::bed:
+      burn(sight, false);
+      break;
+    case Stage::done:
+      break;
+  }
+}
+
+}  // namespace calot::recorder

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a performer decides in scenes in which tissue is to be cleared, divided or freed: from one look to the next.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "recorder/sources/performer_hand.h"
+#include "recorder/sources/performer_sight.h"
+
+namespace calot::recorder {
+
+/// Both hands of an operation, its anatomy, and what the operator makes of what it sees.
+struct OperationTools {
+  const PerformerProfile& profile;
+  const SceneDescription& scene;
+  const PerformerSight& anatomy;
+  std::array<PerformerHand, handCount>& hand;
+};
+
+/// The hand that holds the specimen and pulls on it. Takes hold anew where it lost it.
+class HoldingMind {
+ public:
+  HoldingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed);
+  /// @pre the hand is idle. @param sight newest. @param freed share of the bed that is free
+  /// @param divided no vessel holds the specimen any more
+  void decide(const Sight& sight, double freed, bool divided);
+  /// It holds and pulls, or there is nothing to hold.
+  [[nodiscard]] bool ready() const { return ready_; }
+
+ private:
+  enum class At : std::uint8_t { away, before, closed, pulling };
+  OperationTools tools_;
+  std::size_t hand_;
+  Random random_;
+  At at_ = At::away;
+  Vec3 error_ = Vec3::Zero(), held_ = Vec3::Zero();
+  double pulled_ = 0.0;
+  bool ready_ = false;
+};
+
+/// The hand that works: clears vessels of fat, frees the lower third of the bed, clips, cuts, frees the rest.
+class WorkingMind {
+ public:
+  WorkingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed);
+  /// @pre the hand is idle. Adds what it does next.
+  void decide(const Sight& sight);
+  [[nodiscard]] bool done() const { return stage_ == Stage::done; }
+  /// It gave up: something did not succeed however often it was tried.
+  [[nodiscard]] bool failed() const { return failed_; }
+  /// Share of the bed that is free, of what was attached at the first look.
+  [[nodiscard]] double freed(const Sight& sight) const;
+  /// No vessel holds the specimen any more.
+  [[nodiscard]] bool divided() const { return stage_ >= Stage::bed || !tools_.anatomy.divides(); }
+  /// A clip sat badly or fell.
+  void sawBadClip() { ++badClips_; }
+
+ private:
+  enum class Stage : std::uint8_t { clear, lowerThird, clip, cut, bed, done };
+
+  void rankStrands(const Sight& sight);
+  void clear(const Sight& sight);
+  void burn(const Sight& sight, bool lowerThird);
+  void clip(const Sight& sight);
+  void cut(const Sight& sight);
+
+  /// Goes home and comes back with another instrument. @return false where it is mounted already
+  bool mount(InstrumentKind kind, double jaw);
+  /// A stroke of the hook under current, from above and up again.
+  void sweep(const Vec3& from, const Vec3& to, HandMove::Aim aiming, const Vec3& aim);
+  /// Comes above a place, looks, and goes down on it until what is wrong is small. @return true: it is there
+  bool bring(const Vec3& place, const Vec3& hinge, double above, double beyond, double jaw);
+  void closeAndLeave(double opened);
+  void go(const Vec3& to, double speed, double jaw, std::uint8_t buttons = 0, double dwell = 0.0);
+  void newError();
+  [[nodiscard]] PerformerHand& hand() { return tools_.hand[hand_]; }
+
+  OperationTools tools_;
+  std::size_t hand_;
+  Random random_;
+  Stage stage_ = Stage::clear;
+  std::size_t vessel_ = 0;
+  std::uint32_t strokes_ = 0, tries_ = 0, badClips_ = 0, forgiven_ = 0, looks_ = 0;
+  bool acted_ = false, failed_ = false;
+  Vec3 error_ = Vec3::Zero();
+  std::vector<double> share_;  ///< of the strands that lie nearer to the neck, per strand, as first seen
+  double attachedAtFirst_ = 0.0;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+
+#include "recorder/observer.h"
+#include "recorder/sources/operation_mind.h"
+#include "recorder/sources/performer_hand.h"
+#include "recorder/sources/performer_profile.h"
+#include "recorder/sources/performer_sight.h"
+#include "recorder/sources/source.h"
+
+namespace calot::recorder {
+
+/// A synthetic operator in closed loop: it holds the specimen with one hand and with the other clears vessels of fat,
+/// frees the lower third of the bed, clips, cuts, and frees the rest, as far as the scene has these. docs/sources.md.
+///
+/// It looks when a hand has nothing more to do, and decides a reaction time later by what it saw then. So it needs to
+/// be told of every step (watcher()); where it is not, its hands rest. The same profile, scene, seed and steps give the
+/// same samples. At real time the loop and the haptic thread call it at once.
+class OperationSource final : public SampleSource, private Observer {
+ public:
+  OperationSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed);
+
+  [[nodiscard]] const Provenance& provenance() const override { return provenance_; }
+  bool next(std::uint64_t tick, TickSamples& out) override;
+  [[nodiscard]] Observer* watcher() override { return this; }
+  [[nodiscard]] Outcome ending() const override;
+
+ private:
+  static constexpr std::size_t worker = 1;
+
+  void onStep(const StepRecord& record) override;
+  void onEnd(Outcome) override {}
+  void decide(double time);
+
+  const PerformerProfile profile_;
+  const SceneDescription scene_;
+  Provenance provenance_;
+  PerformerSight anatomy_;
+  std::array<PerformerHand, handCount> hand_;
+  HoldingMind holding_;
+  WorkingMind working_;
+  Random random_;
+  std::mutex mutex_;  ///< of all that both next() and onStep() touch: what follows
+  bool wantsToLook_ = false;
+  std::optional<Sight> sight_;
+  std::uint32_t badClips_ = 0;
+  double decideAt_ = 0.0, endAt_ = -1.0;
+  bool gaveUp_ = false;
+};
+
+}  // namespace calot::recorder

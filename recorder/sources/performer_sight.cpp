@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/performer_sight.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recorder/sources/pointing.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr double gripFrom = 0.026;      // of the specimen's neck: the place to hold is no nearer (m)
+constexpr double gripTo = 0.042;        // and no farther
+constexpr double fatClearance = 0.006;  // of the place to hold (m)
+constexpr double fatAside = 0.0030;     // so far beside a vessel fat is looked at, from its surface (m)
+constexpr double around = 0.0012;       // of a station: its vessel's skin this near to it shows where it is (m)
+constexpr double fatOver = 0.0005;      // what is over a vessel reaches so far beside it (m)
+constexpr double nothing = -1.0;        // height of fat where there is none (m)
+
+const SurfaceView* surfaceNamed(const SceneView& view, const std::string& name) {
+  for (const SurfaceView& s : view.surface) {
+    if (s.organ == name) return &s;
+  }
+  return nullptr;
+}
+
+bool underFat(const SceneDescription& scene, const Vec3& p) {
+  for (const FatDescription& fat : scene.fat) {
+    for (const Vec3& v : fat.surface.vertex) {
+      if ((v - p).norm() < fatClearance) return true;
+    }
+  }
+  return false;
+}
+
+/// Points `spacing` apart along a line of straight pieces.
+std::vector<Vec3> stationsOf(const std::vector<Vec3>& path, double spacing) {
+  std::vector<Vec3> out;
+  double left = 0.0;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const Vec3 along = path[i + 1] - path[i];
+    const double length = along.norm();
+    double at = left;
+    for (; at <= length; at += spacing) out.emplace_back(path[i] + (at / length) * along);
+    left = at - length;
+  }
+  return out;
+}
+
+}  // namespace
+
+PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker)
+    : organs_(scene.organs.size()), specimen_(organs_), worker_(worker), eye_(scene.camera.position) {
+  for (std::size_t h = 0; h < handCount; ++h) port_[h] = scene.hands[h].port;
+  if (!scene.connective.empty()) {
+    bed_ = scene.connective[0].name;
+    specimenName_ = scene.connective[0].first;
+  }
+  for (std::size_t i = 0; i < scene.vessels.size(); ++i) {
+    const VesselDescription& v = scene.vessels[i];
+    // What is to be divided ends in the specimen.
+    if (v.end.kind != VesselEndDescription::Kind::organ) continue;
+    if (specimenName_.empty()) specimenName_ = v.end.to;
+    if (v.end.to != specimenName_) continue;
+    VesselPlan plan;
+    plan.name = v.name;
+    plan.radius = v.radius;
+    plan.index = i;
+    plan.rest = stationsOf(v.path, spacing);
+    vessel_.push_back(plan);
+  }
+  if (!scene.fat.empty()) fat_ = scene.fat[0].name;
+  // A scene of fat alone is for clearing.
+  divides_ = !vessel_.empty() && (fat_.empty() || !bed_.empty());
+  for (std::size_t o = 0; o < organs_; ++o) {
+    if (scene.organs[o].name == specimenName_) specimen_ = o;
+  }
+  if (hasSpecimen()) findSpecimen(scene);
+}
+
+/// The neck is deepest in the body; the place to hold lies near it, faces the eye and the shaft that comes for it.
+void PerformerSight::findSpecimen(const SceneDescription& scene) {
+  const SurfaceDescription& skin = scene.organs[specimen_].surface;
+  neck_ = skin.vertex[0];
+  for (const Vec3& v : skin.vertex) {
+    if (v.y() < neck_.y()) neck_ = v;
+  }
+  std::vector<Vec3> normal(skin.vertex.size(), Vec3::Zero());
+  for (const Index3& t : skin.triangle) {
+    const auto at = [&](int k) -> const Vec3& { return skin.vertex[static_cast<std::size_t>(t[k])]; };
+    const Vec3 area = (at(1) - at(0)).cross(at(2) - at(0));
+    for (int k = 0; k < 3; ++k) normal[static_cast<std::size_t>(t[k])] += area;
+  }
+  double best = -1e300;
+  for (std::size_t i = 0; i < skin.vertex.size(); ++i) {
+    const Vec3& p = skin.vertex[i];
+    const double from = (p - neck_).norm();
+    if (from < gripFrom || from > gripTo || !(normal[i].norm() > 0.0) || underFat(scene, p)) continue;
+    const Vec3 n = normal[i] / normal[i].norm();
+    const Vec3 toEye = (eye_ - p) / (eye_ - p).norm();
+    const double score = n.dot(toEye) - n.dot(shaftDirection(port_[1 - worker_], p));
+    if (!(score > best)) continue;
+    best = score;
+    gripVertex_ = i;
+    gripNormal_ = n;
+  }
+}
+
+void PerformerSight::seeVessel(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const {
+  const SurfaceView* skin = surfaceNamed(view, plan.name);
+  seen.centre = plan.rest;
+  if (skin != nullptr) {
+    // What lay around a station at rest shows where it is now.
+    for (std::size_t s = 0; s < plan.rest.size(); ++s) {
+      Vec3 moved = Vec3::Zero();
+      double count = 0.0;
+      for (std::size_t v = 0; v < skin->rest.size(); ++v) {
+        if ((skin->rest[v] - plan.rest[s]).norm() > plan.radius + around) continue;
+        moved += skin->position[v];
+        count += 1.0;
+      }
+      if (count > 0.0) seen.centre[s] = moved / count;
+    }
+  }
+  for (std::size_t s = 0; s < plan.rest.size(); ++s) {
+    const std::size_t before = s > 0 ? s - 1 : 0;
+    const std::size_t after = std::min(s + 1, plan.rest.size() - 1);
+    const Vec3 t = seen.centre[after] - seen.centre[before];
+    seen.along.emplace_back(t.norm() > 1e-9 ? Vec3(t / t.norm()) : Vec3(Vec3::UnitX()));
+  }
+  for (const ClipView& clip : view.clip) {
+    double nearest = 0.004;
+    double place = -1.0;
+    for (std::size_t s = 0; s < seen.centre.size(); ++s) {
+      const double d = (clip.pose.position - seen.centre[s]).norm();
+      if (!(d < nearest)) continue;
+      nearest = d;
+      place = spacing * static_cast<double>(s) + (clip.pose.position - seen.centre[s]).dot(seen.along[s]);
+    }
+    if (place >= 0.0) seen.clip.push_back(place);
+  }
+  std::sort(seen.clip.begin(), seen.clip.end());
+}
+
+void PerformerSight::seeFat(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const {
+  seen.fat.assign(plan.rest.size(), {nothing, nothing, nothing});
+  const SurfaceView* fat = fat_.empty() ? nullptr : surfaceNamed(view, fat_);
+  if (fat == nullptr) return;
+  Box box;
+  for (const Vec3& c : seen.centre) box.include(c);
+  box.grow(0.02);
+  for (const Vec3& p : fat->position) {
+    if ((p.array() < box.lower.array()).any() || (p.array() > box.upper.array()).any()) continue;
+    for (std::size_t s = 0; s < seen.centre.size(); ++s) {
+      const Vec3 d = p - seen.centre[s];
+      if (std::abs(d.dot(seen.along[s])) > spacing) continue;
+      const Vec3 shaft = shaftDirection(port_[worker_], seen.centre[s]);
+      Vec3 side = shaft.cross(seen.along[s]);
+      side /= std::max(side.norm(), 1e-9);
+      const double aside = d.dot(side);
+      if (std::abs(aside) > plan.radius + fatAside) continue;
+      const std::size_t bin = std::abs(aside) <= plan.radius + fatOver ? 0 : (aside < 0.0 ? 1 : 2);
+      seen.fat[s][bin] = std::max(seen.fat[s][bin], -d.dot(shaft));
+    }
+  }
+}
+
+Sight PerformerSight::look(const StepRecord& record) const {
+  const SceneView view = record.view();
+  Sight sight;
+  for (const VesselPlan& plan : vessel_) {
+    SeenVessel seen;
+    seeVessel(view, plan, seen);
+    seeFat(view, plan, seen);
+    seen.partings = record.result.vessel[plan.index].partings;
+    sight.vessel.push_back(seen);
+  }
+  for (const ConnectiveView& tissue : view.connective) {
+    if (tissue.name != bed_) continue;
+    for (std::size_t s = 0; s < tissue.strand.size(); ++s) {
+      sight.strand.push_back(
+          {tissue.strand[s], static_cast<double>(tissue.alpha[s]), tissue.condition[s] == StrandCondition::attached});
+    }
+  }
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const HandResult& hand = record.result.hand[h];
+    sight.hand[h] = {view.instrument[h].pose.position, hand.grasping != 0, hand.clips};
+  }
+  if (hasSpecimen()) {
+    if (const SurfaceView* skin = surfaceNamed(view, specimenName_)) sight.grip = skin->position[gripVertex_];
+    sight.gripNormal = gripNormal_;
+  }
+  return sight;
+}
+
+}  // namespace calot::recorder

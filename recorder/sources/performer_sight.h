@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a performer sees when it looks: the surfaces that a picture would show, reduced to what it needs to decide.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "recorder/observer.h"
+#include "sim/scene/description.h"
+
+namespace calot::recorder {
+
+/// A vessel that is to be divided, by stations a millimetre apart along its course at rest.
+struct SeenVessel {
+  std::vector<Vec3> centre;    ///< of each station now (m, W)
+  std::vector<Vec3> along;     ///< unit, towards the specimen
+  std::vector<double> clip;    ///< stations of the clips on it, ascending (m from the first)
+  std::uint32_t partings = 0;  ///< places where it is open or cut through
+  /// How high fat stands over each station, towards the port of the hand that works, from the centre line (m): on it,
+  /// and on either side. Far below zero where there is none.
+  std::vector<std::array<double, 3>> fat;
+};
+
+struct SeenStrand {
+  std::array<Vec3, 2> end{Vec3::Zero(), Vec3::Zero()};  ///< on the specimen and on the liver (m, W)
+  double alpha = 1.0;
+  bool attached = false;
+};
+
+struct SeenHand {
+  Vec3 tip = Vec3::Zero();  ///< p_WI of the instrument in the picture (m)
+  bool holds = false;       ///< its jaws hold tissue
+  std::uint32_t clips = 0;  ///< left in the applier
+};
+
+struct Sight {
+  std::vector<SeenVessel> vessel;
+  std::vector<SeenStrand> strand;
+  std::array<SeenHand, handCount> hand;
+  Vec3 grip = Vec3::Zero();         ///< the place on the specimen that is to be held (m, W)
+  Vec3 gripNormal = Vec3::UnitY();  ///< outward there, at rest
+  bool clipMissed = false;          ///< since the last look a clip fell or sat badly
+};
+
+/// Where things lie at rest, which an operator knows from anatomy.
+class PerformerSight {
+ public:
+  /// Stations of a vessel are this far apart (m).
+  static constexpr double spacing = 0.001;
+
+  struct VesselPlan {
+    std::string name;
+    double radius = 0.0;     ///< m
+    std::vector<Vec3> rest;  ///< stations (m)
+    std::size_t index = 0;   ///< among the scene's vessels
+  };
+
+  /// @param worker hand that carves, clips and cuts; the other one holds
+  PerformerSight(const SceneDescription& scene, std::size_t worker);
+
+  /// The picture after a step. Costs a view.
+  [[nodiscard]] Sight look(const StepRecord& record) const;
+
+  [[nodiscard]] const std::vector<VesselPlan>& vessels() const { return vessel_; }
+  [[nodiscard]] bool hasSpecimen() const { return specimen_ < organs_; }
+  [[nodiscard]] bool hasFat() const { return !fat_.empty(); }
+  /// Are the vessels to be clipped and cut?
+  [[nodiscard]] bool divides() const { return divides_; }
+  [[nodiscard]] bool hasBed() const { return !bed_.empty(); }
+  [[nodiscard]] const Vec3& neck() const { return neck_; }  ///< of the specimen, at rest (m)
+
+ private:
+  void findSpecimen(const SceneDescription& scene);
+  void seeVessel(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
+  void seeFat(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
+
+  std::vector<VesselPlan> vessel_;
+  std::string bed_, fat_, specimenName_;
+  std::size_t organs_ = 0, specimen_ = 0, worker_ = 1;
+  std::array<Vec3, handCount> port_{Vec3::Zero(), Vec3::Zero()};
+  Vec3 eye_ = Vec3::Zero();
+  Vec3 neck_ = Vec3::Zero();
+  bool divides_ = false;
+  std::size_t gripVertex_ = 0;
+  Vec3 gripNormal_ = Vec3::UnitY();
+};
+
+}  // namespace calot::recorder

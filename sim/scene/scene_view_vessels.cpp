@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "sim/math/elementary.h"
+#include "sim/scene/scene_view_parts.h"
+#include "sim/vessel/centre_line.h"
+#include "sim/vessel/clips.h"
+#include "sim/vessel/tube_surface.h"
+
+namespace calot {
+
+namespace {
+
+/// Rounder and smoother than contact has it.
+constexpr TubeSurface::Settings pictureTube{16, 2};
+
+/// The rim of a cut draws together by this share of its radius, and is stained (SurfaceView::face).
+constexpr double inwards = 0.3;
+constexpr float stained = 0.45F;
+constexpr double stainReach = 0.0012;  ///< from the cut along the vessel (m)
+
+constexpr int domeRings = 5;
+/// A vessel that comes from elsewhere is drawn on for this length beyond where it is held (m).
+constexpr double beyond = 0.08;
+
+/// In place of the flat cap at an end: a dome, which rounds the bend where a vessel grows out of another.
+/// @param ring first vertex of the end's ring, @param cap first triangle of its cap, @param away how far beyond (m)
+void addDome(int ring, std::size_t cap, double away, SurfaceView& surface) {
+  constexpr int sides = static_cast<int>(pictureTube.sides);
+  const bool atEnd = ring > 0;
+  const int middle = surface.triangle[cap][0];
+  const int first = static_cast<int>(surface.position.size());
+  for (std::vector<Vec3>* place : {&surface.position, &surface.rest}) {
+    const Vec3 centre = (*place)[slot(middle)];
+    Vec3 area = Vec3::Zero();
+    for (int k = 0; k < sides; ++k)
+      area += ((*place)[slot(ring + k)] - centre).cross((*place)[slot(ring + (k + 1) % sides)] - centre);
+    const double size = area.norm();
+    if (!(size > 0.0)) return;
+    const double radius = ((*place)[slot(ring)] - centre).norm();
+    const Vec3 outwards = (atEnd ? 1.0 : -1.0) * area / size;
+    for (int d = 0; d < domeRings; ++d) {
+      const double angle = 0.5 * std::numbers::pi * d / domeRings;
+      for (int k = 0; k < sides; ++k) {
+        const Vec3 p = (*place)[slot(ring + k)];
+        place->push_back(centre + cosine(angle) * (p - centre) + (away + radius * sine(angle)) * outwards);
+      }
+    }
+    (*place)[slot(middle)] = centre + (away + radius) * outwards;
+  }
+  surface.charred.resize(surface.position.size(), surface.charred[slot(middle)]);
+  const auto strip = [&](int from, int to) {
+    for (int k = 0; k < sides; ++k) {
+      const int next = (k + 1) % sides;
+      const int a = from + k;
+      const int b = from + next;
+      const int c = to + next;
+      const int d = to + k;
+      surface.triangle.push_back(atEnd ? Index3(a, b, c) : Index3(a, c, b));
+      surface.triangle.push_back(atEnd ? Index3(a, c, d) : Index3(a, d, c));
+    }
+  };
+  for (int k = 0; k < sides; ++k)
+    surface.triangle[cap + slot(k)].tail<2>().array() += first + (domeRings - 1) * sides - ring;
+  strip(ring, first);
+  for (int d = 0; d + 1 < domeRings; ++d) strip(first + d * sides, first + (d + 1) * sides);
+}
+
+/// Cautery at a place: linear between the middles of elements.
+double exposureAt(const BeamModel& beams, const BeamState& vessels, const BeamPlace& where) {
+  const auto& branch = beams.branches()[where.branch];
+  const double own = vessels.exposure[where.element];
+  const double off = where.share - 0.5;
+  const std::size_t first = branch.firstElement;
+  const std::size_t last = first + branch.elements() - 1;
+  const std::size_t neighbour = off < 0.0 ? std::max(where.element, first + 1) - 1 : std::min(where.element + 1, last);
+  const double share = off < 0.0 ? -off : off;
+  return own + share * (vessels.exposure[neighbour] - own);
+}
+
+/// Blood on the skin beside a cut.
+void stain(const Vec3& middle, double rim, SurfaceView& surface) {
+  const double radius = rim / (1.0 - inwards);
+  for (std::size_t v = 0; v < surface.face.size(); ++v) {
+    if (surface.face[v] >= 1.0F) continue;
+    const double along2 = (surface.rest[v] - middle).squaredNorm() - radius * radius;
+    const double along = std::sqrt(std::max(along2, 0.0)) / stainReach;
+    if (along < 1.0) surface.face[v] = std::max(surface.face[v], stained * static_cast<float>(1.0 - along));
+  }
+}
+
+/// The faces of cuts get vertices of their own, so that their edge is one: of each parted element the last 2 `sides`
+/// triangles are faces (tube_surface.h).
+void sharpenFaces(std::size_t partings, SurfaceView& surface) {
+  if (partings == 0) return;
+  constexpr std::size_t sides = pictureTube.sides;
+  surface.face.assign(surface.position.size(), 0.0F);
+  const std::size_t first = surface.triangle.size() - partings * 4 * sides;
+  for (std::size_t f = 0; f < 2 * partings; ++f) {
+    const std::size_t from = first + (f / 2 * 4 + 2 + f % 2) * sides;
+    const std::span<Index3> face = std::span(surface.triangle).subspan(from, sides);  // middle first, then the ring
+    int ring = face[0][1];
+    for (const Index3& t : face) ring = std::min(ring, t[1]);
+    const int middle = face[0][0];
+    surface.face[slot(middle)] = 2.0F;
+    const int copy = static_cast<int>(surface.position.size());
+    for (int k = 0; k < static_cast<int>(sides); ++k) {
+      for (std::vector<Vec3>* place : {&surface.position, &surface.rest}) {
+        Vec3& rim = (*place)[slot(ring + k)];
+        rim += inwards * ((*place)[slot(middle)] - rim);
+      }
+      surface.position.push_back(Vec3(surface.position[slot(ring + k)]));
+      surface.rest.push_back(Vec3(surface.rest[slot(ring + k)]));
+      surface.charred.push_back(float{surface.charred[slot(ring + k)]});
+      surface.face.push_back(1.0F);
+    }
+    for (Index3& t : face) t.tail<2>().array() += copy - ring;
+    stain(surface.rest[slot(middle)], (surface.rest[slot(copy)] - surface.rest[slot(middle)]).norm(), surface);
+  }
+}
+
+Quat aboutZ(double angle) { return {cosine(0.5 * angle), 0.0, 0.0, sine(0.5 * angle)}; }
+
+/// State knows in which direction a clip flattens, not from which side it came. Appliers come from the ports: the
+/// crotch is put towards them, judged at rest, so that it never jumps.
+bool crotchAhead(const Model& model, const Pose& rest, double roll) {
+  Vec3 ports = Vec3::Zero();
+  for (const HandDescription& hand : model.scene().hands) ports += hand.port / static_cast<double>(handCount);
+  return (ports - rest.position).dot(rest.orientation * aboutZ(roll) * Vec3::UnitY()) > 0.0;
+}
+
+SurfaceView vesselView(const Model& model, const State& state, const StructureModel& structure) {
+  const VesselTree& tree = model.vesselTrees()[structure.index];
+  const BeamState& vessels = state.vessel[structure.index];
+  TubeSurface tube(tree.beams, structure.branch, pictureTube);
+  tube.update(vessels);
+  SurfaceView surface;
+  surface.organ = structure.name;
+  surface.appearance = structure.appearance;
+  tube.place(vessels, surface.position);
+  BeamState rest = restState(tree.beams);
+  rest.parting = vessels.parting;
+  rest.partedAt = vessels.partedAt;
+  tube.place(rest, surface.rest);
+  surface.triangle = tube.triangles();
+  const double through = model.scene().vessels[tree.vessel[structure.branch]].burnThrough;
+  for (std::size_t v = 0; v < tube.vertices(); ++v) {
+    const BeamPlace where = tube.where(static_cast<int>(v));
+    surface.charred.push_back(static_cast<float>(exposureAt(tree.beams, vessels, where) / through));
+  }
+  std::size_t partings = 0;
+  const auto& branch = tree.beams.branches()[structure.branch];
+  for (std::size_t e = branch.firstElement; e < branch.firstElement + branch.elements(); ++e) {
+    if (vessels.parting[e] != Parting::none) ++partings;
+  }
+  sharpenFaces(partings, surface);
+  const VesselDescription& description = model.scene().vessels[tree.vessel[structure.branch]];
+  const std::size_t last = pictureTube.ringsPerElement * branch.elements();  // ring
+  const std::size_t caps = 2 * pictureTube.sides * last;
+  const bool fromElsewhere = description.start.kind == VesselEndDescription::Kind::fixed;
+  addDome(0, caps, fromElsewhere ? beyond : 0.0, surface);
+  addDome(static_cast<int>(pictureTube.sides * last), caps + pictureTube.sides, 0.0, surface);
+  if (!surface.face.empty()) surface.face.resize(surface.position.size(), 0.0F);
+  if (std::none_of(surface.charred.begin(), surface.charred.end(), [](float c) { return c > 0.0F; }))
+    surface.charred.clear();
+  return surface;
+}
+
+}  // namespace
+
+void addVessels(const Model& model, const State& state, SceneView& view) {
+  for (const StructureModel& structure : model.structures()) {
+    if (structure.kind == StructureKind::vessel) view.surface.push_back(vesselView(model, state, structure));
+  }
+  for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
+    const BeamModel& beams = model.vesselTrees()[t].beams;
+    const BeamState& vessels = state.vessel[t];
+    for (std::size_t c = 0; c < vessels.clips(); ++c) {
+      const BeamPlace where = placeAt(beams, vessels.clipBranch[c], vessels.clipPlace[c]);
+      const Pose frame = centreLine(beams, vessels, where, stumpAt(vessels, where));
+      ClipView clip;
+      clip.pose = {frame.position, frame.orientation * aboutZ(vessels.clipRoll[c])};
+      if (crotchAhead(model, centreLine(beams, restState(beams), where), vessels.clipRoll[c]))
+        clip.pose.orientation = clip.pose.orientation * aboutZ(std::numbers::pi);
+      clip.width = vessels.clipWidth[c];
+      clip.legs = model.scene().clip.legs;
+      clip.halfGap = pinchedSection(beams.branches()[where.branch].section, vessels.clipClosure[c]).thin;
+      view.clip.push_back(clip);
+    }
+  }
+}
+
+}  // namespace calot

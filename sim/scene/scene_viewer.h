@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From State to SceneView, frame after frame.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/scene/model.h"
+#include "sim/scene/scene_view.h"
+#include "sim/scene/state.h"
+
+namespace calot {
+
+/// Makes views of one Model's States and keeps from one to the next what stays the same: the surface of fat, which is
+/// made anew only where something was carved since the last view (or anew in full where the State went back). What it
+/// returns depends on the State alone: viewOf() gives the same. Use it where frames follow each other.
+class SceneViewer {
+ public:
+  /// @param model outlives this
+  explicit SceneViewer(const Model& model);
+  ~SceneViewer();
+  SceneViewer(const SceneViewer&) = delete;
+  SceneViewer& operator=(const SceneViewer&) = delete;
+
+  /// @pre the state is one of the model's
+  [[nodiscard]] SceneView view(const State& state);
+
+ private:
+  class Fat;
+  const Model& model_;
+  std::vector<std::unique_ptr<Fat>> fat_;  ///< per body of fat
+};
+
+}  // namespace calot

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An operation made by hand: a scene with everything, and steps that say what a test wants them to.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "tests/analytics/checkpoints/support/steps.h"
+
+namespace calot::analytics::support {
+
+/// Structures of the operation, as `touching` and subjects of events count them.
+enum Structure : std::uint16_t {
+  liver = 0,
+  gallbladder = 1,
+  bileDuct = 2,
+  cysticDuct = 3,
+  hepaticArtery = 4,
+  cysticArtery = 5,
+  fat = 6
+};
+
+/// The vessels' names say nothing: what they are follows from where they end.
+inline SceneDescription operationScene() {
+  SceneDescription s = scene();
+  s.organs[0].name = "organ-a";
+  s.organs[0].appearance = "liver";
+  s.organs[1].name = "organ-b";
+  s.organs[1].appearance = "gallbladder";
+  s.organs[1].burnThrough = 1.0;
+  const auto vessel = [&](const char* name, const char* appearance, const char* endsOn) {
+    VesselDescription& v = s.vessels.emplace_back();
+    v.name = name;
+    v.appearance = appearance;
+    v.start.kind = VesselEndDescription::Kind::fixed;
+    if (*endsOn != '\0') v.end = {VesselEndDescription::Kind::organ, endsOn};
+  };
+  vessel("v1", "duct", "");
+  vessel("v2", "duct", "organ-b");
+  vessel("v3", "artery", "organ-a");
+  vessel("v4", "artery", "organ-b");
+  FatDescription& f = s.fat.emplace_back();
+  f.name = "fat";
+  f.triangleDepth = 0.01;
+  ConnectiveDescription& bed = s.connective.emplace_back();
+  bed.name = "bed";
+  bed.first = "organ-b";
+  bed.second = "organ-a";
+  return s;
+}
+
+inline recorder::AttemptHeader operationHeader() {
+  recorder::AttemptHeader h = header();
+  h.organs = {"organ-a", "organ-b"};
+  h.vessels = {"v1", "v2", "v3", "v4"};
+  h.fat = {"fat"};
+  h.layout.components = {"clock", "procedure"};
+  return h;
+}
+
+/// Begins whole: 8 ml of fat, 2 of them to be cleared, the bed attached. `finish` changes what stays changed.
+class Operation {
+ public:
+  explicit Operation(const SceneDescription& scene = operationScene(),
+                     const recorder::AttemptHeader& header = operationHeader(), Origin origin = Origin::resimulated)
+      : collector(header, scene, origin) {
+    now.organ.resize(2);
+    now.vessel.resize(4);
+    now.fat.resize(1);
+    now.fat[0].volume = 8e-6;
+    now.fat[0].toClear = 2e-6;
+    now.connective.resize(1);
+    now.connective[0].attached = 1.0;
+    for (HandResult& hand : now.hand) hand.instrument = InstrumentKind::grasper;
+  }
+
+  /// One step as `now` is; events are of this step alone.
+  void step() { steps(1); }
+  void steps(std::uint64_t count) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::vector<TickSamples> samples(10);
+      const std::vector<recorder::TickOutcome> ticks(10);
+      const StateDigest digest;
+      now.step = next;
+      collector.onStep({next, samples, ticks, now, digest, 0.0F, {}, {}});
+      ++next;
+      now.events.clear();
+    }
+  }
+  void tell(EventKind kind, std::uint8_t hand, std::uint16_t subject, double value = 0.0) {
+    now.events.push_back({next, kind, hand, subject, Vec3::Zero(), value});
+  }
+  void end(recorder::Outcome outcome = recorder::Outcome::completed) { collector.onEnd(outcome); }
+  [[nodiscard]] CheckpointValue value(const std::string& name, const std::string& subject = "") const {
+    return valueOf(collector, name, subject);
+  }
+
+  CheckpointCollector collector;
+  StepResult now;
+  std::uint64_t next = 0;
+};
+
+}  // namespace calot::analytics::support

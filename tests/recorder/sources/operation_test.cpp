@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Performers in closed loop: they do the task of each scene, by what they see, within what hands do.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "recorder/formats/scene_file.h"
+#include "recorder/session.h"
+#include "recorder/sources/operation_source.h"
+#include "recorder/sources/performer.h"
+#include "recorder/sources/performer_source.h"
+#include "sim/math/executor.h"
+#include "tests/recorder/sources/support/test_scene.h"
+
+namespace calot::recorder {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path assets = fs::path(CALOT_SOURCE_DIR) / "assets";
+
+PerformerProfile profileOf(const std::string& name) { return loadPerformer(assets / "performers" / (name + ".json")); }
+
+std::unique_ptr<const Model> modelOf(const std::string& scene) {
+  Model::Built built = Model::build(loadScene(assets / "scenes" / (scene + ".json")).description);
+  EXPECT_EQ(built.error, "");
+  return std::move(built.model);
+}
+
+/// What came of an attempt.
+struct Attempt {
+  Outcome outcome = Outcome::running;
+  double seconds = 0.0;
+  std::array<double, handCount> path{};  ///< of the simulated tips (m)
+  StepResult last;
+  std::uint32_t clips = 0;
+  std::vector<TickSamples> samples;  ///< every 10th
+  bool onGrid = true;
+};
+
+Attempt perform(const Model& model, const std::string& profile, std::uint64_t seed, double seconds) {
+  const std::unique_ptr<SampleSource> source = makePerformer(profileOf(profile), model.scene(), seed);
+  SerialExecutor executor;
+  Session session(model, seed, executor);
+  EXPECT_NE(source->watcher(), nullptr);
+  session.join(*source->watcher());
+  Attempt attempt;
+  struct Watch final : Observer {
+    Attempt& attempt;
+    std::array<Vec3, handCount> before{Vec3::Zero(), Vec3::Zero()};
+    bool first = true;
+    explicit Watch(Attempt& a) : attempt(a) {}
+    void onStep(const StepRecord& record) override {
+      for (std::size_t h = 0; h < handCount; ++h) {
+        const Vec3& tip = record.result.hand[h].tipSimulated;
+        if (!first) attempt.path[h] += (tip - before[h]).norm();
+        before[h] = tip;
+      }
+      first = false;
+      attempt.last = record.result;
+    }
+    void onEnd(Outcome /*outcome*/) override {}
+  } watch(attempt);
+  session.join(watch);
+  const std::uint32_t ticksPerStep = model.scene().ticksPerStep;
+  std::vector<TickSamples> samples(ticksPerStep);
+  std::vector<TickOutcome> ticks(ticksPerStep);
+  for (std::uint64_t tick = 0; static_cast<double>(tick) * tickLength < seconds;) {
+    for (std::uint32_t i = 0; i < ticksPerStep; ++i, ++tick) {
+      if (!source->next(tick, samples[i])) {
+        attempt.outcome = source->ending();
+        attempt.seconds = static_cast<double>(session.steps()) * model.stepSeconds();
+        return attempt;
+      }
+      const TickSamples rounded = roundedToGrid(samples[i]);
+      for (std::size_t h = 0; h < handCount; ++h) {
+        attempt.onGrid = attempt.onGrid && rounded.hand[h].position == samples[i].hand[h].position &&
+                         rounded.hand[h].orientation.coeffs() == samples[i].hand[h].orientation.coeffs() &&
+                         rounded.hand[h].jaw == samples[i].hand[h].jaw;
+      }
+      ticks[i] = session.tick(samples[i]);
+    }
+    attempt.samples.push_back(samples[0]);
+    session.step(samples, ticks, 0.0F);
+  }
+  attempt.seconds = seconds;
+  return attempt;
+}
+
+bool same(const TickSamples& a, const TickSamples& b) {
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (a.hand[h].position != b.hand[h].position || a.hand[h].jaw != b.hand[h].jaw ||
+        a.hand[h].orientation.coeffs() != b.hand[h].orientation.coeffs() || a.hand[h].buttons != b.hand[h].buttons ||
+        a.hand[h].instrument != b.hand[h].instrument) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::uint32_t clipsOf(const StepResult& result) {
+  std::uint32_t clips = 0;
+  for (const VesselResult& v : result.vessel) clips += v.clips;
+  return clips;
+}
+
+void expectHuman(const Attempt& attempt) {
+  const double mean = *std::max_element(attempt.path.begin(), attempt.path.end()) / attempt.seconds;
+  EXPECT_GT(mean, 0.010);
+  EXPECT_LT(mean, 0.080);
+  EXPECT_TRUE(attempt.onGrid);
+}
+
+TEST(Operation, TheSceneSaysWhichPerformerItIs) {
+  const PerformerProfile profile = profileOf("skilled");
+  EXPECT_NE(dynamic_cast<PerformerSource*>(makePerformer(profile, test::roundScene(), 1).get()), nullptr);
+  const SceneDescription scene = loadScene(assets / "scenes" / "clip-and-cut.json").description;
+  EXPECT_NE(dynamic_cast<OperationSource*>(makePerformer(profile, scene, 1).get()), nullptr);
+}
+
+/// Nobody tells it of steps: it has seen nothing, and does nothing but tremble at home.
+TEST(Operation, WhoSeesNothingRests) {
+  const SceneDescription scene = loadScene(assets / "scenes" / "clip-and-cut.json").description;
+  OperationSource source(profileOf("skilled"), scene, 1);
+  TickSamples samples;
+  for (std::uint64_t tick = 0; tick < 3000; ++tick) {
+    ASSERT_TRUE(source.next(tick, samples));
+    for (std::size_t h = 0; h < handCount; ++h) {
+      EXPECT_LT((samples.hand[h].position - scene.hands[h].home).norm(), 0.002);
+      EXPECT_EQ(samples.hand[h].buttons, 0);
+    }
+  }
+}
+
+TEST(Operation, ClipsAndCutsDuctAndArtery) {
+  const std::unique_ptr<const Model> model = modelOf("clip-and-cut");
+  ASSERT_TRUE(model);
+  const Attempt attempt = perform(*model, "skilled", 2, 120.0);
+  EXPECT_EQ(attempt.outcome, Outcome::completed);
+  EXPECT_GE(clipsOf(attempt.last), 6U);
+  for (std::size_t v = 0; v < model->scene().vessels.size(); ++v) {
+    const VesselDescription& vessel = model->scene().vessels[v];
+    const bool divided = vessel.end.kind == VesselEndDescription::Kind::organ;
+    EXPECT_EQ(attempt.last.vessel[v].partings, divided ? 1U : 0U) << vessel.name;
+  }
+  expectHuman(attempt);
+}
+
+TEST(Operation, TheSameSeedGivesTheSameSamplesAnotherOneOthers) {
+  const std::unique_ptr<const Model> model = modelOf("clip-and-cut");
+  ASSERT_TRUE(model);
+  const Attempt a = perform(*model, "unskilled", 5, 8.0);
+  const Attempt b = perform(*model, "unskilled", 5, 8.0);
+  const Attempt c = perform(*model, "unskilled", 6, 8.0);
+  ASSERT_EQ(a.samples.size(), b.samples.size());
+  EXPECT_TRUE(std::equal(a.samples.begin(), a.samples.end(), b.samples.begin(), same));
+  EXPECT_FALSE(std::equal(a.samples.begin(), a.samples.end(), c.samples.begin(), same));
+}
+
+/// Tremor of a hand at rest: its amplitude is the profile's, and it lies in its band.
+TEST(Operation, HandsTrembleAsTheirProfileSays) {
+  for (const char* name : {"skilled", "intermediate", "unskilled"}) {
+    PerformerProfile profile = profileOf(name);
+    EXPECT_GE(profile.motor.tremorLower, 8.0);
+    EXPECT_LE(profile.motor.tremorUpper, 12.0);
+    EXPECT_GE(profile.motor.tremorAmplitude, 0.00005);
+    EXPECT_LE(profile.motor.tremorAmplitude, 0.0002);
+    profile.motor.wanderAmplitude = 0.0;
+    const HandDescription description = test::roundScene().hands[0];
+    double power = 0.0;
+    int crossings = 0, count = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      PerformerHand hand(profile, description, 0, seed);
+      double before = 0.0;
+      for (int tick = 0; tick < 6000; ++tick) {
+        const double x = (hand.sample(tick * tickLength).position - description.home).x();
+        if (tick < 1000) continue;
+        power += x * x;
+        ++count;
+        if (before * x < 0.0) ++crossings;
+        before = x;
+      }
+    }
+    EXPECT_NEAR(std::sqrt(power / count), profile.motor.tremorAmplitude, 0.15 * profile.motor.tremorAmplitude) << name;
+    const double hertz = 0.5 * crossings / (count * tickLength);
+    EXPECT_GT(hertz, 8.0) << name;
+    EXPECT_LT(hertz, 12.0) << name;
+  }
+}
+
+/// Twenty a profile of the whole operation: hours. Run where CALOT_HEAVY is set.
+TEST(OperationHeavy, TwentyAProfileCompleteAsOftenAsTheyShould) {
+  if (std::getenv("CALOT_HEAVY") == nullptr) GTEST_SKIP() << "CALOT_HEAVY is not set";
+  const std::unique_ptr<const Model> model = modelOf("cholecystectomy");
+  ASSERT_TRUE(model);
+  struct Wanted {
+    const char* profile;
+    int completed;
+  };
+  for (const Wanted& wanted : {Wanted{"skilled", 19}, Wanted{"unskilled", 16}}) {
+    int completed = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const Attempt attempt = perform(*model, wanted.profile, seed, 600.0);
+      const bool free = attempt.last.connective[0].attached == 0.0;
+      const bool divided = attempt.last.vessel[2].partings > 0 && attempt.last.vessel[4].partings > 0;
+      if (attempt.outcome == Outcome::completed && free && divided && clipsOf(attempt.last) >= 6) ++completed;
+      expectHuman(attempt);
+    }
+    EXPECT_GE(completed, wanted.completed) << wanted.profile;
+  }
+}
+
+}  // namespace
+}  // namespace calot::recorder
