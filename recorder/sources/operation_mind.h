@@ -81,8 +81,10 @@ class WorkingMind {
   Random random_;
   Stage stage_ = Stage::clear;
   std::size_t vessel_ = 0;
-  std::uint32_t strokes_ = 0, tries_ = 0, badClips_ = 0, forgiven_ = 0, looks_ = 0;
-  bool acted_ = false, failed_ = false;
+  std::uint32_t strokes_ = 0, tries_ = 0, badClips_ = 0, looks_ = 0;
+  bool failed_ = false;
+  std::size_t lastStrand_ = ~std::size_t{0};
+  std::uint32_t repeats_ = 0;
   Vec3 error_ = Vec3::Zero();
   std::vector<double> share_;  ///< of the strands that lie nearer to the neck, per strand, as first seen
   double attachedAtFirst_ = 0.0;

@@ -15,7 +15,7 @@ namespace {
 constexpr double fadeIn = 0.5;       // unsteadiness grows from nothing: the tip starts at home (s)
 constexpr double wanderLower = 0.1;  // Hz
 constexpr double wanderUpper = 0.8;
-constexpr double ramp = 0.15;       // share of a steady stroke in which its speed rises, and falls
+constexpr double ramp = 0.15;  // share of a steady stroke in which its speed rises, and falls
 constexpr double pi = 3.141592653589793;
 
 Random unsteady(std::uint64_t seed, std::size_t index) { return Random(seed, 101 + index); }

@@ -30,7 +30,7 @@ struct HandMove {
   double dwell = 0.0;                                ///< rest at its end, buttons as they are (s)
   InstrumentKind instrument = InstrumentKind::none;  ///< mounted as the stroke begins; none: the same as before
   bool steady = false;  ///< at an even speed, as one works through tissue, rather than as one reaches
-  bool sure = false;                                 ///< without the noise of its length: small corrections, and rests
+  bool sure = false;    ///< without the noise of its length: small corrections, and rests
 };
 
 /// Strokes are minimum-jerk (Flash and Hogan 1985) and end by a noise in proportion to their length beside the goal

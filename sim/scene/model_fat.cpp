@@ -107,6 +107,7 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
   for (std::size_t p = 0; p < known.size(); ++p) {
     const std::span<const FatTie> ties = fat->ties(p);
     std::vector<Vec3> points;
+    points.reserve(ties.size());
     for (const FatTie& tie : ties) points.push_back(tie.rest);
     std::vector<SolidPlace> places;
     if (!known[p].vessel && !points.empty()) places = placesOnOrgan(known[p].index, points);

@@ -106,6 +106,7 @@ std::string Model::addVessels(const SceneDescription& scene) {
         if (away <= grownLength) grown.push_back(branch.node[i]);
       }
       std::vector<Vec3> points;
+      points.reserve(grown.size());
       for (const int node : grown) points.push_back(beams.rest()[static_cast<std::size_t>(node)]);
       const std::vector<SolidPlace> places = placesOnOrgan(organ, points);
       for (std::size_t i = 0; i < grown.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checkpoints of the operation, over steps made by hand with known answers.
+// The paper's checkpoints of the operation, over steps made by hand with known answers.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,18 +11,6 @@ namespace {
 
 using recorder::Outcome;
 using namespace support;
-
-void expectNotApplicable(const CheckpointValue& v, const std::string& reason) {
-  EXPECT_EQ(v.availability, Availability::notApplicable) << v.name;
-  EXPECT_FALSE(v.value) << v.name;
-  EXPECT_EQ(v.reason, reason) << v.name;
-}
-
-void expectNotAvailable(const CheckpointValue& v, const std::string& reason) {
-  EXPECT_EQ(v.availability, Availability::notAvailable) << v.name;
-  EXPECT_FALSE(v.value) << v.name;
-  EXPECT_EQ(v.reason, reason) << v.name;
-}
 
 /// Takes fat: so many ml inside the triangle and outside.
 void carve(Operation& o, double inside, double outside) {
@@ -232,104 +220,6 @@ TEST(OrganPerforations, areCountedWhereThereIsAWall) {
   EXPECT_EQ(*o.value("organ-perforations", "organ-b").value, 1.0);
   expectNotApplicable(o.value("organ-perforations", "organ-a"),
                       "the scene gives this organ no wall that could be opened");
-}
-
-TEST(ClipErrors, countClipsNotFaults) {
-  Operation o;
-  o.step();
-  expectNotApplicable(o.value("clip-errors"), "no clip was set or dropped");
-  o.tell(EventKind::clipSet, 1, cysticDuct, 1.0);
-  o.step();
-  EXPECT_EQ(*o.value("clip-errors").value, 0.0);
-  o.tell(EventKind::clipSet, 1, cysticDuct, 0.6);  // two faults of one clip
-  o.tell(EventKind::clipHalfOn, 1, cysticDuct, 0.6);
-  o.tell(EventKind::clipTooNear, 1, cysticDuct, 0.0005);
-  o.step();
-  EXPECT_EQ(*o.value("clip-errors").value, 1.0);
-  o.tell(EventKind::clipSet, 0, cysticArtery, 1.0);  // two hands in one step: the fault is the right one's
-  o.tell(EventKind::clipSet, 1, cysticArtery, 1.0);
-  o.tell(EventKind::clipOnClip, 1, cysticArtery, 0.0002);
-  o.step();
-  EXPECT_EQ(*o.value("clip-errors").value, 2.0);
-  o.tell(EventKind::clipSet, 1, bileDuct, 1.0);
-  o.step();
-  o.tell(EventKind::clipDropped, 1, 0, 3.0);
-  o.step();
-  o.end();
-  EXPECT_EQ(*o.value("clip-errors").value, 4.0);
-  EXPECT_EQ(o.value("clip-errors").note,
-            "5 set; half on 1, on another clip 1, too near 1, on another vessel 1, dropped 1");
-}
-
-TEST(Cautery, withoutContactIsDebouncedAndOfOneHand) {
-  Operation o;
-  o.now.hand[1].instrument = InstrumentKind::hook;
-  const auto current = [&](Cautery cautery, std::uint64_t steps) {
-    o.now.hand[1].cautery = cautery;
-    o.steps(steps);
-  };
-  current(Cautery::withoutContact, 9);  // too short
-  current(Cautery::onTissue, 30);
-  current(Cautery::withoutContact, 10);  // 0.1 s: long enough
-  current(Cautery::onTissue, 1);         // a touch begins a new stretch
-  current(Cautery::withoutContact, 9);
-  current(Cautery::off, 1);
-  current(Cautery::withoutContact, 9);
-  current(Cautery::off, 40);
-  EXPECT_DOUBLE_EQ(*o.value("cautery-without-contact", "right").value, 0.1);
-  current(Cautery::withoutContact, 25);  // through the end
-  o.end();
-  EXPECT_DOUBLE_EQ(*o.value("cautery-without-contact", "right").value, 0.35);
-  expectNotApplicable(o.value("cautery-without-contact", "left"), "no hook in this hand");
-}
-
-TEST(Cautery, aHookThatWasPutDownStillCounts) {
-  Operation o;
-  o.now.hand[0].instrument = InstrumentKind::hook;
-  o.now.hand[0].cautery = Cautery::withoutContact;
-  o.steps(20);
-  o.now.hand[0].instrument = InstrumentKind::scissors;
-  o.now.hand[0].cautery = Cautery::off;
-  o.steps(20);
-  o.end();
-  EXPECT_DOUBLE_EQ(*o.value("cautery-without-contact", "left").value, 0.2);
-}
-
-TEST(CriticalView, isThatOfTheFirstClip) {
-  Operation o;
-  o.now.procedure.triangleCleared = 2;
-  o.now.procedure.lowerThirdFreed = 1;
-  o.now.procedure.twoStructures = 2;
-  o.step();
-  EXPECT_EQ(*o.value("critical-view").value, 5.0) << "provisional";
-  o.now.procedure.criticalViewFrozen = true;
-  o.step();
-  o.end();
-  EXPECT_EQ(*o.value("critical-view").value, 5.0);
-  EXPECT_EQ(o.value("critical-view").note, "triangle 2, lower third 1, two structures 2");
-  Operation never;
-  never.now.procedure.triangleCleared = 1;
-  never.step();
-  never.end(Outcome::abandoned);
-  expectNotAvailable(never.value("critical-view"), "no clip was set: 1 of 6 points at the end");
-}
-
-TEST(CriticalErrors, areTheProcedures) {
-  Operation o;
-  o.step();
-  EXPECT_EQ(*o.value("critical-errors").value, 0.0);
-  o.now.procedure.criticalErrors = 2;
-  o.step();
-  o.end();
-  EXPECT_EQ(*o.value("critical-errors").value, 2.0);
-  EXPECT_EQ(o.value("critical-errors").note, "fails the attempt");
-  recorder::AttemptHeader header = operationHeader();
-  header.layout.components = {"clock"};
-  Operation without(operationScene(), header);
-  without.step();
-  without.end();
-  expectNotApplicable(without.value("critical-errors"), "the scene has no procedure");
-  expectNotApplicable(without.value("critical-view"), "the scene has no procedure");
 }
 
 TEST(Results, ofOlderVersionsAreNotApplicableWhereTheyAreSilent) {

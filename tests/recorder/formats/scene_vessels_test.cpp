@@ -79,7 +79,7 @@ TEST(SceneVessels, everyFaultIsNamedWithItsPlace) {
       {"/vessels/0/start", "", "/vessels/0: the key \"start\" is missing"},
       {"/vessels/0/colour", "1",
        "/vessels/0/colour: unknown key; known are name, appearance, path, elements, radius, wall, material, "
-       "ultimateStrain, friction, start, end"},
+       "ultimateStrain, burnThrough, friction, start, end"},
       {"/vessels", "{}", "/vessels: a list is wanted, not object"},
   };
   for (const Change& change : changes) EXPECT_EQ(faultOf(change), change.message) << change.pointer;
@@ -87,12 +87,12 @@ TEST(SceneVessels, everyFaultIsNamedWithItsPlace) {
 
 TEST(SceneVessels, organsVesselsAndFatTogetherHaveALimit) {
   nlohmann::json scene = sceneWithVessels();
-  for (int i = 0; i < 29; ++i) {
+  for (int i = 0; i < 13; ++i) {
     nlohmann::json one = scene["vessels"][0];
     one["name"] = std::string("twig-").append(std::to_string(i));
     scene["vessels"].push_back(one);
   }
-  EXPECT_EQ(faultOf([&] { load(scene); }), "scenes/small.json: /: more than 32 organs, vessels and fat together");
+  EXPECT_EQ(faultOf([&] { load(scene); }), "scenes/small.json: /: more than 16 organs, vessels and fat together");
 }
 
 TEST(SceneVessels, defaultsAreTheSchemas) {

@@ -56,7 +56,7 @@ TEST(PerformerSource, saysWhoItIs) {
   const PerformerSource source(profileOf("unskilled"), test::roundScene(), 1);
   EXPECT_EQ(source.provenance().kind, OperatorKind::performer);
   EXPECT_EQ(source.provenance().profile, "unskilled");
-  EXPECT_EQ(source.provenance().profileVersion, "1.0");
+  EXPECT_EQ(source.provenance().profileVersion, profileOf("unskilled").version);
   EXPECT_TRUE(source.provenance().sourceFile.empty());
 }
 

@@ -95,8 +95,9 @@ TEST_F(StateTest, ChangingAFieldChangesItsDigestAndNoOther) {
 }
 
 TEST_F(StateTest, ComponentsAreNamedInOrder) {
-  EXPECT_EQ(model_->layout().components, (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right",
-                                                                   "tissue", "organ.block", "organ.ball"}));
+  EXPECT_EQ(model_->layout().components,
+            (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right", "tissue", "organ.block",
+                                      "organ.ball", "charred.block", "charred.ball"}));
 }
 
 /// An unwritten component keeps its digest, so a component that is written and not marked would be seen here.
@@ -109,7 +110,7 @@ TEST_F(StateTest, IncrementalDigestHashesWhatIsMarked) {
   state.organ[1].position[3][1] += 1e-9;
   EXPECT_EQ(incremental.update(state, none), first) << "nothing marked, nothing hashed";
   std::vector<bool> ball = none;
-  ball.back() = true;
+  ball[State::organsFrom + 1] = true;
   EXPECT_EQ(incremental.update(state, ball), digestOf(state));
   state.hand[0].jaw += 0.1;
   incremental.reset();

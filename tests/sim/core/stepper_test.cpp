@@ -236,8 +236,8 @@ TEST(ModelBuild, SaysWhatIsWrongWithAScene) {
   open.organs[0].surface.triangle.pop_back();
   EXPECT_FALSE(Model::build(open).model) << "an open surface";
   SceneDescription many = test::blockScene(300);
-  many.organs.assign(16, many.organs[0]);
-  EXPECT_FALSE(Model::build(many).model) << "sixteen organs";
+  many.organs.assign(largestStructureCount + 1, many.organs[0]);
+  EXPECT_FALSE(Model::build(many).model) << "seventeen organs";
 }
 
 }  // namespace

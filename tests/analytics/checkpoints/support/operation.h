@@ -101,4 +101,16 @@ class Operation {
   std::uint64_t next = 0;
 };
 
+inline void expectNotApplicable(const CheckpointValue& v, const std::string& reason) {
+  EXPECT_EQ(v.availability, Availability::notApplicable) << v.name;
+  EXPECT_FALSE(v.value) << v.name;
+  EXPECT_EQ(v.reason, reason) << v.name;
+}
+
+inline void expectNotAvailable(const CheckpointValue& v, const std::string& reason) {
+  EXPECT_EQ(v.availability, Availability::notAvailable) << v.name;
+  EXPECT_FALSE(v.value) << v.name;
+  EXPECT_EQ(v.reason, reason) << v.name;
+}
+
 }  // namespace calot::analytics::support

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/recorder/formats/support/scene_with_vessels.h"
+
+namespace calot::recorder::test {
+namespace {
+
+nlohmann::json sceneWithProcedure() {
+  nlohmann::json scene = sceneWithVessels();
+  scene["organs"][0]["burnThrough"] = 1.5;
+  scene["vessels"][0]["burnThrough"] = 2.0;
+  scene["hands"]["right"]["clips"] = 5;
+  scene["fat"][0]["triangle"] =
+      nlohmann::json::parse(R"({"corners": [[0, 0, 0], [0.02, 0, 0], [0, 0.02, 0]], "depth": 0.01})");
+  scene["procedure"] = nlohmann::json::parse(R"({"specimen": "liver", "fat": "pad",
+    "divide": [{"vessel": "branch", "patient": 3, "specimen": 2, "patientAtStart": false}], "spare": ["trunk"]})");
+  scene["retraction"] = nlohmann::json::parse(R"([{"organ": "liver", "centre": [0, 0.01, 0], "radius": 0.02,
+    "displacement": [0, 0.005, 0], "start": 1, "duration": 3, "stiffness": 100, "damping": 4}])");
+  scene["clip"] =
+      nlohmann::json::parse(R"({"width": 0.001, "legs": 0.009, "leastGap": 0.002, "leastJunctionGap": 0.003})");
+  scene["cautery"] =
+      nlohmann::json::parse(R"({"power": 40, "reach": 0.0002, "carve": 0.001, "spot": 3e-6, "charTime": 0.5})");
+  return scene;
+}
+
+TEST(SceneProcedure, EveryValueArrives) {
+  const SceneDescription scene = load(sceneWithProcedure()).description;
+  EXPECT_EQ(scene.organs[0].burnThrough, 1.5);
+  EXPECT_EQ(scene.vessels[0].burnThrough, 2.0);
+  EXPECT_EQ(scene.hands[1].clips, 5U);
+  EXPECT_EQ(scene.hands[0].clips, HandDescription().clips);
+  EXPECT_EQ(scene.fat[0].triangle[1], Vec3(0.02, 0.0, 0.0));
+  EXPECT_EQ(scene.fat[0].triangleDepth, 0.01);
+  EXPECT_EQ(scene.procedure.specimen, "liver");
+  EXPECT_EQ(scene.procedure.bed, "");
+  EXPECT_EQ(scene.procedure.fat, "pad");
+  ASSERT_EQ(scene.procedure.divide.size(), 1U);
+  EXPECT_EQ(scene.procedure.divide[0].vessel, "branch");
+  EXPECT_EQ(scene.procedure.divide[0].patient, 3U);
+  EXPECT_EQ(scene.procedure.divide[0].specimen, 2U);
+  EXPECT_FALSE(scene.procedure.divide[0].patientAtStart);
+  EXPECT_EQ(scene.procedure.spare, std::vector<std::string>{"trunk"});
+  ASSERT_EQ(scene.retraction.size(), 1U);
+  EXPECT_EQ(scene.retraction[0].organ, "liver");
+  EXPECT_EQ(scene.retraction[0].centre, Vec3(0.0, 0.01, 0.0));
+  EXPECT_EQ(scene.retraction[0].radius, 0.02);
+  EXPECT_EQ(scene.retraction[0].displacement, Vec3(0.0, 0.005, 0.0));
+  EXPECT_EQ(scene.retraction[0].start, 1.0);
+  EXPECT_EQ(scene.retraction[0].duration, 3.0);
+  EXPECT_EQ(scene.retraction[0].stiffness, 100.0);
+  EXPECT_EQ(scene.retraction[0].damping, 4.0);
+  EXPECT_EQ(scene.clip.width, 0.001);
+  EXPECT_EQ(scene.clip.legs, 0.009);
+  EXPECT_EQ(scene.clip.leastGap, 0.002);
+  EXPECT_EQ(scene.clip.leastJunctionGap, 0.003);
+  EXPECT_EQ(scene.cautery.power, 40.0);
+  EXPECT_EQ(scene.cautery.reach, 0.0002);
+  EXPECT_EQ(scene.cautery.carve, 0.001);
+  EXPECT_EQ(scene.cautery.spot, 3e-6);
+  EXPECT_EQ(scene.cautery.charTime, 0.5);
+}
+
+TEST(SceneProcedure, EveryFaultIsNamedWithItsPlace) {
+  const auto fault = [](const char* pointer, const char* value) {
+    nlohmann::json scene = sceneWithProcedure();
+    scene[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(value);
+    const std::string said = faultOf([&] { load(scene); });
+    const std::string file = "scenes/small.json: ";
+    return said.compare(0, file.size(), file) == 0 ? said.substr(file.size()) : said;
+  };
+  EXPECT_EQ(fault("/procedure/specimen", "\"spleen\""), "/procedure/specimen: the scene has no organ of this name");
+  EXPECT_EQ(fault("/procedure/bed", "\"bed\""), "/procedure/bed: the scene has no connective tissue of this name");
+  EXPECT_EQ(fault("/procedure/fat", "\"liver\""), "/procedure/fat: the scene has no fat of this name");
+  EXPECT_EQ(fault("/procedure/divide/0/vessel", "\"liver\""),
+            "/procedure/divide/0/vessel: the scene has no vessel of this name");
+  EXPECT_EQ(fault("/procedure/divide/1", "{\"vessel\": \"branch\"}"),
+            "/procedure/divide/1/vessel: is named a second time");
+  EXPECT_EQ(fault("/procedure/divide/0/patient", "-1"), "/procedure/divide/0/patient: -1 is not in [0, 10]");
+  EXPECT_EQ(fault("/procedure/spare/0", "\"branch\""), "/procedure/spare/0: this vessel is to be divided");
+  EXPECT_EQ(fault("/procedure/spare/0", "\"twig\""), "/procedure/spare/0: the scene has no vessel of this name");
+  EXPECT_EQ(fault("/retraction/0/organ", "\"pad\""), "/retraction/0/organ: the scene has no organ of this name");
+  EXPECT_EQ(fault("/retraction/0/radius", "0"), "/retraction/0/radius: 0 is not in (0, 1]");
+  EXPECT_EQ(fault("/hands/right/clips", "-1"), "/hands/right/clips: -1 is not in [0, 100]");
+  EXPECT_EQ(fault("/fat/0/triangle/corners", "[[0, 0, 0], [0.01, 0, 0], [0.02, 0, 0]]"),
+            "/fat/0/triangle/corners: its corners lie on a line, or nearly");
+  EXPECT_EQ(fault("/cautery/power", "0"), "/cautery/power: 0 is not in (0, 1000]");
+}
+
+TEST(SceneProcedure, DefaultsAreTheSchemas) {
+  std::ifstream in(std::string(CALOT_SOURCE_DIR) + "/schemas/scene.schema.json");
+  const nlohmann::json d = nlohmann::json::parse(in).at("$defs");
+  const auto number = [&](const char* definition, const char* key) {
+    return d.at(definition).at("properties").at(key).at("default").get<double>();
+  };
+  EXPECT_EQ(DivideDescription().patient, number("divide", "patient"));
+  EXPECT_EQ(DivideDescription().specimen, number("divide", "specimen"));
+  EXPECT_EQ(RetractionDescription().duration, number("retraction", "duration"));
+  EXPECT_EQ(RetractionDescription().stiffness, number("retraction", "stiffness"));
+  EXPECT_EQ(RetractionDescription().damping, number("retraction", "damping"));
+  EXPECT_EQ(ClipDescription().width, number("clip", "width"));
+  EXPECT_EQ(ClipDescription().legs, number("clip", "legs"));
+  EXPECT_EQ(ClipDescription().leastGap, number("clip", "leastGap"));
+  EXPECT_EQ(ClipDescription().leastJunctionGap, number("clip", "leastJunctionGap"));
+  EXPECT_EQ(CauteryDescription().power, number("cautery", "power"));
+  EXPECT_EQ(CauteryDescription().reach, number("cautery", "reach"));
+  EXPECT_EQ(CauteryDescription().carve, number("cautery", "carve"));
+  EXPECT_EQ(CauteryDescription().spot, number("cautery", "spot"));
+  EXPECT_EQ(CauteryDescription().charTime, number("cautery", "charTime"));
+  EXPECT_EQ(OrganDescription().burnThrough, number("organ", "burnThrough"));
+  EXPECT_EQ(VesselDescription().burnThrough, number("vessel", "burnThrough"));
+  EXPECT_EQ(HandDescription().clips, number("hand", "clips"));
+}
+
+}  // namespace
+}  // namespace calot::recorder::test
