@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "recorder/attempt.h"
+#include "recorder/live/guarded_source.h"
 #include "recorder/live/haptic_thread.h"
 #include "recorder/live/paced_clock.h"
 #include "recorder/live/source_pause.h"
@@ -140,12 +141,15 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
 RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& settings) {
   RunReport report;
   const Nanoseconds begin = monotonicNow();
-  Observer* watcher = source.watcher();
+  std::optional<GuardedSource> guarded;
+  if (settings.live && source.watcher() != nullptr) guarded.emplace(source);
+  SampleSource& asked = guarded ? *guarded : source;
+  Observer* watcher = asked.watcher();
   if (watcher != nullptr) session.join(*watcher);
   if (settings.live) {
-    runLive(session, source, settings, report);
+    runLive(session, asked, settings, report);
   } else {
-    runInline(session, source, settings, report);
+    runInline(session, asked, settings, report);
   }
   report.steps = session.steps();
   if (watcher != nullptr) session.leave(*watcher);

@@ -30,7 +30,6 @@ Outcome OperationSource::ending() const { return gaveUp_ ? Outcome::abandoned : 
 
 void OperationSource::onStep(const StepRecord& record) {
   const FloatingPointScope environment;
-  const std::lock_guard<std::mutex> lock(mutex_);
   for (const Event& event : record.result.events) {
     if (event.kind == EventKind::clipHalfOn && event.hand == worker) ++badClips_;
   }
@@ -52,7 +51,6 @@ void OperationSource::decide(double time) {
 
 bool OperationSource::next(std::uint64_t tick, TickSamples& out) {
   const FloatingPointScope environment;
-  const std::lock_guard<std::mutex> lock(mutex_);
   const double time = static_cast<double>(tick) * tickLength;
   if (gaveUp_ && !working_.done()) return false;
   if (working_.done() && hand_[worker].idle(time)) {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 
 #include "recorder/observer.h"
@@ -45,7 +44,6 @@ class OperationSource final : public SampleSource, private Observer {
   HoldingMind holding_;
   WorkingMind working_;
   Random random_;
-  std::mutex mutex_;  ///< of all that both next() and onStep() touch: what follows
   bool wantsToLook_ = false;
   std::optional<Sight> sight_;
   std::uint32_t badClips_ = 0;

@@ -182,7 +182,7 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
       {"/organs/1/name", "\"liver\"", "scenes/small.json: /organs/1/name: another organ has this name"},
       {"/organs/1/name", "\"Gall bladder\"",
        "scenes/small.json: /organs/1/name: small letters, digits and hyphens are allowed, the first no hyphen"},
-      {"/organs", "[]", "scenes/small.json: /organs: 0 entries; from 1 to 32 are allowed"},
+      {"/organs", "[]", "scenes/small.json: /organs: 0 entries; from 1 to 16 are allowed"},
       {"/organs/0/mesh/unit", "\"inch\"", "scenes/small.json: /organs/0/mesh/unit: unknown word; known are cm, m, mm"},
       {"/organs/0/mesh/file", "\"organs/b.obj\"",
        "scenes/small.json: /organs/0/mesh/file: there is no asset \"organs/b.obj\""},

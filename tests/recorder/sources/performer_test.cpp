@@ -276,7 +276,7 @@ TEST(FindPerformer, byNameOrPath) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ExitCode::usage);
-    EXPECT_STREQ(e.what(), "there is no performer \"expert\"; there are skilled, unskilled");
+    EXPECT_STREQ(e.what(), "there is no performer \"expert\"; there are intermediate, skilled, unskilled");
   }
 }
 
