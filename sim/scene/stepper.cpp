@@ -194,7 +194,8 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
   }
   tiesOf.resize(body.size());
   for (std::size_t t = 0; t < model.ties().size(); ++t) {
-    for (const std::size_t side : {0, 1}) tiesOf[model.ties()[t].body[side]].emplace_back(t, side);
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
+      tiesOf[model.ties()[t].body[side]].emplace_back(t, side);
   }
   result.organ.resize(organs);
   result.connective.resize(model.connective().size());

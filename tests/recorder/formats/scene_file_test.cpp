@@ -165,7 +165,7 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
       {"/organs/0/material/density", "", "scenes/small.json: /organs/0/material: the key \"density\" is missing"},
       {"/organs/0/colour", "1",
        "scenes/small.json: /organs/0/colour: unknown key; known are name, appearance, mesh, tetrahedra, material, "
-       "friction, anchors"},
+       "friction, burnThrough, anchors"},
       {"/organs/0/tetrahedra", "9", "scenes/small.json: /organs/0/tetrahedra: 9 is not in [10, 1000000]"},
       {"/organs/0/tetrahedra", "100.5", "scenes/small.json: /organs/0/tetrahedra: a whole number is wanted"},
       {"/organs/0/tetrahedra", "-100", "scenes/small.json: /organs/0/tetrahedra: -100 is not in [10, 1000000]"},
