@@ -14,8 +14,8 @@ namespace {
 constexpr double grownLength = 0.003;
 /// Of all ties of one end together: stiffer than the tissue on both sides, soft enough to be solved from each side in
 /// turn (N/m, N s/m).
-constexpr double grownStiffness = 600.0;
-constexpr double grownDamping = 2.0;
+constexpr double grownStiffness = 200.0;
+constexpr double grownDamping = 0.0;
 
 int nearestNode(const BeamModel& beams, std::size_t branch, const Vec3& point) {
   const std::vector<int>& nodes = beams.branches()[branch].node;
