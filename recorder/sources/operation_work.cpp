@@ -28,6 +28,12 @@ constexpr double firstClip = 0.30;
 constexpr double cutAt = 0.52;
 constexpr double lastClip = 0.64;
 
+/// The station of a vessel's course that is nearest to an arc length (m).
+std::size_t stationAt(double place, std::size_t stations) {
+  const double last = static_cast<double>(stations) - 1.0;
+  return static_cast<std::size_t>(std::floor(std::clamp(place / PerformerSight::spacing, 0.0, last) + 0.5));
+}
+
 }  // namespace
 
 void WorkingMind::clear(const Sight& sight) {
@@ -134,8 +140,7 @@ void WorkingMind::clip(const Sight& sight) {
     place = patient == 0 ? firstClip * length : last + clipSpacing;
     if (place > cutPlace - 0.002) place = firstClip * length - clipSpacing;
   }
-  const auto station =
-      std::min(static_cast<std::size_t>(place / PerformerSight::spacing + 0.5), vessel.centre.size() - 1);
+  const std::size_t station = stationAt(place, vessel.centre.size());
   if (bring(vessel.centre[station], vessel.along[station], hover, clipDepth, clipJaw)) {
     closeAndLeave(clipJaw);
     looks_ = 0;
@@ -172,8 +177,7 @@ void WorkingMind::cut(const Sight& sight) {
     if (c >= cutAt * length) to = std::min(to, c);
   }
   const double place = vessel.clip.empty() ? cutAt * length : 0.5 * (from + to);
-  const auto station =
-      std::min(static_cast<std::size_t>(place / PerformerSight::spacing + 0.5), vessel.centre.size() - 1);
+  const std::size_t station = stationAt(place, vessel.centre.size());
   const double depth = bladeDepth + bladeTrial * (static_cast<double>(tries_ % 3U) - 0.5);
   if (bring(vessel.centre[station], vessel.along[station], hover, depth, bladeJaw)) {
     closeAndLeave(bladeJaw);
