@@ -37,8 +37,8 @@ std::vector<ObjectRule> makeRules() {
       {"operation",
        {bounded("hesitationShare", 0, 1), bounded("hesitation", 0, 10), bounded("pedalLag", 0, 2),
         bounded("keepOff", 0, 0.005), bounded("layer", 0.0001, 0.005), bounded("bareShare", 0, 1),
-        bounded("strokes", 0, 200), bounded("burnSpeed", 0.0005, 0.1), bounded("pull", 0, 0.05), bounded("slipShare", 0, 1),
-        bounded("patience", 10, 3600)}},
+        bounded("strokes", 0, 200), bounded("burnSpeed", 0.0005, 0.1), bounded("pull", 0, 0.05),
+        bounded("slipShare", 0, 1), bounded("patience", 10, 3600)}},
   };
 }
 
