@@ -187,8 +187,8 @@ class SolidSolver {
     static constexpr std::size_t mostNodes = 24;  ///< a triangle whose corners lie in three cubes
     std::array<int, mostNodes> node{};
     std::array<double, mostNodes> weight{};  ///< share of each node
-    std::size_t count = 0;            ///< how many of them count
-    Vec3 impulse = Vec3::Zero();      ///< N s
+    std::size_t count = 0;                   ///< how many of them count
+    Vec3 impulse = Vec3::Zero();             ///< N s
   };
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
                         std::vector<std::vector<Vec3>>& response, Executor& executor);
