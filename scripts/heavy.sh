@@ -1,12 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The long tests: everything labelled `heavy` (the whole determinism matrix among them). Arguments go to ctest.
+# The long tests: everything labelled `heavy` (the whole determinism matrix among them), after all of the tree, tests
+# included, was built and run by clang. Arguments go to ctest.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 "$root/scripts/setup.sh"
 configure release
 build release
+configure clang "-DCALOT_OTHER=$root/build/release/bin/calot"
+build clang
+say "test clang"
+ctest --test-dir "$root/build/clang" --label-exclude 'heavy|determinism' --parallel "$jobs" --output-on-failure --no-tests=error
 say "heavy tests"
 ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure --no-tests=error "$@"
 say "passed"

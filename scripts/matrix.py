@@ -5,8 +5,8 @@
 Each cell is a compiler, an optimisation level and a machine; each runs tests/determinism/matrix_main.cpp, which links sim/
 and nothing else, over the same States: 200 steps, a line of digests each. All lines of all cells must be equal.
 
-  --short   a cell of each compiler, both ends of the optimisation levels, the widest machine that runs here, 2 threads,
-            a host that flushes denormals to zero
+  --short   gcc at -O3 for x86-64 and for the widest machine that runs here, clang at -O0, 2 threads, a host that flushes
+            denormals to zero; with --tree, build trees that hold a calot-matrix stand in for all but the widest machine
   --full    {gcc, clang} x {-O0 .. -O3} x {x86-64, v3, v4, native} x {1, 2 threads}, the same host, and aarch64 under qemu
 
 Exit: 0 all equal; 3 some differ; 1 something could not be built or run. Cells that this machine cannot run are printed as
@@ -48,6 +48,9 @@ class Build:
     def name(self):
         return f"{self.compiler}{self.level}-{self.machine}"
 
+    def program(self, work):
+        return work / self.name / "calot-matrix"
+
     def command(self):
         if self.machine == "aarch64":
             target = ["--target=aarch64-linux-gnu"] if self.compiler == "clang" else []
@@ -60,8 +63,22 @@ class Build:
 
 
 @dataclasses.dataclass(frozen=True)
+class Tree:
+    """The program of a build tree of the project: that tree's compiler and flags."""
+    folder: pathlib.Path
+    machine: str = "as built"
+
+    @property
+    def name(self):
+        return f"tree {self.folder.name}"
+
+    def program(self, _work):
+        return self.folder / "bin" / "calot-matrix"
+
+
+@dataclasses.dataclass(frozen=True)
 class Cell:
-    build: Build
+    build: Build | Tree
     threads: int = 1
     flush_to_zero: bool = False
 
@@ -83,6 +100,8 @@ def cpu_flags():
 
 def reason_to_skip(build):
     """Why this machine cannot build or run it, or None."""
+    if isinstance(build, Tree):
+        return None
     if not shutil.which(build.command()[0]):
         return f"no {build.command()[0]} here"
     if build.machine == "aarch64":
@@ -96,11 +115,12 @@ def reason_to_skip(build):
     return f"this processor has no {missing[0]}" if missing else None
 
 
-def short_cells():
+def short_cells(trees=()):
     widest = "x86-64-v4" if reason_to_skip(Build("gcc", "-O3", "x86-64-v4")) is None else "x86-64-v3"
-    base, wide = Build("gcc", "-O3", "x86-64"), Build("gcc", "-O3", widest)
-    plain = Build("clang", "-O0", "x86-64")
-    return [Cell(base), Cell(base, 2), Cell(base, 1, True), Cell(wide), Cell(plain), Cell(plain, 1, True)]
+    wide = Build("gcc", "-O3", widest)
+    base, *others = [Tree(t) for t in trees] or [Build("gcc", "-O3", "x86-64"), Build("clang", "-O0", "x86-64")]
+    cells = [Cell(base), Cell(base, 2), Cell(base, 1, True), Cell(wide)]
+    return cells + [Cell(other, 1, flush) for other in others for flush in (False, True)]
 
 
 def full_cells():
@@ -198,7 +218,7 @@ def make_states(calot, work):
 def run_cell(cell, states, work):
     """The lines that the cell prints over all States; raises RuntimeError where it fails."""
     lines = []
-    program = [str(work / cell.build.name / "calot-matrix")]
+    program = [str(cell.build.program(work))]
     if cell.build.machine == "aarch64":
         program.insert(0, "qemu-aarch64")
     for state in states:
@@ -228,6 +248,8 @@ def self_test():
     assert judge(["a"], ["a", "b"]).startswith("DIFFERENT: 1 lines")
     assert len({c.name for c in full_cells()}) == len(full_cells())
     assert {c.build.compiler for c in short_cells()} == {"gcc", "clang"}
+    short = short_cells([pathlib.Path("a"), pathlib.Path("b")])
+    assert [c.build.name for c in short if isinstance(c.build, Tree)] == ["tree a"] * 3 + ["tree b"] * 2 and len(short) == 6
     cmake = (ROOT / "CMakeLists.txt").read_text()
     for flag in CONTRACT[1:]:
         assert flag.removeprefix("-D") in cmake, f"{flag} is not in CMakeLists.txt"
@@ -242,6 +264,7 @@ def main():
     size.add_argument("--self-test", action="store_true")
     parser.add_argument("--calot", type=pathlib.Path, help="release build of calot, which makes the States")
     parser.add_argument("--state", type=pathlib.Path, action="append", help="a stored State (calot state --flat) to use instead")
+    parser.add_argument("--tree", type=pathlib.Path, action="append", default=[], help="a build tree with bin/calot-matrix (--short)")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/matrix")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--json", type=pathlib.Path, help="write the table to this file too")
@@ -252,13 +275,19 @@ def main():
     if not arguments.state and not arguments.calot:
         parser.error("give --calot or --state")
 
-    cells = full_cells() if arguments.full else short_cells()
+    if arguments.tree and arguments.full:
+        parser.error("--tree goes with --short: --full builds every cell itself")
+    trees = [t.resolve() for t in arguments.tree]
+    for tree in trees:
+        if not Tree(tree).program(None).is_file():
+            parser.error(f"--tree {tree}: no bin/calot-matrix there: build the target calot-matrix")
+    cells = full_cells() if arguments.full else short_cells(trees)
     work = arguments.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     states = [s.resolve() for s in arguments.state] if arguments.state else make_states(arguments.calot.resolve(), work)
     builds = list(dict.fromkeys(c.build for c in cells))
     skipped = {b: reason for b in builds if (reason := reason_to_skip(b))}
-    wanted = [b for b in builds if b not in skipped]
+    wanted = [b for b in builds if b not in skipped and isinstance(b, Build)]
     print(f"matrix: {len(wanted)} builds of the core, {len(skipped)} skipped, States {', '.join(s.name for s in states)}", flush=True)
     start = time.monotonic()
     failed = build_all(wanted, work, arguments.jobs)
