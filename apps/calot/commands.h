@@ -26,5 +26,6 @@ void addParticipant(CLI::App& app, Run& run);
 void addScenes(CLI::App& app, Run& run);
 void addCheckpoints(CLI::App& app, Run& run);
 void addDevices(CLI::App& app, Run& run);
+void addGolden(CLI::App& app, Run& run);
 
 }  // namespace calot::apps

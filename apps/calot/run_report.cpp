@@ -73,6 +73,9 @@ int tell(const FinishedRun& run, bool json) {
                     "will not replay",
                     run.file, run.report.disagreements));
   }
+  if (!run.report.fault.empty()) {
+    throw Error(ExitCode::failure, fmt::format("{}: {}", run.file, run.report.fault));
+  }
   return 0;
 }
 

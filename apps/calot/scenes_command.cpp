@@ -10,6 +10,7 @@
 #include "apps/calot/environment.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
+#include "sim/scene/model.h"
 
 namespace calot::apps {
 namespace {
@@ -31,19 +32,51 @@ void printTable(const std::vector<recorder::LoadedScene>& scenes) {
   }
 }
 
-void printJson(const std::vector<recorder::LoadedScene>& scenes) {
-  json list = json::array();
-  for (const recorder::LoadedScene& scene : scenes) {
-    json organs = json::array();
-    for (const OrganDescription& organ : scene.description.organs) {
-      organs.push_back(
-          {{"name", organ.name}, {"tetrahedra", organ.tetrahedra}, {"triangles", organ.surface.triangle.size()}});
+/// What a step of the scene computes with.
+void addCounts(const Model& model, json& row) {
+  json organs = json::array();
+  for (const OrganModel& organ : model.organs()) {
+    organs.push_back({{"name", organ.name},
+                      {"tetrahedra", organ.solid.tetrahedra().size()},
+                      {"nodes", organ.solid.nodes()},
+                      {"triangles", organ.surface.triangles().size()}});
+  }
+  row["organs"] = organs;
+  json vessels = json::array();
+  for (const VesselTree& tree : model.vesselTrees()) {
+    for (std::size_t b = 0; b < tree.vessel.size(); ++b) {
+      vessels.push_back(
+          {{"name", model.scene().vessels[tree.vessel[b]].name}, {"beams", tree.beams.branches()[b].elements()}});
     }
-    list.push_back({{"name", scene.description.name},
-                    {"version", versionOf(scene.description)},
-                    {"summary", scene.summary},
-                    {"ticksPerStep", scene.description.ticksPerStep},
-                    {"organs", organs}});
+  }
+  row["vessels"] = vessels;
+  json fat = json::array();
+  for (std::size_t i = 0; i < model.fat().size(); ++i) {
+    const FatModel& body = *model.fat()[i];
+    fat.push_back({{"name", model.scene().fat[i].name},
+                   {"cellSize", body.lattice().cell()},
+                   {"hexahedra", body.solid().cubes().size()}});
+  }
+  row["fat"] = fat;
+  json connective = json::array();
+  for (const ConnectiveModel& c : model.connective())
+    connective.push_back({{"name", c.name}, {"springs", c.tissue.strands().size()}});
+  row["connective"] = connective;
+  row["ties"] = model.ties().size();
+}
+
+void printJson(std::vector<recorder::LoadedScene> scenes) {
+  json list = json::array();
+  for (recorder::LoadedScene& scene : scenes) {
+    json row = {{"name", scene.description.name},
+                {"version", versionOf(scene.description)},
+                {"summary", scene.summary},
+                {"ticksPerStep", scene.description.ticksPerStep}};
+    const std::string name = scene.description.name;
+    const Model::Built built = Model::build(std::move(scene.description));
+    if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", name, built.error));
+    addCounts(*built.model, row);
+    list.push_back(std::move(row));
   }
   fmt::print("{}\n", json{{"scenes", list}}.dump(2));
 }
@@ -53,7 +86,7 @@ void printJson(const std::vector<recorder::LoadedScene>& scenes) {
 void addScenes(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("scenes", "List the scenes that can be simulated");
   const auto asJson = std::make_shared<bool>(false);
-  command->add_flag("--json", *asJson, "Print JSON");
+  command->add_flag("--json", *asJson, "Print JSON, with what each scene is built of");
   command->callback([&run, asJson] {
     run = [asJson] {
       const std::vector<std::filesystem::path> files = recorder::listScenes(assetFolders());
@@ -74,7 +107,7 @@ void addScenes(CLI::App& app, Run& run) {
           damaged = true;
         }
       }
-      *asJson ? printJson(scenes) : printTable(scenes);
+      *asJson ? printJson(std::move(scenes)) : printTable(scenes);
       return static_cast<int>(damaged ? ExitCode::damaged : ExitCode::yes);
     };
   });

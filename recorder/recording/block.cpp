@@ -186,7 +186,8 @@ void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* 
     visitTick(record.samples[t], record.ticks[t], visit);
   }
   AppendVisitor visit{layout, block, layout.tickColumns};
-  visitStep(record.digest, record.lateness, record.result, visit);
+  const std::uint64_t forces = layout.lean ? forceDigest(record.ticks) : 0;
+  visitStep(record.digest, forces, record.lateness, record.result, visit);
   for (const Event& event : record.result.events) {
     assert(event.step == record.step);
     appendEvent(event, block.column[layout.events]);
@@ -225,7 +226,7 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
     }
   }
   ExtractVisitor visit{layout, block, at, layout.tickColumns, false, {}};
-  visitStep(out.digest, out.lateness, out.result, visit);
+  visitStep(out.digest, out.forces, out.lateness, out.result, visit);
   out.result.step = out.step;
   return named(visit.fault, out.step);
 }

@@ -150,12 +150,9 @@ struct WriteAttributes {
   }
 };
 
-StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout) {
-  WriteAttributes attributes{builder};
-  visitAttributes(header, attributes);
+void observables(Builder& builder, const AttemptHeader& header, const Layout& layout) {
   for (const char* name :
-       {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps", "/observables",
-        "/observables/left", "/observables/right", "/observables/contact", "/keyframes"}) {
+       {"/observables", "/observables/left", "/observables/right", "/observables/contact", "/keyframes"}) {
     builder.group(name);
   }
   if (layout.organs > 0) builder.group("/observables/organs");
@@ -163,12 +160,19 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
   if (layout.vessels > 0) builder.group("/observables/vessels");
   if (layout.fat > 0) builder.group("/observables/fat");
   if (layout.procedure) builder.group("/observables/procedure");
+  const Id g = hdf5::group(H5Gopen2(builder.root(), "/observables", H5P_DEFAULT));
+  builder.attribute(g.get(), "version", H5T_STD_U32LE, &header.stepResultVersion);
+}
+
+StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout) {
+  WriteAttributes attributes{builder};
+  visitAttributes(header, attributes);
+  for (const char* name : {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps"}) {
+    builder.group(name);
+  }
+  if (!layout.lean) observables(builder, header, layout);
   if (layout.deviceSamples) {
     for (const char* name : {"/device", "/device/left", "/device/right"}) builder.group(name);
-  }
-  {
-    const Id g = hdf5::group(H5Gopen2(builder.root(), "/observables", H5P_DEFAULT));
-    builder.attribute(g.get(), "version", H5T_STD_U32LE, &header.stepResultVersion);
   }
   for (const Column& column : layout.columns) {
     if (column.width == 0) continue;

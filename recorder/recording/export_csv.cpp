@@ -190,8 +190,9 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   visitTick(samples, outcome, tickTitles);
   const StateDigest digest;
   const StepResult result;
+  const std::uint64_t forces = 0;
   const float lateness = 0.0F;
-  visitStep(digest, lateness, result, stepTitles);
+  visitStep(digest, forces, lateness, result, stepTitles);
   endRows(ticks);
   endRows(steps);
   CsvTable events(stage, "/events");
@@ -210,7 +211,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
     }
     beginRows(steps, n);
     ValueVisitor values{layout, steps};
-    visitStep(step.digest, step.lateness, step.result, values);
+    visitStep(step.digest, step.forces, step.lateness, step.result, values);
     endRows(steps);
     for (const Event& e : step.result.events) {
       events.put(e.step);

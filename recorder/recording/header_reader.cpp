@@ -212,13 +212,14 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
       h.layout.fields.push_back({component[i], fields[i]});
     }
   }
+  h.deviceSamples = reader.there("/device");
+  if (Layout(h).lean) return h;
   const Id observables = hdf5::group(H5Gopen2(file.get(), "/observables", H5P_DEFAULT));
   if (!observables.valid()) throw damaged(path, "/observables", "is missing");
   std::uint32_t version = 0;
   reader.number(observables.get(), "/observables", "version", H5T_STD_U32LE, &version);
   if (version != h.stepResultVersion)
     throw damaged(path, "/observables@version", "is not the root's step_result_version");
-  h.deviceSamples = reader.there("/device");
   return h;
 }
 

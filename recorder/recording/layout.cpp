@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "sim/math/digest.h"
+
 namespace calot::recorder {
 
 std::size_t elementBytes(Element element) {
@@ -141,8 +143,20 @@ bool hasProcedure(const AttemptHeader& header) {
   return std::find(components.begin(), components.end(), "procedure") != components.end();
 }
 
+std::uint64_t forceDigest(std::span<const TickOutcome> ticks) {
+  DigestStream stream;
+  for (const TickOutcome& tick : ticks) {
+    for (const HandTick& hand : tick.hand) {
+      stream.append(hand.force.data(), 3 * sizeof(double));
+      stream.append(hand.torque.data(), 3 * sizeof(double));
+    }
+  }
+  return stream.value();
+}
+
 Layout::Layout(const AttemptHeader& header)
     : deviceSamples(header.deviceSamples),
+      lean(header.purpose == "golden"),
       ticksPerStep(header.ticksPerStep),
       organs(header.organs.size()),
       tissues(header.stepResultVersion >= 2 ? connectiveNames(header).size() : 0),
@@ -167,9 +181,10 @@ Layout::Layout(const AttemptHeader& header)
   tickColumns = columns.size();
   collect.stream = Stream::steps;
   StateDigest digest;
+  std::uint64_t forces = 0;
   float lateness = 0.0F;
   StepResult result;
-  visitStep(digest, lateness, result, collect);
+  visitStep(digest, forces, lateness, result, collect);
   stepColumns = columns.size() - tickColumns;
 
   const auto irregular = [this](const char* path, Element element, Stream stream, std::uint64_t chunkRows,
@@ -186,6 +201,7 @@ Layout::Layout(const AttemptHeader& header)
   events = irregular("/events", Element::event, Stream::events, 32, false);
   keyframeIndex = irregular("/keyframes/index", Element::keyframe, Stream::keyframes, 16, false);
   keyframeWords = irregular("/keyframes/bytes", Element::u8, Stream::keyframeWords, keyframeChunkWords, true);
+  if (lean) columns[keyframeIndex].width = columns[keyframeWords].width = 0;
   for (std::size_t h = 0; h < raw.size(); ++h) {
     static constexpr std::array<const char*, handCount> path{"/device/left/samples", "/device/right/samples"};
     static constexpr std::array<Stream, handCount> stream{Stream::rawLeft, Stream::rawRight};

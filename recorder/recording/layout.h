@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,7 @@ struct Layout {
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
   std::array<std::size_t, handCount> raw{};
   bool deviceSamples = false;  ///< there is a /device
+  bool lean = false;           ///< golden: a digest in the place of forces; neither observables nor keyframes
   std::uint32_t ticksPerStep = 10;
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;
@@ -100,6 +102,7 @@ void visitTick(Samples& s, Outcome& o, Visitor& visit) {
     visit(folder[h], "buttons", "", s.hand[h].buttons);
     visit(folder[h], "valid", "", s.hand[h].valid);
     visit(folder[h], "contact_set", "", o.hand[h].contactSet);
+    if (visit.layout.lean) continue;
     visit(folder[h], "force", "N", o.hand[h].force);
     visit(folder[h], "torque", "N m", o.hand[h].torque);
   }
@@ -160,6 +163,7 @@ void visitProcedure(Result& r, Visitor& visit) {
 /// Lists what a StepResult stores, but for its events.
 template <class Result, class Visitor>
 void visitResult(Result& r, Visitor& visit) {
+  if (visit.layout.lean) return;
   static constexpr std::array<const char*, handCount> folder{"/observables/left", "/observables/right"};
   for (std::size_t h = 0; h < folder.size(); ++h) {
     visit(folder[h], "instrument", "", r.hand[h].instrument);
@@ -210,11 +214,15 @@ void visitResult(Result& r, Visitor& visit) {
   if (visit.layout.procedure) visitProcedure(r, visit);
 }
 
-/// Lists what one step stores, but for its events.
-template <class Digest, class Lateness, class Result, class Visitor>
-void visitStep(Digest& digest, Lateness& lateness, Result& r, Visitor& visit) {
+/// XXH3-64 of a step's forces and torques: tick by tick, left hand first.
+std::uint64_t forceDigest(std::span<const TickOutcome> ticks);
+
+/// Lists what one step stores, but for its events. @param forces digest of its ticks' forces
+template <class Digest, class Forces, class Lateness, class Result, class Visitor>
+void visitStep(Digest& digest, Forces& forces, Lateness& lateness, Result& r, Visitor& visit) {
   visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
   visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);
+  if (visit.layout.lean) visit("/steps", "force_digest", "", forces);
   visit.outside("/steps", "lateness", "s", lateness);
   visitResult(r, visit);
 }

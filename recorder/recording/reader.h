@@ -35,6 +35,7 @@ struct RecordedStep {
   std::vector<TickOutcome> ticks;    ///< as many
   StepResult result;                 ///< with its events
   StateDigest digest;
+  std::uint64_t forces = 0;  ///< golden: digest of the ticks' forces, which are not there themselves
   float lateness = 0.0F;
 };
 

@@ -182,7 +182,7 @@ void RecordingWriter::onStep(const StepRecord& record) {
   Impl& impl = *impl_;
   assert(!impl.ended && record.step == impl.nextStep);
   ++impl.nextStep;
-  if (record.keyframe && impl.nextStep % impl.layout.keyframeInterval == 0) {
+  if (record.keyframe && !impl.layout.lean && impl.nextStep % impl.layout.keyframeInterval == 0) {
     const Keyframe keyframe = record.keyframe();
     appendStep(impl.layout, record, &keyframe, impl.keyframeWords, *impl.filling);
   } else {

@@ -88,6 +88,10 @@ def is_fixed_string(dtype):
     return dtype.kind == "S" and h5py.check_string_dtype(dtype).length is not None
 
 
+# What a golden recording goes without.
+NOT_GOLDEN = re.compile(r"^/(observables|keyframes)|^/ticks/(left|right|<hand>)/(force|torque)$")
+
+
 class Checker:
     def __init__(self, file, rows):
         self.file, self.rows, self.faults = file, rows, []
@@ -98,7 +102,7 @@ class Checker:
         self.counts = {"O": organs, "V": vessels, "A": fat, "S": organs + vessels + fat, "C": len(components),
                        "F": count("/steps/field_names"), "V2": version >= 2, "V3": version >= 3,
                        "O3": organs if version >= 3 else 0, "P": int(version >= 3 and b"procedure" in components),
-                       "D": int("/device" in file),
+                       "D": int("/device" in file), "G": int(as_text(file.attrs["purpose"]) == b"golden"),
                        "K": sum(name.startswith(b"connective.") for name in components) if version >= 2 else 0}
         if version < 3 and vessels + fat > 0:
             self.fault(f"/scene: version {version} has neither vessels nor fat")
@@ -121,6 +125,10 @@ class Checker:
             else:
                 self.thing(name, kind, thing, row)
         for p, row in patterns:
+            if self.counts["G"] and NOT_GOLDEN.match(row["name"]):
+                if any(p.match(name) for name in found):
+                    self.fault(f"{row['name']}: is in a golden recording")
+                continue
             needed = row["presence"] == "required" or (
                 row["presence"].startswith("required if ") and self.counts[row["presence"].split()[-1]] > 0)
             if row["presence"] not in ("required", "optional") and not row["presence"].startswith("required if "):
@@ -236,7 +244,7 @@ def chain_heads(file, rows):
                            {"/events": "events", "/keyframes/index": "keyframes", "/keyframes/bytes": "keyframe_words"}[path])
     chained = [f"/ticks/{hand}/{name}" for hand in ("left", "right") for name in (
         "position", "orientation", "instrument", "jaw", "buttons", "valid", "contact_set", "force", "torque")]
-    chained += ["/camera/position", "/camera/orientation", "/steps/component_digest", "/steps/field_digest"]
+    chained += ["/camera/position", "/camera/orientation", "/steps/component_digest", "/steps/field_digest", "/steps/force_digest"]
     chained += [r["name"] for r in rows if r["name"].startswith("/observables") and r["kind"] == "dataset"]
     chained += ["/events", "/keyframes/index", "/keyframes/bytes"]
     for k in range(1, len(status)):

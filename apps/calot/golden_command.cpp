@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot golden: recordings that every build of their simulation version must replay bit for bit.
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "analytics/checkpoints/collector.h"
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "apps/calot/golden_list.h"
+#include "apps/calot/golden_update.h"
+#include "apps/calot/replay_report.h"
+#include "apps/calot/stop_request.h"
+#include "recorder/errors.h"
+#include "recorder/replay.h"
+
+namespace calot::apps {
+
+namespace {
+
+struct Options {
+  std::string folder, reason, only;
+  unsigned threads = 1;
+  bool json = false;
+};
+
+std::filesystem::path folderOf(const Options& o) {
+  if (!o.folder.empty()) return o.folder;
+  for (const std::filesystem::path& root : assetFolders()) {
+    if (std::filesystem::exists(root / "golden" / "golden.json")) return root / "golden";
+  }
+  throw Error(ExitCode::damaged, "golden: no asset folder holds golden/golden.json: name one with --folder");
+}
+
+/// A replay, and the checkpoints that differ from what they were when the recording was made.
+struct Checked {
+  recorder::ReplayReport report;
+  std::vector<std::string> changed;
+};
+
+Checked checkOne(const std::filesystem::path& file, const GoldenEntry& entry, unsigned threads) {
+  Checked checked;
+  std::unique_ptr<analytics::CheckpointCollector> collector;
+  recorder::ReplaySettings settings;
+  settings.threads = threads;
+  settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
+    collector = std::make_unique<analytics::CheckpointCollector>(h, model.scene());
+    return std::vector<recorder::Observer*>{collector.get()};
+  };
+  checked.report = recorder::replayRecording(file, settings);
+  if (checked.report.verdict != recorder::ReplayVerdict::exact) return checked;
+  checked.changed = changedValues(entry.values, goldenValues(collector->values()));
+  if (checked.changed.empty()) return checked;
+  // The simulation is the same; what is computed over it is not.
+  checked.report.verdict = recorder::ReplayVerdict::diverged;
+  checked.report.message = fmt::format("bit-exact, but {} checkpoints have other values: {}", checked.changed.size(),
+                                       checked.changed.front());
+  return checked;
+}
+
+int check(const Options& o) {
+  const std::filesystem::path folder = folderOf(o);
+  const GoldenList list = readGoldenList(folder / "golden.json");
+  std::vector<recorder::ReplayReport> reports;
+  nlohmann::json rows = nlohmann::json::array();
+  Progress progress("replaying, recordings", o.json);
+  for (const GoldenEntry& entry : list.recordings) {
+    if (!o.only.empty() && entry.file != o.only) continue;
+    const Checked checked = checkOne(folder / entry.file, entry, o.threads);
+    reports.push_back(checked.report);
+    progress.show(reports.size(), list.recordings.size());
+    if (o.json) {
+      nlohmann::json row = reportJson(checked.report);
+      row["changed_checkpoints"] = checked.changed;
+      rows.push_back(row);
+    } else {
+      printReport(checked.report);
+      for (const std::string& line : checked.changed) fmt::print("    {}\n", line);
+    }
+  }
+  if (reports.empty()) throw Error(ExitCode::usage, fmt::format("golden: --only {}: not in the list", o.only));
+  if (o.json) std::cout << rows.dump(2) << '\n';
+  return static_cast<int>(worstOf(reports));
+}
+
+int update(const Options& o) {
+  stopOnSignals();
+  const std::filesystem::path folder = folderOf(o);
+  const GoldenList list = readGoldenList(folder / "golden.json");
+  refuseUpdate(folder, list, o.reason);
+  updateGolden(folder, list, o.reason, [](const GoldenEntry& before, const GoldenEntry& now) {
+    const std::vector<std::string> changed = changedValues(before.values, now.values);
+    fmt::print("{}: {} checkpoints, {} changed\n", now.file, now.values.size(), changed.size());
+    for (const std::string& line : changed) fmt::print("    {}\n", line);
+    std::fflush(stdout);
+  });
+  return static_cast<int>(ExitCode::yes);
+}
+
+}  // namespace
+
+void addGolden(CLI::App& app, Run& run) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("golden", "Recordings that every build must replay bit for bit.");
+  command->require_subcommand(1);
+  CLI::App* checking = command->add_subcommand("check", "Replays them; compares checkpoints with those of the list.");
+  CLI::App* updating = command->add_subcommand("update", "Makes them anew, after a change of the simulation.");
+  for (CLI::App* one : {checking, updating})
+    one->add_option("--folder", o->folder, "with golden.json; default: golden/ of the assets");
+  checking->add_option("--only", o->only, "one file of the list");
+  checking->add_option("--threads", o->threads, "of the simulation; 0: all")
+      ->check(CLI::Range(0U, 64U))
+      ->capture_default_str();
+  checking->add_flag("--json", o->json, "print the result as JSON");
+  updating->add_option("--reason", o->reason, "why they change; kept in the list")->required();
+  checking->callback([o, &run] { run = [o] { return check(*o); }; });
+  updating->callback([o, &run] { run = [o] { return update(*o); }; });
+}
+
+}  // namespace calot::apps

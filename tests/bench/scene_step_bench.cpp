@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole steps of every scene, ticks included, as a performer works in it. The peer is touch-liver in the same run: what
+// fat, vessels and connective tissue cost beside it.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "recorder/formats/scene_file.h"
+#include "recorder/session.h"
+#include "recorder/sources/performer.h"
+#include "tests/bench/benchmarks.h"
+#include "tests/bench/figures.h"
+#include "tests/bench/numbers.h"
+#include "tests/bench/repeated.h"
+#include "tests/bench/thread_clock.h"
+
+namespace calot::bench {
+
+namespace {
+
+constexpr std::uint64_t seed = 1;
+constexpr double measuredSeconds = 20.0;  // of attempt time: in the operation, fat is carved all the while
+const char* const scenes[] = {"touch-liver", "dissect-bed", "clip-and-cut", "carve-fat", "cholecystectomy"};
+
+/// A scene and what a performer did in it: the same samples for every repetition.
+struct Work {
+  std::unique_ptr<const Model> model;
+  std::vector<TickSamples> samples;
+};
+
+Work workIn(const std::string& scene) {
+  Work work;
+  work.model =
+      Model::build(recorder::loadScene(std::string(CALOT_ASSETS) + "/scenes/" + scene + ".json").description).model;
+  const auto profile = recorder::loadPerformer(std::string(CALOT_ASSETS) + "/performers/skilled.json");
+  const auto performer = recorder::makePerformer(profile, work.model->scene(), seed);
+  SerialExecutor executor;
+  recorder::Session session(*work.model, seed, executor);
+  if (performer->watcher() != nullptr) session.join(*performer->watcher());
+  const std::size_t perStep = work.model->scene().ticksPerStep;
+  std::vector<TickSamples> samples(perStep);
+  std::vector<recorder::TickOutcome> ticks(perStep);
+  const auto end = static_cast<std::uint64_t>(measuredSeconds / tickLength);
+  for (std::uint64_t tick = 0; tick < end;) {
+    for (std::size_t i = 0; i < perStep; ++i, ++tick) {
+      if (!performer->next(tick, samples[i])) return work;
+      ticks[i] = session.tick(samples[i]);
+    }
+    work.samples.insert(work.samples.end(), samples.begin(), samples.end());
+    session.step(samples, ticks, 0.0F);
+  }
+  return work;
+}
+
+/// CPU time of each step with its ticks (s).
+std::vector<double> run(const Work& work) {
+  SerialExecutor executor;
+  recorder::Session session(*work.model, seed, executor);
+  const std::size_t perStep = work.model->scene().ticksPerStep;
+  std::vector<recorder::TickOutcome> ticks(perStep);
+  std::vector<double> seconds;
+  for (std::size_t at = 0; at < work.samples.size(); at += perStep) {
+    const std::span<const TickSamples> samples(work.samples.data() + at, perStep);
+    const double begin = threadSeconds();
+    for (std::size_t i = 0; i < perStep; ++i) ticks[i] = session.tick(samples[i]);
+    session.step(samples, ticks, 0.0F);
+    seconds.push_back(threadSeconds() - begin);
+  }
+  return seconds;
+}
+
+double meanOf(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+void sceneStep(benchmark::State& bench, const std::string& scene) {
+  static const Work peer = workIn(scenes[0]);
+  const Work work = workIn(scene);
+  std::vector<double> seconds;
+  for (auto _ : bench) {
+    seconds = run(work);
+    bench.SetIterationTime(meanOf(seconds));
+  }
+  const double mean = meanOf(seconds);
+  auto& counters = bench.counters;
+  counters["p50_ms"] = 1e3 * quantile(seconds, 0.5);
+  counters["p99_ms"] = 1e3 * quantile(seconds, 0.99);
+  counters["steps"] = static_cast<double>(seconds.size());
+  counters["real_time"] = work.model->stepSeconds() / mean;
+  counters["vs_touch_liver"] = mean / meanOf(run(peer));
+  figures().add("scene." + scene + ".step_ms", 1e3 * mean);
+}
+
+}  // namespace
+
+void registerScenes() {
+  for (const char* scene : scenes)
+    repeated(benchmark::RegisterBenchmark((std::string("scene/step/") + scene).c_str(), sceneStep, scene), 3);
+}
+
+}  // namespace calot::bench

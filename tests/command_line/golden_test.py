@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Golden recordings: made only on purpose, lean, replayed bit for bit, their checkpoints compared."""
+
+import json
+import subprocess
+
+import h5py
+import program
+import schema_names
+from program import SCENE
+
+ENTRY = {"file": "touch.h5", "scene": SCENE, "performer": "skilled", "seed": 7, "seconds": 4}
+
+
+class Golden(program.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.tree = self.folder / "tree"
+        self.golden = self.tree / "golden"
+        self.golden.mkdir(parents=True)
+        self.write([ENTRY])
+        (self.tree / "source.txt").write_text("as it is\n")
+        self.git("init", "--quiet")
+        self.commit()
+
+    def git(self, *words):
+        subprocess.run(["git", "-C", self.tree, "-c", "user.name=n", "-c", "user.email=n@example.org", *words], check=True,
+                       capture_output=True)
+
+    def commit(self):
+        self.git("add", "-A")
+        self.git("commit", "--quiet", "-m", "all")
+
+    def write(self, recordings, version=1):
+        text = json.dumps({"simulation_version": version, "reason": "first", "recordings": recordings})
+        (self.golden / "golden.json").write_text(text)
+
+    def listed(self):
+        return json.loads((self.golden / "golden.json").read_text())
+
+    def update(self, reason="contact is solved in another way"):
+        return program.calot("golden", "update", "--folder", self.golden, "--reason", reason)
+
+    def test_made_checked_and_refused(self):
+        made = self.update()
+        self.assertEqual((made.code, made.err), (0, ""), made)
+        self.assertRegex(made.out, r"^touch\.h5: \d+ checkpoints, \d+ changed\n")
+        self.assertRegex(made.out, r"path-length left: none -> [\d.]+ mm")
+        listed = self.listed()
+        self.assertEqual(listed["reason"], "contact is solved in another way")
+        self.assertEqual(sorted(p.name for p in self.golden.iterdir()), ["golden.json", "touch.h5"])
+
+        with h5py.File(self.golden / "touch.h5", "r") as file:
+            self.assertNotIn("/observables", file)
+            self.assertNotIn("/keyframes", file)
+            self.assertNotIn("/ticks/left/force", file)
+            self.assertEqual(file["/steps/force_digest"].shape, (400,))
+            rows = schema_names.names_of(str(program.SOURCE / "schemas"))
+            checker = schema_names.Checker(file, rows)
+            checker.check()
+            self.assertEqual(checker.faults + schema_names.chain_faults(file, rows), [])
+
+        checked = self.well("golden", "check", "--folder", self.golden)
+        self.assertRegex(checked.out, r"touch\.h5: bit-exact, 4\.00 s \(400 steps\)")
+        self.well("replay", self.golden / "touch.h5")
+
+        # Of this version already: nothing to update, and the recording stays.
+        before = (self.golden / "touch.h5").read_bytes()
+        self.refused(2, "golden", "update", "--folder", self.golden, "--reason", "again", names=["raises simulationVersion"])
+        self.assertEqual((self.golden / "touch.h5").read_bytes(), before)
+
+        # A checkpoint that is computed in another way.
+        value = next(v for v in listed["recordings"][0]["checkpoints"] if v["name"] == "path-length")
+        value["value"] *= 1 + 1e-15
+        (self.golden / "golden.json").write_text(json.dumps(listed))
+        answer = program.calot("golden", "check", "--folder", self.golden)
+        self.assertEqual(answer.code, 3, answer)
+        self.assertIn("path-length", answer.err + answer.out)
+
+        # A force that differs, and nothing else: its digest tells.
+        with h5py.File(self.golden / "touch.h5", "r+") as file:
+            digests = file["/steps/force_digest"][:]
+            digests[200] = int(digests[200]) ^ 1
+            file["/steps/force_digest"][:] = digests
+        answer = program.calot("golden", "check", "--folder", self.golden)
+        self.assertEqual(answer.code, 3, answer)
+        self.assertIn("step 200: force digest of the step's forces", answer.err + answer.out)
+
+    def test_an_update_belongs_to_a_revision(self):
+        (self.tree / "source.txt").write_text("changed\n")
+        self.refused(2, "golden", "update", "--folder", self.golden, "--reason", "x", names=["commit them first"])
+        self.commit()
+        self.refused(2, "golden", "update", "--folder", self.golden, "--reason", " ", names=["--reason"])
+        self.refused(2, "golden", "update", "--folder", self.golden, names=["--reason"])
+        self.assertEqual([p.name for p in self.golden.iterdir()], ["golden.json"])
+        alone = self.folder / "alone"
+        alone.mkdir()
+        (alone / "golden.json").write_text((self.golden / "golden.json").read_text())
+        self.refused(2, "golden", "update", "--folder", alone, "--reason", "x", names=["no git work tree"])
+
+    def test_bad_lists(self):
+        for recordings, says in (([{**ENTRY, "file": "../x.h5"}], "/recordings/0/file"), ([ENTRY, ENTRY], "/recordings/1"),
+                                 ([{**ENTRY, "seconds": -1}], "/recordings/0/seconds"), ([], "/recordings"),
+                                 ([{**ENTRY, "more": 1}], "more")):
+            self.write(recordings)
+            self.refused(4, "golden", "check", "--folder", self.golden, names=[says])
+        self.write([ENTRY])
+        self.refused(4, "golden", "check", "--folder", self.golden, names=["touch.h5"])  # never made
+        self.refused(2, "golden", "check", "--folder", self.golden, "--only", "other.h5", names=["not in the list"])
+        self.write([{**ENTRY, "scene": "nowhere"}])
+        self.commit()
+        answer = self.update()
+        self.assertIn(answer.code, (2, 4), answer)
+        self.assertEqual([p.name for p in self.golden.iterdir()], ["golden.json"], "something is left behind")
+
+
+if __name__ == "__main__":
+    program.main()
