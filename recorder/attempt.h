@@ -55,6 +55,7 @@ struct RunReport {
   std::uint64_t pauses = 0;      ///< of the source
   double paused = 0.0;           ///< s
   double wallSeconds = 0.0;
+  std::string fault;  ///< why the attempt had to end, in one line: the simulation ran away (miss::runaway); or empty
   // Live:
   bool realTime = false;            ///< the haptic thread ran before all ordinary threads
   double tickMean = 0.0;            ///< thread CPU time of a tick (both hands; s)
@@ -64,7 +65,8 @@ struct RunReport {
   std::uint64_t disagreements = 0;  ///< ticks whose forces were not those that the simulation's side computed again: 0
 };
 
-/// Runs the session from the source until it ends or fails, the scene's time limit, `seconds`, or `stop`; then ends the
+/// Runs the session from the source until it ends or fails, the scene's time limit, `seconds`, or `stop`, or until a
+/// step says that the simulation ran away (Outcome::technicalFailure, and `fault` tells where); then ends the
 /// session. A step begins only when the source gave all its ticks; what is left of a last, unfinished step is dropped.
 /// Where the session has steps already (a branch), the source begins with its tick 0 all the same.
 ///

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <vector>
 
@@ -37,10 +40,35 @@ class Gate {
   const RunSettings& settings_;
 };
 
+/// Notices a step after which nothing that is simulated means anything.
+class RunawayWatch final : public Observer {
+ public:
+  explicit RunawayWatch(const Model& model) : model_(model) {}
+
+  void onStep(const StepRecord& record) override {
+    if (!fault_.empty() || (record.result.misses & miss::runaway) == 0) return;
+    for (const Event& event : record.result.events) {
+      if (event.kind != EventKind::runaway) continue;
+      fault_ = fmt::format(
+          "step {}: the simulation of '{}' ran away ({:.3g} m/s); the attempt ends here, keep the "
+          "recording to find out why",
+          record.step, model_.structures()[event.subject].name, event.value);
+      break;
+    }
+  }
+  void onEnd(Outcome /*outcome*/) override {}
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+
+ private:
+  const Model& model_;
+  std::string fault_;
+};
+
 float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, seconds(monotonicNow() - due))); }
 
 /// Ticks and steps on one thread.
-void runInline(Session& session, SampleSource& source, const RunSettings& settings, RunReport& report) {
+void runInline(Session& session, SampleSource& source, const RunSettings& settings, const RunawayWatch& watch,
+               RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
   const Gate gate(session, settings);
   std::vector<TickSamples> samples(ticksPerStep);
@@ -77,6 +105,10 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
     report.largestLateness = seconds(clock.largestLateness());
     report.stretched = seconds(clock.stretched());
     if (settings.progress) settings.progress(session.steps());
+    if (!watch.fault().empty()) {
+      report.outcome = Outcome::technicalFailure;
+      break;
+    }
   }
   report.pauses = pauses.count;
   report.paused = pauses.seconds;
@@ -93,16 +125,20 @@ bool sameForce(const HandTick& a, const HandTick& b) {
 }
 
 /// Ticks on the haptic thread, steps on this one.
-void runLive(Session& session, SampleSource& source, const RunSettings& settings, RunReport& report) {
+void runLive(Session& session, SampleSource& source, const RunSettings& settings, const RunawayWatch& watch,
+             RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
   const Gate gate(session, settings);
   const std::uint64_t before = session.steps();
+  std::atomic<bool> ranAway{false};  // the haptic thread asks before each step
   session.prepare();
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
-  HapticThread haptics(
-      session.model(), source, session.haptics(), session.contactSets(),
-      {[&gate, before](std::uint64_t step) { return gate.ask(before + step); }, settings.feedback, settings.stop});
+  HapticThread haptics(session.model(), source, session.haptics(), session.contactSets(),
+                       {[&gate, &ranAway, before](std::uint64_t step) {
+                          return ranAway.load() ? Outcome::technicalFailure : gate.ask(before + step);
+                        },
+                        settings.feedback, settings.stop});
   session.onContactSets([&haptics](const ContactSets& sets) { haptics.stepDone(sets); });
   struct Listening {
     Session& session;
@@ -120,9 +156,10 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
     }
     session.step(samples, ticks, late);
     if (settings.progress) settings.progress(session.steps());
+    ranAway.store(!watch.fault().empty());
   }
   const HapticReport& seen = haptics.finish();
-  report.outcome = seen.outcome;
+  report.outcome = ranAway.load() ? Outcome::technicalFailure : seen.outcome;
   report.ticks = seen.ticks;
   report.missedDeadlines = seen.missedDeadlines;
   report.largestLateness = seen.largestLateness;
@@ -146,11 +183,15 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
   SampleSource& asked = guarded ? *guarded : source;
   Observer* watcher = asked.watcher();
   if (watcher != nullptr) session.join(*watcher);
+  RunawayWatch watch(session.model());
+  session.join(watch);
   if (settings.live) {
-    runLive(session, asked, settings, report);
+    runLive(session, asked, settings, watch, report);
   } else {
-    runInline(session, asked, settings, report);
+    runInline(session, asked, settings, watch, report);
   }
+  session.leave(watch);
+  report.fault = watch.fault();
   report.steps = session.steps();
   if (watcher != nullptr) session.leave(*watcher);
   session.end(report.outcome);

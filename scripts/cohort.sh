@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # cohort.sh N [FOLDER]: N synthetic attempts of each profile at the whole operation, recorded and assessed into
-# FOLDER/cohort.db for `calot study`. Several run at once (CALOT_JOBS); what is there already and would be made again
-# alike is kept, so an interrupted run goes on where it was. Performers prove the pipeline, never a trainer's validity.
+# FOLDER/cohort.db for `calot study`. Several run at once (CALOT_JOBS). What is there already and would be made again
+# alike is kept, recordings and assessments, so an interrupted run goes on where it was. Seeds come before profiles: a
+# run that is cut short has as many of each. Performers prove the pipeline, never a trainer's validity.
 #   CALOT_SCENE     another scene (cholecystectomy)      CALOT_PROFILES  ("skilled intermediate unskilled")
 #   CALOT_PROGRAM   another calot (build/release/bin/calot, built where it is missing)
 set -euo pipefail
@@ -23,48 +24,51 @@ if [[ ! -x $calot ]]; then
 fi
 mkdir -p "$folder"
 
-# one PROFILE SEED: records unless the recording is there; a word on a line of its own says which.
+# one PROFILE SEED: records and assesses what is not there yet; says so in one line.
 one() {
   local profile=$1 seed=$2
   local recording=$folder/$scene-$profile-$seed.h5
-  if "$python" -B "$root/scripts/reusable.py" "$recording" --root "$root" --scene "$scene" --performer "$profile" \
+  local name assessed=$recording.assessed made="kept"
+  name=$(basename "$recording")
+  if ! "$python" -B "$root/scripts/reusable.py" "$recording" --root "$root" --scene "$scene" --performer "$profile" \
     --seed "$seed" >/dev/null 2>&1; then
-    echo "kept $(basename "$recording")"
-    return
-  fi
-  if "$calot" record --scene "$scene" --performer "$profile" --seed "$seed" --participant "synthetic-$profile-$seed" \
-    --mode assessment --force -o "$recording" >"$recording.log" 2>&1; then
+    rm -f "$assessed"
+    if ! "$calot" record --scene "$scene" --performer "$profile" --seed "$seed" \
+      --participant "synthetic-$profile-$seed" --mode assessment --force -o "$recording" >"$recording.log" 2>&1; then
+      echo "FAILED $name: recording, see $recording.log"
+      return
+    fi
+    made=$(tail -n 1 "$recording.log" | sed 's/.*attempt [^,]*, //')
     rm -f "$recording.log"
-    echo "made $(basename "$recording")"
+  fi
+  if [[ -f $folder/cohort.db && $assessed -nt $recording && $assessed -nt $calot ]]; then
+    echo "$name: $made, assessed before"
+  elif "$calot" assess "$recording" --cohort "$folder/cohort.db" >"$recording.log" 2>&1; then
+    rm -f "$recording.log"
+    touch "$assessed"
+    echo "$name: $made, assessed"
   else
-    echo "FAILED $(basename "$recording"), see $recording.log"
+    echo "FAILED $name: $made, but assessing it failed, see $recording.log"
   fi
 }
 export -f one
 export root folder scene calot
 
 total=$((count * ${#profiles[@]}))
-say "$total attempts at $scene, $jobs at once, in $folder"
-done=0
+say "$total attempts at $scene, $jobs at once, in $folder (each is re-simulated as it is assessed)"
+finished=0
 failed=0
-while read -r word; do
-  done=$((done + 1))
-  say "$done of $total: $word"
-  if [[ $word == FAILED* ]]; then failed=$((failed + 1)); fi
+while read -r line; do
+  finished=$((finished + 1))
+  say "$finished of $total: $line"
+  if [[ $line == FAILED* ]]; then failed=$((failed + 1)); fi
 done < <(
   for ((seed = 1; seed <= count; ++seed)); do
     for profile in "${profiles[@]}"; do printf '%s %s\n' "$profile" "$seed"; done
   done | xargs -P "$jobs" -L 1 bash -c 'one "$@"' one
 )
-if [[ $failed -gt 0 ]]; then
-  say "$failed recordings failed" >&2
+if [[ $failed -gt 0 || $finished -lt $total ]]; then
+  say "$((total - finished + failed)) of $total attempts are missing" >&2
   exit 1
 fi
-
-recordings=()
-for profile in "${profiles[@]}"; do
-  for ((seed = 1; seed <= count; ++seed)); do recordings+=("$folder/$scene-$profile-$seed.h5"); done
-done
-say "assess: re-simulates every recording, which is its verification"
-"$calot" assess "${recordings[@]}" --cohort "$folder/cohort.db"
 say "done: $calot study $folder/cohort.db --group-by performer --include-synthetic"

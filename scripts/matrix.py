@@ -32,9 +32,12 @@ LEVELS = {  # what each level of the x86-64 ABI adds, as /proc/cpuinfo names it
     "native": set(),
 }
 CROSS = {"gcc": "aarch64-linux-gnu-g++", "clang": "clang++"}
-# What is recorded to take States from: (performer, seed). The State is taken just before the first touch.
-PERFORMERS = (("skilled", 1), ("unskilled", 2))
-RECORDED_SECONDS, STEPS, STEPS_BEFORE_TOUCH = 8, 200, 20
+# What is recorded to take States from: scene, performer, seed, seconds, and what the State is taken just before: the first
+# touch, or the first event of a kind (schemas/recording.md). Together they have contact, fat, beams, springs, clips.
+CLIP_IS_SET = 21
+SOURCES = (("touch-liver", "skilled", 1, 8, "touch"), ("touch-liver", "unskilled", 2, 8, "touch"),
+           ("cholecystectomy", "skilled", 1, 8, "touch"), ("clip-and-cut", "skilled", 2, 30, CLIP_IS_SET))
+STEPS, STEPS_BEFORE = 200, 20
 
 
 @dataclasses.dataclass(frozen=True)
@@ -179,23 +182,26 @@ def build_all(builds, work, jobs):
     return failed
 
 
-def step_before_touch(recording):
-    """The step a little before the first force, so that touch, slide and release lie in the cells' steps."""
+def step_before(recording, moment):
+    """The step a little before the first force, or the first event, so that what follows it lies in the cells' steps."""
     import h5py  # the distribution's; needed here only
 
     with h5py.File(recording, "r") as file:
         per_step = int(file.attrs["ticks_per_step"])
-        touches = [int(force.any(axis=1).argmax()) // per_step
-                   for hand in ("left", "right") if (force := file[f"ticks/{hand}/force"][:]).any()]
+        if moment == "touch":
+            found = [int(force.any(axis=1).argmax()) // per_step
+                     for hand in ("left", "right") if (force := file[f"ticks/{hand}/force"][:]).any()]
+        else:
+            found = [int(step) for step in file["events"]["step"][file["events"]["kind"] == moment]]
         steps = len(file["ticks/left/force"]) // per_step
-    step = max(1, min(touches, default=0) - STEPS_BEFORE_TOUCH)
-    if not touches or step + STEPS >= steps:
-        raise SystemExit(f"matrix: {recording}: nobody touches anything early enough: no State worth comparing")
+    step = max(1, min(found, default=0) - STEPS_BEFORE)
+    if not found or step + STEPS >= steps:
+        raise SystemExit(f"matrix: {recording}: {moment} does not come early enough: no State worth comparing")
     return step
 
 
 def make_states(calot, work):
-    """Records two short attempts with the release build and takes a State from each."""
+    """Records attempts with the release build and takes a State from each."""
     folder = work / "states"
     folder.mkdir(parents=True, exist_ok=True)
 
@@ -205,12 +211,12 @@ def make_states(calot, work):
             raise SystemExit(f"matrix: {' '.join(map(str, command))}: exit {run.returncode}: {run.stderr.strip()}")
 
     states = []
-    for performer, seed in PERFORMERS:
-        recording = folder / f"{performer}.h5"
-        call(calot, "record", "--scene", "touch-liver", "--performer", performer, "--seed", seed, "--seconds", RECORDED_SECONDS,
+    for scene, performer, seed, seconds, moment in SOURCES:
+        recording = folder / f"{scene}-{performer}.h5"
+        call(calot, "record", "--scene", scene, "--performer", performer, "--seed", seed, "--seconds", seconds,
              "-o", recording, "--force")
-        step = step_before_touch(recording)
-        states.append(folder / f"{performer}-{step}.flat")
+        step = step_before(recording, moment)
+        states.append(folder / f"{scene}-{performer}-{step}.flat")
         call(calot, "state", recording, "--step", step, "--flat", "-o", states[-1], "--force")
     return states
 

@@ -3,7 +3,7 @@
 """Says whether a recording is what this build would record again: exit 0, or 1 with the reason on stdout.
 
 Compares what the recording itself holds: simulation version, scene and assets byte for byte, performer's profile and version,
-seed, and whether it is complete.
+seed, and whether it is complete and was neither stopped nor failed.
 """
 import argparse
 import hashlib
@@ -37,6 +37,8 @@ def reason_against(path, root, scene, performer, seed):
                 return "another seed"
             if not len(file["status"]) or not int(file["status"][-1]["completed"]):
                 return "incomplete"
+            if int(file["status"][-1]["outcome"]) in (4, 5):
+                return "stopped from outside, or failed"
             stored = [(root / f"assets/scenes/{scene}.json", file["scene/description"])]
             stored += [(root / "assets" / text(asset.attrs["name"]), asset) for asset in file["scene/assets"].values()]
             for source, dataset in stored:

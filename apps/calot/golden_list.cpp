@@ -27,8 +27,8 @@ const ObjectRule recordingRule{"recording",
                                 {"seed", true, 0, 4294967295.0},
                                 {"seconds", true, 0, mostSeconds},
                                 {"checkpoints", false}}};
-const ObjectRule valueRule{"value",
-                           {{"name"}, {"subject", false}, {"version", true, 1, 4294967295.0}, {"value", true, -any, any}}};
+const ObjectRule valueRule{
+    "value", {{"name"}, {"subject", false}, {"version", true, 1, 4294967295.0}, {"value", true, -any, any}}};
 
 GoldenValue readValue(const JsonPlace& place) {
   const JsonObject o = place.object(valueRule);

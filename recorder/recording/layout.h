@@ -60,7 +60,7 @@ struct Layout {
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
   std::array<std::size_t, handCount> raw{};
   bool deviceSamples = false;  ///< there is a /device
-  bool lean = false;           ///< golden: a digest in the place of forces; neither observables nor keyframes
+  bool lean = false;           ///< golden: a digest in the place of forces; no observables, keyframes, fields' digests
   std::uint32_t ticksPerStep = 10;
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;
@@ -221,8 +221,11 @@ std::uint64_t forceDigest(std::span<const TickOutcome> ticks);
 template <class Digest, class Forces, class Lateness, class Result, class Visitor>
 void visitStep(Digest& digest, Forces& forces, Lateness& lateness, Result& r, Visitor& visit) {
   visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
-  visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);
-  if (visit.layout.lean) visit("/steps", "force_digest", "", forces);
+  if (visit.layout.lean) {
+    visit("/steps", "force_digest", "", forces);
+  } else {
+    visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);
+  }
   visit.outside("/steps", "lateness", "s", lateness);
   visitResult(r, visit);
 }

@@ -9,129 +9,219 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double wireLength = 0.009;     // of the hook's wire along the shaft, that burns (m)
-constexpr double sweepLength = 0.011;    // under current through connective tissue (m)
-constexpr double repeatSpread = 0.0008;  // between one try at a strand and the next (m)
-constexpr double sweepLead = 0.0015;     // of it before the first strand (m)
-constexpr double fewLeft = 0.05;         // of its strands: the lower third counts as free
-constexpr double lowerShare = 0.37;      // of the strands: the lower third of the bed, and a little more
-
-/// Strands that one sweep meets, and how far their middles stand off the plane of sweep at its start and its end.
-struct Band {
-  double deep = 0.0, met = -1.0;
-  std::array<double, 2> sum{}, count{};
-
-  void add(double across, double off) {
-    if (across < -sweepLead || across > sweepLength) return;
-    met += 1.0;
-    const std::size_t half = across < 0.5 * sweepLength ? 0 : 1;
-    sum[half] += off;
-    count[half] += 1.0;
-  }
-  [[nodiscard]] double offset(std::size_t half) const {
-    if (count[half] > 0.0) return sum[half] / count[half];
-    return count[1 - half] > 0.0 ? sum[1 - half] / count[1 - half] : 0.0;
-  }
-};
+constexpr double wireLength = 0.009;    // of the hook's wire along the shaft, that burns (m)
+constexpr double sweepLength = 0.018;   // under current through connective tissue (m)
+constexpr std::size_t legs = 3;         // straight pieces of a sweep, so that it follows the bed's curve
+constexpr double sweepLead = 0.0015;    // of it before the first strand (m)
+constexpr double offPlane = 0.006;      // strands that stand farther off a sweep's plane are not for it (m)
+constexpr double wireRadius = 0.0006;   // m
+constexpr double edge = 0.015;          // so far from the free edge a sweep may begin (m)
+constexpr double edgeWorth = 300.0;     // strands that it must meet more for a metre farther in
+constexpr double wayWorth = 40.0;       // and for a metre of way to it
+constexpr std::size_t mostLooked = 24;  // strokes that are weighed against each other
+constexpr double retreat = 0.010;       // along the shaft, out of the bed, on the way to another place (m)
+constexpr double fineLength = 0.006;    // of a stroke at one strand (m)
+constexpr double fineSpread = 0.0008;   // between one try at a strand and the next (m)
+constexpr std::uint32_t fineAfter = 2;  // sweeps that missed a strand: it is gone at for itself,
+constexpr std::size_t few = 3;          // where no more than these are left around it
+constexpr double fewLeft = 0.05;        // of its strands: the lower third counts as free
+constexpr double lowerShare = 0.37;     // of the strands: the lower third of the bed, and a little more
+constexpr std::uint32_t mostStrokes = 400;
 
 }  // namespace
 
-void WorkingMind::burn(const Sight& sight, bool lowerThird) {
-  const auto next = [&] {
-    stage_ = lowerThird ? Stage::clip : Stage::done;
-    vessel_ = 0;
-    strokes_ = 0;
-  };
-  const auto middleOf = [&](std::size_t s) { return Vec3(0.5 * (sight.strand[s].end[0] + sight.strand[s].end[1])); };
-  const auto wanted = [&](std::size_t s) {
-    return sight.strand[s].attached && (!lowerThird || share_[s] <= lowerShare);
-  };
-  // From the free edge inwards: the side from which the hook comes, and the neck.
-  double best = 1e300;
-  double left = 0.0, all = 0.0;
-  std::size_t chosen = sight.strand.size();
-  for (std::size_t s = 0; s < sight.strand.size(); ++s) {
-    all += !lowerThird || share_[s] <= lowerShare ? 1.0 : 0.0;
-    if (!wanted(s)) continue;
-    left += 1.0;
-    const Vec3 middle = middleOf(s);
-    const double key = middle.x() + 0.2 * middle.y() + 0.3 * (middle - hand().meant()).norm();
-    if (!(key < best)) continue;
-    best = key;
-    chosen = s;
+/// A strand that is to go.
+struct WorkingMind::BedStrand {
+  std::size_t index = 0;
+  Vec3 middle = Vec3::Zero(), span = Vec3::Zero();  ///< span: from its end on the specimen to that on the liver
+};
+
+/// A stroke of the hook along the bed: its wire along the shaft, its way across it.
+struct WorkingMind::BedStroke {
+  Vec3 place = Vec3::Zero();  ///< where it meets the first strand
+  Vec3 shaft = Vec3::UnitZ(), across = Vec3::UnitX(), through = Vec3::UnitY();
+  double deep = 0.0;                   ///< of the hook's heel beyond `place`, along the shaft (m)
+  std::array<double, legs + 1> off{};  ///< of its corners from its plane (m)
+  std::vector<std::size_t> met;        ///< strands that it should cross
+  double worth = -1e300;
+  std::size_t strand = 0;
+
+  /// Where a place lies between the stroke's corners: 0 at the first.
+  [[nodiscard]] double cornerOf(const Vec3& d) const {
+    return (d.dot(across) + sweepLead) / sweepLength * static_cast<double>(legs);
   }
-  // A few strands of the lower third may wait until the rest of the bed is freed.
-  if (chosen == sight.strand.size() || (lowerThird && left < fewLeft * all)) {
-    next();
-    if (stage_ == Stage::clip) {
-      clip(sight);
-    } else {
-      const Vec3 here = hand().meant();
-      go(here - 0.02 * hand().shaft(here), tools_.profile.motor.contactSpeed, 0.0);
-      go(tools_.scene.hands[hand_].home, tools_.profile.motor.strokeSpeed, 0.0);
+  [[nodiscard]] double offAt(double corner) const {
+    const double c = std::clamp(corner, 0.0, static_cast<double>(legs));
+    const auto k = std::min(static_cast<std::size_t>(c), legs - 1);
+    return off[k] + (c - static_cast<double>(k)) * (off[k + 1] - off[k]);
+  }
+  void follow(const std::vector<const BedStrand*>& near);
+  void aim(const std::vector<BedStrand>& wanted);
+};
+
+/// Its corners come to lie in the middle of the strands around them.
+void WorkingMind::BedStroke::follow(const std::vector<const BedStrand*>& near) {
+  std::array<double, legs + 1> sum{}, count{};
+  for (const BedStrand* s : near) {
+    const Vec3 d = s->middle - place;
+    const double at = cornerOf(d);
+    for (std::size_t c = 0; c <= legs; ++c) {
+      const double weight = 1.0 - std::abs(at - static_cast<double>(c));
+      if (!(weight > 0.0)) continue;
+      sum[c] += weight * d.dot(through);
+      count[c] += weight;
     }
-    return;
   }
-  if (mount(InstrumentKind::hook, 0.0)) return;
+  double last = 0.0;
+  for (std::size_t c = 0; c <= legs; ++c) {
+    if (count[c] > 0.0) last = sum[c] / count[c];
+    off[c] = last;
+  }
+}
+
+/// Finds its way, and what lies in it. The bed is curved: what stands far off the way that the first strand gives, is
+/// left to another stroke.
+void WorkingMind::BedStroke::aim(const std::vector<BedStrand>& wanted) {
+  std::vector<const BedStrand*> near;
+  off.fill(0.0);
+  for (const double tolerance : {offPlane, 0.5 * offPlane}) {
+    near.clear();
+    for (const BedStrand& s : wanted) {
+      const Vec3 d = s.middle - place;
+      const double along = d.dot(shaft), at = cornerOf(d);
+      if (along > deep || along < deep - wireLength || at < 0.0 || at > static_cast<double>(legs)) continue;
+      if (std::abs(d.dot(through) - offAt(at)) < tolerance) near.push_back(&s);
+    }
+    follow(near);
+  }
+  met.clear();
+  for (const BedStrand* s : near) {
+    const Vec3 d = s->middle - place;
+    const double half = 0.5 * std::abs(through.dot(s->span));
+    if (std::abs(d.dot(through) - offAt(cornerOf(d))) < half + wireRadius) met.push_back(s->index);
+  }
+}
+
+/// The stroke that crosses most strands, near the free edge: the side from which the hook comes, and the neck. Of the
+/// many that could be looked at, some: a hand does not take long to choose.
+/// @pre wanted is not empty
+WorkingMind::BedStroke WorkingMind::bestStroke(const std::vector<BedStrand>& wanted) const {
+  const PerformerHand& hook = tools_.hand[hand_];
+  const auto inwards = [](const BedStrand& s) { return s.middle.x() + 0.2 * s.middle.y(); };
+  double outermost = 1e300;
+  for (const BedStrand& s : wanted) outermost = std::min(outermost, inwards(s));
+  std::vector<const BedStrand*> first;
+  for (const BedStrand& s : wanted) {
+    if (inwards(s) - outermost < edge) first.push_back(&s);
+  }
+  const std::size_t every = (first.size() + mostLooked - 1) / mostLooked;
+  BedStroke best;
+  for (std::size_t f = strokes_ % every; f < first.size(); f += every) {
+    const BedStrand& strand = *first[f];
+    const Vec3& place = strand.middle;
+    const double in = inwards(strand) - outermost;
+    BedStroke stroke;
+    stroke.strand = strand.index;
+    stroke.place = place;
+    stroke.shaft = hook.shaft(place);
+    Vec3 across = stroke.shaft.cross(strand.span);
+    if (across.norm() < 1e-9) across = stroke.shaft.cross(Vec3::UnitZ());
+    across /= across.norm();
+    stroke.across = across.x() < 0.0 ? Vec3(-across) : across;
+    stroke.through = stroke.across.cross(stroke.shaft);
+    const double way = (place - hook.meant()).norm();
+    for (const double deep : {0.002, 0.005, 0.008}) {
+      stroke.deep = deep;
+      stroke.aim(wanted);
+      stroke.worth = -edgeWorth * in - wayWorth * way;
+      for (const std::size_t other : stroke.met) stroke.worth += 1.0 / (1.0 + static_cast<double>(tried_[other]));
+      if (stroke.worth > best.worth) best = stroke;
+    }
+  }
+  return best;
+}
+
+void WorkingMind::runStroke(const BedStroke& stroke) {
   const PerformerProfile& profile = tools_.profile;
-  const Vec3 place = middleOf(chosen);
-  const Vec3 shaft = hand().shaft(place);
-  Vec3 across = sight.strand[chosen].end[1] - sight.strand[chosen].end[0];
-  across = shaft.cross(across);
-  if (across.norm() < 1e-9) across = shaft.cross(Vec3::UnitZ());
-  across /= across.norm();
-  if (across.x() < 0.0) across = -across;
-  Vec3 through = across.cross(shaft);
-  through /= through.norm();
-  // The hook's wire runs along the shaft: as deep as it meets most strands at once. The sweep follows their middles.
-  Band band;
-  for (const double deep : {0.002, 0.005, 0.008}) {
-    Band found;
-    found.deep = deep;
-    for (std::size_t s = 0; s < sight.strand.size(); ++s) {
-      if (!wanted(s)) continue;
-      const Vec3 d = middleOf(s) - place;
-      const double along = d.dot(shaft);
-      if (along < deep && along > deep - wireLength) found.add(d.dot(across), d.dot(through));
-    }
-    if (found.met > band.met) band = found;
-  }
   newError();
   error_ *= 0.25;
-  // What the last sweep missed is gone through its own middle, shorter, now a little to one side and now to the other.
-  const bool again = chosen == lastStrand_;
-  repeats_ = again ? repeats_ + 1 : 0;
-  lastStrand_ = chosen;
-  if (again) {
-    band = Band();
-    band.deep = 0.002 + 0.002 * static_cast<double>(repeats_ % 3U);
-    band.add(0.0, repeatSpread * random_.normal());
+  const std::uint32_t tries = tried_[stroke.strand];
+  // What sweeps have missed is gone through its own middle, shorter and slower, now nearer to the one organ and now to
+  // the other, now forward and now backward.
+  const bool fine = tries >= fineAfter && stroke.met.size() <= few;
+  const double length = fine ? fineLength : sweepLength;
+  const double lead = fine ? 0.5 * fineLength : sweepLead;
+  const std::size_t pieces = fine ? 1 : legs;
+  const Vec3 across = fine && tries % 2U == 1 ? Vec3(-stroke.across) : stroke.across;
+  const double deep = fine ? 0.002 + 0.002 * static_cast<double>(tries % 3U) : stroke.deep;
+  const double aside = fineSpread * static_cast<double>(std::min(tries, 3U)) * random_.normal();
+  std::array<double, legs + 1> off = stroke.off;
+  if (fine) off.fill(0.0);
+  for (double& o : off) o += aside;
+  if (fine || stroke.met.empty()) ++tried_[stroke.strand];
+  if (!fine) {
+    for (const std::size_t s : stroke.met) ++tried_[s];
   }
-  const double reach = again ? 0.5 * sweepLength : sweepLength;
-  const Vec3 start = place + band.deep * shaft + error_;
-  const Vec3 from = start - sweepLead * across + band.offset(0) * through;
-  const Vec3 to = start + (reach - sweepLead) * across + band.offset(1) * through;
+  const auto corner = [&](std::size_t c) {
+    const double ahead = length * static_cast<double>(c) / static_cast<double>(pieces) - lead;
+    return Vec3(stroke.place + error_ + deep * stroke.shaft + ahead * across + off[c] * stroke.through);
+  };
   HandMove move;
   move.aiming = HandMove::Aim::forward;
   move.aim = across;
-  if ((from - hand().meant()).norm() > 0.010) {
+  if ((corner(0) - hand().meant()).norm() > retreat) {
     const Vec3 here = hand().meant();
-    go(here - 0.010 * hand().shaft(here) - 0.004 * across, profile.motor.contactSpeed, 0.0);
-    move.to = from - 0.010 * shaft - 0.004 * across;
+    go(here - retreat * hand().shaft(here) - 0.4 * retreat * across, profile.motor.contactSpeed, 0.0);
+    move.to = corner(0) - retreat * stroke.shaft - 0.4 * retreat * across;
     move.speed = profile.motor.strokeSpeed;
     hand().add(move);
   }
-  move.to = from;
+  move.to = corner(0);
   move.speed = profile.motor.contactSpeed;
   hand().add(move);
-  move.to = to;
   move.steady = true;
-  move.speed = profile.operation.burnSpeed;
+  move.speed = (fine ? 0.5 : 1.0) * profile.operation.burnSpeed;
   move.buttons = button::coagulatePedal;
-  move.dwell = std::max(0.0, profile.operation.pedalLag * (1.0 + 0.3 * random_.normal()));
-  hand().add(move);
+  for (std::size_t c = 1; c <= pieces; ++c) {
+    move.to = corner(c);
+    if (c == pieces) move.dwell = std::max(0.0, profile.operation.pedalLag * (1.0 + 0.3 * random_.normal()));
+    hand().add(move);
+  }
+}
+
+void WorkingMind::leaveBed(const Sight& sight, bool lowerThird) {
+  stage_ = lowerThird ? Stage::clip : Stage::done;
+  vessel_ = 0;
+  strokes_ = 0;
+  if (lowerThird) {
+    clip(sight);
+    return;
+  }
+  const Vec3 here = hand().meant();
+  go(here - 0.02 * hand().shaft(here), tools_.profile.motor.contactSpeed, 0.0);
+  go(tools_.scene.hands[hand_].home, tools_.profile.motor.strokeSpeed, 0.0);
+}
+
+void WorkingMind::burn(const Sight& sight, bool lowerThird) {
+  std::vector<BedStrand> wanted;
+  double all = 0.0;
+  for (std::size_t s = 0; s < sight.strand.size(); ++s) {
+    if (lowerThird && share_[s] > lowerShare) continue;
+    all += 1.0;
+    const SeenStrand& strand = sight.strand[s];
+    if (!strand.attached) continue;
+    wanted.push_back({s, 0.5 * (strand.end[0] + strand.end[1]), strand.end[1] - strand.end[0]});
+  }
+  const auto left = static_cast<double>(wanted.size());
+  // A few strands of the lower third may wait until the rest of the bed is freed.
+  if (left == 0.0 || (lowerThird && left < fewLeft * all)) {
+    leaveBed(sight, lowerThird);
+    return;
+  }
+  if (mount(InstrumentKind::hook, 0.0)) return;
+  runStroke(bestStroke(wanted));
   ++strokes_;
-  if (strokes_ > 600) {
+  if (strokes_ > mostStrokes) {
     failed_ = true;
     stage_ = Stage::done;
   }

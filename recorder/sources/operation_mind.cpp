@@ -15,6 +15,10 @@ constexpr double gripApproach = 0.018;  // m
 constexpr double gripDepth = 0.004;     // tips go so far past the surface (m)
 constexpr double pullSpeed = 0.020;     // m/s
 constexpr double bedPull = 0.045;       // more pull as the bed comes free (m)
+constexpr double pullMore = 0.012;      // at one decision (m)
+constexpr double easeOff = 0.006;       // at one decision (m)
+constexpr double stillTaut = 0.7;       // of what is too taut: no more pull
+constexpr double tautShare = 0.9;       // of the strands that still hold are no longer than what it goes by
 constexpr double exchangeTime = 0.8;    // s
 constexpr double exchangeRest = 0.4;    // s
 constexpr double above = 0.006;         // over tissue, between strokes (m)
@@ -24,6 +28,23 @@ constexpr double near = 0.008;          // goals nearer than this are gone to di
 
 HoldingMind::HoldingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed)
     : tools_(tools), hand_(hand), random_(seed, 21) {}
+
+/// As the bed comes free it pulls further, while what still holds does not look too taut; it eases off where it does.
+double HoldingMind::wantedPull(const Sight& sight, double freed, bool divided) const {
+  const PerformerProfile::Operation& operation = tools_.profile.operation;
+  const double wanted = (divided ? 2.5 : 1.0) * operation.pull + bedPull * freed;
+  // A few taut strands at an edge, or where the assistant pulls, do not keep it from showing the rest.
+  std::vector<double> length;
+  for (const SeenStrand& s : sight.strand) {
+    if (s.attached) length.push_back((s.end[0] - s.end[1]).norm());
+  }
+  std::sort(length.begin(), length.end());
+  const double tautest =
+      length.empty() ? 0.0 : length[static_cast<std::size_t>(tautShare * static_cast<double>(length.size() - 1))];
+  if (tautest > operation.stretch) return std::max(pulled_ - easeOff, operation.pull);
+  if (tautest > stillTaut * operation.stretch) return std::min(pulled_, wanted);
+  return std::min(pulled_ + pullMore, wanted);
+}
 
 void HoldingMind::decide(const Sight& sight, double freed, bool divided) {
   PerformerHand& hand = tools_.hand[hand_];
@@ -82,8 +103,8 @@ void HoldingMind::decide(const Sight& sight, double freed, bool divided) {
       if (!sight.hand[hand_].holds) break;
       [[fallthrough]];
     case At::pulling: {
-      const double wanted = (divided ? 2.5 : 1.0) * profile.operation.pull + bedPull * freed;
-      if (wanted - pulled_ > 0.002) {
+      const double wanted = wantedPull(sight, freed, divided);
+      if (std::abs(wanted - pulled_) > 0.002) {
         // Off the liver, and towards the patient's right.
         const Vec3 way = Vec3(0.35, -0.25, -0.9) / Vec3(0.35, -0.25, -0.9).norm();
         move.to = held_ + wanted * way;
@@ -229,6 +250,7 @@ void WorkingMind::rankStrands(const Sight& sight) {
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return away[a] != away[b] ? away[a] < away[b] : a < b; });
   share_.resize(order.size());
+  tried_.assign(order.size(), 0);
   for (std::size_t i = 0; i < order.size(); ++i) {
     share_[order[i]] = static_cast<double>(i) / static_cast<double>(order.size());
   }

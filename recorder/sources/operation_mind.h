@@ -31,6 +31,7 @@ class HoldingMind {
 
  private:
   enum class At : std::uint8_t { away, before, closed, pulling };
+  [[nodiscard]] double wantedPull(const Sight& sight, double freed, bool divided) const;
   OperationTools tools_;
   std::size_t hand_;
   Random random_;
@@ -54,7 +55,7 @@ class WorkingMind {
   /// No vessel holds the specimen any more.
   [[nodiscard]] bool divided() const { return stage_ >= Stage::bed || !tools_.anatomy.divides(); }
   /// A clip sat badly or fell.
-  void sawBadClip() { ++badClips_; }
+  void sawBadClip() { ++badClips_[clipped_]; }
 
  private:
   enum class Stage : std::uint8_t { clear, lowerThird, clip, cut, bed, done };
@@ -62,7 +63,13 @@ class WorkingMind {
   void rankStrands(const Sight& sight);
   void clear(const Sight& sight);
   void burn(const Sight& sight, bool lowerThird);
+  void leaveBed(const Sight& sight, bool lowerThird);
+  struct BedStrand;
+  struct BedStroke;
+  [[nodiscard]] BedStroke bestStroke(const std::vector<BedStrand>& wanted) const;
+  void runStroke(const BedStroke& stroke);
   void clip(const Sight& sight);
+  [[nodiscard]] double placeForClip(const Sight& sight, std::size_t side) const;
   void cut(const Sight& sight);
 
   /// Goes home and comes back with another instrument. @return false where it is mounted already
@@ -81,12 +88,13 @@ class WorkingMind {
   Random random_;
   Stage stage_ = Stage::clear;
   std::size_t vessel_ = 0;
-  std::uint32_t strokes_ = 0, tries_ = 0, badClips_ = 0, looks_ = 0;
+  std::uint32_t strokes_ = 0, tries_ = 0, looks_ = 0;
+  std::array<std::uint32_t, 2> badClips_{0, 0};  ///< on the vessel at hand, on the side that stays and on the other
+  std::size_t clipped_ = 0;                      ///< the side that the last clip was for
   bool failed_ = false;
-  std::size_t lastStrand_ = ~std::size_t{0};
-  std::uint32_t repeats_ = 0;
   Vec3 error_ = Vec3::Zero();
-  std::vector<double> share_;  ///< of the strands that lie nearer to the neck, per strand, as first seen
+  std::vector<double> share_;         ///< of the strands that lie nearer to the neck, per strand, as first seen
+  std::vector<std::uint32_t> tried_;  ///< per strand: strokes that should have met it
   double attachedAtFirst_ = 0.0;
 };
 

@@ -8,25 +8,26 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double toe = 0.0023;         // from the hook's heel to the middle of its toe (m)
-constexpr double wire = 0.0006;        // radius of the hook's wire (m)
-constexpr double film = 0.0006;        // of fat on a vessel that counts as none (m)
-constexpr double laneLength = 0.012;   // m
-constexpr double clipJaw = 0.55;       // rad
-constexpr double clipDepth = 0.0043;   // the vessel comes to lie so far behind the tips (m)
-constexpr double bladeJaw = 0.95;      // rad
-constexpr double bladeDepth = 0.006;   // m
-constexpr double bladeTrial = 0.0012;  // by how much depths of one try and the next differ (m)
-constexpr double hover = 0.014;        // m
-constexpr double clipSpacing = 0.003;
-constexpr std::uint32_t mostTries = 6;
+constexpr double toe = 0.0023;          // from the hook's heel to the middle of its toe (m)
+constexpr double wire = 0.0006;         // radius of the hook's wire (m)
+constexpr double film = 0.0006;         // of fat on a vessel that counts as none (m)
+constexpr double laneLength = 0.012;    // m
+constexpr double clipJaw = 0.55;        // rad
+constexpr double clipDepth = 0.0043;    // the vessel comes to lie so far behind the tips (m)
+constexpr double bladeJaw = 0.95;       // rad
+constexpr double bladeDepth = 0.006;    // m
+constexpr double bladeTrial = 0.0012;   // by how much depths of one try and the next differ (m)
+constexpr double hover = 0.014;         // m
+constexpr double clipSpacing = 0.0033;  // between clips on one side of the cut (m)
+constexpr double clipToCut = 0.0033;    // and from the nearest of them to the cut (m)
+constexpr double clipApart = 0.0024;    // a clip nearer than this to another one would be too near (m)
+constexpr double fromJunction = 0.004;  // and one nearer to where vessels meet, or to the specimen (m)
+constexpr std::uint32_t mostTries = 10;
 
-/// Stations between which a vessel is cleared, clipped and cut, as shares of its length.
+/// Stations between which a vessel is cleared, and where it is cut, as shares of its length.
 constexpr double clearFrom = 0.22;
 constexpr double clearTo = 0.72;
-constexpr double firstClip = 0.30;
 constexpr double cutAt = 0.52;
-constexpr double lastClip = 0.64;
 
 /// The station of a vessel's course that is nearest to an arc length (m).
 std::size_t stationAt(double place, std::size_t stations) {
@@ -97,6 +98,36 @@ void WorkingMind::clear(const Sight& sight) {
   }
 }
 
+/// Where the next clip on a side of the cut goes (m from the first station); below zero where there is none to set.
+/// Clips that sit badly are made good while there are enough for what is still to be clipped.
+double WorkingMind::placeForClip(const Sight& sight, std::size_t side) const {
+  const std::vector<PerformerSight::VesselPlan>& plans = tools_.anatomy.vessels();
+  const SeenVessel& vessel = sight.vessel[vessel_];
+  const double length = PerformerSight::spacing * static_cast<double>(vessel.centre.size() - 1);
+  const double cut = cutAt * length;
+  const std::uint32_t expected = side == 0 ? plans[vessel_].patientClips : plans[vessel_].specimenClips;
+  std::uint32_t there = 0, needed = 0;
+  for (const double c : vessel.clip) there += (c < cut) == (side == 0) ? 1U : 0U;
+  for (std::size_t v = vessel_ + 1; v < plans.size(); ++v) needed += plans[v].patientClips + plans[v].specimenClips;
+  const std::uint32_t left = sight.hand[hand_].clips;
+  if (left == 0) return -1.0;
+  const std::uint32_t spare = left > needed ? badClips_[side] : 0;
+  if (there >= expected + spare) return -1.0;
+  // The farthest from the cut first, then towards it; what is to be made good goes farther out still.
+  const double out = side == 0 ? -1.0 : 1.0;
+  const auto most = static_cast<int>(expected + badClips_[side]);
+  for (int k = 0; k < most; ++k) {
+    const int fromCut = k < static_cast<int>(expected) ? static_cast<int>(expected) - 1 - k : k;
+    const double place = cut + out * (clipToCut + clipSpacing * static_cast<double>(fromCut));
+    if (place < fromJunction || place > length - fromJunction) continue;
+    if (std::all_of(vessel.clip.begin(), vessel.clip.end(),
+                    [&](double c) { return std::abs(c - place) >= clipApart; })) {
+      return place;
+    }
+  }
+  return -1.0;
+}
+
 void WorkingMind::clip(const Sight& sight) {
   if (!tools_.anatomy.divides() || vessel_ >= sight.vessel.size()) {
     vessel_ = 0;
@@ -114,31 +145,16 @@ void WorkingMind::clip(const Sight& sight) {
     return;
   }
   const SeenVessel& vessel = sight.vessel[vessel_];
-  const double length = PerformerSight::spacing * static_cast<double>(vessel.centre.size() - 1);
-  const double cutPlace = cutAt * length;
-  std::uint32_t patient = 0, specimen = 0;
-  double last = 0.0;
-  for (const double c : vessel.clip) {
-    if (c < cutPlace) {
-      ++patient;
-      last = std::max(last, c);
-    } else {
-      ++specimen;
-    }
-  }
-  const bool more = patient < 2 + badClips_;
-  if ((!more && specimen >= 1) || tries_ >= mostTries + 3) {
+  double place = placeForClip(sight, 1);
+  clipped_ = place < 0.0 ? 0 : 1;
+  if (place < 0.0) place = placeForClip(sight, 0);
+  if (place < 0.0 || tries_ >= mostTries) {
     ++vessel_;
     tries_ = 0;
-    badClips_ = 0;
+    badClips_ = {0, 0};
     looks_ = 0;
     clip(sight);
     return;
-  }
-  double place = lastClip * length;
-  if (specimen >= 1) {
-    place = patient == 0 ? firstClip * length : last + clipSpacing;
-    if (place > cutPlace - 0.002) place = firstClip * length - clipSpacing;
   }
   const std::size_t station = stationAt(place, vessel.centre.size());
   if (bring(vessel.centre[station], vessel.along[station], hover, clipDepth, clipJaw)) {

@@ -38,7 +38,7 @@ std::vector<ObjectRule> makeRules() {
        {bounded("hesitationShare", 0, 1), bounded("hesitation", 0, 10), bounded("pedalLag", 0, 2),
         bounded("keepOff", 0, 0.005), bounded("layer", 0.0001, 0.005), bounded("bareShare", 0, 1),
         bounded("strokes", 0, 200), bounded("burnSpeed", 0.0005, 0.1), bounded("pull", 0, 0.05),
-        bounded("slipShare", 0, 1), bounded("patience", 10, 3600)}},
+        bounded("stretch", 0.001, 0.05), bounded("slipShare", 0, 1), bounded("patience", 10, 3600)}},
   };
 }
 
@@ -113,6 +113,7 @@ PerformerProfile loadPerformer(const fs::path& file) {
   operation.read("strokes", profile.operation.strokes);
   operation.read("burnSpeed", profile.operation.burnSpeed);
   operation.read("pull", profile.operation.pull);
+  operation.read("stretch", profile.operation.stretch);
   operation.read("slipShare", profile.operation.slipShare);
   operation.read("patience", profile.operation.patience);
   return profile;

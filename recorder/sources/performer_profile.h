@@ -63,6 +63,7 @@ struct PerformerProfile {
     std::uint32_t strokes = 0;     ///< at most, to clear one vessel
     double burnSpeed = 0.0;        ///< mean speed of the energised hook through connective tissue (m/s)
     double pull = 0.0;             ///< of the specimen, by the hand that holds it (m)
+    double stretch = 0.0;          ///< length of a strand of the bed that looks too taut, so that it eases off (m)
     double slipShare = 0.0;        ///< of holds that are let go by mistake
     double patience = 0.0;         ///< after which the attempt is given up (s)
   } operation;

@@ -56,19 +56,9 @@ PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker
     bed_ = scene.connective[0].name;
     specimenName_ = scene.connective[0].first;
   }
-  for (std::size_t i = 0; i < scene.vessels.size(); ++i) {
-    const VesselDescription& v = scene.vessels[i];
-    // What is to be divided ends in the specimen.
-    if (v.end.kind != VesselEndDescription::Kind::organ) continue;
-    if (specimenName_.empty()) specimenName_ = v.end.to;
-    if (v.end.to != specimenName_) continue;
-    VesselPlan plan;
-    plan.name = v.name;
-    plan.radius = v.radius;
-    plan.index = i;
-    plan.rest = stationsOf(v.path, spacing);
-    vessel_.push_back(plan);
-  }
+  if (!scene.procedure.bed.empty()) bed_ = scene.procedure.bed;
+  if (!scene.procedure.specimen.empty()) specimenName_ = scene.procedure.specimen;
+  planVessels(scene);
   if (!scene.fat.empty()) fat_ = scene.fat[0].name;
   // A scene of fat alone is for clearing.
   divides_ = !vessel_.empty() && (fat_.empty() || !bed_.empty());
@@ -76,6 +66,30 @@ PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker
     if (scene.organs[o].name == specimenName_) specimen_ = o;
   }
   if (hasSpecimen()) findSpecimen(scene);
+}
+
+/// What the procedure says is to be divided; where it says nothing, what ends in the specimen.
+void PerformerSight::planVessels(const SceneDescription& scene) {
+  std::vector<DivideDescription> divide = scene.procedure.divide;
+  for (const VesselDescription& v : scene.vessels) {
+    if (!scene.procedure.specimen.empty() || v.end.kind != VesselEndDescription::Kind::organ) continue;
+    if (specimenName_.empty()) specimenName_ = v.end.to;
+    if (v.end.to == specimenName_) divide.push_back({v.name});
+  }
+  for (const DivideDescription& d : divide) {
+    for (std::size_t i = 0; i < scene.vessels.size(); ++i) {
+      if (scene.vessels[i].name != d.vessel) continue;
+      VesselPlan plan;
+      plan.name = d.vessel;
+      plan.radius = scene.vessels[i].radius;
+      plan.index = i;
+      plan.rest = stationsOf(scene.vessels[i].path, spacing);
+      if (!d.patientAtStart) std::reverse(plan.rest.begin(), plan.rest.end());
+      plan.patientClips = d.patient;
+      plan.specimenClips = d.specimen;
+      vessel_.push_back(plan);
+    }
+  }
 }
 
 /// The neck is deepest in the body; the place to hold lies near it, faces the eye and the shaft that comes for it.

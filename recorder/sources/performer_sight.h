@@ -50,11 +50,14 @@ class PerformerSight {
   /// Stations of a vessel are this far apart (m).
   static constexpr double spacing = 0.001;
 
+  /// A vessel that is to be divided, from the side that stays to the specimen.
   struct VesselPlan {
     std::string name;
-    double radius = 0.0;     ///< m
-    std::vector<Vec3> rest;  ///< stations (m)
-    std::size_t index = 0;   ///< among the scene's vessels
+    double radius = 0.0;             ///< m
+    std::vector<Vec3> rest;          ///< stations (m)
+    std::size_t index = 0;           ///< among the scene's vessels
+    std::uint32_t patientClips = 2;  ///< that should close it on the side that stays
+    std::uint32_t specimenClips = 1;
   };
 
   /// @param worker hand that carves, clips and cuts; the other one holds
@@ -72,6 +75,7 @@ class PerformerSight {
   [[nodiscard]] const Vec3& neck() const { return neck_; }  ///< of the specimen, at rest (m)
 
  private:
+  void planVessels(const SceneDescription& scene);
   void findSpecimen(const SceneDescription& scene);
   void seeVessel(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
   void seeFat(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;

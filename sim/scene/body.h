@@ -42,7 +42,7 @@ class Body {
   /// Free motion of a step under gravity, forces on the nodes (N; may be empty), springs to other bodies and loads that
   /// were linearised elsewhere.
   virtual SolveReport freeMotion(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                 std::span<const TieLoad> ties, std::span<const Attachment> loads) = 0;
+                                 std::span<const TieLoad> ties, const Surroundings& loads) = 0;
   /// Velocities that the step ends with, as far as they are known. @pre freeMotion() of this step
   [[nodiscard]] virtual std::span<const Vec3> freeVelocity() const = 0;
   /// Adds the answer to impulses on the nodes (N s). @pre freeMotion() of this step

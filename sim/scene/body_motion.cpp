@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/scene/stepper_workspace.h"
+#include "sim/vessel/clips.h"
 
 namespace calot {
 
@@ -63,8 +64,33 @@ Vec3 Stepper::Workspace::endOf(const State& state, const Tie& tie, std::size_t s
   return place + vessels.orientation[static_cast<std::size_t>(tie.place[0].node[0])] * tie.offset;
 }
 
-/// Springs between a body and others. Bodies of lower number have moved already in this step: their new velocities
-/// count.
+/// Sorts ties: vessels that are grown to an organ are solved together with it (a tree that is grown to several, with
+/// the first); all other ties are springs that each side feels by itself.
+void Stepper::Workspace::coupleTies(double step) {
+  std::vector<std::size_t> organOf(body.size(), Tie::none);  // of vessel trees
+  std::vector<std::vector<std::size_t>> grown(model.organs().size());
+  tiesOf.resize(body.size());
+  for (std::size_t t = 0; t < model.ties().size(); ++t) {
+    const Tie& tie = model.ties()[t];
+    const bool isGrown = tie.fat == Tie::none && tie.body[0] < model.organs().size() &&
+                         tie.body[1] >= model.organs().size() && tie.body[1] < firstFat();
+    if (isGrown && organOf[tie.body[1]] == Tie::none) organOf[tie.body[1]] = tie.body[0];
+    if (isGrown && organOf[tie.body[1]] == tie.body[0]) {
+      grown[tie.body[0]].push_back(t);
+      continue;
+    }
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) tiesOf[tie.body[side]].emplace_back(t, side);
+  }
+  for (std::size_t o = 0; o < grown.size(); ++o) {
+    if (grown[o].empty()) continue;
+    std::stable_sort(grown[o].begin(), grown[o].end(),
+                     [&](std::size_t a, std::size_t b) { return model.ties()[a].body[1] < model.ties()[b].body[1]; });
+    coupling.emplace_back(model, o, grown[o], step);
+  }
+  solved.assign(body.size(), false);
+}
+
+/// Springs between a body and others. Of bodies that have moved already in this step the new velocities count.
 void Stepper::Workspace::gatherTies(const State& state, std::size_t which) {
   tieLoads.clear();
   for (const auto& [number, side] : tiesOf[which]) {
@@ -73,7 +99,7 @@ void Stepper::Workspace::gatherTies(const State& state, std::size_t which) {
     if (!(share > 0.0)) continue;
     const std::size_t other = tie.body[1 - side];
     const std::span<const Vec3> velocity =
-        other < which && moved[other] ? body[other]->freeVelocity() : body[other]->velocity(state);
+        solved[other] && moved[other] ? body[other]->freeVelocity() : body[other]->velocity(state);
     Vec3 target = endOf(state, tie, 1 - side);
     if (side == 0) target -= endOf(state, tie, 0) - tie.place[0].of(body[which]->position(state));
     tieLoads.push_back(
@@ -103,35 +129,53 @@ void Stepper::Workspace::gatherRetractions(const State& state, std::size_t organ
   }
 }
 
-/// Free motion of all bodies that are awake, under the contact forces that the last step left.
+/// Free motion of all bodies that are awake, under the contact forces that the last step left: vessels, then organs,
+/// which take the vessels that are grown to them along, then fat.
 void Stepper::Workspace::moveFreely(State& state) {
-  for (std::size_t b = 0; b < body.size(); ++b) {
-    SolveReport report;
-    if (moved[b]) {
-      nodal[b].clear();
-      addForces(b, carried, 1.0, nodal[b]);
-      attachments.clear();
-      gatherTies(state, b);
-      if (b < model.organs().size()) {
-        gatherAttachments(state, b);
-        gatherRetractions(state, b);
-      }
-      report = body[b]->freeMotion(state, model.scene().gravity, nodal[b], tieLoads, attachments);
-      if (!report.converged) {
-        result.misses |= miss::solver;
-        emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(firstStructure(b)), Vec3::Zero(), report.residual);
+  std::fill(solved.begin(), solved.end(), false);
+  for (std::size_t b = model.organs().size(); b < firstFat(); ++b) moveFreely(state, b);
+  for (std::size_t b = 0; b < model.organs().size(); ++b) moveFreely(state, b);
+  for (std::size_t b = firstFat(); b < body.size(); ++b) moveFreely(state, b);
+}
+
+void Stepper::Workspace::moveFreely(State& state, std::size_t which) {
+  const bool isOrgan = which < model.organs().size();
+  SolveReport report;
+  if (moved[which]) {
+    nodal[which].clear();
+    addForces(which, carried, 1.0, nodal[which]);
+    attachments.clear();
+    joints.clear();
+    gatherTies(state, which);
+    if (isOrgan) {
+      gatherAttachments(state, which);
+      gatherRetractions(state, which);
+      for (TieCoupling& c : coupling) {
+        if (c.organ() != which) continue;
+        c.begin(state, body);
+        joints.push_back(c.joint());
       }
     }
-    if (b < model.organs().size()) {
-      OrganResult& out = result.organ[b];
-      out.asleep = !moved[b];
-      out.residual = report.residual;
-      out.iterations = report.iterations;
-    } else if (b >= firstFat()) {
-      FatResult& out = result.fat[b - firstFat()];
-      out.residual = report.residual;
-      out.iterations = report.iterations;
+    report = body[which]->freeMotion(state, model.scene().gravity, nodal[which], tieLoads, {attachments, {}, joints});
+    for (TieCoupling& c : coupling) {
+      if (c.organ() == which) c.pull(body);
     }
+    if (!report.converged) {
+      result.misses |= miss::solver;
+      emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(firstStructure(which)), Vec3::Zero(),
+           report.residual);
+    }
+  }
+  solved[which] = true;
+  if (isOrgan) {
+    OrganResult& out = result.organ[which];
+    out.asleep = !moved[which];
+    out.residual = report.residual;
+    out.iterations = report.iterations;
+  } else if (which >= firstFat()) {
+    FatResult& out = result.fat[which - firstFat()];
+    out.residual = report.residual;
+    out.iterations = report.iterations;
   }
 }
 
@@ -194,6 +238,7 @@ void Stepper::Workspace::finishVessels(State& state) {
         const std::size_t structure = structureOf(t, static_cast<std::size_t>(element.branch));
         emit(EventKind::vesselTorn, 255, static_cast<std::uint16_t>(structure),
              beams.position[static_cast<std::size_t>(element.a)], own.report().largestStrain);
+        tellTear(state, t, static_cast<std::size_t>(own.report().torn));
         disturb(state, b);
         for (std::size_t branch = 0; branch < tree.vessel.size(); ++branch) bounded[structureOf(t, branch)] = false;
       }
@@ -221,6 +266,26 @@ void Stepper::Workspace::finishVessels(State& state) {
   }
 }
 
+/// A torn vessel bleeds or leaks as a cut one does.
+void Stepper::Workspace::tellTear(State& state, std::size_t tree, std::size_t torn) {
+  const BeamModel& beams = model.vesselTrees()[tree].beams;
+  BeamState& vessels = state.vessel[tree];
+  const BeamElement& element = beams.elements()[torn];
+  const BeamModel::Branch& branch = beams.branches()[static_cast<std::size_t>(element.branch)];
+  BeamPlace where;
+  where.branch = static_cast<std::size_t>(element.branch);
+  where.element = torn;
+  where.share = vessels.partedAt[torn];
+  where.place = branch.place[torn - branch.firstElement] + where.share * element.length;
+  vessels.parting[torn] = Parting::none;  // judged as it was before
+  const CutJudgement judged = judgeCut(beams, vessels, where);
+  vessels.parting[torn] = Parting::torn;
+  if (!judged.opensBefore && !judged.opensAfter) return;
+  emit(EventKind::cutOpen, 255, static_cast<std::uint16_t>(structureOf(tree, where.branch)),
+       vessels.position[static_cast<std::size_t>(element.a)],
+       (judged.opensBefore ? 1.0 : 0.0) + (judged.opensAfter ? 2.0 : 0.0));
+}
+
 void Stepper::Workspace::finishFat(State& state) {
   for (std::size_t f = 0; f < fatMotion.size(); ++f) {
     const std::size_t b = firstFat() + f;
@@ -244,6 +309,27 @@ void Stepper::Workspace::finishFat(State& state) {
     out.largestDisplacement = solid.largestDisplacement;
     out.volume = fat.volume().total();
     out.toClear = fat.model().regions() > 0 ? fat.volume().inRegion(0) : 0.0;
+  }
+}
+
+/// The guard of last resort: says that the simulation ran away, and where.
+void Stepper::Workspace::watchSpeeds(const State& state) {
+  for (std::size_t b = 0; b < body.size(); ++b) {
+    if (!moved[b]) continue;
+    // advance() lets nothing that is not finite into State and stops the node instead; that is no motion either.
+    double largest = stopped[b] ? 1e300 : 0.0;
+    std::size_t where = 0;
+    const std::span<const Vec3> velocity = body[b]->velocity(state);
+    for (std::size_t n = 0; n < velocity.size(); ++n) {
+      const double speed = velocity[n].norm();
+      if (speed <= largest) continue;
+      largest = speed;
+      where = n;
+    }
+    if (largest <= fastestMotion) continue;
+    result.misses |= miss::runaway;
+    emit(EventKind::runaway, 255, static_cast<std::uint16_t>(firstStructure(b)), body[b]->position(state)[where],
+         largest);
   }
 }
 

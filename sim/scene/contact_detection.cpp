@@ -187,6 +187,8 @@ const SurfacePair& Stepper::Workspace::restOf(std::size_t pair) {
 /// Blocks among organs that are awake; wet tissue on wet tissue slides without friction.
 void Stepper::Workspace::detectTissue(const State& state) {
   result.contact.tissueDepth = 0.0;
+  const std::size_t first = blocks.size();
+  tissueGap.clear();
   for (std::size_t i = 0; i < model.tissuePairs().size(); ++i) {
     const TissuePair& pair = model.tissuePairs()[i];
     if (!moved[pair.a] && !moved[pair.b]) continue;
@@ -218,9 +220,29 @@ void Stepper::Workspace::detectTissue(const State& state) {
       // Deep overlaps part over several steps, or they would be thrown apart.
       block.gap[0] = std::max(contact.gap + tissueSlop, -largestRecovery);
       block.key = contact.key | static_cast<std::uint64_t>(i) << 40U;
+      tissueGap.push_back(contact.gap);
       blocks.push_back(block);
     }
   }
+  keepDeepest(first);
+}
+
+/// Of the contacts between organs, from block `first` on, keeps those of the smallest gaps, in their order. Where an
+/// organ is crumpled hundreds of its vertices are inside of it: more rows than its nodes can answer to.
+void Stepper::Workspace::keepDeepest(std::size_t first) {
+  if (blocks.size() - first <= mostTissueContacts) return;
+  std::vector<std::pair<double, std::uint64_t>> rank;
+  for (std::size_t b = first; b < blocks.size(); ++b) rank.emplace_back(tissueGap[b - first], blocks[b].key);
+  const auto last = rank.begin() + static_cast<std::ptrdiff_t>(mostTissueContacts);
+  std::nth_element(rank.begin(), last, rank.end());
+  const std::pair<double, std::uint64_t> limit = *last;
+  std::size_t kept = first;
+  for (std::size_t b = first; b < blocks.size(); ++b) {
+    if (!(std::pair(tissueGap[b - first], blocks[b].key) < limit)) continue;
+    if (kept != b) blocks[kept] = blocks[b];
+    ++kept;
+  }
+  blocks.resize(kept);
 }
 
 }  // namespace calot

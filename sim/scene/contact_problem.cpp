@@ -6,6 +6,7 @@
 // and decided again with the gaps that this left, as often as the scene allows. A force that stays as it is costs
 // nothing and carries no error of the compliance: at rest the gaps are those of the true equilibrium.
 #include <algorithm>
+#include <array>
 
 #include "sim/scene/stepper_workspace.h"
 
@@ -17,6 +18,8 @@ namespace {
 
 /// Relative weight of a skin more compliant than the mesh can show; keeps rows that repeat each other apart.
 constexpr double skinShare = 1e-4;
+constexpr double largestSurprise = 2.0;  ///< tissue that answers by more than this multiple of what was expected
+constexpr double leastShare = 1e-3;      ///< and by less than this share: rounding, not an answer
 
 /// A nodal quantity at a place.
 Vec3 at(const SolidSolver::Impulse& place, std::span<const Vec3> values) {
@@ -88,6 +91,7 @@ void Stepper::Workspace::measureGaps() {
     for (std::size_t k = 0; k < block.rows(); ++k) {
       trueGap[block.row + k] = block.gap[k] + block.direction[k].dot(apart) + block.tool[k].dot(q);
     }
+    if (block.hand == ContactBlock::nobody) trueGap[block.row] += tissueSoftness * lambda[block.row];
   }
 }
 
@@ -135,15 +139,26 @@ void Stepper::Workspace::assembleCompliance(const State& state) {
     double sign;
     const SolidSolver::Impulse* place;
     std::array<Mat3, SolidSolver::Impulse::mostNodes> turn;  // weight times rotation
+    std::size_t coupling = ContactBlock::nobody;             // that the body takes part in
+    std::vector<Mat3> ties;                                  // relative velocities there
   };
   std::vector<Part> parts;
+  std::vector<bool> stiffened(coupling.size(), false);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto add = [&](std::size_t which, const SolidSolver::Impulse& place, double sign) {
       if (which == ContactBlock::nobody || !moved[which]) return;
-      parts.push_back({b, which, sign, &place, {}});
+      parts.push_back({b, which, sign, &place, {}, ContactBlock::nobody, {}});
       body[which]->require({place.node.data(), place.count});
       for (std::size_t k = 0; k < place.count; ++k) {
         parts.back().turn[k] = place.weight[k] * body[which]->turn(state, place.node[k]);
+      }
+      for (std::size_t c = 0; c < coupling.size(); ++c) {
+        if (!coupling[c].joins(which)) continue;
+        if (!stiffened[c]) coupling[c].stiffen(state, body);
+        stiffened[c] = true;
+        parts.back().coupling = c;
+        coupling[c].answers(*body[which], which, place, parts.back().turn, parts.back().ties);
+        break;
       }
     };
     add(blocks[b].body, blocks[b].place, -1.0);
@@ -154,13 +169,17 @@ void Stepper::Workspace::assembleCompliance(const State& state) {
     for (std::size_t q = p; q < parts.size(); ++q) {
       const Part& a = parts[p];
       const Part& b = parts[q];
-      if (a.body != b.body) continue;
+      const bool coupled = a.coupling != ContactBlock::nobody && a.coupling == b.coupling;
+      if (a.body != b.body && !coupled) continue;
       Mat3 c = Mat3::Zero();
-      for (std::size_t i = 0; i < a.place->count; ++i) {
-        for (std::size_t j = 0; j < b.place->count; ++j) {
-          c += a.turn[i] * body[a.body]->block(a.place->node[i], b.place->node[j]) * b.turn[j].transpose();
+      if (a.body == b.body) {
+        for (std::size_t i = 0; i < a.place->count; ++i) {
+          for (std::size_t j = 0; j < b.place->count; ++j) {
+            c += a.turn[i] * body[a.body]->block(a.place->node[i], b.place->node[j]) * b.turn[j].transpose();
+          }
         }
       }
+      if (coupled) c -= coupling[a.coupling].taken(a.ties, b.ties);
       c *= h2 * a.sign * b.sign;
       const ContactBlock& one = blocks[a.block];
       const ContactBlock& two = blocks[b.block];
@@ -180,21 +199,82 @@ void Stepper::Workspace::assembleCompliance(const State& state) {
       tissueCompliance[i * rows + j] = tissueCompliance[j * rows + i] = mean;
     }
   }
-  compliance = tissueCompliance;
+  couplingCompliance.assign(rows * rows, 0.0);
   for (const ContactBlock& a : blocks) {
+    if (a.hand == ContactBlock::nobody) couplingCompliance[a.row * rows + a.row] = tissueSoftness;
     for (const ContactBlock& b : blocks) {
       if (a.hand == ContactBlock::nobody || a.hand != b.hand) continue;
       const HandDescription& hand = model.scene().hands[a.hand];
       for (std::size_t i = 0; i < a.rows(); ++i) {
         for (std::size_t j = 0; j < b.rows(); ++j) {
-          compliance[(a.row + i) * rows + b.row + j] +=
+          couplingCompliance[(a.row + i) * rows + b.row + j] +=
               a.tool[i].head<3>().dot(b.tool[j].head<3>()) / hand.couplingStiffness +
               a.tool[i][3] * b.tool[j][3] / hand.rollStiffness;
         }
       }
     }
   }
+  addCompliances();
+}
+
+/// What the problem is decided on: tissue and virtual couplings.
+void Stepper::Workspace::addCompliances() {
+  compliance.resize(rows * rows);
+  for (std::size_t i = 0; i < rows * rows; ++i) compliance[i] = tissueCompliance[i] + couplingCompliance[i];
   for (std::size_t i = 0; i < rows; ++i) compliance[i * rows + i] *= 1.0 + skinShare;
+}
+
+/// Carries out a change of forces, as far as the tissue bears it, and learns from the answer how compliant it is.
+///
+/// The compliance W that forces are decided on is that of the rest shape, without what ties organs to one another.
+/// Where the answer y to the change s is W s, nothing happens. Where it is more than twice as large, going on like that
+/// would lead away from the solution: the change is taken back to the share for which y is as large as it was expected
+/// to be. Then W is corrected so that it gives this answer (BFGS; Nocedal and Wright 2006, 6.19):
+///   W += y y^T / (y.s) - W s s^T W / (s.W s),
+/// which leaves it symmetric and positive.
+void Stepper::Workspace::followChange() {
+  gapBefore = trueGap;
+  const auto answer = [&] {
+    measureGaps();
+    expected.assign(rows, 0.0);
+    double softness = 0.0;
+    double wanted = 0.0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      double coupled = 0.0;
+      for (std::size_t j = 0; j < rows; ++j) {
+        expected[i] += tissueCompliance[i * rows + j] * change[j];
+        coupled += couplingCompliance[i * rows + j] * change[j];
+      }
+      answered[i] = trueGap[i] - gapBefore[i] - coupled;
+      softness += change[i] * answered[i];
+      wanted += change[i] * expected[i];
+    }
+    return std::array{softness, wanted};
+  };
+  answered.resize(rows);
+  for (std::size_t i = 0; i < rows; ++i) change[i] = lambda[i] - carried[i];
+  carryOut(change);
+  auto [softness, wanted] = answer();
+  if (wanted > 0.0 && softness > largestSurprise * wanted) {
+    const double back = wanted / softness - 1.0;
+    for (std::size_t i = 0; i < rows; ++i) change[i] *= back;
+    carryOut(change);
+    for (std::size_t i = 0; i < rows; ++i) {
+      change[i] *= (1.0 + back) / back;
+      lambda[i] = carried[i] + change[i];
+    }
+    const auto again = answer();
+    softness = again[0];
+    wanted = again[1];
+  }
+  carried = lambda;
+  if (!(wanted > 0.0) || !(softness > leastShare * wanted)) return;
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (std::size_t j = 0; j < rows; ++j) {
+      tissueCompliance[i * rows + j] += answered[i] * answered[j] / softness - expected[i] * expected[j] / wanted;
+    }
+  }
+  addCompliances();
 }
 
 void Stepper::Workspace::solveContacts() {
@@ -222,10 +302,7 @@ void Stepper::Workspace::solveContacts() {
     out.iterations += report.sweeps;
     out.newtonSteps += report.newtonSteps;
     out.residual = report.residual;
-    for (std::size_t i = 0; i < rows; ++i) change[i] = lambda[i] - carried[i];
-    carryOut(change);
-    carried = lambda;
-    measureGaps();
+    followChange();
   }
   if (out.residual > limitsOf.contactTolerance) {
     result.misses |= miss::contact;

@@ -38,14 +38,24 @@ void Stepper::Workspace::addForces(std::size_t which, std::span<const double> fo
   }
 }
 
-/// Lets the bodies follow a change of forces, all rows at once.
+/// Lets the bodies follow a change of forces, all rows at once: vessels, then organs with what is grown to them, then
+/// fat.
 void Stepper::Workspace::carryOut(std::span<const double> change_) {
-  for (std::size_t o = 0; o < body.size(); ++o) {
+  const std::size_t organs = model.organs().size();
+  for (std::size_t k = 0; k < body.size(); ++k) {
+    const std::size_t vessels = firstFat() - organs;
+    const std::size_t o = k < vessels ? organs + k : k < firstFat() ? k - vessels : k;
     if (!moved[o]) continue;
     nodal[o].clear();
     addForces(o, change_, settings.step, nodal[o]);
+    for (TieCoupling& c : coupling) {
+      if (c.organ() == o) c.passOn(body, nodal[o]);
+    }
     if (nodal[o].empty()) continue;
     const SolveReport report = body[o]->push(nodal[o]);
+    for (TieCoupling& c : coupling) {
+      if (c.organ() == o) c.pull(body);
+    }
     if (!report.converged && (result.misses & miss::solver) == 0) {
       result.misses |= miss::solver;
       emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), report.residual);
@@ -57,7 +67,8 @@ void Stepper::Workspace::carryOut(std::span<const double> change_) {
 void Stepper::Workspace::move(State& state) {
   for (std::size_t o = 0; o < body.size(); ++o) {
     if (!moved[o]) continue;
-    if (!body[o]->advance(state)) {
+    stopped[o] = !body[o]->advance(state);
+    if (stopped[o]) {
       result.misses |= miss::solver;
       emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), 1e300);
     }

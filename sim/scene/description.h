@@ -118,12 +118,16 @@ struct VesselEndDescription {
     vessel  ///< grows out of an earlier vessel, at its node nearest to the end; starts only
   };
   Kind kind = Kind::free;
-  std::string to;  ///< name of that organ or vessel
+  std::string to;            ///< name of that organ or vessel
+  double stiffness = 200.0;  ///< of all springs of an end that is grown to an organ together (N/m); not in scene files
+  double damping = 0.0;      ///< the same (N s/m)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("kind", self.kind);
     visit("to", self.to);
+    visit("stiffness", self.stiffness);
+    visit("damping", self.damping);
   }
 };
 

@@ -39,11 +39,11 @@ std::span<const Vec3> FatMotion::velocity(const State& state) const { return sta
 std::uint32_t& FatMotion::quietSteps(State& state) const { return state.fat[index_].solid.quietSteps; }
 
 SolveReport FatMotion::freeMotion(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                  std::span<const TieLoad> ties, std::span<const Attachment> loads) {
-  load_.assign(loads.begin(), loads.end());
+                                  std::span<const TieLoad> ties, const Surroundings& loads) {
+  load_.assign(loads.attachments.begin(), loads.attachments.end());
   addAttachments(ties, settings_.step, position(state), load_);
   return solver_.freeMotion(fat_.model().solid(), state.fat[index_].solid, gravity, force, settings_, executor_,
-                            {load_, fat_.fill()});
+                            {load_, fat_.fill(), loads.joints});
 }
 
 SolveReport FatMotion::push(std::span<const Vec3> impulse) {

@@ -12,10 +12,6 @@ namespace {
 
 /// An end that is grown to an organ is tied over this length, so that it does not hinge (m).
 constexpr double grownLength = 0.003;
-/// Of all ties of one end together: stiffer than the tissue on both sides, soft enough to be solved from each side in
-/// turn (N/m, N s/m).
-constexpr double grownStiffness = 200.0;
-constexpr double grownDamping = 0.0;
 
 int nearestNode(const BeamModel& beams, std::size_t branch, const Vec3& point) {
   const std::vector<int>& nodes = beams.branches()[branch].node;
@@ -113,8 +109,8 @@ std::string Model::addVessels(const SceneDescription& scene) {
         Tie tie;
         tie.body = {organ, organs_.size() + home[v].tree};
         tie.place = {places[i], placeOnNode(grown[i])};
-        tie.stiffness = grownStiffness / static_cast<double>(grown.size());
-        tie.damping = grownDamping / static_cast<double>(grown.size());
+        tie.stiffness = end.stiffness / static_cast<double>(grown.size());
+        tie.damping = end.damping / static_cast<double>(grown.size());
         tie_.push_back(tie);
       }
     }

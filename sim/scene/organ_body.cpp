@@ -31,10 +31,11 @@ void addAttachments(std::span<const TieLoad> ties, double step, std::span<const 
 }
 
 SolveReport OrganBody::freeMotion(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                  std::span<const TieLoad> ties, std::span<const Attachment> loads) {
-  load_.assign(loads.begin(), loads.end());
+                                  std::span<const TieLoad> ties, const Surroundings& loads) {
+  load_.assign(loads.attachments.begin(), loads.attachments.end());
   addAttachments(ties, settings_.step, position(state), load_);
-  return solver_.freeMotion(solid_, state.organ[organ_], gravity, force, settings_, executor_, {load_, {}});
+  return solver_.freeMotion(solid_, state.organ[organ_], gravity, force, settings_, executor_,
+                            {load_, {}, loads.joints});
 }
 
 SolveReport OrganBody::push(std::span<const Vec3> impulse) {

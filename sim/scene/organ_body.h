@@ -19,7 +19,7 @@ class OrganBody final : public Body {
   [[nodiscard]] std::span<const Vec3> velocity(const State& state) const override;
   [[nodiscard]] std::uint32_t& quietSteps(State& state) const override;
   SolveReport freeMotion(State& state, const Vec3& gravity, std::span<const Vec3> force, std::span<const TieLoad> ties,
-                         std::span<const Attachment> loads) override;
+                         const Surroundings& loads) override;
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
   SolveReport push(std::span<const Vec3> impulse) override;
   void require(std::span<const int> nodes) override { rest_.require(nodes, executor_); }

@@ -35,7 +35,8 @@ enum class EventKind : std::uint16_t {
   clipTooNear = 24,        ///< beside clipSet: too near to another clip, a junction or an edge; value: gap (m)
   clipDropped = 25,        ///< an applier closed on nothing and lost its clip; value: clips left
   vesselCut = 26,          ///< scissors parted a vessel; subject: structure; value: arc length from its start (m)
-  cutOpen = 27,  ///< beside vesselCut and vesselBurned: bleeds or leaks; value: 1 towards its start, 2 its end, 3 both
+  cutOpen = 27,  ///< beside vesselCut, vesselBurned and vesselTorn: bleeds or leaks; value: 1 towards its start, 2 its
+                 ///< end, 3 both
   cutThroughClip = 28,  ///< beside vesselCut: within the width of a clip; value: as there
   vesselBurned = 29,    ///< cautery parted a vessel; subject: structure; value: as vesselCut
   organPerforated =
@@ -44,6 +45,7 @@ enum class EventKind : std::uint16_t {
   criticalError = 34,  ///< a vessel to be spared was clipped or opened; subject: structure; value: kind of that event
   phaseBegin = 35,     ///< subject: the Phase that begins; value: the one before
   fatCameLoose = 32,   ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
+  runaway = 36,        ///< something moves faster than fastestMotion, or is no number any more; value: speed (m/s)
   smoke = 31,          ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
   clockStretched =
       16,  ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
@@ -167,10 +169,15 @@ struct ContactResult {
   double tissueDepth = 0.0;       ///< deepest overlap of organs, beyond that at rest, as the step found it (m)
 };
 
+/// Tissue and vessels do not move faster than this (m/s): hands reach 2, a stump that springs back 10. A step that
+/// leaves them faster, or at places that are no numbers, has failed and says so: EventKind::runaway and miss::runaway.
+inline constexpr double fastestMotion = 30.0;
+
 /// Bits of StepResult::misses: a step that misses a tolerance says so.
 namespace miss {
 inline constexpr std::uint32_t solver = 1U << 0U;
 inline constexpr std::uint32_t contact = 1U << 1U;
+inline constexpr std::uint32_t runaway = 1U << 2U;  ///< State is worth nothing from here on: the attempt is to end
 }  // namespace miss
 
 struct StepResult {

@@ -49,6 +49,8 @@ std::uint64_t cameraInputs(std::span<const TickSamples> samples) {
   return digest64(bytes);
 }
 
+constexpr std::size_t mostPrepared = std::size_t{256} << 20U;  ///< of compliances of one body (bytes)
+
 Vec3 clampedToWorkspace(const SceneDescription& scene, const Vec3& p) {
   return p.cwiseMax(scene.workspace[0]).cwiseMin(scene.workspace[1]);
 }
@@ -158,6 +160,7 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
   nodal.resize(model.bodies());
   selfRest.resize(organs);
   moved.assign(model.bodies(), false);
+  stopped.assign(model.bodies(), false);
   for (std::size_t s = 0; s < structures; ++s) {
     broad.push_back(make != nullptr ? make() : std::make_unique<SortedGrid>(broadCell));
   }
@@ -193,10 +196,7 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
     for (std::size_t r = 0; r < fat.model().regions(); ++r) wholeRegion.push_back(fat.volume().inRegion(r));
   }
   tiesOf.resize(body.size());
-  for (std::size_t t = 0; t < model.ties().size(); ++t) {
-    for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
-      tiesOf[model.ties()[t].body[side]].emplace_back(t, side);
-  }
+  coupleTies(settings.step);
   result.organ.resize(organs);
   result.connective.resize(model.connective().size());
   result.vessel.resize(model.scene().vessels.size());
@@ -225,9 +225,8 @@ void Stepper::prepare() {
   Workspace& w = *w_;
   for (std::size_t pair = 0; pair < w.model.tissuePairs().size(); ++pair) w.restOf(pair);
   for (std::size_t o = 0; o < w.model.organs().size(); ++o) {
-    constexpr std::size_t most = std::size_t{256} << 20U;  // bytes
     const OrganModel& organ = w.model.organs()[o];
-    if (organ.solid.nodes() > most / (9 * sizeof(float)) / organ.solid.nodes()) continue;
+    if (organ.solid.nodes() > mostPrepared / (9 * sizeof(float)) / organ.solid.nodes()) continue;
     std::vector<int> nodes;
     for (const Embedding::Anchor& anchor : organ.embedding.anchors()) {
       nodes.insert(nodes.end(), anchor.node.begin(), anchor.node.end());
@@ -235,6 +234,13 @@ void Stepper::prepare() {
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     w.body[o]->require(nodes);
+  }
+  for (std::size_t f = 0; f < w.model.fat().size(); ++f) {
+    Body& fat = *w.body[w.firstFat() + f];
+    if (fat.nodes() > mostPrepared / (9 * sizeof(float)) / fat.nodes()) continue;
+    std::vector<int> nodes(fat.nodes());
+    for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = static_cast<int>(n);
+    fat.require(nodes);
   }
 }
 
@@ -278,6 +284,7 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   w.finishHolds(state);
   w.finishHands(state);
   w.finishProcedure(state);
+  w.watchSpeeds(state);
   ++state.clock.step;
   return w.result;
 }

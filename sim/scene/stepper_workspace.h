@@ -16,15 +16,19 @@
 #include "sim/scene/body.h"
 #include "sim/scene/fat_motion.h"
 #include "sim/scene/stepper.h"
+#include "sim/scene/tie_coupling.h"
 #include "sim/scene/vessel_body.h"
 
 namespace calot {
 
 namespace stepping {
-inline constexpr double margin = 0.001;            ///< contacts nearer than this are watched even at rest (m)
-inline constexpr double slack = 0.0005;            ///< rows whose free gap is larger take no part (m)
-inline constexpr double largestSlide = 0.005;      ///< of a tip near a surface in one step (m)
-inline constexpr double largestJawStep = 0.05;     ///< of a jaw near a surface in one step (rad)
+inline constexpr double margin = 0.001;         ///< contacts nearer than this are watched even at rest (m)
+inline constexpr double slack = 0.0005;         ///< rows whose free gap is larger take no part (m)
+inline constexpr double largestSlide = 0.005;   ///< of a tip near a surface in one step (m)
+inline constexpr double largestJawStep = 0.05;  ///< of a jaw near a surface in one step (rad)
+inline constexpr double tissueSoftness = 1e-3;  ///< by which organs sink into each other for the force at a place (m/N)
+inline constexpr std::size_t mostTissueContacts =
+    96;                                            ///< between organs, the deepest; a coarse solid has no use for more
 inline constexpr double largestRecovery = 0.0005;  ///< by which overlapping organs part in one step (m)
 inline constexpr std::uint32_t quietSteps = 50;    ///< before an organ sleeps
 inline constexpr double leastForce = 1e-6;         ///< N; below, nothing counts as touching
@@ -90,6 +94,7 @@ struct Stepper::Workspace {
   void advanceFreely(State& state, std::size_t hand);
   void detectInstruments(const State& state);
   void detectTissue(const State& state);
+  void keepDeepest(std::size_t first);
   /// Rest tables of a tissue pair; those of an organ with itself are worked out when first asked for.
   const SurfacePair& restOf(std::size_t pair);
   void allow(double allowed, double far, std::size_t from);
@@ -106,6 +111,8 @@ struct Stepper::Workspace {
   // body_motion.cpp
   void wake(State& state);
   void moveFreely(State& state);
+  void moveFreely(State& state, std::size_t which);
+  void coupleTies(double step);
   void gatherTies(const State& state, std::size_t which);
   void disturb(State& state, std::size_t which);
   void countQuiet(State& state, std::size_t which, double speed);
@@ -116,6 +123,7 @@ struct Stepper::Workspace {
   [[nodiscard]] std::size_t firstFat() const { return model.organs().size() + model.vesselTrees().size(); }
   void finishOrgans(State& state);
   void finishVessels(State& state);
+  void tellTear(State& state, std::size_t tree, std::size_t torn);
   void finishFat(State& state);
   void gatherRetractions(const State& state, std::size_t organ);
   [[nodiscard]] double shareLeft(const Tie& tie) const;
@@ -163,7 +171,9 @@ struct Stepper::Workspace {
   void recallForces(const State& state);
   void poseProblem(const State& state);
   void assembleCompliance(const State& state);
+  void addCompliances();
   void measureGaps();
+  void followChange();
   void solveContacts();
   void keepForces(State& state);
 
@@ -178,6 +188,7 @@ struct Stepper::Workspace {
   void publish(const State& state);
 
   void finishHands(State& state);
+  void watchSpeeds(const State& state);
   void emit(EventKind kind, std::size_t hand, std::uint16_t subject, const Vec3& position, double value);
   [[nodiscard]] Pose simulated(const State& state, std::size_t hand) const {
     return {state.hand[hand].simulatedPosition, state.hand[hand].simulatedOrientation};
@@ -190,14 +201,18 @@ struct Stepper::Workspace {
   std::vector<std::unique_ptr<Body>> body;  // organs, then vessel trees
   std::vector<FatMotion*> fatMotion;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> tiesOf;  // per body: ties, and which of their sides
+  std::vector<TieCoupling> coupling;                                     // per organ that vessels are grown to
+  std::vector<bool> solved;                                              // per body: moved freely already in this step
   std::vector<VesselBody*> vesselBody;                                   // per tree
   std::vector<std::unique_ptr<Skin>> skinOf;                             // per structure
   std::vector<std::unique_ptr<const SurfacePair>> selfRest;              // per organ; empty until it folds
   std::vector<std::unique_ptr<BroadPhase>> broad;
   std::vector<bool> bounded;               // per structure: broad phase holds bounds of the current positions
   std::vector<bool> moved;                 // per body: solved in this step
+  std::vector<bool> stopped;               // per body: advance() met numbers that are not finite
   std::vector<bool> written;               // per body: its State is not that of the step before
   std::vector<Attachment> attachments;     // of the organ at hand
+  std::vector<JointAttachment> joints;     // the same
   std::vector<TieLoad> tieLoads;           // of the body at hand
   std::vector<bool> frayed;                // per connective tissue: changed in this step
   std::vector<bool> charred;               // per organ: charred in this step
@@ -217,8 +232,9 @@ struct Stepper::Workspace {
   std::vector<SurfaceContact> found;
   std::vector<Inside> inside;
   std::vector<VertexContact> foundVertices;
-  InstrumentShape local;       // of the instrument at hand, in I
-  std::vector<Capsule> shape;  // the same in W
+  std::vector<double> tissueGap;  // of the blocks between organs, as found (m)
+  InstrumentShape local;          // of the instrument at hand, in I
+  std::vector<Capsule> shape;     // the same in W
   std::vector<Box> queries;
   std::array<ToolRow, handCount> stretch{ToolRow::Zero(), ToolRow::Zero()};  // of the virtual coupling
   std::array<double, handCount> reach{};                                     // how far contacts were looked for (m)
@@ -227,10 +243,12 @@ struct Stepper::Workspace {
   ContactSolver contactSolver;
   std::vector<BlockKind> kinds;
   std::vector<double> limits;
-  std::vector<double> tissueCompliance;  // what carryOut() is expected to do to the gaps
-  std::vector<double> compliance;        // with that of the virtual couplings
-  std::vector<double> lambda, carried;   // forces: decided, and those that organs move under already
-  std::vector<double> trueGap;           // with the forces carried out
+  std::vector<double> tissueCompliance;               // what carryOut() is expected to do to the gaps
+  std::vector<double> couplingCompliance;             // of the virtual couplings
+  std::vector<double> compliance;                     // of both
+  std::vector<double> gapBefore, expected, answered;  // of followChange()
+  std::vector<double> lambda, carried;                // forces: decided, and those that organs move under already
+  std::vector<double> trueGap;                        // with the forces carried out
   std::vector<double> freeGap, gap, change;
   std::vector<std::vector<Vec3>> nodal;  // per body
   std::array<ContactSet, handCount> contactSet;

@@ -14,8 +14,8 @@ std::span<const Vec3> VesselBody::velocity(const State& state) const { return st
 std::uint32_t& VesselBody::quietSteps(State& state) const { return state.vessel[tree_].quietSteps; }
 
 SolveReport VesselBody::freeMotion(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                   std::span<const TieLoad> ties, [[maybe_unused]] std::span<const Attachment> loads) {
-  assert(loads.empty());
+                                   std::span<const TieLoad> ties, [[maybe_unused]] const Surroundings& loads) {
+  assert(loads.attachments.empty() && loads.joints.empty());
   attachment_.clear();
   for (const TieLoad& tie : ties) {
     attachment_.push_back({tie.place.node[0], tie.stiffness, tie.damping, tie.target, tie.velocity});

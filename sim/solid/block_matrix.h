@@ -3,6 +3,7 @@
 // "A unified sparse matrix data format", with C = 8 and no sorting).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,6 +16,13 @@ namespace calot {
 /// A vector over block rows: component i of row r stands at laneOffset(r) + 8 i. Rows are padded to whole slices.
 inline constexpr std::size_t laneStride = 3 * laneCount;
 constexpr std::size_t laneOffset(std::size_t row) { return row / laneCount * laneStride + row % laneCount; }
+
+/// A block that the structure has no place for: y_row += value x_column.
+struct ExtraBlock {
+  std::size_t row = 0;
+  std::size_t column = 0;
+  std::array<float, 9> value{};  ///< row-major
+};
 
 /// Structure and values; the structure is part of Model, the values are rebuilt in every step.
 class BlockMatrix {

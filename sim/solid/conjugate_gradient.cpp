@@ -29,7 +29,8 @@ CALOT_LANE_KERNEL void preconditionSlice(const float* inverse, const float* r, f
 }  // namespace
 
 void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values, std::span<const int> diagonal,
-                                Executor& executor) {
+                                Executor& executor, std::span<const ExtraBlock> extra) {
+  extra_.assign(extra.begin(), extra.end());
   const std::size_t size = matrix.vectorSize();
   inverse_.resize(matrix.slices() * 9 * laneCount);
   for (std::vector<float>* v : {&r_, &p_, &y_, &z_}) v->resize(size * laneCount);
@@ -60,6 +61,37 @@ void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float
       for (std::size_t i = 0; i < 9; ++i) out[i * laneCount] = static_cast<float>(c[i] * inverse);
     }
   });
+}
+
+/// y += extra p; returns their part of p . y.
+double ConjugateGradient::addExtra() {
+  double dot = 0.0;
+  for (const ExtraBlock& e : extra_) {
+    const float* p = p_.data() + laneOffset(e.column);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t at = laneOffset(e.row) + i * laneCount;
+      const float sum =
+          (e.value[3 * i] * p[0] + e.value[3 * i + 1] * p[laneCount]) + e.value[3 * i + 2] * p[2 * laneCount];
+      y_[at] += sum;
+      dot += static_cast<double>(p_[at]) * static_cast<double>(sum);
+    }
+  }
+  return dot;
+}
+
+void ConjugateGradient::addExtraMany(std::array<double, laneCount>& dot) {
+  for (const ExtraBlock& e : extra_) {
+    const float* p = p_.data() + e.column * laneStride;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t n = 0; n < laneCount; ++n) {
+        const std::size_t at = e.row * laneStride + i * laneCount + n;
+        const float sum =
+            (e.value[3 * i] * p[n] + e.value[3 * i + 1] * p[laneCount + n]) + e.value[3 * i + 2] * p[2 * laneCount + n];
+        y_[at] += sum;
+        dot[n] += static_cast<double>(p_[at]) * static_cast<double>(sum);
+      }
+    }
+  }
 }
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
@@ -123,7 +155,7 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
       const std::size_t end = std::min(slices, (task + 1) * slicesPerTask);
       partial_[task][0] = matrix.multiply(values, p_.data(), y_.data(), task * slicesPerTask, end);
     });
-    const double curvature = reduce(0);
+    const double curvature = reduce(0) + addExtra();
     if (!(curvature > 0.0)) break;  // not positive definite, or not a number: what is reached so far stands
     const auto alpha = static_cast<float>(rz / curvature);
     executor.run(tasks, [&](std::size_t task) {
@@ -225,7 +257,8 @@ SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<co
       partialMany_[task] = {};
       matrix.multiplyMany(values, p_.data(), y_.data(), task * slicesPerTask, end, partialMany_[task].data());
     });
-    const Eight curvature = reduce(0);
+    Eight curvature = reduce(0);
+    addExtraMany(curvature);
     std::array<float, laneCount> alpha{};
     bool moved = false;
     for (std::size_t n = 0; n < laneCount; ++n) {

@@ -24,9 +24,10 @@ struct SolveReport {
 class ConjugateGradient {
  public:
   /// Inverts the diagonal blocks. @param diagonal position of the diagonal block among the columns of each row.
+  /// @param extra belong to the matrix as well: a few, applied one after the other; kept for the solves
   /// @pre the diagonal blocks are positive definite.
   void prepare(const BlockMatrix& matrix, std::span<const float> values, std::span<const int> diagonal,
-               Executor& executor);
+               Executor& executor, std::span<const ExtraBlock> extra = {});
 
   /// Solves A x = b to |r| <= tolerance |b|. Layout of b and x: BlockMatrix vectors. @pre prepare() was called.
   SolveReport solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
@@ -37,7 +38,11 @@ class ConjugateGradient {
                         std::span<float> x, double tolerance, std::uint32_t cap, Executor& executor);
 
  private:
+  double addExtra();
+  void addExtraMany(std::array<double, laneCount>& dot);
+
   std::vector<float> inverse_;  ///< 3x3 inverse diagonal blocks: per slice 9 x 8 lanes
+  std::vector<ExtraBlock> extra_;
   std::vector<float> r_, p_, y_, z_;
   std::vector<std::array<double, 2>> partial_;
   std::vector<std::array<double, 2 * laneCount>> partialMany_;

@@ -52,7 +52,6 @@ void RestCompliance::require(std::span<const int> nodes, Executor& executor) {
           }
         }
       }
-      ++known_;
     }
   }
 }

@@ -30,15 +30,11 @@ class RestCompliance {
   /// C_ab: velocity of node a (m/s) for an impulse on node b (N s). @pre b was required
   [[nodiscard]] Mat3 block(int a, int b) const;
 
-  /// Columns known so far.
-  [[nodiscard]] std::size_t columns() const { return known_; }
-
  private:
   const SolidModel& model_;
   SolidSolver::Settings settings_;
   SolidSolver solver_;
   std::vector<std::vector<float>> column_;  ///< per node: 9 numbers for each node, row-major; empty: not known
-  std::size_t known_ = 0;
   std::vector<SolidSolver::Impulse> impulses_;
   std::vector<std::vector<Vec3>> response_;
 };

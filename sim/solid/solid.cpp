@@ -140,6 +140,7 @@ void SolidModel::buildStructure() {
     }
   }
   rowSlot_.push_back(slot_.size());
+  for (const SlotRange& range : slot_) slotColumn_.push_back(range.column);
   incidentStart_.push_back(0);
   for (const std::vector<Contribution>& list : perNode) {
     incident_.insert(incident_.end(), list.begin(), list.end());
@@ -160,12 +161,11 @@ SolidState restState(const SolidModel& model) {
 }
 
 std::size_t SolidModel::slotOf(int row, int column) const {
-  const auto first = slot_.begin() + static_cast<std::ptrdiff_t>(rowSlot_[static_cast<std::size_t>(row)]);
-  const auto last = slot_.begin() + static_cast<std::ptrdiff_t>(rowSlot_[static_cast<std::size_t>(row) + 1]);
-  const auto found =
-      std::lower_bound(first, last, column, [](const SlotRange& range, int c) { return range.column < c; });
-  assert(found != last && found->column == column);
-  return found->slot;
+  const auto first = slotColumn_.begin() + static_cast<std::ptrdiff_t>(rowSlot_[static_cast<std::size_t>(row)]);
+  const auto last = slotColumn_.begin() + static_cast<std::ptrdiff_t>(rowSlot_[static_cast<std::size_t>(row) + 1]);
+  const auto found = std::lower_bound(first, last, column);
+  if (found == last || *found != column) return noSlot;
+  return slot_[static_cast<std::size_t>(found - slotColumn_.begin())].slot;
 }
 
 void SolidModel::massOf(std::span<const double> fill, std::vector<double>& mass) const {
@@ -187,6 +187,16 @@ Vec3 SolidPlace::of(std::span<const Vec3> values) const {
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k < count; ++k) sum += weight[k] * values[static_cast<std::size_t>(node[k])];
   return sum;
+}
+
+Mat3 JointAttachment::block(std::size_t i, std::size_t j) const {
+  Mat3 m;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      m(static_cast<int>(a), static_cast<int>(b)) = damper[(3 * i + a) * 3 * place.size() + 3 * j + b];
+    }
+  }
+  return m;
 }
 
 }  // namespace calot

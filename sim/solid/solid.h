@@ -62,7 +62,8 @@ class SolidModel {
 
  private:
   friend class SolidSolver;
-  /// Slot of block (row, column). @pre both belong to corners of one element
+  static constexpr std::size_t noSlot = ~std::size_t{0};
+  /// Slot of block (row, column), or noSlot where no element has both as corners.
   [[nodiscard]] std::size_t slotOf(int row, int column) const;
   /// Nodal masses of partly filled cubes (kg).
   void massOf(std::span<const double> fill, std::vector<double>& mass) const;
@@ -100,6 +101,7 @@ class SolidModel {
   std::vector<int> diagonal_;         ///< per row: which of its columns is the diagonal
   std::vector<SlotRange> slot_;       ///< in row order
   std::vector<std::size_t> rowSlot_;  ///< per row: its first slot; and the end
+  std::vector<int> slotColumn_;       ///< per slot: its column, close together for slotOf()
   std::vector<Contribution> contribution_;
   std::vector<std::size_t> incidentStart_;  ///< per node
   std::vector<Contribution> incident_;      ///< element and corner of each incident element
@@ -147,17 +149,28 @@ struct Attachment {
   Mat3 damper = Mat3::Zero();  ///< N s/m, symmetric, positive semidefinite
 };
 
+/// Attachments that answer to one another, for what they are attached to moves as one:
+///   f_i = force_i - sum_j damper_ij v_j, v_j the velocity of place j at the step's end.
+struct JointAttachment {
+  std::vector<SolidPlace> place;
+  std::vector<Vec3> force;     ///< per place (N)
+  std::vector<double> damper;  ///< 3 n x 3 n, row-major, symmetric, positive semidefinite (N s/m)
+
+  [[nodiscard]] Mat3 block(std::size_t i, std::size_t j) const;
+};
+
 /// What a step of a solid depends on besides its own model and state.
 struct Surroundings {
-  std::span<const Attachment> attachments;
-  std::span<const double> fill;  ///< share of each cube that is there; empty: all of it
+  std::span<const Attachment> attachments = {};
+  std::span<const double> fill = {};  ///< share of each cube that is there; empty: all of it
+  std::span<const JointAttachment> joints = {};
 };
 
 /// Implicit Euler, one linearisation a step (Baraff and Witkin 1998): with h = dt,
 ///   [(1 + alpha h) M + (h^2 + beta h) K] dv = h (f_external + f(x + (h + beta) v) - alpha M v),  v += dv,  x += h v,
 /// where K and f are co-rotational with the rotations of x; attachments add h damper to the left and
-/// h (force - damper v) to the right. Nodes that only empty cubes hold stay where they are. Holds the matrix of the
-/// step for contact.
+/// h (force - damper v) to the right, joints the same with their blocks. Nodes that only empty cubes hold stay where
+/// they are. Holds the matrix of the step for contact.
 class SolidSolver {
  public:
   struct Settings {
@@ -193,8 +206,8 @@ class SolidSolver {
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
                         std::vector<std::vector<Vec3>>& response, Executor& executor);
 
-  /// v = freeVelocity() + correction (or nothing), x += h v. Values that are not finite stop the node instead of
-  /// entering State.
+  /// v = freeVelocity() + correction (or nothing), x += h v; corners of cubes move no faster than 5 m/s. Values that
+  /// are not finite stop the node instead of entering State.
   /// @return false when that happened.
   bool advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step);
 
@@ -202,6 +215,8 @@ class SolidSolver {
   void assemble(const SolidModel& model, const Settings& settings, const Surroundings& surroundings,
                 Executor& executor);
   void addAttachments(const SolidModel& model, const Settings& settings, std::span<const Attachment> attachments);
+  void addJoint(const SolidModel& model, const Settings& settings, const JointAttachment& joint);
+  void addPair(const SolidModel& model, const SolidPlace& p, const SolidPlace& q, const Mat3& damper, double step);
   void addBlock(const SolidModel& model, const SolidModel::Contribution& contribution, std::array<float, 9>& block,
                 float lambda, float mu, float scale) const;
   [[nodiscard]] Vec3 cornerForce(const SolidModel& model, const SolidModel::Contribution& contribution) const;
@@ -211,6 +226,7 @@ class SolidSolver {
   std::vector<double> mass_;  ///< of the nodes, where cubes are not full
   std::vector<Vec3> load_;    ///< on the nodes from outside (N)
   std::vector<float> values_;
+  std::vector<ExtraBlock> extra_;  ///< of joints between nodes that share no element
   std::vector<float> b_, x_;
   std::vector<Vec3> freeVelocity_;
   ConjugateGradient cg_;

@@ -11,6 +11,9 @@ namespace calot {
 namespace {
 
 constexpr std::size_t rowsPerTask = 128;
+/// Of a cube's corner (m/s): a corner that only a nearly empty cube holds weighs next to nothing, and what holds that
+/// cube by its one full corner throws it about. No hand moves tissue as fast.
+constexpr double fastestCorner = 5.0;
 constexpr double orphanMass = 1.0;  ///< of a node that only empty cubes hold (kg): it has no neighbours and no load
 
 }  // namespace
@@ -79,27 +82,54 @@ void SolidSolver::assemble(const SolidModel& model, const Settings& settings, co
     }
   });
   addAttachments(model, settings, surroundings.attachments);
+  extra_.clear();
+  for (const JointAttachment& joint : surroundings.joints) addJoint(model, settings, joint);
 }
 
 void SolidSolver::addAttachments(const SolidModel& model, const Settings& settings,
                                  std::span<const Attachment> attachments) {
   for (const Attachment& attachment : attachments) {
-    const SolidPlace& place = attachment.place;
-    for (std::size_t a = 0; a < place.count; ++a) {
-      const int row = model.row(static_cast<std::size_t>(place.node[a]));
-      if (row < 0) continue;
-      for (std::size_t b = 0; b < place.count; ++b) {
-        const int column = model.row(static_cast<std::size_t>(place.node[b]));
-        if (column < 0) continue;
-        const std::size_t at = model.slotOf(row, column);
-        const double share = settings.step * (place.weight[a] * place.weight[b]);
-        for (std::size_t i = 0; i < 3; ++i) {
-          for (std::size_t j = 0; j < 3; ++j) {
-            values_[at + (3 * i + j) * laneCount] +=
-                static_cast<float>(share * attachment.damper(static_cast<int>(i), static_cast<int>(j)));
-          }
+    addPair(model, attachment.place, attachment.place, attachment.damper, settings.step);
+  }
+}
+
+void SolidSolver::addJoint(const SolidModel& model, const Settings& settings, const JointAttachment& joint) {
+  for (std::size_t i = 0; i < joint.place.size(); ++i) {
+    for (std::size_t j = 0; j < joint.place.size(); ++j) {
+      const Mat3 damper = joint.block(i, j);
+      if (!damper.isZero(0.0)) addPair(model, joint.place[i], joint.place[j], damper, settings.step);
+    }
+  }
+}
+
+/// Adds step * damper between two places to the matrix, rows at p.
+void SolidSolver::addPair(const SolidModel& model, const SolidPlace& p, const SolidPlace& q, const Mat3& damper,
+                          double step) {
+  const bool isotropic = damper == Mat3(damper(0, 0) * Mat3::Identity());
+  for (std::size_t a = 0; a < p.count; ++a) {
+    const int row = model.row(static_cast<std::size_t>(p.node[a]));
+    if (row < 0) continue;
+    for (std::size_t b = 0; b < q.count; ++b) {
+      const int column = model.row(static_cast<std::size_t>(q.node[b]));
+      if (column < 0) continue;
+      const std::size_t at = model.slotOf(row, column);
+      const double share = step * (p.weight[a] * q.weight[b]);
+      if (isotropic && at != SolidModel::noSlot) {
+        const auto own = static_cast<float>(share * damper(0, 0));
+        for (std::size_t i = 0; i < 3; ++i) values_[at + 4 * i * laneCount] += own;
+        continue;
+      }
+      std::array<float, 9> block{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          block[3 * i + j] = static_cast<float>(share * damper(static_cast<int>(i), static_cast<int>(j)));
         }
       }
+      if (at == SolidModel::noSlot) {
+        extra_.push_back({static_cast<std::size_t>(row), static_cast<std::size_t>(column), block});
+        continue;
+      }
+      for (std::size_t k = 0; k < 9; ++k) values_[at + k * laneCount] += block[k];
     }
   }
 }
@@ -123,11 +153,22 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
 
   // In double until all that acts on a node is known.
   load_.assign(external.begin(), external.end());
-  if (!surroundings.attachments.empty()) load_.resize(model.nodes(), Vec3::Zero());
+  if (!surroundings.attachments.empty() || !surroundings.joints.empty()) load_.resize(model.nodes(), Vec3::Zero());
+  const auto addLoad = [&](const SolidPlace& place, const Vec3& force) {
+    for (std::size_t k = 0; k < place.count; ++k) {
+      load_[static_cast<std::size_t>(place.node[k])] += place.weight[k] * force;
+    }
+  };
   for (const Attachment& attachment : surroundings.attachments) {
-    const Vec3 force = attachment.force - attachment.damper * attachment.place.of(state.velocity);
-    for (std::size_t k = 0; k < attachment.place.count; ++k) {
-      load_[static_cast<std::size_t>(attachment.place.node[k])] += attachment.place.weight[k] * force;
+    addLoad(attachment.place, attachment.force - attachment.damper * attachment.place.of(state.velocity));
+  }
+  for (const JointAttachment& joint : surroundings.joints) {
+    for (std::size_t i = 0; i < joint.place.size(); ++i) {
+      Vec3 force = joint.force[i];
+      for (std::size_t j = 0; j < joint.place.size(); ++j) {
+        force -= joint.block(i, j) * joint.place[j].of(state.velocity);
+      }
+      addLoad(joint.place[i], force);
     }
   }
   const std::vector<double>& masses = surroundings.fill.empty() ? model.mass_ : mass_;
@@ -151,7 +192,7 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
       }
     }
   });
-  cg_.prepare(model.matrix_, values_, model.diagonal_, executor);
+  cg_.prepare(model.matrix_, values_, model.diagonal_, executor, extra_);
   const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());
   for (std::size_t r = 0; r < rows; ++r) {
@@ -215,6 +256,10 @@ bool SolidSolver::advance(const SolidModel& model, SolidState& state, std::span<
     const auto node = static_cast<std::size_t>(free);
     Vec3 velocity = freeVelocity_[node];
     if (!correction.empty()) velocity += correction[node];
+    if (model.madeOfCubes()) {
+      const double speed = velocity.norm();
+      if (speed > fastestCorner) velocity *= fastestCorner / speed;
+    }
     const Vec3 position = state.position[node] + step * velocity;
     if (!velocity.allFinite() || !position.allFinite()) {
       finite = false;
