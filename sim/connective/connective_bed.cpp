@@ -46,8 +46,16 @@ Division divide(const std::vector<Index3>& bed, int n) {
   for (const Index3& t : bed) {
     for (int i = 0; i < n; ++i) {
       for (int j = 0; i + j < n; ++j) {
-        out.triangle.emplace_back(at(t, i, j), at(t, i + 1, j), at(t, i, j + 1));
-        if (i + j + 1 < n) out.triangle.emplace_back(at(t, i + 1, j), at(t, i + 1, j + 1), at(t, i, j + 1));
+        // Vertices are numbered as they are asked for: one statement each, as compilers order arguments in different
+        // ways.
+        const int third = at(t, i, j + 1);
+        const int second = at(t, i + 1, j);
+        const int first = at(t, i, j);
+        out.triangle.emplace_back(first, second, third);
+        if (i + j + 1 < n) {
+          const int opposite = at(t, i + 1, j + 1);
+          out.triangle.emplace_back(second, opposite, third);
+        }
       }
     }
   }
