@@ -10,6 +10,8 @@ configure release
 build release
 configure clang "-DCALOT_OTHER=$root/build/release/bin/calot"
 build clang
+say "clang-tidy"
+"$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs"
 say "test clang"
 ctest --test-dir "$root/build/clang" --label-exclude 'heavy|determinism' --parallel "$jobs" --output-on-failure --no-tests=error
 say "heavy tests"

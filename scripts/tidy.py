@@ -29,11 +29,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=pathlib.Path, help="a configured build tree (compile_commands.json)")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--rooms", nargs="+", choices=ROOMS, default=ROOMS, help="default: all")
     arguments = parser.parse_args()
 
     commands = json.loads((arguments.build / "compile_commands.json").read_text())
     files = sorted({pathlib.Path(c["file"]) for c in commands})
-    files = [f for f in files if f.is_relative_to(ROOT) and f.relative_to(ROOT).parts[0] in ROOMS]
+    files = [f for f in files if f.is_relative_to(ROOT) and f.relative_to(ROOT).parts[0] in arguments.rooms]
     cache = arguments.build / "tidy"
     cache.mkdir(exist_ok=True)
     common = headers_digest()
