@@ -2,18 +2,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # From a clean clone to graded attempts: builds Calot, lets two synthetic performers clip and cut duct and artery three times
 # each, re-simulates every recording bit for bit while it is assessed into a cohort database, compares the two profiles,
-# and draws three moments. All that it makes lies in demo/. Run again, it keeps what this build would make again.
+# and draws three moments. All that it makes lies below demo/. Run again, it keeps what this build would make again.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 scene=clip-and-cut
 attempts=3
-demo=$root/demo
 
 "$root/scripts/setup.sh"
 configure release
 build release calot calot-dashboard
 calot=$root/build/release/bin/calot
+# Attempts of another simulation version do not compare: each has its folder.
+demo=$root/demo/simulation-$("$calot" --version | sed 's/.*simulation version //')
 mkdir -p "$demo"
 
 say "record and assess (each is re-simulated: every step and force, bit for bit)"
