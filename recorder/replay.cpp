@@ -20,10 +20,7 @@ namespace {
 class Comparer final : public Observer {
  public:
   Comparer(Recording& recording, const Model& model)
-      : recording_(recording),
-        model_(model),
-        compareResult_(recording.header()),
-        lean_(Layout(recording.header()).lean) {}
+      : recording_(recording), model_(model), compareResult_(recording.header()), lean_(isLean(recording.header())) {}
 
   void onStep(const StepRecord& record) override {
     if (first_) {

@@ -156,7 +156,7 @@ std::uint64_t forceDigest(std::span<const TickOutcome> ticks) {
 
 Layout::Layout(const AttemptHeader& header)
     : deviceSamples(header.deviceSamples),
-      lean(header.purpose == "golden"),
+      lean(isLean(header)),
       ticksPerStep(header.ticksPerStep),
       organs(header.organs.size()),
       tissues(header.stepResultVersion >= 2 ? connectiveNames(header).size() : 0),

@@ -52,6 +52,9 @@ inline constexpr std::size_t statusBytes = 82;
 inline constexpr std::size_t rawSampleBytes = 99;
 inline constexpr std::size_t rawCountsBytes = 32;
 
+/// A golden recording: a digest in the place of forces; no observables, keyframes, fields' digests.
+inline bool isLean(const AttemptHeader& header) { return header.purpose == "golden"; }
+
 struct Layout {
   /// In the order of the chain: ticks, steps, events, keyframe index, keyframe bytes. Then raw samples, left and right.
   std::vector<Column> columns;
@@ -60,7 +63,7 @@ struct Layout {
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
   std::array<std::size_t, handCount> raw{};
   bool deviceSamples = false;  ///< there is a /device
-  bool lean = false;           ///< golden: a digest in the place of forces; no observables, keyframes, fields' digests
+  bool lean = false;           ///< isLean()
   std::uint32_t ticksPerStep = 10;
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;
