@@ -34,6 +34,8 @@ struct VertexContact {
   std::uint64_t key = 0;       ///< patches of vertex and triangle (bits 20 to 39 and 0 to 19): unique in one answer
 };
 
+class NearTriangles;
+
 /// What is known at rest of the vertices of one surface and the triangles of another or of the same; part of Model.
 class SurfacePair {
  public:
@@ -82,6 +84,7 @@ class SurfacePair {
   // vertices from each patch of triangles.
   std::vector<double> vertexDistance_;
   std::vector<double> patchDistance_;
+  std::vector<double> leastDistance_;  ///< of each patch of vertices: from all patches of triangles
   std::size_t patchesB_ = 0;
 };
 
@@ -100,9 +103,11 @@ void patchesInPlay(const SurfacePair& pair, const ContactSurface& a, std::span<c
 /// @param pairs query: patch of a, leaf: patch of b, sorted by query: from a broad phase over b's patches, queried with
 /// a's patch boxes grown by pair.search()
 /// @param reach contacts with a gap of this or more are left out (m)
+/// @param memory of this pair alone, from step to step: makes it cheap where surfaces are far from rest, and never
+/// changes the answer; may be null
 /// Results are appended in order of their keys.
 void surfaceContacts(const SurfacePair& pair, const ContactSurface& a, std::span<const Vec3> positionA,
                      const ContactSurface& b, std::span<const Vec3> positionB, std::span<const BroadPhase::Pair> pairs,
-                     double reach, std::vector<VertexContact>& out);
+                     double reach, std::vector<VertexContact>& out, NearTriangles* memory = nullptr);
 
 }  // namespace calot

@@ -236,6 +236,7 @@ void FatModel::tie(std::span<const FatPartner> partners) {
       }
       tie.lastNode = tieNode_.size();
       const auto count = static_cast<double>(last - first);
+      tie.place.element = tie.cube;
       tie.place.node = solid_->cubes()[slot(tie.cube)];
       tie.place.weight = shares(tie.cube, sum.cast<double>() / count);
       tie.place.count = 8;

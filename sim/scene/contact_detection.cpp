@@ -207,7 +207,7 @@ void Stepper::Workspace::detectTissue(const State& state) {
     broad[pair.b]->pairs(queries, pairs);
     for (BroadPhase::Pair& p : pairs) p.query = patches[p.query];
     foundVertices.clear();
-    surfaceContacts(rest_, a, skin[pair.a], b, skin[pair.b], pairs, far, foundVertices);
+    surfaceContacts(rest_, a, skin[pair.a], b, skin[pair.b], pairs, far, foundVertices, &nearTriangles[i]);
     for (const VertexContact& contact : foundVertices) {
       result.contact.tissueDepth = std::max(result.contact.tissueDepth, -contact.gap);
       ContactBlock block;

@@ -159,6 +159,7 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
   bounds.resize(structures);
   nodal.resize(model.bodies());
   selfRest.resize(organs);
+  nearTriangles.resize(model.tissuePairs().size());
   moved.assign(model.bodies(), false);
   stopped.assign(model.bodies(), false);
   for (std::size_t s = 0; s < structures; ++s) {
@@ -213,6 +214,7 @@ void Stepper::Workspace::invalidate() {
   refittable.assign(model.structures().size(), false);
   digest.reset();
   for (FatMotion* fat : fatMotion) fat->invalidate();
+  for (NearTriangles& lists : nearTriangles) lists.reset();
   for (ContactSet& set : contactSet) set = {};
 }
 

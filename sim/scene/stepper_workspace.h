@@ -10,6 +10,7 @@
 
 #include "sim/contact/capsule_contact.h"
 #include "sim/contact/contact_solver.h"
+#include "sim/contact/near_triangles.h"
 #include "sim/contact/surface_surface.h"
 #include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/port.h"
@@ -206,6 +207,7 @@ struct Stepper::Workspace {
   std::vector<VesselBody*> vesselBody;                                   // per tree
   std::vector<std::unique_ptr<Skin>> skinOf;                             // per structure
   std::vector<std::unique_ptr<const SurfacePair>> selfRest;              // per organ; empty until it folds
+  std::vector<NearTriangles> nearTriangles;                              // per tissue pair
   std::vector<std::unique_ptr<BroadPhase>> broad;
   std::vector<bool> bounded;               // per structure: broad phase holds bounds of the current positions
   std::vector<bool> moved;                 // per body: solved in this step

@@ -2,119 +2,76 @@
 #include "sim/solid/block_matrix.h"
 
 #include <algorithm>
-#include <array>
+#include <cassert>
 
 namespace calot {
 
-namespace {
-
-CALOT_LANE_KERNEL void multiplySlice(const float* values, const std::int32_t* column, std::size_t width, const float* x,
-                                     float* y) {
-  float y0[laneCount] = {};
-  float y1[laneCount] = {};
-  float y2[laneCount] = {};
-  for (std::size_t k = 0; k < width; ++k) {
-    const float* v = values + k * 9 * laneCount;
-    const std::int32_t* c = column + k * laneCount;
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      const float x0 = x[c[l]];
-      const float x1 = x[c[l] + laneCount];
-      const float x2 = x[c[l] + 2 * laneCount];
-      y0[l] += (v[l] * x0 + v[8 + l] * x1) + v[16 + l] * x2;
-      y1[l] += (v[24 + l] * x0 + v[32 + l] * x1) + v[40 + l] * x2;
-      y2[l] += (v[48 + l] * x0 + v[56 + l] * x1) + v[64 + l] * x2;
+std::vector<std::vector<int>> coloured(const std::vector<std::vector<int>>& neighbours) {
+  std::vector<int> colour(neighbours.size(), -1);
+  std::vector<std::vector<int>> out;
+  std::vector<bool> taken;
+  for (std::size_t node = 0; node < neighbours.size(); ++node) {
+    taken.assign(out.size() + 1, false);
+    for (const int n : neighbours[node]) {
+      const int c = colour[static_cast<std::size_t>(n)];
+      if (c >= 0) taken[static_cast<std::size_t>(c)] = true;
     }
+    const auto c = static_cast<std::size_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+    if (c == out.size()) out.emplace_back();
+    out[c].push_back(static_cast<int>(node));
+    colour[node] = static_cast<int>(c);
   }
-  for (std::size_t l = 0; l < laneCount; ++l) {
-    y[l] = y0[l];
-    y[8 + l] = y1[l];
-    y[16 + l] = y2[l];
-  }
+  return out;
 }
 
-CALOT_LANE_KERNEL void multiplyRowMany(const float* values, const std::int32_t* column, std::size_t width,
-                                       const float* x, float* y) {
-  float y0[laneCount] = {};
-  float y1[laneCount] = {};
-  float y2[laneCount] = {};
-  for (std::size_t k = 0; k < width; ++k) {
-    const float* v = values + k * 9 * laneCount;
-    const auto c = static_cast<std::size_t>(column[k * laneCount]);
-    // The offset of a row in the layout of one vector gives its row, and so its place in the layout of eight.
-    const float* xc = x + (c / laneStride * laneCount + c % laneStride) * laneStride;
-    for (std::size_t n = 0; n < laneCount; ++n) {
-      y0[n] += (v[0] * xc[n] + v[8] * xc[8 + n]) + v[16] * xc[16 + n];
-      y1[n] += (v[24] * xc[n] + v[32] * xc[8 + n]) + v[40] * xc[16 + n];
-      y2[n] += (v[48] * xc[n] + v[56] * xc[8 + n]) + v[64] * xc[16 + n];
+BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& columns, std::span<const std::size_t> colours)
+    : left_(columns.size(), 0) {
+  assert(columns.size() % laneCount == 0);
+  for (const std::size_t rows : colours) {
+    assert(rows % laneCount == 0);
+    colourStart_.push_back(colourStart_.back() + rows / laneCount);
+  }
+  assert(colourStart_.back() * laneCount == columns.size());
+  for (std::size_t r = 0; r < columns.size(); ++r) {
+    const auto left = std::lower_bound(columns[r].begin(), columns[r].end(), static_cast<int>(r)) - columns[r].begin();
+    assert(columns[r].empty() || columns[r][static_cast<std::size_t>(left)] == static_cast<int>(r));
+    assert(left < 256);
+    left_[r] = static_cast<std::uint8_t>(left);
+  }
+  for (std::size_t s = 0; s < columns.size() / laneCount; ++s) {
+    std::size_t lower = 0;
+    std::size_t upper = 0;
+    for (std::size_t r = s * laneCount; r < (s + 1) * laneCount; ++r) {
+      if (columns[r].empty()) continue;
+      lower = std::max(lower, std::size_t{left_[r]});
+      upper = std::max(upper, columns[r].size() - left_[r] - 1);
     }
+    diagonal_.push_back(sliceStart_.back() + lower);
+    sliceStart_.push_back(diagonal_.back() + 1 + upper);
   }
-  for (std::size_t n = 0; n < laneCount; ++n) {
-    y[n] = y0[n];
-    y[8 + n] = y1[n];
-    y[16 + n] = y2[n];
-  }
-}
-
-}  // namespace
-
-BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& columns) : rows_(columns.size()) {
-  const std::size_t sliceCount = laneGroups(rows_);
-  sliceStart_.push_back(0);
-  for (std::size_t s = 0; s < sliceCount; ++s) {
-    std::size_t width = 1;
-    for (std::size_t r = s * laneCount; r < std::min(rows_, (s + 1) * laneCount); ++r) {
-      width = std::max(width, columns[r].size());
-    }
-    sliceStart_.push_back(sliceStart_.back() + static_cast<std::int32_t>(width));
-  }
-  column_.resize(static_cast<std::size_t>(sliceStart_.back()) * laneCount);
-  for (std::size_t r = 0; r < sliceCount * laneCount; ++r) {
-    const auto start = static_cast<std::size_t>(sliceStart_[r / laneCount]);
-    const std::size_t width = static_cast<std::size_t>(sliceStart_[r / laneCount + 1]) - start;
-    for (std::size_t k = 0; k < width; ++k) {
-      // Padding refers to the row itself, with value 0.
-      const std::size_t c = r < rows_ && k < columns[r].size() ? static_cast<std::size_t>(columns[r][k]) : r;
-      column_[(start + k) * laneCount + r % laneCount] = static_cast<std::int32_t>(laneOffset(c));
-    }
-  }
-}
-
-double BlockMatrix::multiply(std::span<const float> values, const float* x, float* y, std::size_t first,
-                             std::size_t last) const {
-  std::array<double, laneCount> sum{};
-  for (std::size_t s = first; s < last; ++s) {
-    const auto start = static_cast<std::size_t>(sliceStart_[s]);
-    const std::size_t width = static_cast<std::size_t>(sliceStart_[s + 1]) - start;
-    multiplySlice(values.data() + start * 9 * laneCount, column_.data() + start * laneCount, width, x,
-                  y + s * laneStride);
-    for (std::size_t i = 0; i < 3; ++i) {
+  // Padding refers to the row itself, with value 0.
+  column_.resize(sliceStart_.back() * laneCount);
+  for (std::size_t s = 0; s < slices(); ++s) {
+    for (std::size_t k = sliceStart_[s]; k < sliceStart_[s + 1]; ++k) {
       for (std::size_t l = 0; l < laneCount; ++l) {
-        const std::size_t at = s * laneStride + i * laneCount + l;
-        sum[l] += static_cast<double>(x[at]) * static_cast<double>(y[at]);
+        column_[k * laneCount + l] = static_cast<std::int32_t>(laneOffset(s * laneCount + l));
       }
     }
   }
-  double total = 0.0;
-  for (std::size_t l = 0; l < laneCount; ++l) total += sum[l];
-  return total;
+  for (std::size_t r = 0; r < columns.size(); ++r) {
+    for (std::size_t k = 0; k < columns[r].size(); ++k) {
+      const std::size_t at = slot(r, k) / (9 * laneCount);
+      column_[at * laneCount + r % laneCount] =
+          static_cast<std::int32_t>(laneOffset(static_cast<std::size_t>(columns[r][k])));
+    }
+  }
 }
 
-void BlockMatrix::multiplyMany(std::span<const float> values, const float* x, float* y, std::size_t first,
-                               std::size_t last, double* dot) const {
-  for (std::size_t r = first * laneCount; r < last * laneCount; ++r) {
-    const std::size_t s = r / laneCount;
-    const auto start = static_cast<std::size_t>(sliceStart_[s]);
-    const std::size_t width = static_cast<std::size_t>(sliceStart_[s + 1]) - start;
-    const std::size_t lane = r % laneCount;
-    multiplyRowMany(values.data() + start * 9 * laneCount + lane, column_.data() + start * laneCount + lane, width, x,
-                    y + r * laneStride);
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t n = 0; n < laneCount; ++n) {
-        const std::size_t at = r * laneStride + i * laneCount + n;
-        dot[n] += static_cast<double>(x[at]) * static_cast<double>(y[at]);
-      }
-    }
-  }
+std::size_t BlockMatrix::slot(std::size_t row, std::size_t k) const {
+  const std::size_t s = row / laneCount;
+  const std::size_t left = left_[row];
+  const std::size_t blockColumn = k < left ? sliceStart_[s] + k : diagonal_[s] + (k - left);
+  return blockColumn * 9 * laneCount + row % laneCount;
 }
 
 }  // namespace calot

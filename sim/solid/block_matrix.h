@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Symmetric block matrix of 3x3 blocks in slices of eight rows, one row a lane (sliced ELLPACK; Kreutzer et al. 2014,
-// "A unified sparse matrix data format", with C = 8 and no sorting).
+// "A unified sparse matrix data format", with C = 8), rows ordered by colour: rows of one colour do not depend on each
+// other, so a Gauss-Seidel sweep takes eight at a time, and its order is the same for one thread and for many.
 #pragma once
 
 #include <array>
@@ -24,35 +25,56 @@ struct ExtraBlock {
   std::array<float, 9> value{};  ///< row-major
 };
 
+/// Colours of a graph's nodes by first fit: no two neighbours alike.
+/// @param neighbours per node; @return per colour its nodes, ascending.
+std::vector<std::vector<int>> coloured(const std::vector<std::vector<int>>& neighbours);
+
 /// Structure and values; the structure is part of Model, the values are rebuilt in every step.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
-  /// @param columns per row: the columns of its blocks, ascending, with the diagonal among them.
-  explicit BlockMatrix(const std::vector<std::vector<int>>& columns);
+  /// @param columns per row: the columns of its blocks, ascending, with the diagonal among them; none where the row
+  /// only fills a slice up.
+  /// @param colours how many rows each colour has, in row order.
+  /// @pre each of `colours` is a multiple of laneCount; rows of one colour have no blocks with each other.
+  BlockMatrix(const std::vector<std::vector<int>>& columns, std::span<const std::size_t> colours);
 
-  [[nodiscard]] std::size_t rows() const { return rows_; }
-  [[nodiscard]] std::size_t slices() const { return sliceStart_.empty() ? 0 : sliceStart_.size() - 1; }
+  /// Of a slice: the blocks left of the diagonal, or those right of it.
+  struct Part {
+    std::size_t first;  ///< block column in the values
+    std::size_t width;  ///< block columns
+    [[nodiscard]] std::size_t value() const { return first * 9 * laneCount; }
+  };
+
+  [[nodiscard]] std::size_t rows() const { return slices() * laneCount; }
+  [[nodiscard]] std::size_t slices() const { return diagonal_.size(); }
   [[nodiscard]] std::size_t vectorSize() const { return slices() * laneStride; }
+  /// First slice of each colour, and the end.
+  [[nodiscard]] std::span<const std::size_t> colourStart() const { return colourStart_; }
 
   /// Place of block (row, k-th of its columns): entry (i, j) stands in the values at slot + 8 (3 i + j).
-  [[nodiscard]] std::size_t slot(std::size_t row, std::size_t k) const {
-    return (static_cast<std::size_t>(sliceStart_[row / laneCount]) + k) * 9 * laneCount + row % laneCount;
+  [[nodiscard]] std::size_t slot(std::size_t row, std::size_t k) const;
+  [[nodiscard]] std::size_t valueCount() const { return sliceStart_.back() * 9 * laneCount; }
+
+  [[nodiscard]] Part lower(std::size_t slice) const {
+    return {sliceStart_[slice], diagonal_[slice] - sliceStart_[slice]};
   }
-  [[nodiscard]] std::size_t valueCount() const { return static_cast<std::size_t>(sliceStart_.back()) * 9 * laneCount; }
-
-  /// y = A x over slices [first, last); returns the part of x . y of these rows, lane sums added in lane order.
-  double multiply(std::span<const float> values, const float* x, float* y, std::size_t first, std::size_t last) const;
-
-  /// Y = A X for eight vectors at once: component i of row r of vector k stands at 24 r + 8 i + k. Rows [8 first,
-  /// 8 last); adds the parts of x_k . y_k of these rows to dot[k].
-  void multiplyMany(std::span<const float> values, const float* x, float* y, std::size_t first, std::size_t last,
-                    double* dot) const;
+  [[nodiscard]] Part upper(std::size_t slice) const {
+    return {diagonal_[slice] + 1, sliceStart_[slice + 1] - diagonal_[slice] - 1};
+  }
+  /// Where the values of a slice's diagonal blocks begin.
+  [[nodiscard]] std::size_t diagonal(std::size_t slice) const { return diagonal_[slice] * 9 * laneCount; }
+  /// laneOffset of the column of each lane, per block column.
+  [[nodiscard]] const std::int32_t* column(std::size_t blockColumn) const {
+    return column_.data() + blockColumn * laneCount;
+  }
 
  private:
-  std::size_t rows_ = 0;
-  std::vector<std::int32_t> sliceStart_;  ///< in block columns
-  std::vector<std::int32_t> column_;      ///< laneOffset of the column, per block column and lane
+  std::vector<std::size_t> colourStart_{0};
+  std::vector<std::size_t> sliceStart_{0};  ///< in block columns
+  std::vector<std::size_t> diagonal_;       ///< per slice: its block column
+  std::vector<std::uint8_t> left_;          ///< per row: how many blocks stand left of the diagonal
+  std::vector<std::int32_t> column_;
 };
 
 }  // namespace calot

@@ -5,47 +5,66 @@
 #include <cmath>
 
 #include "sim/math/floating_point.h"
+#include "sim/solid/sweeps.h"
 
 namespace calot {
 
 namespace {
 
-constexpr std::size_t slicesPerTask = 16;
+constexpr std::size_t slicesPerPiece = 16;
+/// A matrix of so few slices is swept by one task: handing a few slices on costs more than they do.
+constexpr std::size_t slicesOfOneTask = 64;
 
-std::size_t taskCount(const BlockMatrix& matrix) { return (matrix.slices() + slicesPerTask - 1) / slicesPerTask; }
-
-/// z = D^-1 r on one slice.
-CALOT_LANE_KERNEL void preconditionSlice(const float* inverse, const float* r, float* z) {
-  for (std::size_t l = 0; l < laneCount; ++l) {
-    const float r0 = r[l];
-    const float r1 = r[8 + l];
-    const float r2 = r[16 + l];
-    z[l] = (inverse[l] * r0 + inverse[8 + l] * r1) + inverse[16 + l] * r2;
-    z[8 + l] = (inverse[24 + l] * r0 + inverse[32 + l] * r1) + inverse[40 + l] * r2;
-    z[16 + l] = (inverse[48 + l] * r0 + inverse[56 + l] * r1) + inverse[64 + l] * r2;
-  }
+double sumOf(const std::array<double, laneCount>& lanes) {
+  double sum = 0.0;
+  for (const double lane : lanes) sum += lane;
+  return sum;
 }
 
 }  // namespace
 
-void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values, std::span<const int> diagonal,
-                                Executor& executor, std::span<const ExtraBlock> extra) {
-  extra_.assign(extra.begin(), extra.end());
-  const std::size_t size = matrix.vectorSize();
-  inverse_.resize(matrix.slices() * 9 * laneCount);
-  for (std::vector<float>* v : {&r_, &p_, &y_, &z_}) v->resize(size * laneCount);
-  partial_.resize(taskCount(matrix));
-  partialMany_.resize(taskCount(matrix));
-  executor.run(taskCount(matrix), [&](std::size_t task) {
+template <class F>
+void ConjugateGradient::run(Order order, Executor& executor, F&& work) const {
+  const std::size_t pieces = piece_.size();
+  if (pieces == 0) return;
+  if (piece_.back().last <= slicesOfOneTask) {
     const FloatingPointScope scope;
-    const std::size_t end = std::min(matrix.slices(), (task + 1) * slicesPerTask);
-    for (std::size_t row = task * slicesPerTask * laneCount; row < end * laneCount; ++row) {
-      float* out = inverse_.data() + row / laneCount * 9 * laneCount + row % laneCount;
-      if (row >= matrix.rows()) {
-        for (std::size_t i = 0; i < 9; ++i) out[i * laneCount] = 0.0F;
-        continue;
-      }
-      const float* in = values.data() + matrix.slot(row, static_cast<std::size_t>(diagonal[row]));
+    for (std::size_t i = 0; i < pieces; ++i) work(order == Order::descending ? pieces - 1 - i : i);
+    return;
+  }
+  const auto part = [&](std::size_t first, std::size_t last) {
+    executor.run(last - first, [&](std::size_t i) {
+      const FloatingPointScope scope;
+      work(first + i);
+    });
+  };
+  if (order == Order::any) return part(0, pieces);
+  const std::size_t colours = colourPiece_.size() - 1;
+  for (std::size_t i = 0; i < colours; ++i) {
+    const std::size_t colour = order == Order::ascending ? i : colours - 1 - i;
+    part(colourPiece_[colour], colourPiece_[colour + 1]);
+  }
+}
+
+void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values, Executor& executor,
+                                std::span<const ExtraBlock> extra) {
+  extra_.assign(extra.begin(), extra.end());
+  piece_.clear();
+  colourPiece_.assign(1, 0);
+  for (std::size_t colour = 0; colour + 1 < matrix.colourStart().size(); ++colour) {
+    const std::size_t last = matrix.colourStart()[colour + 1];
+    for (std::size_t s = matrix.colourStart()[colour]; s < last; s += slicesPerPiece) {
+      piece_.push_back({s, std::min(last, s + slicesPerPiece)});
+    }
+    colourPiece_.push_back(piece_.size());
+  }
+  partial_.resize(piece_.size());
+  inverse_.resize(matrix.slices() * 9 * laneCount);
+  run(Order::any, executor, [&](std::size_t piece) {
+    for (std::size_t row = piece_[piece].first * laneCount; row < piece_[piece].last * laneCount; ++row) {
+      const std::size_t lane = row % laneCount;
+      float* out = inverse_.data() + row / laneCount * 9 * laneCount + lane;
+      const float* in = values.data() + matrix.diagonal(row / laneCount) + lane;
       const auto a = [&](std::size_t i, std::size_t j) { return static_cast<double>(in[(3 * i + j) * laneCount]); };
       const double c00 = a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1);
       const double c01 = a(0, 2) * a(2, 1) - a(0, 1) * a(2, 2);
@@ -56,246 +75,193 @@ void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float
       const double c20 = a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0);
       const double c21 = a(0, 1) * a(2, 0) - a(0, 0) * a(2, 1);
       const double c22 = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
-      const double inverse = 1.0 / ((a(0, 0) * c00 + a(0, 1) * c10) + a(0, 2) * c20);
+      const double determinant = (a(0, 0) * c00 + a(0, 1) * c10) + a(0, 2) * c20;
+      const double inverse = determinant == 0.0 ? 0.0 : 1.0 / determinant;  // a row that only fills a slice up
       const double c[9] = {c00, c01, c02, c10, c11, c12, c20, c21, c22};
       for (std::size_t i = 0; i < 9; ++i) out[i * laneCount] = static_cast<float>(c[i] * inverse);
     }
   });
 }
 
-/// y += extra p; returns their part of p . y.
-double ConjugateGradient::addExtra() {
-  double dot = 0.0;
+/// u += E t.
+void ConjugateGradient::addExtra() {
   for (const ExtraBlock& e : extra_) {
-    const float* p = p_.data() + laneOffset(e.column);
+    const float* t = t_.data() + laneOffset(e.column);
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t at = laneOffset(e.row) + i * laneCount;
-      const float sum =
-          (e.value[3 * i] * p[0] + e.value[3 * i + 1] * p[laneCount]) + e.value[3 * i + 2] * p[2 * laneCount];
-      y_[at] += sum;
-      dot += static_cast<double>(p_[at]) * static_cast<double>(sum);
+      u_[laneOffset(e.row) + i * laneCount] +=
+          (e.value[3 * i] * t[0] + e.value[3 * i + 1] * t[laneCount]) + e.value[3 * i + 2] * t[2 * laneCount];
     }
   }
-  return dot;
 }
 
-void ConjugateGradient::addExtraMany(std::array<double, laneCount>& dot) {
+void ConjugateGradient::addExtraMany() {
   for (const ExtraBlock& e : extra_) {
-    const float* p = p_.data() + e.column * laneStride;
+    const float* t = t_.data() + e.column * laneStride;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t n = 0; n < laneCount; ++n) {
-        const std::size_t at = e.row * laneStride + i * laneCount + n;
-        const float sum =
-            (e.value[3 * i] * p[n] + e.value[3 * i + 1] * p[laneCount + n]) + e.value[3 * i + 2] * p[2 * laneCount + n];
-        y_[at] += sum;
-        dot[n] += static_cast<double>(p_[at]) * static_cast<double>(sum);
+        u_[e.row * laneStride + i * laneCount + n] +=
+            (e.value[3 * i] * t[n] + e.value[3 * i + 1] * t[laneCount + n]) + e.value[3 * i + 2] * t[2 * laneCount + n];
       }
     }
   }
+}
+
+/// Nothing that an earlier solve left, not finite perhaps, may reach this one through a padded block.
+void ConjugateGradient::clear(std::size_t size) {
+  for (std::vector<float>* v : {&r_, &z_, &p_, &t_, &u_, &s_}) v->assign(size, 0.0F);
 }
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
                                      std::span<float> x, double tolerance, std::uint32_t cap, Executor& executor) {
-  const std::size_t tasks = taskCount(matrix);
-  const std::size_t slices = matrix.slices();
-  const auto reduce = [&](std::size_t which) {
-    double sum = 0.0;
-    for (std::size_t t = 0; t < tasks; ++t) sum += partial_[t][which];
-    return sum;
+  using Lanes = std::array<float, laneCount>;
+  clear(matrix.vectorSize());
+  std::fill(x.begin(), x.end(), 0.0F);
+  const auto blocks = [&](const BlockMatrix::Part& part) {
+    return sweeps::Blocks{values.data() + part.value(), matrix.column(part.first), part.width};
   };
-  // Of one task: x += alpha p, r -= alpha y, z = D^-1 r; sums of r.z and r.r.
-  const auto update = [&](std::size_t task, float alpha) {
-    std::array<double, laneCount> rz{};
-    std::array<double, laneCount> rr{};
-    const std::size_t end = std::min(slices, (task + 1) * slicesPerTask);
-    for (std::size_t s = task * slicesPerTask; s < end; ++s) {
-      const std::size_t at = s * laneStride;
-      for (std::size_t i = at; i < at + laneStride; ++i) {
-        x[i] += alpha * p_[i];
-        r_[i] -= alpha * y_[i];
+  const auto sum = [this] {
+    double total = 0.0;
+    for (const Eight& piece : partial_) total += sumOf(piece);
+    return total;
+  };
+  const auto forward = [&](const float* u, float* s) {
+    run(Order::ascending, executor, [&, u, s](std::size_t piece) {
+      partial_[piece] = {};
+      for (std::size_t i = piece_[piece].first; i < piece_[piece].last; ++i) {
+        sweeps::forward(blocks(matrix.lower(i)), inverse_.data() + i * 9 * laneCount, u, s, p_.data(), t_.data(),
+                        partial_[piece].data(), i * laneStride);
       }
-      preconditionSlice(inverse_.data() + s * 9 * laneCount, r_.data() + at, z_.data() + at);
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t l = 0; l < laneCount; ++l) {
-          const auto r = static_cast<double>(r_[at + i * laneCount + l]);
-          rz[l] += r * static_cast<double>(z_[at + i * laneCount + l]);
-          rr[l] += r * r;
-        }
+    });
+  };
+  const auto update = [&](float by) {
+    Lanes alpha;
+    alpha.fill(by);
+    run(Order::any, executor, [&](std::size_t piece) {
+      partial_[piece] = {};
+      for (std::size_t i = piece_[piece].first; i < piece_[piece].last; ++i) {
+        sweeps::update(values.data() + matrix.diagonal(i), alpha.data(), t_.data(), s_.data(), x.data(), r_.data(),
+                       z_.data(), partial_[piece].data(), i * laneStride);
       }
-    }
-    partial_[task] = {};
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      partial_[task][0] += rz[l];
-      partial_[task][1] += rr[l];
-    }
+    });
+    return sum();
   };
 
-  executor.run(tasks, [&](std::size_t task) {
-    const FloatingPointScope scope;
-    const std::size_t first = task * slicesPerTask * laneStride;
-    const std::size_t last = std::min(slices, (task + 1) * slicesPerTask) * laneStride;
-    for (std::size_t i = first; i < last; ++i) {
-      x[i] = 0.0F;
-      r_[i] = b[i];
-      p_[i] = 0.0F;
-      y_[i] = 0.0F;
-    }
-    update(task, 0.0F);
-    for (std::size_t i = first; i < last; ++i) p_[i] = z_[i];
-  });
-  double rz = reduce(0);
-  const double start = reduce(1);
+  forward(b.data(), r_.data());
+  const double start = update(0.0F);
   SolveReport report;
-  if (!(start > 0.0)) return report;
-  const double goal = tolerance * tolerance * start;
-  double rr = start;
-  while (rr > goal && report.iterations < cap) {
-    executor.run(tasks, [&](std::size_t task) {
-      const FloatingPointScope scope;
-      const std::size_t end = std::min(slices, (task + 1) * slicesPerTask);
-      partial_[task][0] = matrix.multiply(values, p_.data(), y_.data(), task * slicesPerTask, end);
-    });
-    const double curvature = reduce(0) + addExtra();
-    if (!(curvature > 0.0)) break;  // not positive definite, or not a number: what is reached so far stands
-    const auto alpha = static_cast<float>(rz / curvature);
-    executor.run(tasks, [&](std::size_t task) {
-      const FloatingPointScope scope;
-      update(task, alpha);
-    });
-    const double next = reduce(0);
-    rr = reduce(1);
-    ++report.iterations;
-    if (!(rr > goal)) break;
-    const auto beta = static_cast<float>(next / rz);
-    rz = next;
-    executor.run(tasks, [&](std::size_t task) {
-      const FloatingPointScope scope;
-      const std::size_t last = std::min(slices, (task + 1) * slicesPerTask) * laneStride;
-      for (std::size_t i = task * slicesPerTask * laneStride; i < last; ++i) p_[i] = z_[i] + beta * p_[i];
-    });
+  if (!(start > 0.0) || !std::isfinite(start)) {
+    report.converged = start == 0.0;
+    return report;
   }
-  report.residual = std::sqrt(rr / start);
-  report.converged = rr <= goal;
+  const double goal = tolerance * tolerance * start;
+  double size = start;
+  Lanes beta{};
+  while (size > goal && report.iterations < cap) {
+    run(Order::descending, executor, [&](std::size_t piece) {
+      for (std::size_t i = piece_[piece].first; i < piece_[piece].last; ++i) {
+        sweeps::backward(blocks(matrix.upper(i)), inverse_.data() + i * 9 * laneCount, z_.data(), beta.data(),
+                         p_.data(), t_.data(), u_.data(), i * laneStride);
+      }
+    });
+    addExtra();
+    forward(u_.data(), s_.data());
+    const double curvature = sum();
+    if (!(curvature > 0.0)) break;  // not positive definite, or not a number: what is reached so far stands
+    const double next = update(static_cast<float>(size / curvature));
+    beta.fill(static_cast<float>(next / size));
+    size = next;
+    ++report.iterations;
+  }
+  report.residual = std::sqrt(size / start);
+  report.converged = size <= goal;
   return report;
 }
 
 SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<const float> values,
                                          std::span<const float> b, std::span<float> x, double tolerance,
                                          std::uint32_t cap, Executor& executor) {
-  using Eight = std::array<double, laneCount>;
-  const std::size_t tasks = taskCount(matrix);
-  const std::size_t slices = matrix.slices();
-  const auto reduce = [&](std::size_t which) {
-    Eight sum{};
-    for (std::size_t t = 0; t < tasks; ++t) {
-      for (std::size_t n = 0; n < laneCount; ++n) sum[n] += partialMany_[t][which * laneCount + n];
-    }
-    return sum;
+  using Lanes = std::array<float, laneCount>;
+  clear(matrix.vectorSize() * laneCount);
+  std::fill(x.begin(), x.end(), 0.0F);
+  const auto blocks = [&](const BlockMatrix::Part& part, std::size_t lane) {
+    return sweeps::Blocks{values.data() + part.value() + lane, matrix.column(part.first) + lane, part.width};
   };
-  const auto update = [&](std::size_t task, const std::array<float, laneCount>& alpha) {
-    std::array<double, 2 * laneCount> sums{};
-    const std::size_t end = std::min(slices, (task + 1) * slicesPerTask);
-    for (std::size_t row = task * slicesPerTask * laneCount; row < end * laneCount; ++row) {
-      const std::size_t at = row * laneStride;
-      const float* d = inverse_.data() + row / laneCount * 9 * laneCount + row % laneCount;
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t n = 0; n < laneCount; ++n) {
-          const std::size_t k = at + i * laneCount + n;
-          x[k] += alpha[n] * p_[k];
-          r_[k] -= alpha[n] * y_[k];
-        }
-      }
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t n = 0; n < laneCount; ++n) {
-          z_[at + i * laneCount + n] =
-              (d[3 * i * laneCount] * r_[at + n] + d[(3 * i + 1) * laneCount] * r_[at + laneCount + n]) +
-              d[(3 * i + 2) * laneCount] * r_[at + 2 * laneCount + n];
-        }
-      }
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t n = 0; n < laneCount; ++n) {
-          const std::size_t k = at + i * laneCount + n;
-          const auto r = static_cast<double>(r_[k]);
-          sums[n] += r * static_cast<double>(z_[k]);
-          sums[laneCount + n] += r * r;
-        }
-      }
+  /// Calls row(number, slice, lane) for the rows of a piece.
+  const auto forRows = [&](std::size_t piece, auto&& row) {
+    for (std::size_t r = piece_[piece].first * laneCount; r < piece_[piece].last * laneCount; ++r) {
+      row(r, r / laneCount, r % laneCount);
     }
-    partialMany_[task] = sums;
+  };
+  const auto sum = [this] {
+    Eight total{};
+    for (const Eight& piece : partial_) {
+      for (std::size_t n = 0; n < laneCount; ++n) total[n] += piece[n];
+    }
+    return total;
+  };
+  const auto forward = [&](const float* u, float* s) {
+    run(Order::ascending, executor, [&, u, s](std::size_t piece) {
+      partial_[piece] = {};
+      forRows(piece, [&](std::size_t r, std::size_t slice, std::size_t lane) {
+        sweeps::forwardMany(blocks(matrix.lower(slice), lane), inverse_.data() + slice * 9 * laneCount + lane, u, s,
+                            p_.data(), t_.data(), partial_[piece].data(), r * laneStride);
+      });
+    });
+  };
+  const auto update = [&](const Lanes& alpha) {
+    run(Order::any, executor, [&](std::size_t piece) {
+      partial_[piece] = {};
+      forRows(piece, [&](std::size_t r, std::size_t slice, std::size_t lane) {
+        sweeps::updateMany(values.data() + matrix.diagonal(slice) + lane, alpha.data(), t_.data(), s_.data(), x.data(),
+                           r_.data(), z_.data(), partial_[piece].data(), r * laneStride);
+      });
+    });
+    return sum();
   };
 
-  executor.run(tasks, [&](std::size_t task) {
-    const FloatingPointScope scope;
-    const std::size_t first = task * slicesPerTask * laneCount * laneStride;
-    const std::size_t last = std::min(slices, (task + 1) * slicesPerTask) * laneCount * laneStride;
-    for (std::size_t i = first; i < last; ++i) {
-      x[i] = 0.0F;
-      r_[i] = b[i];
-      p_[i] = 0.0F;
-      y_[i] = 0.0F;
-    }
-    update(task, {});
-    for (std::size_t i = first; i < last; ++i) p_[i] = z_[i];
-  });
-  Eight rz = reduce(0);
-  const Eight start = reduce(1);
-  Eight rr = start;
+  forward(b.data(), r_.data());
+  const Eight start = update({});
+  Eight size = start;
   Eight goal{};
   for (std::size_t n = 0; n < laneCount; ++n) goal[n] = tolerance * tolerance * start[n];
-  const auto open = [&](std::size_t n) { return start[n] > 0.0 && rr[n] > goal[n]; };
-  SolveReport report;
+  const auto open = [&](std::size_t n) { return start[n] > 0.0 && std::isfinite(start[n]) && size[n] > goal[n]; };
   const auto anyOpen = [&] {
     for (std::size_t n = 0; n < laneCount; ++n) {
       if (open(n)) return true;
     }
     return false;
   };
+  SolveReport report;
+  Lanes beta{};
   while (anyOpen() && report.iterations < cap) {
-    executor.run(tasks, [&](std::size_t task) {
-      const FloatingPointScope scope;
-      const std::size_t end = std::min(slices, (task + 1) * slicesPerTask);
-      partialMany_[task] = {};
-      matrix.multiplyMany(values, p_.data(), y_.data(), task * slicesPerTask, end, partialMany_[task].data());
+    run(Order::descending, executor, [&](std::size_t piece) {
+      forRows(piece, [&](std::size_t r, std::size_t slice, std::size_t lane) {
+        sweeps::backwardMany(blocks(matrix.upper(slice), lane), inverse_.data() + slice * 9 * laneCount + lane,
+                             z_.data(), beta.data(), p_.data(), t_.data(), u_.data(), r * laneStride);
+      });
     });
-    Eight curvature = reduce(0);
-    addExtraMany(curvature);
-    std::array<float, laneCount> alpha{};
+    addExtraMany();
+    forward(u_.data(), s_.data());
+    const Eight curvature = sum();
+    Lanes alpha{};
     bool moved = false;
     for (std::size_t n = 0; n < laneCount; ++n) {
       if (!open(n) || !(curvature[n] > 0.0)) continue;
-      alpha[n] = static_cast<float>(rz[n] / curvature[n]);
+      alpha[n] = static_cast<float>(size[n] / curvature[n]);
       moved = true;
     }
     if (!moved) break;
-    executor.run(tasks, [&](std::size_t task) {
-      const FloatingPointScope scope;
-      update(task, alpha);
-    });
-    const Eight next = reduce(0);
-    rr = reduce(1);
-    ++report.iterations;
-    std::array<float, laneCount> beta{};
+    const Eight next = update(alpha);
     for (std::size_t n = 0; n < laneCount; ++n) {
-      if (open(n) && rz[n] > 0.0) beta[n] = static_cast<float>(next[n] / rz[n]);
+      beta[n] = open(n) ? static_cast<float>(next[n] / size[n]) : 0.0F;
+      size[n] = next[n];
     }
-    rz = next;
-    executor.run(tasks, [&](std::size_t task) {
-      const FloatingPointScope scope;
-      const std::size_t last = std::min(slices, (task + 1) * slicesPerTask) * laneCount;
-      for (std::size_t row = task * slicesPerTask * laneCount; row < last; ++row) {
-        for (std::size_t i = 0; i < 3; ++i) {
-          for (std::size_t n = 0; n < laneCount; ++n) {
-            const std::size_t k = row * laneStride + i * laneCount + n;
-            p_[k] = z_[k] + beta[n] * p_[k];
-          }
-        }
-      }
-    });
+    ++report.iterations;
   }
   for (std::size_t n = 0; n < laneCount; ++n) {
-    if (!(start[n] > 0.0)) continue;
-    report.residual = std::max(report.residual, std::sqrt(rr[n] / start[n]));
-    report.converged = report.converged && rr[n] <= goal[n];
+    if (start[n] == 0.0) continue;
+    report.residual = std::max(report.residual, std::sqrt(size[n] / start[n]));
+    report.converged = report.converged && size[n] <= goal[n];
   }
   return report;
 }

@@ -124,7 +124,7 @@ CALOT_LANE_KERNEL void blocks(const Stiffness& stiffness, const RotationLanes& r
           }
         }
       }
-      auto& block = out.block[HexahedralElements::pairOf(a, b)];
+      std::array<std::array<float, laneCount>, 9> block;
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
           for (std::size_t l = 0; l < laneCount; ++l) {
@@ -132,6 +132,9 @@ CALOT_LANE_KERNEL void blocks(const Stiffness& stiffness, const RotationLanes& r
                 (half[i][0][l] * turn[j][0][l] + half[i][1][l] * turn[j][1][l]) + half[i][2][l] * turn[j][2][l];
           }
         }
+      }
+      for (std::size_t l = 0; l < laneCount; ++l) {
+        for (std::size_t k = 0; k < 9; ++k) out.block[l][HexahedralElements::pairOf(a, b)][k] = block[k][l];
       }
     }
   }

@@ -34,8 +34,9 @@ struct HexahedronGroup {
 /// What one pass over a group leaves for the assembly.
 struct HexahedronResult {
   std::array<std::array<std::array<double, laneCount>, 3>, 8> force;  ///< on the nodes (N)
-  /// fill R K_ab R^T for a <= b (N/m), pairs in the order of pairOf(): entry (i, j) at [3 i + j].
-  std::array<std::array<std::array<float, laneCount>, 9>, 36> block;
+  /// fill R K_ab R^T for a <= b (N/m), pairs in the order of pairOf(): entry (i, j) at [3 i + j]. Not in lanes: the
+  /// assembly takes each cube's by itself.
+  std::array<std::array<std::array<float, 9>, 36>, laneCount> block;
 };
 
 class HexahedralElements {

@@ -3,35 +3,16 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace calot {
 
 namespace {
 
-/// Breadth-first order from the node of fewest neighbours, neighbours by index: keeps rows that touch near each other.
-std::vector<int> breadthFirst(const std::vector<std::vector<int>>& neighbours) {
-  std::vector<int> order;
-  std::vector<bool> seen(neighbours.size(), false);
-  std::vector<int> seeds(neighbours.size());
-  for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i] = static_cast<int>(i);
-  std::stable_sort(seeds.begin(), seeds.end(), [&](int a, int b) {
-    return neighbours[static_cast<std::size_t>(a)].size() < neighbours[static_cast<std::size_t>(b)].size();
-  });
-  for (const int seed : seeds) {
-    if (seen[static_cast<std::size_t>(seed)]) continue;
-    seen[static_cast<std::size_t>(seed)] = true;
-    order.push_back(seed);
-    for (std::size_t at = order.size() - 1; at < order.size(); ++at) {
-      for (const int n : neighbours[static_cast<std::size_t>(order[at])]) {
-        if (seen[static_cast<std::size_t>(n)]) continue;
-        seen[static_cast<std::size_t>(n)] = true;
-        order.push_back(n);
-      }
-    }
-  }
-  return order;
-}
+/// Rows of one colour that are sorted among themselves by how many blocks they have, so that a slice holds like ones;
+/// few enough to stay close to each other.
+constexpr std::size_t sortedRows = 128;
 
 }  // namespace
 
@@ -87,30 +68,69 @@ std::vector<std::vector<int>> SolidModel::neighbours() const {
   return out;
 }
 
+/// Numbers the rows by colours. @param near neighbours of each node
+/// @return how many rows each colour has
+std::vector<std::size_t> SolidModel::orderRows(const std::vector<std::vector<int>>& near) {
+  row_.assign(rest_.size(), -1);
+  freeNode_.clear();
+  for (std::size_t node = 0; node < rest_.size(); ++node) {
+    if (!fixed_[node]) freeNode_.push_back(static_cast<int>(node));
+  }
+  std::vector<int> numberOf(rest_.size(), -1);  // among the free ones
+  for (std::size_t i = 0; i < freeNode_.size(); ++i)
+    numberOf[static_cast<std::size_t>(freeNode_[i])] = static_cast<int>(i);
+  std::vector<std::vector<int>> graph(freeNode_.size());
+  for (std::size_t i = 0; i < freeNode_.size(); ++i) {
+    for (const int n : near[static_cast<std::size_t>(freeNode_[i])]) {
+      if (numberOf[static_cast<std::size_t>(n)] >= 0) graph[i].push_back(numberOf[static_cast<std::size_t>(n)]);
+    }
+  }
+  std::vector<std::vector<int>> colours = coloured(graph);
+  std::vector<std::size_t> colourOf(freeNode_.size());
+  for (std::size_t c = 0; c < colours.size(); ++c) {
+    for (const int i : colours[c]) colourOf[static_cast<std::size_t>(i)] = c;
+  }
+  std::vector<std::size_t> sizes;
+  std::size_t row = 0;
+  for (std::size_t c = 0; c < colours.size(); ++c) {
+    const auto blocksOf = [&](int i) {
+      std::size_t left = 0;
+      for (const int n : graph[static_cast<std::size_t>(i)]) left += colourOf[static_cast<std::size_t>(n)] < c ? 1 : 0;
+      return std::pair(left, graph[static_cast<std::size_t>(i)].size() - left);
+    };
+    for (std::size_t first = 0; first < colours[c].size(); first += sortedRows) {
+      const std::size_t last = std::min(first + sortedRows, colours[c].size());
+      std::stable_sort(colours[c].begin() + static_cast<std::ptrdiff_t>(first),
+                       colours[c].begin() + static_cast<std::ptrdiff_t>(last),
+                       [&](int a, int b) { return blocksOf(a) > blocksOf(b); });
+    }
+    for (std::size_t i = 0; i < colours[c].size(); ++i) {
+      row_[static_cast<std::size_t>(freeNode_[static_cast<std::size_t>(colours[c][i])])] = static_cast<int>(row + i);
+    }
+    sizes.push_back(laneGroups(colours[c].size()) * laneCount);
+    row += sizes.back();
+  }
+  return sizes;
+}
+
 void SolidModel::buildStructure() {
   const std::size_t nodeCount = rest_.size();
   const std::vector<std::vector<int>> near = neighbours();
-  row_.assign(nodeCount, -1);
-  for (const int node : breadthFirst(near)) {
-    if (fixed_[static_cast<std::size_t>(node)]) continue;
-    row_[static_cast<std::size_t>(node)] = static_cast<int>(freeNode_.size());
-    freeNode_.push_back(node);
-  }
-  std::vector<std::vector<int>> columns(freeNode_.size());
-  diagonal_.resize(freeNode_.size());
-  for (std::size_t r = 0; r < freeNode_.size(); ++r) {
-    columns[r].push_back(static_cast<int>(r));
-    for (const int n : near[static_cast<std::size_t>(freeNode_[r])]) {
-      if (row_[static_cast<std::size_t>(n)] >= 0) columns[r].push_back(row_[static_cast<std::size_t>(n)]);
+  const std::vector<std::size_t> colours = orderRows(near);
+  std::vector<std::vector<int>> columns(std::accumulate(colours.begin(), colours.end(), std::size_t{0}));
+  for (const int node : freeNode_) {
+    const int row = row_[static_cast<std::size_t>(node)];
+    std::vector<int>& own = columns[static_cast<std::size_t>(row)];
+    own.push_back(row);
+    for (const int n : near[static_cast<std::size_t>(node)]) {
+      if (row_[static_cast<std::size_t>(n)] >= 0) own.push_back(row_[static_cast<std::size_t>(n)]);
     }
-    std::sort(columns[r].begin(), columns[r].end());
-    diagonal_[r] = static_cast<int>(std::lower_bound(columns[r].begin(), columns[r].end(), static_cast<int>(r)) -
-                                    columns[r].begin());
+    std::sort(own.begin(), own.end());
   }
-  matrix_ = BlockMatrix(columns);
+  matrix_ = BlockMatrix(columns, colours);
 
   // Contributions to each block, in element order; incident corners of each node likewise.
-  std::vector<std::vector<std::vector<Contribution>>> perSlot(freeNode_.size());
+  std::vector<std::vector<std::vector<Contribution>>> perSlot(columns.size());
   for (std::size_t r = 0; r < columns.size(); ++r) perSlot[r].resize(columns[r].size());
   std::vector<std::vector<Contribution>> perNode(nodeCount);
   for (std::size_t e = 0; e < elementCount(); ++e) {
@@ -130,17 +150,33 @@ void SolidModel::buildStructure() {
       }
     }
   }
+  std::vector<std::int32_t> nodeOf(columns.size(), -1);
+  for (const int node : freeNode_) nodeOf[static_cast<std::size_t>(row_[static_cast<std::size_t>(node)])] = node;
   for (std::size_t r = 0; r < columns.size(); ++r) {
-    rowSlot_.push_back(slot_.size());
+    rowSlot_.push_back(slotColumn_.size());
     for (std::size_t k = 0; k < columns[r].size(); ++k) {
+      const auto c = static_cast<std::size_t>(columns[r][k]);
+      slotColumn_.push_back(columns[r][k]);
+      slotPlace_.push_back(matrix_.slot(r, k));
+      if (c < r) continue;
+      const auto mirror =
+          std::lower_bound(columns[c].begin(), columns[c].end(), static_cast<int>(r)) - columns[c].begin();
       const std::size_t first = contribution_.size();
       contribution_.insert(contribution_.end(), perSlot[r][k].begin(), perSlot[r][k].end());
-      slot_.push_back({matrix_.slot(r, k), static_cast<std::int32_t>(r), columns[r][k],
-                       static_cast<int>(k) == diagonal_[r], first, contribution_.size()});
+      slot_.push_back({matrix_.slot(r, k), matrix_.slot(c, static_cast<std::size_t>(mirror)), nodeOf[r], first,
+                       contribution_.size()});
     }
   }
-  rowSlot_.push_back(slot_.size());
-  for (const SlotRange& range : slot_) slotColumn_.push_back(range.column);
+  rowSlot_.push_back(slotColumn_.size());
+  for (std::size_t e = 0; e < elementCount(); ++e) {
+    for (const int a : cornersOf(e)) {
+      for (const int b : cornersOf(e)) {
+        const int row = row_[static_cast<std::size_t>(a)];
+        const int column = row_[static_cast<std::size_t>(b)];
+        elementSlot_.push_back(row < 0 || column < 0 ? noSlot : slotOf(row, column));
+      }
+    }
+  }
   incidentStart_.push_back(0);
   for (const std::vector<Contribution>& list : perNode) {
     incident_.insert(incident_.end(), list.begin(), list.end());
@@ -165,7 +201,7 @@ std::size_t SolidModel::slotOf(int row, int column) const {
   const auto last = slotColumn_.begin() + static_cast<std::ptrdiff_t>(rowSlot_[static_cast<std::size_t>(row) + 1]);
   const auto found = std::lower_bound(first, last, column);
   if (found == last || *found != column) return noSlot;
-  return slot_[static_cast<std::size_t>(found - slotColumn_.begin())].slot;
+  return slotPlace_[static_cast<std::size_t>(found - slotColumn_.begin())];
 }
 
 void SolidModel::massOf(std::span<const double> fill, std::vector<double>& mass) const {

@@ -53,7 +53,7 @@ class SolidModel {
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
   /// Deformed volume (m^3). @param fill share of each cube that is there; empty: all of it
   [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill = {}) const;
-  /// Row of a node in the system, or -1 where it is fixed.
+  /// Row of a node in the system, or -1 where it is fixed. Some rows have no node: they only fill slices up.
   [[nodiscard]] int row(std::size_t node) const { return row_[node]; }
   [[nodiscard]] const std::vector<int>& freeNodes() const { return freeNode_; }
   [[nodiscard]] const BlockMatrix& matrix() const { return matrix_; }
@@ -62,6 +62,10 @@ class SolidModel {
 
  private:
   friend class SolidSolver;
+  /// Where the values of a node that moves begin in vectors over the rows.
+  [[nodiscard]] std::size_t offsetOf(std::size_t node) const {
+    return laneOffset(static_cast<std::size_t>(row_[node]));
+  }
   static constexpr std::size_t noSlot = ~std::size_t{0};
   /// Slot of block (row, column), or noSlot where no element has both as corners.
   [[nodiscard]] std::size_t slotOf(int row, int column) const;
@@ -79,13 +83,14 @@ class SolidModel {
   }
   [[nodiscard]] std::size_t elementCount() const { return madeOfCubes() ? cube_.size() : tetrahedra_.size(); }
   struct SlotRange {
-    std::size_t slot;  ///< in the matrix values
-    std::int32_t row, column;
-    bool diagonal;
+    std::size_t slot;         ///< in the matrix values
+    std::size_t mirror;       ///< of block (column, row), its transpose
+    std::int32_t node;        ///< of the row
     std::size_t first, last;  ///< in contributions
   };
 
   void buildStructure();
+  std::vector<std::size_t> orderRows(const std::vector<std::vector<int>>& near);
   [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
 
   std::vector<Vec3> rest_;
@@ -96,12 +101,13 @@ class SolidModel {
   std::variant<TetrahedralElements, HexahedralElements> elements_;
   std::vector<double> mass_;
   std::vector<int> row_;
-  std::vector<int> freeNode_;  ///< row -> node
+  std::vector<int> freeNode_;  ///< nodes that move, ascending
   BlockMatrix matrix_;
-  std::vector<int> diagonal_;         ///< per row: which of its columns is the diagonal
-  std::vector<SlotRange> slot_;       ///< in row order
-  std::vector<std::size_t> rowSlot_;  ///< per row: its first slot; and the end
-  std::vector<int> slotColumn_;       ///< per slot: its column, close together for slotOf()
+  std::vector<SlotRange> slot_;           ///< blocks with column >= row, in row order
+  std::vector<std::size_t> rowSlot_;      ///< per row: the first of its places in the next two; and the end
+  std::vector<int> slotColumn_;           ///< columns of all blocks of a row, ascending
+  std::vector<std::size_t> slotPlace_;    ///< and where they stand in the matrix values
+  std::vector<std::size_t> elementSlot_;  ///< of the blocks of each element's corners, row by row; noSlot where fixed
   std::vector<Contribution> contribution_;
   std::vector<std::size_t> incidentStart_;  ///< per node
   std::vector<Contribution> incident_;      ///< element and corner of each incident element
@@ -132,6 +138,7 @@ SolidState restState(const SolidModel& model);
 
 /// A place inside one element of a solid: its corners and their shares.
 struct SolidPlace {
+  int element = -1;  ///< its number, where known: then `node` are all its corners in their order
   std::array<int, 8> node{};
   std::array<double, 8> weight{};
   std::size_t count = 0;
@@ -216,6 +223,7 @@ class SolidSolver {
                 Executor& executor);
   void addAttachments(const SolidModel& model, const Settings& settings, std::span<const Attachment> attachments);
   void addJoint(const SolidModel& model, const Settings& settings, const JointAttachment& joint);
+  bool addToElement(const SolidModel& model, const Attachment& attachment, double step);
   void addPair(const SolidModel& model, const SolidPlace& p, const SolidPlace& q, const Mat3& damper, double step);
   void addBlock(const SolidModel& model, const SolidModel::Contribution& contribution, std::array<float, 9>& block,
                 float lambda, float mu, float scale) const;

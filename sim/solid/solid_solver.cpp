@@ -10,7 +10,8 @@ namespace calot {
 
 namespace {
 
-constexpr std::size_t rowsPerTask = 128;
+constexpr std::size_t nodesPerTask = 128;
+constexpr std::size_t blocksPerTask = 1024;
 /// Of a cube's corner (m/s): a corner that only a nearly empty cube holds weighs next to nothing, and what holds that
 /// cube by its one full corner throws it about. No hand moves tissue as fast.
 constexpr double fastestCorner = 5.0;
@@ -26,9 +27,14 @@ inline void SolidSolver::addBlock(const SolidModel& model, const SolidModel::Con
   const auto a = static_cast<std::size_t>(contribution.a);
   const auto b = static_cast<std::size_t>(contribution.b);
   if (model.madeOfCubes()) {
-    const auto& stored = hexahedron_[e / laneCount].block[HexahedralElements::pairOf(std::min(a, b), std::max(a, b))];
+    const auto& stored =
+        hexahedron_[e / laneCount].block[l][HexahedralElements::pairOf(std::min(a, b), std::max(a, b))];
+    if (a <= b) {
+      for (std::size_t k = 0; k < 9; ++k) block[k] += scale * stored[k];
+      return;
+    }
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += scale * stored[a <= b ? 3 * i + j : 3 * j + i][l];
+      for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += scale * stored[3 * j + i];
     }
     return;
   }
@@ -63,22 +69,27 @@ void SolidSolver::assemble(const SolidModel& model, const Settings& settings, co
   const float mu = scale * static_cast<float>(m.lame.mu);
   const std::vector<double>& masses = surroundings.fill.empty() ? model.mass_ : mass_;
   values_.assign(model.matrix_.valueCount(), 0.0F);
-  const std::size_t tasks = (model.slot_.size() + 8 * rowsPerTask - 1) / (8 * rowsPerTask);
+  const std::size_t tasks = (model.slot_.size() + blocksPerTask - 1) / (blocksPerTask);
   executor.run(tasks, [&](std::size_t task) {
     const FloatingPointScope scope;
-    const std::size_t last = std::min(model.slot_.size(), (task + 1) * 8 * rowsPerTask);
-    for (std::size_t s = task * 8 * rowsPerTask; s < last; ++s) {
+    const std::size_t last = std::min(model.slot_.size(), (task + 1) * blocksPerTask);
+    for (std::size_t s = task * blocksPerTask; s < last; ++s) {
       const SolidModel::SlotRange& range = model.slot_[s];
       std::array<float, 9> block{};
       for (std::size_t c = range.first; c < range.last; ++c) {
         addBlock(model, model.contribution_[c], block, lambda, mu, scale);
       }
-      if (range.diagonal) {
-        const double own = masses[static_cast<std::size_t>(model.freeNode_[static_cast<std::size_t>(range.row)])];
+      if (range.slot == range.mirror) {
+        const double own = masses[static_cast<std::size_t>(range.node)];
         const auto mass = static_cast<float>(own > 0.0 ? massScale * own : orphanMass);
         for (std::size_t i = 0; i < 3; ++i) block[4 * i] += mass;
       }
-      for (std::size_t i = 0; i < 9; ++i) values_[range.slot + i * laneCount] = block[i];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          values_[range.slot + (3 * i + j) * laneCount] = block[3 * i + j];
+          values_[range.mirror + (3 * j + i) * laneCount] = block[3 * i + j];
+        }
+      }
     }
   });
   addAttachments(model, settings, surroundings.attachments);
@@ -89,8 +100,27 @@ void SolidSolver::assemble(const SolidModel& model, const Settings& settings, co
 void SolidSolver::addAttachments(const SolidModel& model, const Settings& settings,
                                  std::span<const Attachment> attachments) {
   for (const Attachment& attachment : attachments) {
+    if (addToElement(model, attachment, settings.step)) continue;
     addPair(model, attachment.place, attachment.place, attachment.damper, settings.step);
   }
+}
+
+/// The same as addPair() for a spring without a direction of its own in a known element, without a search.
+/// @return false: it is none
+bool SolidSolver::addToElement(const SolidModel& model, const Attachment& attachment, double step) {
+  const SolidPlace& place = attachment.place;
+  const double damper = attachment.damper(0, 0);
+  if (place.element < 0 || attachment.damper != Mat3(damper * Mat3::Identity())) return false;
+  const std::size_t* slot =
+      model.elementSlot_.data() + static_cast<std::size_t>(place.element) * (place.count * place.count);
+  for (std::size_t a = 0; a < place.count; ++a) {
+    for (std::size_t b = 0; b < place.count; ++b, ++slot) {
+      if (*slot == SolidModel::noSlot) continue;
+      const auto own = static_cast<float>((step * (place.weight[a] * place.weight[b])) * damper);
+      for (std::size_t i = 0; i < 3; ++i) values_[*slot + 4 * i * laneCount] += own;
+    }
+  }
+  return true;
 }
 
 void SolidSolver::addJoint(const SolidModel& model, const Settings& settings, const JointAttachment& joint) {
@@ -174,12 +204,12 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
   const std::vector<double>& masses = surroundings.fill.empty() ? model.mass_ : mass_;
   b_.assign(model.matrix_.vectorSize(), 0.0F);
   x_.resize(model.matrix_.vectorSize());
-  const std::size_t rows = model.freeNode_.size();
-  executor.run((rows + rowsPerTask - 1) / rowsPerTask, [&](std::size_t task) {
+  const std::size_t free = model.freeNode_.size();
+  executor.run((free + nodesPerTask - 1) / nodesPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
-    const std::size_t last = std::min(rows, (task + 1) * rowsPerTask);
-    for (std::size_t r = task * rowsPerTask; r < last; ++r) {
-      const auto node = static_cast<std::size_t>(model.freeNode_[r]);
+    const std::size_t last = std::min(free, (task + 1) * nodesPerTask);
+    for (std::size_t f = task * nodesPerTask; f < last; ++f) {
+      const auto node = static_cast<std::size_t>(model.freeNode_[f]);
       if (!(masses[node] > 0.0)) continue;
       Vec3 force = Vec3::Zero();
       for (std::size_t k = model.incidentStart_[node]; k < model.incidentStart_[node + 1]; ++k) {
@@ -188,16 +218,16 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
       force += masses[node] * (gravity - m.massDamping * state.velocity[node]);
       if (!load_.empty()) force += load_[node];
       for (int i = 0; i < 3; ++i) {
-        b_[laneOffset(r) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(h * force[i]);
+        b_[model.offsetOf(node) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(h * force[i]);
       }
     }
   });
-  cg_.prepare(model.matrix_, values_, model.diagonal_, executor, extra_);
+  cg_.prepare(model.matrix_, values_, executor, extra_);
   const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());
-  for (std::size_t r = 0; r < rows; ++r) {
-    const auto node = static_cast<std::size_t>(model.freeNode_[r]);
-    const std::size_t at = laneOffset(r);
+  for (const int f : model.freeNode_) {
+    const auto node = static_cast<std::size_t>(f);
+    const std::size_t at = model.offsetOf(node);
     freeVelocity_[node] = state.velocity[node] + Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
   }
   return report;
@@ -222,10 +252,10 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
   response.resize(impulses.size());
   for (std::size_t n = 0; n < impulses.size(); ++n) {
     response[n].assign(model.nodes(), Vec3::Zero());
-    for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
-      const std::size_t at = r * laneStride + n;
-      response[n][static_cast<std::size_t>(model.freeNode_[r])] =
-          Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
+    for (const int f : model.freeNode_) {
+      const auto node = static_cast<std::size_t>(f);
+      const std::size_t at = static_cast<std::size_t>(model.row_[node]) * laneStride + n;
+      response[n][node] = Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
     }
   }
   return report;
@@ -235,17 +265,17 @@ SolveReport SolidSolver::push(const SolidModel& model, std::span<const Vec3> imp
                               Executor& executor) {
   b_.assign(model.matrix_.vectorSize(), 0.0F);
   x_.resize(model.matrix_.vectorSize());
-  for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
-    const Vec3& p = impulse[static_cast<std::size_t>(model.freeNode_[r])];
+  for (const int f : model.freeNode_) {
+    const auto node = static_cast<std::size_t>(f);
     for (int i = 0; i < 3; ++i) {
-      b_[laneOffset(r) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(p[i]);
+      b_[model.offsetOf(node) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(impulse[node][i]);
     }
   }
   const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
-  for (std::size_t r = 0; r < model.freeNode_.size(); ++r) {
-    const std::size_t at = laneOffset(r);
-    freeVelocity_[static_cast<std::size_t>(model.freeNode_[r])] +=
-        Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
+  for (const int f : model.freeNode_) {
+    const auto node = static_cast<std::size_t>(f);
+    const std::size_t at = model.offsetOf(node);
+    freeVelocity_[node] += Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
   }
   return report;
 }

@@ -73,4 +73,15 @@ TetrahedraRemoval::Quality TetrahedraRemoval::quality() const {
   return q;
 }
 
+TriangleMesh TetrahedraRemoval::faces() const {
+  const TetrahedralMesh rest = subMesh(mesh_, kept_);
+  TriangleMesh out;
+  for (const BoundaryTriangle& t : boundaryTriangles(rest)) {
+    const auto first = static_cast<int>(out.vertex.size());
+    for (int k = 0; k < 3; ++k) out.vertex.push_back(rest.vertex[slot(t.vertex[k])]);
+    out.triangle.emplace_back(first, first + 1, first + 2);
+  }
+  return out;
+}
+
 }  // namespace calot::test

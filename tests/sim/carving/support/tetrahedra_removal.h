@@ -7,6 +7,7 @@
 
 #include "sim/carving/swept_capsule.h"
 #include "sim/geometry/isosurface_stuffing.h"
+#include "sim/geometry/triangle_mesh.h"
 
 namespace calot::test {
 
@@ -24,6 +25,8 @@ class TetrahedraRemoval {
     int dangling = 0;       ///< tetrahedra that hang on one face, or on none
   };
   [[nodiscard]] Quality quality() const;
+  /// The faces of what is left, each with corners of its own.
+  [[nodiscard]] TriangleMesh faces() const;
 
  private:
   TetrahedralMesh mesh_;

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/contact/near_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/contact/float_bounds.h"
+
+namespace calot {
+
+namespace {
+
+constexpr double rounding = 1e-8;  // m, far above that of all distances here
+
+}  // namespace
+
+void NearTriangles::reset() {
+  for (List& list : list_) list.made = false;
+  counts_ = {};
+}
+
+void NearTriangles::begin(const SurfaceSearch& search) {
+  list_.resize(search.a().patches().size());
+  bounds_.clear();
+}
+
+void NearTriangles::follow(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                           double reach) {
+  patch_ = patch;
+  if (!holds(search, patch, near, reach)) renew(search, patch, near, reach);
+}
+
+/// Have the open vertices been displaced by less than the margin against all triangles near them?
+bool NearTriangles::holds(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                          double reach) {
+  const List& list = list_[patch];
+  if (!list.made || list.reach != reach) return false;
+  Box moved;  // holds the displacements of all corners near
+  auto known = list.patch.begin();
+  for (const std::uint32_t q : near) {
+    known = std::lower_bound(known, list.patch.end(), q);
+    if (known == list.patch.end() || *known != q) return false;
+    const Vec3* was = list.corner.data() + list.start[static_cast<std::size_t>(known - list.patch.begin())];
+    for (const int n : search.b().patchCorners(q))
+      moved.include(search.positionB()[static_cast<std::size_t>(n)] - *was++);
+  }
+  const std::span<const int> node = search.a().patchNodes(patch);
+  displaced_.resize(node.size());
+  for (const std::size_t k : search.room().open) {
+    const Vec3 mine = search.positionA()[static_cast<std::size_t>(node[k])] - list.vertex[k];
+    displaced_[k] = (mine - moved.lower).cwiseMax(moved.upper - mine).norm() + rounding;
+    if (!(displaced_[k] + rounding < margin)) return false;
+  }
+  return true;
+}
+
+void NearTriangles::readBounds(const SurfaceSearch& search) {
+  bounds_.resize(search.b().patches().size());
+  for (std::uint32_t q = 0; q < bounds_.size(); ++q) {
+    Box box;
+    for (const int n : search.b().patchCorners(q)) box.include(search.positionB()[static_cast<std::size_t>(n)]);
+    bounds_[q] = box;
+  }
+}
+
+/// SurfacePair::excluded(), worked out once.
+bool NearTriangles::excluded(const SurfaceSearch& search, int vertex, std::size_t triangle) {
+  if (!search.pair().self()) return false;
+  const std::size_t words = (search.b().triangles().size() + 63) / 64;
+  if (asked_.empty()) {
+    asked_.assign(search.positionA().size() * words, 0);
+    excluded_.assign(asked_.size(), 0);
+  }
+  const std::size_t word = static_cast<std::size_t>(vertex) * words + triangle / 64;
+  const std::uint64_t bit = std::uint64_t{1} << (triangle % 64);
+  if ((asked_[word] & bit) == 0) {
+    asked_[word] |= bit;
+    if (search.pair().excluded(vertex, triangle)) excluded_[word] |= bit;
+  }
+  return (excluded_[word] & bit) != 0;
+}
+
+void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                          double reach) {
+  if (bounds_.empty()) readBounds(search);
+  ++counts_.renewed;
+  List& list = list_[patch];
+  list.made = true;
+  list.reach = reach;
+  const Box box =
+      boundsOf(search.a(), search.positionA(), patch, search.pair().search(patch, reach) + margin + rounding);
+  list.patch.clear();
+  list.start.assign(1, 0);
+  list.corner.clear();
+  for (std::uint32_t q = 0; q < bounds_.size(); ++q) {
+    if (!bounds_[q].overlaps(box) && !std::binary_search(near.begin(), near.end(), q)) continue;
+    list.patch.push_back(q);
+    for (const int n : search.b().patchCorners(q))
+      list.corner.push_back(search.positionB()[static_cast<std::size_t>(n)]);
+    list.start.push_back(list.corner.size());
+  }
+  Candidates& candidates = room_.candidates;
+  candidates.gather(search.b(), search.positionB(), list.patch, box);
+  const std::span<const int> node = search.a().patchNodes(patch);
+  list.vertex.clear();
+  list.entry.clear();
+  list.entryEnd.clear();
+  for (const int n : node) {
+    const auto v = static_cast<std::size_t>(n);
+    const Vec3& p = search.positionA()[v];
+    const std::size_t first = list.entry.size();
+    candidates.forEachWithin(
+        p, search.limitOf(v, reach) + margin, [&](std::size_t t) { return excluded(search, n, t); },
+        [&](std::size_t t, double squared) {
+          list.entry.push_back({floatBelow(std::sqrt(squared) - rounding), static_cast<std::uint32_t>(t)});
+        });
+    std::sort(list.entry.begin() + static_cast<std::ptrdiff_t>(first), list.entry.end());
+    list.entryEnd.push_back(list.entry.size());
+    list.vertex.push_back(p);
+  }
+  displaced_.assign(node.size(), rounding);
+}
+
+Near NearTriangles::nearest(const SurfaceSearch& search, std::size_t place, double reach) {
+  const List& list = list_[patch_];
+  const int vertex = search.a().patchNodes(patch_)[place];
+  const Vec3& p = search.positionA()[static_cast<std::size_t>(vertex)];
+  const double limit = search.limitOf(static_cast<std::size_t>(vertex), reach);
+  Near near;
+  double best = limit * limit;
+  double farthest =
+      limit + displaced_[place] + rounding;  // that an entry can have been, to be no farther than best now
+  std::size_t looked = 0;
+  for (std::size_t e = place == 0 ? 0 : list.entryEnd[place - 1]; e < list.entryEnd[place]; ++e) {
+    if (static_cast<double>(list.entry[e].distance) > farthest) break;
+    ++looked;
+    const double before = best;
+    search.offer(p, list.entry[e].triangle, near, best);
+    if (best < before) farthest = std::sqrt(best) + displaced_[place] + rounding;
+  }
+  counts_.looked += looked;
+  counts_.searched += looked > 0 ? 1 : 0;
+  if (near.found) search.measure(p, near);
+  return near;
+}
+
+}  // namespace calot

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which triangles of a surface were near to the vertices of another, or of its own, not long ago.
+//
+// Where a surface has gone far from its rest, the displacements since rest settle little. So a look at a patch of
+// vertices goes `margin` farther than it need, and what it came upon is written down, with its distances and with where
+// everything was. Until a vertex and the patches of triangles near it have been displaced against one another by that
+// margin, no other triangle can have come within the distance that counts, and of those in the list only the ones that
+// were not farther than that distance and the displacement (Verlet's neighbour lists, 1967).
+//
+// The lists say which triangles need not be looked at, never on which side of one a vertex is: that is told from the
+// present alone. So the answer is the same with lists of any age and without, and nothing of this is part of State.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/contact/surface_patches.h"
+#include "sim/contact/surface_search.h"
+#include "sim/math/linear.h"
+
+namespace calot {
+
+/// Lists for the vertices of one SurfacePair; one object a pair. Memory is kept from step to step.
+class NearTriangles {
+ public:
+  static constexpr double margin = 0.0015;  ///< by which a look goes farther than what counts (m)
+
+  /// What there was to do, since reset().
+  struct Counts {
+    std::size_t renewed = 0;   ///< patches of vertices whose lists were made anew
+    std::size_t searched = 0;  ///< vertices that had a triangle to look at
+    std::size_t looked = 0;    ///< triangles looked at
+  };
+
+  /// Forgets everything; keeps the memory.
+  void reset();
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+
+  /// To be called before the patches of one answer: surfaces have moved.
+  void begin(const SurfaceSearch& search);
+  /// Makes nearest() ready for the open vertices of a patch (SearchRoom::open): with the lists there are, where they
+  /// hold for each, else with new ones.
+  /// @param near patches whose bounds overlap those of the patch grown by search(), or more
+  void follow(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
+  /// The same answer as SurfaceSearch::nearest() with limitOf(). @param place of the vertex in its patch
+  [[nodiscard]] Near nearest(const SurfaceSearch& search, std::size_t place, double reach);
+
+  SearchRoom& room() { return room_; }
+
+ private:
+  struct Entry {
+    float distance = 0.0F;  ///< not above what it was (m)
+    std::uint32_t triangle = 0;
+    auto operator<=>(const Entry&) const = default;  // NOLINT(modernize-use-nullptr): the check's own fault
+  };
+  /// Of one patch of vertices.
+  struct List {
+    bool made = false;
+    double reach = 0.0;                 ///< with which it was made (m)
+    std::vector<std::uint32_t> patch;   ///< of triangles, whose corners were written down; ascending
+    std::vector<std::size_t> start;     ///< of each in `corner`, and the end
+    std::vector<Vec3> corner;           ///< where they were (m)
+    std::vector<Vec3> vertex;           ///< where the patch's own vertices were (m)
+    std::vector<std::size_t> entryEnd;  ///< per vertex
+    std::vector<Entry> entry;           ///< nearest first
+  };
+
+  bool holds(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
+  void renew(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
+  void readBounds(const SurfaceSearch& search);
+  bool excluded(const SurfaceSearch& search, int vertex, std::size_t triangle);
+
+  SearchRoom room_;
+  std::vector<List> list_;  ///< per patch of vertices
+  // Of a surface with itself, a bit for each vertex and triangle: asked SurfacePair::excluded() before, and its answer.
+  std::vector<std::uint64_t> asked_;
+  std::vector<std::uint64_t> excluded_;
+  std::vector<Box> bounds_;        ///< of the patches of triangles now; empty until asked for
+  std::vector<double> displaced_;  ///< of the patch at hand, per vertex: against the triangles near it, at most (m)
+  std::uint32_t patch_ = 0;        ///< at hand
+  Counts counts_;
+};
+
+}  // namespace calot

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/contact/surface_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/contact/surface_normal.h"
+
+namespace calot {
+
+namespace {
+
+constexpr double onSurface = 1e-9;  // m: nearer than this, the direction of the distance is noise
+
+/// Is a triangle so flat (sine of its angle below 1e-3) that rounding moves the foot of a perpendicular on it?
+bool isSliver(const TriangleLanes& group, std::size_t l) {
+  const auto corner = [&](std::size_t k) {
+    return Vec3(group.corner[k][0][l], group.corner[k][1][l], group.corner[k][2][l]);
+  };
+  const Vec3 ab = corner(1) - corner(0);
+  const Vec3 ac = corner(2) - corner(0);
+  return !(ab.cross(ac).squaredNorm() > 1e-6 * ab.squaredNorm() * ac.squaredNorm());
+}
+
+}  // namespace
+
+void Candidates::gather(const ContactSurface& surface, std::span<const Vec3> position,
+                        std::span<const std::uint32_t> patches, const Box& box) {
+  triangle_.clear();
+  std::array<std::uint32_t, ContactSurface::largestPatch> near{};
+  for (const std::uint32_t p : patches) {
+    const std::size_t count = trianglesInBox(surface, position, p, box, near);
+    triangle_.insert(triangle_.end(), near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  group_.resize(laneGroups(triangle_.size()));
+  bounds_.resize(group_.size());
+  whole_.resize(group_.size());
+  for (std::size_t g = 0; g < group_.size(); ++g) {
+    gatherTriangles(surface, position, lanesOf(g), group_[g]);
+    boundsOf(group_[g], bounds_[g], whole_[g]);
+  }
+}
+
+void Candidates::boundsOf(const TriangleLanes& group, Bounds& bounds, Box& whole) {
+  whole = Box{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t l = 0; l < laneCount; ++l) {
+      const double x = group.corner[0][a][l];
+      const double y = group.corner[1][a][l];
+      const double z = group.corner[2][a][l];
+      bounds.lower[a][l] = std::min(std::min(x, y), z);
+      bounds.upper[a][l] = std::max(std::max(x, y), z);
+      whole.lower[static_cast<int>(a)] = std::min(whole.lower[static_cast<int>(a)], bounds.lower[a][l]);
+      whole.upper[static_cast<int>(a)] = std::max(whole.upper[static_cast<int>(a)], bounds.upper[a][l]);
+    }
+  }
+  for (std::size_t l = 0; l < laneCount; ++l) bounds.sliver[l] = isSliver(group, l);
+}
+
+/// A little less than the squared distance of p from each box, so that rounding loses no triangle.
+void Candidates::boxDistances(const Bounds& bounds, const Vec3& p, LaneValues& squared) {
+  squared.fill(0.0);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double x = p[static_cast<int>(a)];
+    for (std::size_t l = 0; l < laneCount; ++l) {
+      const double d = std::max(std::max(bounds.lower[a][l] - x, x - bounds.upper[a][l]), 0.0);
+      squared[l] += d * d * (1.0 - 1e-12);
+    }
+  }
+}
+
+/// The same for the box of a whole group: not above that of any of its triangles, as rounding is monotonic.
+double Candidates::boxDistance(const Box& box, const Vec3& p) {
+  double squared = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = std::max(std::max(box.lower[a] - p[a], p[a] - box.upper[a]), 0.0);
+    squared += d * d * (1.0 - 1e-12);
+  }
+  return squared;
+}
+
+bool Candidates::anyWithin(const LaneValues& squared, double best) {
+  double least = squared[0];
+  for (std::size_t l = 1; l < laneCount; ++l) least = std::min(least, squared[l]);
+  return least <= best;
+}
+
+Displacement displacementOf(std::span<const int> nodes, std::span<const Vec3> position, std::span<const Vec3> rest) {
+  Displacement d;
+  d.spread = 0.0;
+  if (nodes.empty()) return d;
+  for (const int n : nodes) d.mean += position[static_cast<std::size_t>(n)] - rest[static_cast<std::size_t>(n)];
+  d.mean /= static_cast<double>(nodes.size());
+  for (const int n : nodes) {
+    const auto i = static_cast<std::size_t>(n);
+    d.spread = std::max(d.spread, (position[i] - rest[i] - d.mean).squaredNorm());
+  }
+  d.spread = std::sqrt(d.spread) + 1e-9;  // rounding
+  return d;
+}
+
+Box boundsOf(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch, double margin) {
+  Box box;
+  for (const int v : surface.patchNodes(patch)) box.include(position[static_cast<std::size_t>(v)]);
+  box.grow(margin);
+  return box;
+}
+
+std::vector<std::uint32_t> allPatches(const ContactSurface& surface) {
+  std::vector<std::uint32_t> all(surface.patches().size());
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
+
+SurfaceSearch::SurfaceSearch(const SurfacePair& pair, const ContactSurface& a, std::span<const Vec3> positionA,
+                             const ContactSurface& b, std::span<const Vec3> positionB, SearchRoom& room)
+    : pair_(pair), a_(a), positionA_(positionA), b_(b), positionB_(positionB), room_(room) {
+  room_.displacement.assign(b.patches().size(), Displacement{});
+}
+
+bool SurfaceSearch::take(std::uint32_t patch, std::span<const std::uint32_t> near, double reach) {
+  const Displacement mine = displacementOf(a_.patchNodes(patch), positionA_, pair_.restA_);
+  patch_ = patch;
+  limit_ = pair_.search(patch, reach);
+  const bool clear = pair_.depth_[patch] == deepestOverlap;  // at rest, no vertex was inside
+  bool any = false;
+  room_.kept.clear();
+  near_ = near;
+  for (const std::uint32_t p : near) {
+    Displacement& other = room_.displacement[p];
+    if (other.spread < 0.0) other = displacementOf(b_.patchCorners(p), positionB_, pair_.restB_);
+    const double least = pair_.patchDistance_[patch * pair_.patchesB_ + p] -
+                         ((mine.mean - other.mean).norm() + mine.spread + other.spread);
+    any = any || !clear || least <= reach;
+    if (least <= limit_) room_.kept.push_back(p);
+  }
+  return any && !room_.kept.empty();
+}
+
+void SurfaceSearch::gather() {
+  room_.candidates.gather(b_, positionB_, room_.kept, boundsOf(a_, positionA_, patch_, limit_));
+  last_ = 0;
+}
+
+void SurfaceSearch::gather(const Box& box) {
+  room_.candidates.gather(b_, positionB_, allPatches(b_), box);
+  last_ = 0;
+}
+
+bool SurfaceSearch::surelyFar(std::size_t vertex, double reach) const {
+  if (pair_.offset_[vertex] < 0.0) return false;
+  const Vec3 mine = positionA_[vertex] - pair_.restA_[vertex];
+  const double least = pair_.vertexDistance_[vertex] - reach;
+  for (const std::uint32_t p : near_) {
+    const Displacement& d = room_.displacement[p];
+    const double free = least - d.spread;
+    if (!(free > 0.0) || (mine - d.mean).squaredNorm() >= free * free) return false;
+  }
+  return true;
+}
+
+double SurfaceSearch::limitOf(std::size_t vertex, double reach) const {
+  return std::max(reach, deepestOverlap - pair_.offset_[vertex]);
+}
+
+Near SurfaceSearch::nearest(int vertex, const Vec3& p, double limit) {
+  Near near;
+  double best = limit * limit;
+  const auto look = [&](std::size_t i, double squared) {
+    if (near.found && squared == best && i > near.triangle) return;
+    const Index3& t = b_.triangles()[i];
+    const PointTriangle point = closestOnTriangle(p, at(t[0]), at(t[1]), at(t[2]));
+    if (pair_.self()) {
+      if (!isLocalMinimum(b_, positionB_, i, point.feature, p - point.point)) return;
+      if (pair_.excluded(vertex, i)) return;
+    }
+    near = Near{true, i, point, Vec3::Zero(), 0.0};
+    best = squared;
+  };
+  last_ = room_.candidates.forEachNear(p, best, look, last_);
+  if (near.found) measure(p, near);
+  return near;
+}
+
+void SurfaceSearch::offer(const Vec3& p, std::size_t triangle, Near& near, double& best) const {
+  const Index3& t = b_.triangles()[triangle];
+  const PointTriangle point = closestOnTriangle(p, at(t[0]), at(t[1]), at(t[2]));
+  const double squared = point.squaredDistance;
+  if (!(squared <= best) || (near.found && squared == best && triangle > near.triangle)) return;
+  if (pair_.self() && !isLocalMinimum(b_, positionB_, triangle, point.feature, p - point.point)) return;
+  near = Near{true, triangle, point, Vec3::Zero(), 0.0};
+  best = squared;
+}
+
+void SurfaceSearch::measure(const Vec3& p, Near& near) const {
+  const Vec3 outward = pseudonormal(b_, positionB_, near.triangle, near.point.feature);
+  const Vec3 away = p - near.point.point;
+  const double distance = std::sqrt(near.point.squaredDistance);
+  const bool inside = away.dot(outward) < 0.0;
+  near.distance = inside ? -distance : distance;
+  if (distance > onSurface) {
+    near.normal = inside ? Vec3(-away / distance) : Vec3(away / distance);
+  } else {
+    const double length = outward.norm();
+    near.normal = length > 1e-6 ? Vec3(outward / length) : faceNormal(b_, positionB_, near.triangle);
+  }
+}
+
+}  // namespace calot
