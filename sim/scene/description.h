@@ -328,7 +328,7 @@ struct RetractionDescription {
 };
 
 struct SolverDescription {
-  double tolerance = 1e-3;          ///< relative residual of the linear solve: rotations of the step before err as much
+  double tolerance = 1e-4;          ///< relative residual of the linear solve
   std::uint32_t iterations = 200;   ///< cap of the linear solve
   double responseTolerance = 1e-3;  ///< relative residual of the solves that carry out changes of contact forces
   double contactTolerance = 1e-8;   ///< residual of the contact problem (m)

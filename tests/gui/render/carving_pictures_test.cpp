@@ -34,7 +34,7 @@ std::vector<SweptCapsule> stroke(Random& random) {
 
 TriangleMesh carvedTetrahedra() {
   Random random(seed, 11);
-  test::TetrahedraRemoval body({{-0.020, -0.015, -0.008}, {0.020, 0.0151, 0.0081}}, 0.0015, insideSlab);
+  test::TetrahedraRemoval body({{-0.020, -0.015, -0.008}, {0.020, 0.015, 0.008}}, 0.002, insideSlab);  // whole cubes
   for (int i = 0; i < strokes; ++i) body.stroke(stroke(random));
   return body.faces();
 }
@@ -130,7 +130,7 @@ TEST(CarvingPictures, FieldAgainstRemovalOfTetrahedra) {
     }
     return pixels;
   };
-  EXPECT_NEAR(shown(removal), shown(field), 0.05 * shown(field)) << "the same body with the same strokes";
+  EXPECT_NEAR(shown(removal), shown(field), 0.1 * shown(field)) << "the same body with the same strokes";
 }
 
 }  // namespace
