@@ -28,6 +28,7 @@ struct System {
   /// @param blocks symmetric, of nodes; @param near per node: those that it has a block with, without itself
   System(const Eigen::MatrixXd& blocks, const std::vector<std::set<int>>& near) {
     std::vector<std::vector<int>> graph;
+    graph.reserve(near.size());
     for (const std::set<int>& list : near) graph.emplace_back(list.begin(), list.end());
     std::vector<std::size_t> colours;
     row.assign(near.size(), -1);
@@ -101,11 +102,12 @@ struct System {
   [[nodiscard]] std::vector<float> inverses() const {
     const Eigen::MatrixXd inverse = blockDiagonal().inverse();
     std::vector<float> out(matrix.slices() * 9 * laneCount, 0.0F);
-    for (int r = 0; r < size() / 3; ++r) {
-      if (isPadding(3 * r)) continue;
+    for (std::size_t r = 0; r < matrix.rows(); ++r) {
+      const int first = 3 * static_cast<int>(r);
+      if (isPadding(first)) continue;
       for (int k = 0; k < 9; ++k) {
-        out[static_cast<std::size_t>(r / laneCount * 72 + k * laneCount + r % laneCount)] =
-            static_cast<float>(inverse(3 * r + k / 3, 3 * r + k % 3));
+        out[(r / laneCount * 9 + static_cast<std::size_t>(k)) * laneCount + r % laneCount] =
+            static_cast<float>(inverse(first + k / 3, first + k % 3));
       }
     }
     return out;
