@@ -22,35 +22,25 @@ constexpr int strokes = 90;
 constexpr int width = 800;
 constexpr int height = 560;
 
-/// The body of both: a slab of 40 x 30 x 16 mm.
-bool insideSlab(const Vec3& p) {
-  return (p.array() > -Vec3(0.020, 0.015, 0.008).array()).all() &&
-         (p.array() < Vec3(0.020, 0.015, 0.008).array()).all();
-}
-
-std::vector<SweptCapsule> stroke(Random& random) {
-  return {test::randomSweep(random, {{-0.020, -0.015, -0.004}, {0.020, 0.015, 0.008}}, 0.0015, 0.003, 0.004)};
-}
-
 TriangleMesh carvedTetrahedra() {
   Random random(seed, 11);
-  test::TetrahedraRemoval body({{-0.020, -0.015, -0.008}, {0.020, 0.015, 0.008}}, 0.002, insideSlab);  // whole cubes
-  for (int i = 0; i < strokes; ++i) body.stroke(stroke(random));
+  test::TetrahedraRemoval body({{-0.020, -0.015, -0.008}, {0.020, 0.015, 0.008}}, 0.002,
+                               test::insideSlab);  // whole cubes
+  for (int i = 0; i < strokes; ++i) body.stroke(test::slabStroke(random));
   return body.faces();
 }
 
 TriangleMesh carvedField() {
   Random random(seed, 11);
   const BrickLattice lattice(Vec3::Constant(-0.024), 0.00075, Index3::Constant(65));
-  const FieldModel model =
-      test::fieldOf(lattice, 3.0, [](const Vec3& p) { return (p.cwiseAbs() - Vec3(0.020, 0.015, 0.008)).maxCoeff(); });
+  const FieldModel model = test::fieldOf(lattice, 3.0, test::slabDistance);
   CarvedField field(model);
   CarvedBricks state;
   Islands islands(lattice, test::floorAnchors(lattice));
   islands.rebuild(field);
   for (int i = 0; i < strokes; ++i) {
     field.begin();
-    test::carveAtRest(field, stroke(random));
+    test::carveAtRest(field, test::slabStroke(random));
     islands.remove(field);
     field.commit(state);
   }

@@ -14,16 +14,6 @@ namespace {
 
 constexpr int strokes = 90;
 
-/// The body of both: a slab of 40 x 30 x 16 mm.
-bool insideSlab(const Vec3& p) {
-  return (p.array() > -Vec3(0.020, 0.015, 0.008).array()).all() &&
-         (p.array() < Vec3(0.020, 0.015, 0.008).array()).all();
-}
-
-std::vector<SweptCapsule> stroke(Random& random) {
-  return {test::randomSweep(random, {{-0.020, -0.015, -0.004}, {0.020, 0.015, 0.008}}, 0.0015, 0.003, 0.004)};
-}
-
 /// Parts of a closed surface that enclose something, besides the largest.
 int smallClusters(const TriangleMesh& mesh) {
   const SurfaceReport report = inspectSurface(mesh);
@@ -36,8 +26,8 @@ TEST(Comparison, FieldAgainstRemovalOfTetrahedra) {
             << "method                     cell (mm)  elements  small clusters  dangling  open edges\n";
   for (const double cell : {0.004, 0.0025, 0.0015}) {
     Random random(seed, 11);
-    test::TetrahedraRemoval baseline({{-0.020, -0.015, -0.008}, {0.020, 0.0151, 0.0081}}, cell, insideSlab);
-    for (int i = 0; i < strokes; ++i) baseline.stroke(stroke(random));
+    test::TetrahedraRemoval baseline({{-0.020, -0.015, -0.008}, {0.020, 0.0151, 0.0081}}, cell, test::insideSlab);
+    for (int i = 0; i < strokes; ++i) baseline.stroke(test::slabStroke(random));
     const test::TetrahedraRemoval::Quality q = baseline.quality();
     std::cout << "removal of tetrahedra      " << 1e3 * cell << "        " << q.tetrahedra << "      "
               << q.smallClusters << "              " << q.dangling << "\n";
@@ -48,15 +38,14 @@ TEST(Comparison, FieldAgainstRemovalOfTetrahedra) {
     for (const int nodes : {33, 65}) {
       Random random(seed, 11);
       const BrickLattice lattice(Vec3::Constant(-0.024), 0.048 / (nodes - 1), Index3::Constant(nodes));
-      const FieldModel model = test::fieldOf(
-          lattice, 3.0, [](const Vec3& p) { return (p.cwiseAbs() - Vec3(0.020, 0.015, 0.008)).maxCoeff(); });
+      const FieldModel model = test::fieldOf(lattice, 3.0, test::slabDistance);
       CarvedField field(model);
       CarvedBricks state;
       Islands islands(lattice, test::floorAnchors(lattice));
       islands.rebuild(field);
       for (int i = 0; i < strokes; ++i) {
         field.begin();
-        test::carveAtRest(field, stroke(random));
+        test::carveAtRest(field, test::slabStroke(random));
         if (removeIslands) islands.remove(field);
         field.commit(state);
       }

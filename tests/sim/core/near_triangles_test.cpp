@@ -15,16 +15,13 @@
 
 #include "sim/contact/surface_surface.h"
 #include "sim/math/random.h"
+#include "tests/sim/core/support/body.h"
 #include "tests/sim/core/support/scenes.h"
 
 namespace calot {
 namespace {
 
-struct Body {
-  SurfaceDescription skin;
-  ContactSurface surface;
-  explicit Body(SurfaceDescription s) : skin(std::move(s)), surface(skin.vertex, skin.triangle) {}
-};
+using test::Body;
 
 constexpr double reach = 4e-5;  // m, as in a step
 

@@ -13,16 +13,13 @@
 
 #include "sim/geometry/surface_distance.h"
 #include "sim/math/random.h"
+#include "tests/sim/core/support/body.h"
 #include "tests/sim/core/support/scenes.h"
 
 namespace calot {
 namespace {
 
-struct Body {
-  SurfaceDescription skin;
-  ContactSurface surface;
-  explicit Body(SurfaceDescription s) : skin(std::move(s)), surface(skin.vertex, skin.triangle) {}
-};
+using test::Body;
 
 /// Through the broad phase, as a step does it.
 std::vector<VertexContact> contacts(const SurfacePair& pair, const Body& a, std::span<const Vec3> positionA,

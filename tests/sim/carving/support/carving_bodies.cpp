@@ -42,6 +42,14 @@ FieldModel fieldOf(const BrickLattice& lattice, double bandCells, const std::fun
   return model;
 }
 
+double slabDistance(const Vec3& p) { return (p.cwiseAbs() - Vec3(0.020, 0.015, 0.008)).maxCoeff(); }
+
+bool insideSlab(const Vec3& p) { return slabDistance(p) < 0.0; }
+
+std::vector<SweptCapsule> slabStroke(Random& random) {
+  return {randomSweep(random, {{-0.020, -0.015, -0.004}, {0.020, 0.015, 0.008}}, 0.0015, 0.003, 0.004)};
+}
+
 FieldModel lump(int nodes, double bandCells) {
   const BrickLattice lattice(Vec3::Constant(-0.024), 0.048 / (nodes - 1), Index3::Constant(nodes));
   return fieldOf(lattice, bandCells, [](const Vec3& p) {

@@ -17,6 +17,13 @@ namespace calot::test {
 /// A field from a distance function (m), outside on the border.
 FieldModel fieldOf(const BrickLattice& lattice, double bandCells, const std::function<double(const Vec3&)>& distance);
 
+/// The slab of 40 x 30 x 16 mm on which carving of a field is held against removal of tetrahedra.
+/// @return distance along the axis on which p is farthest out, negative inside (m)
+double slabDistance(const Vec3& p);
+bool insideSlab(const Vec3& p);
+/// A stroke of 1.5 mm radius somewhere in its upper three quarters.
+std::vector<SweptCapsule> slabStroke(Random& random);
+
 /// A lump of fat: a slab of 40 x 30 x 16 mm with waves, in a lattice of nodes^3 over 48 mm.
 FieldModel lump(int nodes, double bandCells = 3.0);
 
