@@ -55,6 +55,8 @@ class Body {
   [[nodiscard]] virtual Mat3 block(int a, int b) const = 0;
   /// Goes where the step leads. @return false when some node had to be stopped
   virtual bool advance(State& state) = 0;
+  /// The largest speed that the last advance() held back, for no tissue moves as fast (m/s); 0: none.
+  [[nodiscard]] virtual double heldBack() const = 0;
   /// Stops it, to sleep.
   virtual void stop(State& state) const = 0;
 };

@@ -58,7 +58,7 @@ void Stepper::Workspace::carryOut(std::span<const double> change_) {
     }
     if (!report.converged && (result.misses & miss::solver) == 0) {
       result.misses |= miss::solver;
-      emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), report.residual);
+      emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(firstStructure(o)), Vec3::Zero(), report.residual);
     }
   }
 }
@@ -70,7 +70,11 @@ void Stepper::Workspace::move(State& state) {
     stopped[o] = !body[o]->advance(state);
     if (stopped[o]) {
       result.misses |= miss::solver;
-      emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(o), Vec3::Zero(), 1e300);
+      emit(EventKind::solverMiss, 255, static_cast<std::uint16_t>(firstStructure(o)), Vec3::Zero(), 1e300);
+    }
+    if (const double speed = body[o]->heldBack(); speed > 0.0) {
+      result.misses |= miss::speed;
+      emit(EventKind::motionHeldBack, 255, static_cast<std::uint16_t>(firstStructure(o)), Vec3::Zero(), speed);
     }
   }
   for (std::size_t s = 0; s < skinOf.size(); ++s) {

@@ -26,6 +26,7 @@ class OrganBody final : public Body {
   [[nodiscard]] Mat3 turn(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return rest_.block(a, b); }
   bool advance(State& state) override;
+  [[nodiscard]] double heldBack() const override { return solver_.heldBack(); }
   void stop(State& state) const override;
 
  private:

@@ -42,11 +42,13 @@ enum class EventKind : std::uint16_t {
   organPerforated =
       30,            ///< cautery or a tear opened an organ; subject: structure; value: cautery at the spot (s), 0: torn
   tooFewClips = 33,  ///< beside vesselCut: a side has fewer clips than it should; subject: structure; value: missing
-  criticalError = 34,  ///< a vessel to be spared was clipped or opened; subject: structure; value: kind of that event
-  phaseBegin = 35,     ///< subject: the Phase that begins; value: the one before
-  fatCameLoose = 32,   ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
-  runaway = 36,        ///< something moves faster than fastestMotion, or is no number any more; value: speed (m/s)
-  smoke = 31,          ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
+  criticalError = 34,   ///< a vessel to be spared was clipped or opened; subject: structure; value: kind of that event
+  phaseBegin = 35,      ///< subject: the Phase that begins; value: the one before
+  fatCameLoose = 32,    ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
+  runaway = 36,         ///< something moves faster than fastestMotion, or is no number any more; value: speed (m/s)
+  motionHeldBack = 37,  ///< tissue would have moved faster than it can and was held back; subject: structure; value: at
+                        ///< which speed (m/s)
+  smoke = 31,           ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
   clockStretched =
       16,  ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
 };
@@ -177,6 +179,7 @@ inline constexpr double fastestMotion = 30.0;
 namespace miss {
 inline constexpr std::uint32_t solver = 1U << 0U;
 inline constexpr std::uint32_t contact = 1U << 1U;
+inline constexpr std::uint32_t speed = 1U << 3U;    ///< some tissue was held back: EventKind::motionHeldBack
 inline constexpr std::uint32_t runaway = 1U << 2U;  ///< State is worth nothing from here on: the attempt is to end
 }  // namespace miss
 

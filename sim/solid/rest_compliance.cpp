@@ -7,17 +7,10 @@
 
 namespace calot {
 
-namespace {
-
-constexpr double columnTolerance = 1e-4;
-
-}  // namespace
-
 RestCompliance::RestCompliance(const SolidModel& model, const SolidSolver::Settings& settings, Executor& executor,
                                const Surroundings& surroundings)
     : model_(model), settings_(settings), column_(model.nodes()) {
   const FloatingPointScope scope;
-  settings_.tolerance = columnTolerance;
   SolidState rest = restState(model);
   solver_.freeMotion(model, rest, Vec3::Zero(), {}, settings_, executor, surroundings);
 }

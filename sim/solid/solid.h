@@ -213,10 +213,12 @@ class SolidSolver {
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
                         std::vector<std::vector<Vec3>>& response, Executor& executor);
 
-  /// v = freeVelocity() + correction (or nothing), x += h v; corners of cubes move no faster than 5 m/s. Values that
-  /// are not finite stop the node instead of entering State.
+  /// v = freeVelocity() + correction (or nothing), x += h v. Cubes' corners are held back to 5 m/s, nodes of tetrahedra
+  /// to as much beyond the mean of all. Values that are not finite stop the node instead of entering State.
   /// @return false when that happened.
   bool advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step);
+  /// The largest speed beyond the mean that the last advance() held back (m/s); 0: none.
+  [[nodiscard]] double heldBack() const { return heldBack_; }
 
  private:
   void assemble(const SolidModel& model, const Settings& settings, const Surroundings& surroundings,
@@ -237,6 +239,7 @@ class SolidSolver {
   std::vector<ExtraBlock> extra_;  ///< of joints between nodes that share no element
   std::vector<float> b_, x_;
   std::vector<Vec3> freeVelocity_;
+  double heldBack_ = 0.0;
   ConjugateGradient cg_;
 };
 

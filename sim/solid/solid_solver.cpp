@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::size_t nodesPerTask = 128;
 constexpr std::size_t blocksPerTask = 1024;
-/// Of a cube's corner (m/s): a corner that only a nearly empty cube holds weighs next to nothing, and what holds that
-/// cube by its one full corner throws it about. No hand moves tissue as fast.
-constexpr double fastestCorner = 5.0;
+/// Of a cube's corner, and of any other node beyond the mean of its solid (m/s). No hand moves tissue as fast; what
+/// does is a corner that only a nearly empty cube holds, thrown about by what holds that cube elsewhere, or contact in
+/// crumpled tissue, decided on a compliance that is not that of its shape.
+constexpr double fastestNode = 5.0;
 constexpr double orphanMass = 1.0;  ///< of a node that only empty cubes hold (kg): it has no neighbours and no load
 
 }  // namespace
@@ -282,13 +283,23 @@ SolveReport SolidSolver::push(const SolidModel& model, std::span<const Vec3> imp
 
 bool SolidSolver::advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step) {
   bool finite = true;
+  heldBack_ = 0.0;
+  const auto asked = [&](int free) {
+    const auto node = static_cast<std::size_t>(free);
+    return correction.empty() ? freeVelocity_[node] : Vec3(freeVelocity_[node] + correction[node]);
+  };
+  Vec3 mean = Vec3::Zero();
+  for (const int free : model.freeNode_) {
+    const Vec3 velocity = asked(free);
+    if (!model.madeOfCubes() && velocity.allFinite()) mean += velocity / static_cast<double>(model.freeNode_.size());
+  }
   for (const int free : model.freeNode_) {
     const auto node = static_cast<std::size_t>(free);
-    Vec3 velocity = freeVelocity_[node];
-    if (!correction.empty()) velocity += correction[node];
-    if (model.madeOfCubes()) {
-      const double speed = velocity.norm();
-      if (speed > fastestCorner) velocity *= fastestCorner / speed;
+    Vec3 velocity = asked(free);
+    const double speed = (velocity - mean).norm();
+    if (speed > fastestNode) {
+      heldBack_ = std::max(heldBack_, speed);
+      velocity = mean + fastestNode / speed * (velocity - mean);
     }
     const Vec3 position = state.position[node] + step * velocity;
     if (!velocity.allFinite() || !position.allFinite()) {

@@ -17,7 +17,7 @@ namespace {
 /// Of a chord in one step, as a share of its rest length; of a node in one step (rad).
 constexpr double largestTurn = 0.7;
 /// Of a node (m/s). No hand moves tissue as fast; it keeps loose pieces within the range of numbers.
-constexpr double fastest = 20.0;
+constexpr double fastest = 10.0;
 
 /// Adds scale * m to the 3 x 3 part of a block at (row, column) in {0, 3}.
 void add(Block6& block, std::size_t row, std::size_t column, double scale, const Mat3& m) {
@@ -228,6 +228,9 @@ bool BeamSolver::limitPieces(const BeamModel& model, const BeamState& state) {
 
 BeamReport BeamSolver::advance(const BeamModel& model, BeamState& state) {
   BeamReport report;
+  double asked = 0.0;
+  for (const Vec3& v : freeVelocity_) asked = std::max(asked, v.squaredNorm());
+  report.asked = std::sqrt(asked);
   report.limited = limitPieces(model, state);
   double displacement = 0.0;
   double speed = 0.0;

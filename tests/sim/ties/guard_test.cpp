@@ -46,5 +46,27 @@ TEST(Guard, TellsOfWhatIsTooFast) {
   EXPECT_NEAR(value, 1.05 * fastestMotion, 0.01 * fastestMotion);
 }
 
+/// One node that is far faster than the rest of its organ is held back, and that is told; the organ as a whole may
+/// move.
+TEST(Guard, HoldsBackWhatLeavesTheRestBehind) {
+  const std::unique_ptr<const Model> model = test::buildModel(ballScene());
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  rig.state.organ[0].quietSteps = 0;
+  rig.state.organ[0].velocity[0] = Vec3(4000.0, 0.0, 0.0);
+  const StepResult& result = rig.step(model->scene().hands[0].home);
+  EXPECT_NE(result.misses & miss::speed, 0U);
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& v : rig.state.organ[0].velocity) mean += v;
+  mean /= static_cast<double>(rig.state.organ[0].velocity.size());
+  double largest = 0.0;
+  for (const Vec3& v : rig.state.organ[0].velocity) largest = std::max(largest, (v - mean).norm());
+  EXPECT_LT(largest, 10.0);
+  const auto told = std::find_if(result.events.begin(), result.events.end(),
+                                 [](const Event& e) { return e.kind == EventKind::motionHeldBack; });
+  ASSERT_NE(told, result.events.end());
+  EXPECT_GT(told->value, 5.0);
+}
+
 }  // namespace
 }  // namespace calot
