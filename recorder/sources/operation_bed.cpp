@@ -10,21 +10,23 @@ namespace calot::recorder {
 namespace {
 
 constexpr double wireLength = 0.009;    // of the hook's wire along the shaft, that burns (m)
-constexpr double sweepLength = 0.018;   // under current through connective tissue (m)
-constexpr std::size_t legs = 3;         // straight pieces of a sweep, so that it follows the bed's curve
+constexpr double sweepLength = 0.024;   // under current through connective tissue (m)
+constexpr std::size_t legs = 4;         // straight pieces of a sweep, so that it follows the bed's curve
 constexpr double sweepLead = 0.0015;    // of it before the first strand (m)
 constexpr double offPlane = 0.006;      // strands that stand farther off a sweep's plane are not for it (m)
 constexpr double wireRadius = 0.0006;   // m
+constexpr double laterWorth = 0.4;      // of a strand that is met before its time
 constexpr double edge = 0.015;          // so far from the free edge a sweep may begin (m)
 constexpr double edgeWorth = 300.0;     // strands that it must meet more for a metre farther in
 constexpr double wayWorth = 40.0;       // and for a metre of way to it
 constexpr std::size_t mostLooked = 24;  // strokes that are weighed against each other
 constexpr double retreat = 0.010;       // along the shaft, out of the bed, on the way to another place (m)
+constexpr double straight = 0.025;      // places nearer than this are gone to without that (m)
 constexpr double fineLength = 0.006;    // of a stroke at one strand (m)
 constexpr double fineSpread = 0.0008;   // between one try at a strand and the next (m)
-constexpr std::uint32_t fineAfter = 2;  // sweeps that missed a strand: it is gone at for itself,
-constexpr std::size_t few = 3;          // where no more than these are left around it
-constexpr double fewLeft = 0.05;        // of its strands: the lower third counts as free
+constexpr std::uint32_t fineAfter = 1;  // sweeps that missed a strand: it is gone at for itself,
+constexpr std::ptrdiff_t few = 3;       // where no more than these are left around it
+constexpr double fewLeft = 0.5;         // of what may stay on a vessel that counts as bare: the lower third is free
 constexpr double lowerShare = 0.37;     // of the strands: the lower third of the bed, and a little more
 constexpr std::uint32_t mostStrokes = 400;
 
@@ -33,6 +35,7 @@ constexpr std::uint32_t mostStrokes = 400;
 /// A strand that is to go.
 struct WorkingMind::BedStrand {
   std::size_t index = 0;
+  double worth = 1.0;                               ///< of meeting it; those that are only to go later are worth less
   Vec3 middle = Vec3::Zero(), span = Vec3::Zero();  ///< span: from its end on the specimen to that on the liver
 };
 
@@ -42,7 +45,7 @@ struct WorkingMind::BedStroke {
   Vec3 shaft = Vec3::UnitZ(), across = Vec3::UnitX(), through = Vec3::UnitY();
   double deep = 0.0;                   ///< of the hook's heel beyond `place`, along the shaft (m)
   std::array<double, legs + 1> off{};  ///< of its corners from its plane (m)
-  std::vector<std::size_t> met;        ///< strands that it should cross
+  std::vector<const BedStrand*> met;   ///< strands that it should cross
   double worth = -1e300;
   std::size_t strand = 0;
 
@@ -98,21 +101,23 @@ void WorkingMind::BedStroke::aim(const std::vector<BedStrand>& wanted) {
   for (const BedStrand* s : near) {
     const Vec3 d = s->middle - place;
     const double half = 0.5 * std::abs(through.dot(s->span));
-    if (std::abs(d.dot(through) - offAt(cornerOf(d))) < half + wireRadius) met.push_back(s->index);
+    if (std::abs(d.dot(through) - offAt(cornerOf(d))) < half + wireRadius) met.push_back(s);
   }
 }
 
 /// The stroke that crosses most strands, near the free edge: the side from which the hook comes, and the neck. Of the
 /// many that could be looked at, some: a hand does not take long to choose.
-/// @pre wanted is not empty
+/// @pre one of `wanted` is worth 1
 WorkingMind::BedStroke WorkingMind::bestStroke(const std::vector<BedStrand>& wanted) const {
   const PerformerHand& hook = tools_.hand[hand_];
   const auto inwards = [](const BedStrand& s) { return s.middle.x() + 0.2 * s.middle.y(); };
   double outermost = 1e300;
-  for (const BedStrand& s : wanted) outermost = std::min(outermost, inwards(s));
+  for (const BedStrand& s : wanted) {
+    if (s.worth == 1.0) outermost = std::min(outermost, inwards(s));
+  }
   std::vector<const BedStrand*> first;
   for (const BedStrand& s : wanted) {
-    if (inwards(s) - outermost < edge) first.push_back(&s);
+    if (s.worth == 1.0 && inwards(s) - outermost < edge) first.push_back(&s);
   }
   const std::size_t every = (first.size() + mostLooked - 1) / mostLooked;
   BedStroke best;
@@ -134,7 +139,7 @@ WorkingMind::BedStroke WorkingMind::bestStroke(const std::vector<BedStrand>& wan
       stroke.deep = deep;
       stroke.aim(wanted);
       stroke.worth = -edgeWorth * in - wayWorth * way;
-      for (const std::size_t other : stroke.met) stroke.worth += 1.0 / (1.0 + static_cast<double>(tried_[other]));
+      for (const BedStrand* s : stroke.met) stroke.worth += s->worth / (1.0 + static_cast<double>(tried_[s->index]));
       if (stroke.worth > best.worth) best = stroke;
     }
   }
@@ -148,7 +153,8 @@ void WorkingMind::runStroke(const BedStroke& stroke) {
   const std::uint32_t tries = tried_[stroke.strand];
   // What sweeps have missed is gone through its own middle, shorter and slower, now nearer to the one organ and now to
   // the other, now forward and now backward.
-  const bool fine = tries >= fineAfter && stroke.met.size() <= few;
+  const auto worth = [](const BedStrand* s) { return s->worth == 1.0; };
+  const bool fine = tries >= fineAfter && std::count_if(stroke.met.begin(), stroke.met.end(), worth) <= few;
   const double length = fine ? fineLength : sweepLength;
   const double lead = fine ? 0.5 * fineLength : sweepLead;
   const std::size_t pieces = fine ? 1 : legs;
@@ -160,7 +166,7 @@ void WorkingMind::runStroke(const BedStroke& stroke) {
   for (double& o : off) o += aside;
   if (fine || stroke.met.empty()) ++tried_[stroke.strand];
   if (!fine) {
-    for (const std::size_t s : stroke.met) ++tried_[s];
+    for (const BedStrand* s : stroke.met) ++tried_[s->index];
   }
   const auto corner = [&](std::size_t c) {
     const double ahead = length * static_cast<double>(c) / static_cast<double>(pieces) - lead;
@@ -169,21 +175,25 @@ void WorkingMind::runStroke(const BedStroke& stroke) {
   HandMove move;
   move.aiming = HandMove::Aim::forward;
   move.aim = across;
-  if ((corner(0) - hand().meant()).norm() > retreat) {
-    const Vec3 here = hand().meant();
-    go(here - retreat * hand().shaft(here) - 0.4 * retreat * across, profile.motor.contactSpeed, 0.0);
-    move.to = corner(0) - retreat * stroke.shaft - 0.4 * retreat * across;
+  // To and fro: it begins at the end that is nearer.
+  const Vec3 here = hand().meant();
+  const bool back = !fine && (corner(pieces) - here).norm() < (corner(0) - here).norm();
+  const Vec3 first = corner(back ? pieces : 0);
+  if ((first - here).norm() > straight) {
+    const Vec3 beside = back ? Vec3(Vec3::Zero()) : Vec3(0.4 * retreat * across);
+    go(here - retreat * hand().shaft(here) - beside, profile.motor.strokeSpeed, 0.0);
+    move.to = first - retreat * stroke.shaft - beside;
     move.speed = profile.motor.strokeSpeed;
     hand().add(move);
   }
-  move.to = corner(0);
-  move.speed = profile.motor.contactSpeed;
+  move.to = first;
+  move.speed = (first - hand().meant()).norm() > retreat ? profile.motor.strokeSpeed : profile.motor.contactSpeed;
   hand().add(move);
   move.steady = true;
   move.speed = (fine ? 0.5 : 1.0) * profile.operation.burnSpeed;
   move.buttons = button::coagulatePedal;
   for (std::size_t c = 1; c <= pieces; ++c) {
-    move.to = corner(c);
+    move.to = corner(back ? pieces - c : c);
     if (c == pieces) move.dwell = std::max(0.0, profile.operation.pedalLag * (1.0 + 0.3 * random_.normal()));
     hand().add(move);
   }
@@ -204,17 +214,18 @@ void WorkingMind::leaveBed(const Sight& sight, bool lowerThird) {
 
 void WorkingMind::burn(const Sight& sight, bool lowerThird) {
   std::vector<BedStrand> wanted;
-  double all = 0.0;
+  double all = 0.0, left = 0.0;
   for (std::size_t s = 0; s < sight.strand.size(); ++s) {
-    if (lowerThird && share_[s] > lowerShare) continue;
-    all += 1.0;
+    const bool later = lowerThird && share_[s] > lowerShare;
+    if (!later) all += 1.0;
     const SeenStrand& strand = sight.strand[s];
     if (!strand.attached) continue;
-    wanted.push_back({s, 0.5 * (strand.end[0] + strand.end[1]), strand.end[1] - strand.end[0]});
+    if (!later) left += 1.0;
+    wanted.push_back(
+        {s, later ? laterWorth : 1.0, 0.5 * (strand.end[0] + strand.end[1]), strand.end[1] - strand.end[0]});
   }
-  const auto left = static_cast<double>(wanted.size());
   // A few strands of the lower third may wait until the rest of the bed is freed.
-  if (left == 0.0 || (lowerThird && left < fewLeft * all)) {
+  if (left == 0.0 || (lowerThird && left < fewLeft * (1.0 - tools_.profile.operation.bareShare) * all)) {
     leaveBed(sight, lowerThird);
     return;
   }

@@ -9,20 +9,40 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double gripJaw = 0.8;         // open, as it comes (rad)
-constexpr double closedJaw = 0.1;       // rad
-constexpr double gripApproach = 0.018;  // m
-constexpr double gripDepth = 0.004;     // tips go so far past the surface (m)
-constexpr double pullSpeed = 0.020;     // m/s
-constexpr double bedPull = 0.045;       // more pull as the bed comes free (m)
-constexpr double pullMore = 0.012;      // at one decision (m)
-constexpr double easeOff = 0.006;       // at one decision (m)
-constexpr double stillTaut = 0.7;       // of what is too taut: no more pull
-constexpr double tautShare = 0.9;       // of the strands that still hold are no longer than what it goes by
-constexpr double exchangeTime = 0.8;    // s
-constexpr double exchangeRest = 0.4;    // s
-constexpr double above = 0.006;         // over tissue, between strokes (m)
-constexpr double near = 0.008;          // goals nearer than this are gone to directly (m)
+constexpr double gripJaw = 0.8;           // open, as it comes (rad)
+constexpr double closedJaw = 0.1;         // rad
+constexpr double gripApproach = 0.018;    // m
+constexpr double gripDepth = 0.004;       // tips go so far past the surface (m)
+constexpr double pullSpeed = 0.020;       // m/s
+constexpr double bedPull = 0.045;         // more pull as the bed comes free (m)
+constexpr double wholePull = 0.3;         // of that, while vessels hold it
+constexpr double pullMore = 0.012;        // at one decision (m)
+constexpr double easeOff = 0.006;         // at one decision (m)
+constexpr double lastShare = 0.06;        // of the bed: when no more is left it pulls this off,
+constexpr double lastPull = 0.03;         // by so much more (m)
+constexpr double stillTaut = 0.7;         // of what is too taut: no more pull
+constexpr double tautShare = 0.9;         // of the strands that still hold are no longer than what it goes by
+constexpr double vesselStretched = 0.12;  // a vessel looks this much longer than at rest: no more pull
+constexpr double vesselTaut = 0.22;       // and so taut that it eases off
+constexpr std::size_t chord = 5;          // stations from one place of its course to the next
+constexpr double leaving = 0.016;         // from a vessel, with open jaws (m)
+constexpr double exchangeTime = 0.5;      // s
+constexpr double exchangeRest = 0.3;      // s
+
+/// How much longer than at rest the vessel looks that is stretched most and still whole, by its course.
+double stretchOf(const Sight& sight) {
+  double most = 0.0;
+  for (const SeenVessel& vessel : sight.vessel) {
+    if (vessel.partings > 0) continue;
+    double length = 0.0;
+    std::size_t last = 0;
+    for (; last + chord < vessel.centre.size(); last += chord) {
+      length += (vessel.centre[last + chord] - vessel.centre[last]).norm();
+    }
+    if (last > 0) most = std::max(most, length / (PerformerSight::spacing * static_cast<double>(last)) - 1.0);
+  }
+  return most;
+}
 
 }  // namespace
 
@@ -32,13 +52,18 @@ HoldingMind::HoldingMind(const OperationTools& tools, std::size_t hand, std::uin
 /// As the bed comes free it pulls further, while what still holds does not look too taut; it eases off where it does.
 double HoldingMind::wantedPull(const Sight& sight, double freed, bool divided) const {
   const PerformerProfile::Operation& operation = tools_.profile.operation;
-  const double wanted = (divided ? 2.5 : 1.0) * operation.pull + bedPull * freed;
+  const double wanted = (divided ? 2.5 : 1.0) * operation.pull + (divided ? 1.0 : wholePull) * bedPull * freed;
+  // The last strands may tear.
+  if (divided && freed > 1.0 - lastShare) return std::min(pulled_ + pullMore, wanted + lastPull);
   // A few taut strands at an edge, or where the assistant pulls, do not keep it from showing the rest.
   std::vector<double> length;
   for (const SeenStrand& s : sight.strand) {
     if (s.attached) length.push_back((s.end[0] - s.end[1]).norm());
   }
   std::sort(length.begin(), length.end());
+  const double vessels = stretchOf(sight);
+  if (vessels > vesselTaut) return std::max(pulled_ - easeOff, 0.5 * operation.pull);
+  if (vessels > vesselStretched) return std::min(pulled_, wanted);
   const double tautest =
       length.empty() ? 0.0 : length[static_cast<std::size_t>(tautShare * static_cast<double>(length.size() - 1))];
   if (tautest > operation.stretch) return std::max(pulled_ - easeOff, operation.pull);
@@ -161,37 +186,6 @@ bool WorkingMind::mount(InstrumentKind kind, double jaw) {
   return true;
 }
 
-void WorkingMind::sweep(const Vec3& from, const Vec3& to, HandMove::Aim aiming, const Vec3& aim) {
-  const PerformerProfile& profile = tools_.profile;
-  HandMove move;
-  move.aiming = aiming;
-  move.aim = aim;
-  const Vec3 over = from - above * hand().shaft(from);
-  if ((hand().meant() - over).norm() > near) {
-    const Vec3 here = hand().meant();
-    go(here - above * hand().shaft(here), profile.motor.contactSpeed, 0.0);
-  }
-  move.to = over;
-  move.speed = profile.motor.strokeSpeed;
-  hand().add(move);
-  move.to = from;
-  move.speed = profile.motor.contactSpeed;
-  move.buttons = button::cutPedal;
-  hand().add(move);
-  move.to = to;
-  move.steady = true;
-  move.speed = profile.motor.workSpeed;
-  const double lag = profile.operation.pedalLag;
-  move.dwell = std::max(0.0, lag * (1.0 + 0.3 * random_.normal()));
-  hand().add(move);
-  move.steady = false;
-  move.to = to - 0.6 * above * hand().shaft(to);
-  move.speed = profile.motor.contactSpeed;
-  move.buttons = 0;
-  move.dwell = 0.0;
-  hand().add(move);
-}
-
 bool WorkingMind::bring(const Vec3& place, const Vec3& hinge, double above_, double beyond, double jaw) {
   const PerformerProfile& profile = tools_.profile;
   const Vec3 shaft = hand().shaft(place);
@@ -213,7 +207,7 @@ bool WorkingMind::bring(const Vec3& place, const Vec3& hinge, double above_, dou
   }
   hand().add(move);
   ++looks_;
-  return looks_ > corrections + 1;
+  return looks_ > corrections;
 }
 
 void WorkingMind::closeAndLeave(double opened) {
@@ -222,13 +216,14 @@ void WorkingMind::closeAndLeave(double opened) {
   move.to = hand().meant();
   move.sure = true;
   move.jaw = 0.1;
-  move.dwell = 0.25;
+  move.dwell = 0.2;
   hand().add(move);
   move.jaw = opened;
   move.dwell = 0.0;
   hand().add(move);
   const Vec3 here = hand().meant();
-  go(here - 0.016 * hand().shaft(here), motor.contactSpeed, opened);
+  go(here - leaving * hand().shaft(here), motor.contactSpeed, opened);
+  stirred_ = true;
 }
 
 double WorkingMind::freed(const Sight& sight) const {
@@ -257,6 +252,7 @@ void WorkingMind::rankStrands(const Sight& sight) {
 }
 
 void WorkingMind::decide(const Sight& sight) {
+  stirred_ = false;
   if (share_.empty() && !sight.strand.empty()) rankStrands(sight);
   const PerformerProfile::Operation& operation = tools_.profile.operation;
   if (random_.uniform() < operation.hesitationShare) {
@@ -270,6 +266,9 @@ void WorkingMind::decide(const Sight& sight) {
   switch (stage_) {
     case Stage::clear:
       clear(sight);
+      break;
+    case Stage::window:
+      window(sight);
       break;
     case Stage::lowerThird:
       burn(sight, true);

@@ -54,14 +54,21 @@ class WorkingMind {
   [[nodiscard]] double freed(const Sight& sight) const;
   /// No vessel holds the specimen any more.
   [[nodiscard]] bool divided() const { return stage_ >= Stage::bed || !tools_.anatomy.divides(); }
+  /// What it does stirs what it would look at: it looks when that is over, not before.
+  [[nodiscard]] bool stirs() const { return stirred_; }
   /// A clip sat badly or fell.
   void sawBadClip() { ++badClips_[clipped_]; }
 
  private:
-  enum class Stage : std::uint8_t { clear, lowerThird, clip, cut, bed, done };
+  enum class Stage : std::uint8_t { clear, window, lowerThird, clip, cut, bed, done };
 
   void rankStrands(const Sight& sight);
   void clear(const Sight& sight);
+  struct FatStroke;
+  double highestFat(const SeenVessel& vessel, double radius, FatStroke& stroke) const;
+  void runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius);
+  void window(Sight sight);
+  bool thickestRow(const Sight& sight, std::size_t& first, std::size_t& last) const;
   void burn(const Sight& sight, bool lowerThird);
   void leaveBed(const Sight& sight, bool lowerThird);
   struct BedStrand;
@@ -74,8 +81,7 @@ class WorkingMind {
 
   /// Goes home and comes back with another instrument. @return false where it is mounted already
   bool mount(InstrumentKind kind, double jaw);
-  /// A stroke of the hook under current, from above and up again.
-  void sweep(const Vec3& from, const Vec3& to, HandMove::Aim aiming, const Vec3& aim);
+  void strokeThrough(const std::vector<Vec3>& way, const Vec3& aim, double lift);
   /// Comes above a place, looks, and goes down on it until what is wrong is small. @return true: it is there
   bool bring(const Vec3& place, const Vec3& hinge, double above, double beyond, double jaw);
   void closeAndLeave(double opened);
@@ -91,8 +97,10 @@ class WorkingMind {
   std::uint32_t strokes_ = 0, tries_ = 0, looks_ = 0;
   std::array<std::uint32_t, 2> badClips_{0, 0};  ///< on the vessel at hand, on the side that stays and on the other
   std::size_t clipped_ = 0;                      ///< the side that the last clip was for
-  bool failed_ = false;
+  bool failed_ = false, stirred_ = false;
   Vec3 error_ = Vec3::Zero();
+  std::array<std::vector<std::uint32_t>, 3> fatTried_;  ///< on the vessel at hand, per lane and station: strokes
+  std::vector<std::uint32_t> columnTried_;              ///< of the triangle
   std::vector<double> share_;         ///< of the strands that lie nearer to the neck, per strand, as first seen
   std::vector<std::uint32_t> tried_;  ///< per strand: strokes that should have met it
   double attachedAtFirst_ = 0.0;

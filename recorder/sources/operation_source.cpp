@@ -49,6 +49,11 @@ void OperationSource::decide(double time) {
   if (time > profile_.operation.patience) gaveUp_ = true;
 }
 
+/// A hand that is to go on will have nothing more to do.
+bool OperationSource::idleIn(double seconds, double time) const {
+  return hand_[worker].idleIn(seconds, time) || (!holding_.ready() && hand_[1 - worker].idleIn(seconds, time));
+}
+
 bool OperationSource::next(std::uint64_t tick, TickSamples& out) {
   const FloatingPointScope environment;
   const double time = static_cast<double>(tick) * tickLength;
@@ -57,10 +62,10 @@ bool OperationSource::next(std::uint64_t tick, TickSamples& out) {
     if (endAt_ < 0.0) endAt_ = time + settle;
     if (time >= endAt_) return false;
   }
-  if (sight_ && time >= decideAt_) decide(time);
-  const bool idle = hand_[worker].idle(time) || (!holding_.ready() && hand_[1 - worker].idle(time));
-  if (time >= settle && idle && !wantsToLook_ && !sight_ && !working_.done()) {
-    const PerformerProfile::Perception& p = profile_.perception;
+  if (sight_ && time >= decideAt_ && idleIn(0.0, time)) decide(time);
+  const PerformerProfile::Perception& p = profile_.perception;
+  const double ahead = working_.stirs() ? 0.0 : profile_.operation.anticipation * p.reactionTime;
+  if (time >= settle && idleIn(ahead, time) && !wantsToLook_ && !sight_ && !working_.done()) {
     wantsToLook_ = true;
     decideAt_ = time + std::clamp(p.reactionTime + p.reactionSpread * random_.normal(), 0.15, 0.6);
   }

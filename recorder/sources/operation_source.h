@@ -35,6 +35,7 @@ class OperationSource final : public SampleSource, private Observer {
   void onStep(const StepRecord& record) override;
   void onEnd(Outcome) override {}
   void decide(double time);
+  [[nodiscard]] bool idleIn(double seconds, double time) const;
 
   const PerformerProfile profile_;
   const SceneDescription scene_;

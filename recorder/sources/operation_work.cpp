@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Works of the operation on vessels: clearing them of fat, clipping, cutting.
+// Works of the operation on vessels: clipping, cutting.
 #include <algorithm>
 #include <cmath>
 
@@ -8,14 +8,10 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double toe = 0.0023;          // from the hook's heel to the middle of its toe (m)
-constexpr double wire = 0.0006;         // radius of the hook's wire (m)
-constexpr double film = 0.0006;         // of fat on a vessel that counts as none (m)
-constexpr double laneLength = 0.012;    // m
 constexpr double clipJaw = 0.55;        // rad
 constexpr double clipDepth = 0.0043;    // the vessel comes to lie so far behind the tips (m)
 constexpr double bladeJaw = 0.95;       // rad
-constexpr double bladeDepth = 0.006;    // m
+constexpr double bladeDepth = 0.0078;   // m
 constexpr double bladeTrial = 0.0012;   // by how much depths of one try and the next differ (m)
 constexpr double hover = 0.014;         // m
 constexpr double clipSpacing = 0.0033;  // between clips on one side of the cut (m)
@@ -24,9 +20,7 @@ constexpr double clipApart = 0.0024;    // a clip nearer than this to another on
 constexpr double fromJunction = 0.004;  // and one nearer to where vessels meet, or to the specimen (m)
 constexpr std::uint32_t mostTries = 10;
 
-/// Stations between which a vessel is cleared, and where it is cut, as shares of its length.
-constexpr double clearFrom = 0.22;
-constexpr double clearTo = 0.72;
+/// Where a vessel is cut, as a share of its length.
 constexpr double cutAt = 0.52;
 
 /// The station of a vessel's course that is nearest to an arc length (m).
@@ -36,67 +30,6 @@ std::size_t stationAt(double place, std::size_t stations) {
 }
 
 }  // namespace
-
-void WorkingMind::clear(const Sight& sight) {
-  const PerformerProfile::Operation& operation = tools_.profile.operation;
-  if (!tools_.anatomy.hasFat() || vessel_ >= sight.vessel.size()) {
-    vessel_ = 0;
-    strokes_ = 0;
-    stage_ = Stage::lowerThird;
-    burn(sight, true);
-    return;
-  }
-  if (mount(InstrumentKind::hook, 0.0)) return;
-  const SeenVessel& vessel = sight.vessel[vessel_];
-  const double radius = tools_.anatomy.vessels()[vessel_].radius;
-  const auto count = static_cast<double>(vessel.centre.size());
-  const auto from = static_cast<std::size_t>(clearFrom * count);
-  const auto to = static_cast<std::size_t>(clearTo * count);
-  // The highest fat that is in the way.
-  std::size_t worst = from, lane = 0;
-  double most = 0.0;
-  double bare = 0.0, all = 0.0;
-  for (std::size_t s = from; s <= to; ++s) {
-    bool clean = true;
-    for (std::size_t l = 0; l < 3; ++l) {
-      const double height = vessel.fat[s][l] - (l == 0 ? radius + film : 0.0);
-      if (height <= 0.0) continue;
-      clean = false;
-      if (!(height > most)) continue;
-      most = height;
-      worst = s;
-      lane = l;
-    }
-    all += 1.0;
-    bare += clean ? 1.0 : 0.0;
-  }
-  if (bare >= operation.bareShare * all || strokes_ >= operation.strokes) {
-    ++vessel_;
-    strokes_ = 0;
-    clear(sight);
-    return;
-  }
-  ++strokes_;
-  newError();
-  error_ *= 0.25;
-  const Vec3& centre = vessel.centre[worst];
-  const Vec3& along = vessel.along[worst];
-  const Vec3 shaft = hand().shaft(centre);
-  Vec3 side = shaft.cross(along);
-  side /= side.norm();
-  const Vec3 level = side.cross(shaft);
-  const double floor = lane == 0 ? radius + wire + operation.keepOff : -0.0005;
-  const double height = std::max(vessel.fat[worst][lane] - operation.layer, floor);
-  const double aside = lane == 0 ? 0.0 : (lane == 1 ? -1.0 : 1.0) * (radius + wire + operation.keepOff + 0.0005);
-  const double way = (strokes_ % 2U) == 0 ? 1.0 : -1.0;
-  const auto at = [&](double s) { return Vec3(centre + aside * side - height * shaft + s * level + error_); };
-  const double half = 0.5 * laneLength * way;
-  if (lane == 0) {
-    sweep(at(-half) - toe * side, at(half) - toe * side, HandMove::Aim::forward, side);
-  } else {
-    sweep(at(-half) - toe * level, at(half) - toe * level, HandMove::Aim::forward, level);
-  }
-}
 
 /// Where the next clip on a side of the cut goes (m from the first station); below zero where there is none to set.
 /// Clips that sit badly are made good while there are enough for what is still to be clipped.
@@ -115,7 +48,7 @@ double WorkingMind::placeForClip(const Sight& sight, std::size_t side) const {
   if (there >= expected + spare) return -1.0;
   // The farthest from the cut first, then towards it; what is to be made good goes farther out still.
   const double out = side == 0 ? -1.0 : 1.0;
-  const auto most = static_cast<int>(expected + badClips_[side]);
+  const auto most = static_cast<int>(expected + badClips_[side] + 1);
   for (int k = 0; k < most; ++k) {
     const int fromCut = k < static_cast<int>(expected) ? static_cast<int>(expected) - 1 - k : k;
     const double place = cut + out * (clipToCut + clipSpacing * static_cast<double>(fromCut));
@@ -194,7 +127,7 @@ void WorkingMind::cut(const Sight& sight) {
   }
   const double place = vessel.clip.empty() ? cutAt * length : 0.5 * (from + to);
   const std::size_t station = stationAt(place, vessel.centre.size());
-  const double depth = bladeDepth + bladeTrial * (static_cast<double>(tries_ % 3U) - 0.5);
+  const double depth = bladeDepth - bladeTrial * static_cast<double>(tries_ % 3U);
   if (bring(vessel.centre[station], vessel.along[station], hover, depth, bladeJaw)) {
     closeAndLeave(bladeJaw);
     looks_ = 0;

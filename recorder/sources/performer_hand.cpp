@@ -15,7 +15,8 @@ namespace {
 constexpr double fadeIn = 0.5;       // unsteadiness grows from nothing: the tip starts at home (s)
 constexpr double wanderLower = 0.1;  // Hz
 constexpr double wanderUpper = 0.8;
-constexpr double ramp = 0.15;  // share of a steady stroke in which its speed rises, and falls
+constexpr double ramp = 0.15;        // share of a steady stroke in which its speed rises, and falls
+constexpr double steadyShare = 0.5;  // of the shortest stroke: pieces of one stroke through tissue may be shorter
 constexpr double pi = 3.141592653589793;
 
 Random unsteady(std::uint64_t seed, std::size_t index) { return Random(seed, 101 + index); }
@@ -70,7 +71,8 @@ void PerformerHand::begin(double time) {
     for (int a = 0; a < 3; ++a) next.to[a] += noise * random_.normal();
   }
   const bool still = length < 1e-9 && move.aiming == HandMove::Aim::none && move.jaw == stroke_.jawTo;
-  next.duration = still ? 0.0 : std::max(length / move.speed, motor.shortestStroke);
+  const double shortest = (move.steady ? steadyShare : 1.0) * motor.shortestStroke;
+  next.duration = still ? 0.0 : std::max(length / move.speed, shortest);
   next.jawFrom = stroke_.jawTo;
   next.jawTo = move.jaw;
   next.rollFrom = stroke_.rollTo;

@@ -45,6 +45,8 @@ class PerformerHand {
   [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
   /// Nothing under way at `time` (s).
   [[nodiscard]] bool idle(double time) const { return queue_.empty() && time >= end_; }
+  /// What is under way ends in `seconds` at the latest, and nothing waits behind it.
+  [[nodiscard]] bool idleIn(double seconds, double time) const { return queue_.empty() && time + seconds >= end_; }
   /// Where the hand means to be when all that waits is done (m).
   [[nodiscard]] const Vec3& meant() const { return queue_.empty() ? stroke_.to : queue_.back().to; }
   [[nodiscard]] InstrumentKind instrument() const { return instrument_; }

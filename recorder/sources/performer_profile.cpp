@@ -36,9 +36,11 @@ std::vector<ObjectRule> makeRules() {
         bounded("pullBack", 0.005, 0.1), KeyRule{"bimanual"}}},
       {"operation",
        {bounded("hesitationShare", 0, 1), bounded("hesitation", 0, 10), bounded("pedalLag", 0, 2),
-        bounded("keepOff", 0, 0.005), bounded("layer", 0.0001, 0.005), bounded("bareShare", 0, 1),
-        bounded("strokes", 0, 200), bounded("burnSpeed", 0.0005, 0.1), bounded("pull", 0, 0.05),
-        bounded("stretch", 0.001, 0.05), bounded("slipShare", 0, 1), bounded("patience", 10, 3600)}},
+        bounded("keepOff", 0, 0.005), bounded("layer", 0.0001, 0.005), bounded("cleared", 0.1, 1),
+        bounded("bareShare", 0, 1), bounded("strokes", 0, 200), bounded("burnSpeed", 0.0005, 0.1),
+        bounded("pull", 0, 0.05), bounded("stretch", 0.001, 0.05), bounded("slipShare", 0, 1),
+        bounded("anticipation", 0, 1), bounded("series", 1, 20), bounded("window", 0, 200),
+        bounded("patience", 10, 3600)}},
   };
 }
 
@@ -109,12 +111,16 @@ PerformerProfile loadPerformer(const fs::path& file) {
   operation.read("pedalLag", profile.operation.pedalLag);
   operation.read("keepOff", profile.operation.keepOff);
   operation.read("layer", profile.operation.layer);
+  operation.read("cleared", profile.operation.cleared);
   operation.read("bareShare", profile.operation.bareShare);
   operation.read("strokes", profile.operation.strokes);
   operation.read("burnSpeed", profile.operation.burnSpeed);
   operation.read("pull", profile.operation.pull);
   operation.read("stretch", profile.operation.stretch);
   operation.read("slipShare", profile.operation.slipShare);
+  operation.read("anticipation", profile.operation.anticipation);
+  operation.read("series", profile.operation.series);
+  operation.read("window", profile.operation.window);
   operation.read("patience", profile.operation.patience);
   return profile;
 }

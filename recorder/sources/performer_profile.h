@@ -59,12 +59,16 @@ struct PerformerProfile {
     double pedalLag = 0.0;         ///< the pedal comes up so much later than the hook's stroke ends (s)
     double keepOff = 0.0;          ///< between the hook's metal and a vessel, as meant (m)
     double layer = 0.0;            ///< of fat taken off by one stroke (m)
-    double bareShare = 0.0;        ///< of a vessel's stations that must be bare before it counts as cleared
+    double cleared = 0.0;          ///< share of a vessel's length, from 22 % on, that is to be cleared
+    double bareShare = 0.0;        ///< of its stations that must be bare before it counts as cleared
     std::uint32_t strokes = 0;     ///< at most, to clear one vessel
     double burnSpeed = 0.0;        ///< mean speed of the energised hook through connective tissue (m/s)
     double pull = 0.0;             ///< of the specimen, by the hand that holds it (m)
     double stretch = 0.0;          ///< length of a strand of the bed that looks too taut, so that it eases off (m)
     double slipShare = 0.0;        ///< of holds that are let go by mistake
+    double anticipation = 0.0;     ///< share of the reaction time by which it looks before a stroke is over
+    std::uint32_t series = 1;      ///< strokes through fat made by one picture
+    std::uint32_t window = 0;      ///< strokes at most, to clear the triangle between the vessels
     double patience = 0.0;         ///< after which the attempt is given up (s)
   } operation;
 };

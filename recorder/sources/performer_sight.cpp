@@ -12,17 +12,7 @@ namespace {
 constexpr double gripFrom = 0.026;      // of the specimen's neck: the place to hold is no nearer (m)
 constexpr double gripTo = 0.042;        // and no farther
 constexpr double fatClearance = 0.006;  // of the place to hold (m)
-constexpr double fatAside = 0.0030;     // so far beside a vessel fat is looked at, from its surface (m)
 constexpr double around = 0.0012;       // of a station: its vessel's skin this near to it shows where it is (m)
-constexpr double fatOver = 0.0005;      // what is over a vessel reaches so far beside it (m)
-constexpr double nothing = -1.0;        // height of fat where there is none (m)
-
-const SurfaceView* surfaceNamed(const SceneView& view, const std::string& name) {
-  for (const SurfaceView& s : view.surface) {
-    if (s.organ == name) return &s;
-  }
-  return nullptr;
-}
 
 bool underFat(const SceneDescription& scene, const Vec3& p) {
   for (const FatDescription& fat : scene.fat) {
@@ -33,8 +23,16 @@ bool underFat(const SceneDescription& scene, const Vec3& p) {
   return false;
 }
 
-/// Points `spacing` apart along a line of straight pieces.
-std::vector<Vec3> stationsOf(const std::vector<Vec3>& path, double spacing) {
+}  // namespace
+
+const SurfaceView* PerformerSight::surfaceNamed(const SceneView& view, const std::string& name) {
+  for (const SurfaceView& s : view.surface) {
+    if (s.organ == name) return &s;
+  }
+  return nullptr;
+}
+
+std::vector<Vec3> PerformerSight::stationsOf(const std::vector<Vec3>& path) {
   std::vector<Vec3> out;
   double left = 0.0;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
@@ -47,8 +45,6 @@ std::vector<Vec3> stationsOf(const std::vector<Vec3>& path, double spacing) {
   return out;
 }
 
-}  // namespace
-
 PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker)
     : organs_(scene.organs.size()), specimen_(organs_), worker_(worker), eye_(scene.camera.position) {
   for (std::size_t h = 0; h < handCount; ++h) port_[h] = scene.hands[h].port;
@@ -60,6 +56,7 @@ PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker
   if (!scene.procedure.specimen.empty()) specimenName_ = scene.procedure.specimen;
   planVessels(scene);
   if (!scene.fat.empty()) fat_ = scene.fat[0].name;
+  planColumns(scene);
   // A scene of fat alone is for clearing.
   divides_ = !vessel_.empty() && (fat_.empty() || !bed_.empty());
   for (std::size_t o = 0; o < organs_; ++o) {
@@ -83,7 +80,7 @@ void PerformerSight::planVessels(const SceneDescription& scene) {
       plan.name = d.vessel;
       plan.radius = scene.vessels[i].radius;
       plan.index = i;
-      plan.rest = stationsOf(scene.vessels[i].path, spacing);
+      plan.rest = stationsOf(scene.vessels[i].path);
       if (!d.patientAtStart) std::reverse(plan.rest.begin(), plan.rest.end());
       plan.patientClips = d.patient;
       plan.specimenClips = d.specimen;
@@ -156,29 +153,6 @@ void PerformerSight::seeVessel(const SceneView& view, const VesselPlan& plan, Se
   std::sort(seen.clip.begin(), seen.clip.end());
 }
 
-void PerformerSight::seeFat(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const {
-  seen.fat.assign(plan.rest.size(), {nothing, nothing, nothing});
-  const SurfaceView* fat = fat_.empty() ? nullptr : surfaceNamed(view, fat_);
-  if (fat == nullptr) return;
-  Box box;
-  for (const Vec3& c : seen.centre) box.include(c);
-  box.grow(0.02);
-  for (const Vec3& p : fat->position) {
-    if ((p.array() < box.lower.array()).any() || (p.array() > box.upper.array()).any()) continue;
-    for (std::size_t s = 0; s < seen.centre.size(); ++s) {
-      const Vec3 d = p - seen.centre[s];
-      if (std::abs(d.dot(seen.along[s])) > spacing) continue;
-      const Vec3 shaft = shaftDirection(port_[worker_], seen.centre[s]);
-      Vec3 side = shaft.cross(seen.along[s]);
-      side /= std::max(side.norm(), 1e-9);
-      const double aside = d.dot(side);
-      if (std::abs(aside) > plan.radius + fatAside) continue;
-      const std::size_t bin = std::abs(aside) <= plan.radius + fatOver ? 0 : (aside < 0.0 ? 1 : 2);
-      seen.fat[s][bin] = std::max(seen.fat[s][bin], -d.dot(shaft));
-    }
-  }
-}
-
 Sight PerformerSight::look(const StepRecord& record) const {
   const SceneView view = record.view();
   Sight sight;
@@ -189,6 +163,7 @@ Sight PerformerSight::look(const StepRecord& record) const {
     seen.partings = record.result.vessel[plan.index].partings;
     sight.vessel.push_back(seen);
   }
+  seeColumns(view, sight);
   for (const ConnectiveView& tissue : view.connective) {
     if (tissue.name != bed_) continue;
     for (std::size_t s = 0; s < tissue.strand.size(); ++s) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recorder/observer.h"
@@ -29,6 +30,13 @@ struct SeenStrand {
   bool attached = false;
 };
 
+/// Fat over and under a place of the triangle that is to be cleared.
+struct SeenColumn {
+  Vec3 place = Vec3::Zero();       ///< where it is now (m, W)
+  double top = 0.0, bottom = 0.0;  ///< of the fat, towards the port of the hand that works, from the place (m)
+  [[nodiscard]] double fat() const { return top - bottom; }
+};
+
 struct SeenHand {
   Vec3 tip = Vec3::Zero();  ///< p_WI of the instrument in the picture (m)
   bool holds = false;       ///< its jaws hold tissue
@@ -38,6 +46,7 @@ struct SeenHand {
 struct Sight {
   std::vector<SeenVessel> vessel;
   std::vector<SeenStrand> strand;
+  std::vector<SeenColumn> column;  ///< in the order of PerformerSight::columns()
   std::array<SeenHand, handCount> hand;
   Vec3 grip = Vec3::Zero();         ///< the place on the specimen that is to be held (m, W)
   Vec3 gripNormal = Vec3::UnitY();  ///< outward there, at rest
@@ -60,6 +69,12 @@ class PerformerSight {
     std::uint32_t specimenClips = 1;
   };
 
+  /// A place of the triangle that is to be cleared, at rest.
+  struct ColumnPlan {
+    Vec3 place = Vec3::Zero();
+    std::size_t row = 0;  ///< rows run along the triangle's first edge, from its first corner; columns in order
+  };
+
   /// @param worker hand that carves, clips and cuts; the other one holds
   PerformerSight(const SceneDescription& scene, std::size_t worker);
 
@@ -67,6 +82,9 @@ class PerformerSight {
   [[nodiscard]] Sight look(const StepRecord& record) const;
 
   [[nodiscard]] const std::vector<VesselPlan>& vessels() const { return vessel_; }
+  [[nodiscard]] const std::vector<ColumnPlan>& columns() const { return column_; }
+  /// Stations of the vessels that are to be spared, at rest, and their radii (m).
+  [[nodiscard]] const std::vector<std::pair<Vec3, double>>& spared() const { return spared_; }
   [[nodiscard]] bool hasSpecimen() const { return specimen_ < organs_; }
   [[nodiscard]] bool hasFat() const { return !fat_.empty(); }
   /// Are the vessels to be clipped and cut?
@@ -75,18 +93,26 @@ class PerformerSight {
   [[nodiscard]] const Vec3& neck() const { return neck_; }  ///< of the specimen, at rest (m)
 
  private:
+  static const SurfaceView* surfaceNamed(const SceneView& view, const std::string& name);
+  /// Points `spacing` apart along a line of straight pieces.
+  static std::vector<Vec3> stationsOf(const std::vector<Vec3>& path);
   void planVessels(const SceneDescription& scene);
+  void planColumns(const SceneDescription& scene);
   void findSpecimen(const SceneDescription& scene);
   void seeVessel(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
+  void seeColumns(const SceneView& view, Sight& sight) const;
   void seeFat(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
 
   std::vector<VesselPlan> vessel_;
+  std::vector<ColumnPlan> column_;
+  std::vector<std::pair<Vec3, double>> spared_;
   std::string bed_, fat_, specimenName_;
   std::size_t organs_ = 0, specimen_ = 0, worker_ = 1;
   std::array<Vec3, handCount> port_{Vec3::Zero(), Vec3::Zero()};
   Vec3 eye_ = Vec3::Zero();
   Vec3 neck_ = Vec3::Zero();
   bool divides_ = false;
+  double triangleDepth_ = 0.0;
   std::size_t gripVertex_ = 0;
   Vec3 gripNormal_ = Vec3::UnitY();
 };

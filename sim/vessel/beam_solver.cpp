@@ -230,7 +230,7 @@ BeamReport BeamSolver::advance(const BeamModel& model, BeamState& state) {
   BeamReport report;
   double asked = 0.0;
   for (const Vec3& v : freeVelocity_) asked = std::max(asked, v.squaredNorm());
-  report.asked = std::sqrt(asked);
+  if (asked > fastest * fastest) report.asked = std::sqrt(asked);
   report.limited = limitPieces(model, state);
   double displacement = 0.0;
   double speed = 0.0;

@@ -35,7 +35,7 @@ struct BeamLoads {
 struct BeamReport {
   bool finite = true;           ///< false: some node had to be stopped
   bool limited = false;         ///< true: some piece moved too fast for the step and was slowed down
-  double asked = 0.0;           ///< largest speed before that (m/s)
+  double asked = 0.0;           ///< largest speed before that, where no tissue moves as fast (m/s); else 0
   int torn = -1;                ///< element that tore in this step; -1: none
   double largestStrain = 0.0;   ///< over whole elements: stretch, positive when pulled
   int mostStrained = -1;        ///< its element

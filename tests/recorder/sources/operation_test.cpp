@@ -44,9 +44,10 @@ struct Attempt {
   std::uint32_t clips = 0;
   std::vector<TickSamples> samples;  ///< every 10th
   bool onGrid = true;
-  std::uint32_t burnedWithoutCurrent = 0;  ///< events
-  double cutPlace = 0.0;                   ///< of the last cut, from the vessel's start (m)
-  std::vector<double> clipPlaces;          ///< of all clips on any vessel, from its start (m)
+  std::uint32_t burnedWithoutCurrent = 0;               ///< events
+  double fatAtFirst = 0.0, carvedWithoutCurrent = 0.0;  ///< m^3
+  double cutPlace = 0.0;                                ///< of the last cut, from the vessel's start (m)
+  std::vector<double> clipPlaces;                       ///< of all clips on any vessel, from its start (m)
 };
 
 Attempt perform(const Model& model, const PerformerProfile& profile, std::uint64_t seed, double seconds) {
@@ -76,6 +77,10 @@ Attempt perform(const Model& model, const PerformerProfile& profile, std::uint64
       for (const Event& event : record.result.events) {
         if (event.kind == EventKind::strandsBurned && !current) ++attempt.burnedWithoutCurrent;
         if (event.kind == EventKind::vesselCut) attempt.cutPlace = event.value;
+      }
+      for (const FatResult& fat : record.result.fat) {
+        if (attempt.fatAtFirst == 0.0) attempt.fatAtFirst = fat.volume;
+        if (!current) attempt.carvedWithoutCurrent += fat.carved;
       }
       attempt.last = record.result;
     }
@@ -193,6 +198,52 @@ TEST_P(EachProfile, FreesTheBedWithTheHook) {
   EXPECT_EQ(attempt.burnedWithoutCurrent, 0U);
 }
 
+/// Vessels come free of fat and stay whole, with those that are to be spared; fat goes under current alone.
+TEST(Operation, ClearsVesselsOfFat) {
+  const std::unique_ptr<const Model> model = modelOf("carve-fat");
+  ASSERT_TRUE(model);
+  constexpr std::uint64_t seed = 1;
+  RecordProperty("seed", seed);
+  const Attempt attempt = perform(*model, "skilled", seed, 14.0);
+  ASSERT_EQ(attempt.last.fat.size(), 1U);
+  EXPECT_LT(attempt.last.fat[0].volume, 0.85 * attempt.fatAtFirst);
+  EXPECT_EQ(attempt.carvedWithoutCurrent, 0.0);
+  EXPECT_EQ(attempt.last.procedure.criticalErrors, 0U);
+  for (const VesselResult& vessel : attempt.last.vessel) EXPECT_EQ(vessel.partings, 0U);
+}
+
+/// Who anticipates looks while a stroke is still under way, and never before the last one has begun.
+TEST(Operation, AHandKnowsWhenItWillBeIdle) {
+  const HandDescription description = test::roundScene().hands[0];
+  PerformerHand hand(profileOf("skilled"), description, 0, 7);
+  HandMove move, back;
+  move.to = description.home + Vec3(0.0, 0.0, 0.01);
+  move.speed = 0.01;
+  move.sure = true;
+  back = move;
+  back.to = description.home;
+  hand.add(move);
+  hand.add(back);
+  EXPECT_FALSE(hand.idleIn(100.0, 0.0));
+  double began = -1.0, ended = -1.0;
+  for (int tick = 0; tick < 3000 && ended < 0.0; ++tick) {
+    const double time = tick * tickLength;
+    hand.sample(time);
+    if (began < 0.0 && hand.waiting() == 0) began = time;
+    if (hand.idle(time)) ended = time;
+    if (began < 0.0) {
+      EXPECT_FALSE(hand.idleIn(100.0, time));
+    }
+  }
+  ASSERT_GT(ended, began);
+  PerformerHand again(profileOf("skilled"), description, 0, 7);
+  again.add(move);
+  again.add(back);
+  for (int tick = 0; tick * tickLength < ended - 0.1; ++tick) again.sample(tick * tickLength);
+  EXPECT_TRUE(again.idleIn(0.11, ended - 0.1));
+  EXPECT_FALSE(again.idleIn(0.09, ended - 0.1));
+}
+
 /// What is to be divided, and with how many clips, is the scene's to say.
 TEST(Operation, DoesWhatTheProcedureAsksFor) {
   SceneDescription scene = loadScene(assets / "scenes" / "clip-and-cut.json").description;
@@ -278,6 +329,7 @@ TEST_P(OperationHeavy, CompletesTheWholeOperationAsOftenAsItShould) {
   const std::string profile = GetParam();
   const int wanted = profile == "skilled" ? 19 : profile == "intermediate" ? 18 : 16;
   int completed = 0;
+  double seconds = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Attempt attempt = perform(*model, profile, seed, 1200.0);
     EXPECT_NE(attempt.outcome, Outcome::running) << "seed " << seed;
@@ -287,12 +339,16 @@ TEST_P(OperationHeavy, CompletesTheWholeOperationAsOftenAsItShould) {
     if (attempt.outcome == Outcome::completed) {
       EXPECT_TRUE(whole) << "seed " << seed;
       ++completed;
+      seconds += attempt.seconds;
     }
     std::cout << profile << " seed " << seed << ": outcome " << static_cast<int>(attempt.outcome) << " after "
               << attempt.seconds << " s\n";
     expectHuman(attempt);
   }
   EXPECT_GE(completed, wanted);
+  // An operation is to take 30 to 180 s.
+  EXPECT_GT(seconds, 30.0 * completed);
+  EXPECT_LT(seconds, 180.0 * completed);
 }
 
 }  // namespace
