@@ -217,7 +217,7 @@ class SolidSolver {
   /// to as much beyond the mean of all. Values that are not finite stop the node instead of entering State.
   /// @return false when that happened.
   bool advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step);
-  /// The largest speed beyond the mean that the last advance() held back (m/s); 0: none.
+  /// The largest that the last advance() held back of nodes with a tenth of their mass at least (m/s); 0: none.
   [[nodiscard]] double heldBack() const { return heldBack_; }
 
  private:

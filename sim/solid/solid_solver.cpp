@@ -16,6 +16,7 @@ constexpr std::size_t blocksPerTask = 1024;
 /// does is a corner that only a nearly empty cube holds, thrown about by what holds that cube elsewhere, or contact in
 /// crumpled tissue, decided on a compliance that is not that of its shape.
 constexpr double fastestNode = 5.0;
+constexpr double weightless = 0.1;  ///< of a node's mass at rest: what has less left is held back without a word
 constexpr double orphanMass = 1.0;  ///< of a node that only empty cubes hold (kg): it has no neighbours and no load
 
 }  // namespace
@@ -298,7 +299,8 @@ bool SolidSolver::advance(const SolidModel& model, SolidState& state, std::span<
     Vec3 velocity = asked(free);
     const double speed = (velocity - mean).norm();
     if (speed > fastestNode) {
-      heldBack_ = std::max(heldBack_, speed);
+      const bool weighs = mass_.empty() || mass_[node] > weightless * model.mass_[node];
+      if (weighs) heldBack_ = std::max(heldBack_, speed);
       velocity = mean + fastestNode / speed * (velocity - mean);
     }
     const Vec3 position = state.position[node] + step * velocity;

@@ -19,8 +19,8 @@
 namespace calot {
 namespace {
 
-constexpr double fastest = 10.0;        ///< m/s, of anything at any time
-constexpr double heldBackShare = 0.01;  ///< of the steps, at most: a limit that works often would be a law of motion
+constexpr double fastest = 10.0;       ///< m/s, of anything at any time
+constexpr double heldBackShare = 0.1;  ///< of the steps, at most: a limit that works oftener would be a law of motion
 
 SceneDescription sceneNamed(const std::string& name) {
   return recorder::loadScene(std::string(CALOT_SOURCE_DIR) + "/assets/scenes/" + name + ".json").description;
