@@ -207,9 +207,9 @@ void pull(const std::string& name, std::uint64_t firstSeed, int seeds, int steps
 
 bool heavy() { return std::getenv("CALOT_HEAVY") != nullptr; }
 
-TEST(ViolentPulls, OnClipAndCutStayBounded) { pull("clip-and-cut", 1, heavy() ? 40 : 2, heavy() ? 1500 : 900); }
+TEST(ViolentPulls, OnClipAndCutStayBounded) { pull("clip-and-cut", 1, heavy() ? 20 : 2, heavy() ? 1500 : 900); }
 TEST(ViolentPulls, OnTheWholeOperationStayBounded) {
-  pull("cholecystectomy", 101, heavy() ? 20 : 1, heavy() ? 1200 : 600);
+  pull("cholecystectomy", 101, heavy() ? 10 : 1, heavy() ? 1200 : 600);
 }
 
 TEST(ViolentPulls, GiveTheSameBitsOnTwoThreads) {
