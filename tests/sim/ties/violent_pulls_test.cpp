@@ -30,7 +30,7 @@ SceneDescription sceneNamed(const std::string& name) {
 /// pedal, sometimes it changes its instrument.
 class WildHand {
  public:
-  WildHand(const Model& model, std::size_t hand, std::uint64_t seed) : model_(model), hand_(hand), random_(seed, hand) {
+  WildHand(const Model& model, std::size_t hand, std::uint64_t seed) : model_(model), random_(seed, hand) {
     place_ = model.scene().hands[hand].home;
     instrument_ = model.scene().hands[hand].instrument;
     begin();
@@ -104,7 +104,6 @@ class WildHand {
   }
 
   const Model& model_;
-  std::size_t hand_;
   Random random_;
   Vec3 place_, from_ = Vec3::Zero(), to_ = Vec3::Zero();
   Quat turn_ = Quat::Identity();
