@@ -44,7 +44,8 @@ struct Inside {
   int exit = -1;
 };
 
-/// Every triangle whose distance from the axis is at most `limit`, with that distance's place: f(triangle, pair).
+/// Every triangle whose distance from the axis is at most `limit`, which f may lower on the way, with that distance's
+/// place: f(triangle, pair).
 template <class F>
 void forEachNear(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
                  const Segment& axis, double& limit, F&& f) {
@@ -96,7 +97,11 @@ class Finder {
         crossing_.push_back({pair.parameter, inward, i, pair.barycentric});
         return;
       }
-      if (!nearest_.found || pair.squaredDistance < nearest_.pair.squaredDistance) nearest_ = {true, i, pair};
+      if (!nearest_.found || pair.squaredDistance < nearest_.pair.squaredDistance) {
+        nearest_ = {true, i, pair};
+        // What is farther than this and out of reach says nothing more.
+        limit = std::min(limit, std::max(radius_ + reach, std::sqrt(pair.squaredDistance)) * (1.0 + 1e-9));
+      }
       offerOutside(i, pair, reach);
     });
     if (crossing_.empty() && !nearest_.found) return;

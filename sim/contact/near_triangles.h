@@ -26,7 +26,7 @@ namespace calot {
 /// Lists for the vertices of one SurfacePair; one object a pair. Memory is kept from step to step.
 class NearTriangles {
  public:
-  static constexpr double margin = 0.0015;  ///< by which a look goes farther than what counts (m)
+  static constexpr double margin = 0.003;  ///< by which a look goes farther than what counts (m)
 
   /// What there was to do, since reset().
   struct Counts {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/contact/broad_phase.h"
+#include "sim/contact/float_bounds.h"
 
 namespace calot {
 
@@ -52,10 +54,65 @@ void forEachCell(const CellRange& range, F&& f) {
   }
 }
 
+/// The first group from `first` on of which a box overlaps the query, and which of its lanes do.
+CALOT_LANE_KERNEL std::size_t nextOverlap(const BoxLanes* group, std::size_t first, std::size_t last,
+                                          const float* lower, const float* upper, std::int32_t* hit) {
+  for (std::size_t g = first; g < last; ++g) {
+    std::int32_t any = 0;
+    for (std::size_t l = 0; l < laneCount; ++l) {
+      std::int32_t in = 1;
+      for (std::size_t a = 0; a < 3; ++a) {
+        in &= static_cast<std::int32_t>(group[g].lower[a][l] <= upper[a]);
+        in &= static_cast<std::int32_t>(lower[a] <= group[g].upper[a][l]);
+      }
+      hit[l] = in;
+      any |= in;
+    }
+    if (any != 0) return g;
+  }
+  return last;
+}
+
 }  // namespace
+
+void SortedGrid::pack(std::size_t leaf) {
+  BoxLanes& group = lanes_[leaf / laneCount];
+  for (int a = 0; a < 3; ++a) {
+    group.lower[a][leaf % laneCount] = floatBelow(leaf_[leaf].lower[a]);
+    group.upper[a][leaf % laneCount] = floatAbove(leaf_[leaf].upper[a]);
+  }
+}
+
+void SortedGrid::sweep(std::span<const Box> queries, std::vector<Pair>& out) const {
+  for (std::uint32_t q = 0; q < queries.size(); ++q) {
+    float lower[3];
+    float upper[3];
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = floatBelow(queries[q].lower[a]);
+      upper[a] = floatAbove(queries[q].upper[a]);
+    }
+    std::int32_t hit[laneCount];
+    for (std::size_t g = 0;; ++g) {
+      g = nextOverlap(lanes_.data(), g, lanes_.size(), lower, upper, hit);
+      if (g == lanes_.size()) break;
+      for (std::size_t l = 0; l < laneCount; ++l) {
+        const std::size_t leaf = g * laneCount + l;
+        if (hit[l] != 0 && queries[q].overlaps(leaf_[leaf])) out.push_back({q, static_cast<std::uint32_t>(leaf)});
+      }
+    }
+  }
+}
 
 void SortedGrid::update(std::span<const Box> leaves) {
   leaf_.assign(leaves.begin(), leaves.end());
+  if (leaf_.size() <= mostSwept_) {
+    BoxLanes empty;
+    std::fill_n(&empty.lower[0][0], 3 * laneCount, std::numeric_limits<float>::infinity());
+    std::fill_n(&empty.upper[0][0], 3 * laneCount, -std::numeric_limits<float>::infinity());
+    lanes_.assign(laneGroups(leaf_.size()), empty);
+    for (std::size_t l = 0; l < leaf_.size(); ++l) pack(l);
+    return;
+  }
   entry_.clear();
   large_.clear();
   for (std::uint32_t l = 0; l < leaf_.size(); ++l) {
@@ -70,6 +127,13 @@ void SortedGrid::update(std::span<const Box> leaves) {
 }
 
 void SortedGrid::refit(std::span<const Box> leaves, std::span<const std::uint32_t> changed) {
+  if (leaf_.size() <= mostSwept_) {
+    for (const std::uint32_t l : changed) {
+      leaf_[l] = leaves[l];
+      pack(l);
+    }
+    return;
+  }
   added_.clear();
   left_.assign(leaf_.size(), false);
   for (const std::uint32_t l : changed) {
@@ -103,6 +167,7 @@ void SortedGrid::refit(std::span<const Box> leaves, std::span<const std::uint32_
 
 void SortedGrid::pairs(std::span<const Box> queries, std::vector<Pair>& out) const {
   out.clear();
+  if (leaf_.size() <= mostSwept_) return sweep(queries, out);
   for (std::uint32_t q = 0; q < queries.size(); ++q) {
     const std::size_t start = out.size();
     const auto offer = [&](std::uint32_t l) {

@@ -13,6 +13,8 @@ namespace calot {
 
 namespace {
 
+using CubeMap = CarvedContact::CubeMap;
+
 constexpr std::uint32_t brickNodes = BrickLattice::brickNodes;
 
 /// Number of the block that a node lies in.
@@ -46,25 +48,49 @@ std::uint64_t blockBits(const BrickBits& bits, std::uint32_t octant) {
   return out;
 }
 
-/// Trilinear maps of eight cubes, each at a point of its own: in cells from its corner, a little beyond it at most.
-struct CubeLanes {
-  alignas(64) double corner[8][3][laneCount];
-  alignas(64) double cells[3][laneCount];
+/// A node of the surface: in edges from its cube's corner, a little beyond the cube at most.
+struct SurfaceNode {
+  double x, y, z;
+  std::uint32_t number;
+  std::int32_t cube;
 };
 
-CALOT_LANE_KERNEL void trilinear(const CubeLanes& cube, double cellsPerCube, double (&out)[3][laneCount]) {
-  for (int k = 0; k < 3; ++k) {
-    for (int l = 0; l < laneCount; ++l) {
-      const double x = cube.cells[0][l] / cellsPerCube;
-      const double y = cube.cells[1][l] / cellsPerCube;
-      const double z = cube.cells[2][l] / cellsPerCube;
-      const double a = cube.corner[0][k][l] + x * (cube.corner[1][k][l] - cube.corner[0][k][l]);
-      const double b = cube.corner[2][k][l] + x * (cube.corner[3][k][l] - cube.corner[2][k][l]);
-      const double c = cube.corner[4][k][l] + x * (cube.corner[5][k][l] - cube.corner[4][k][l]);
-      const double d = cube.corner[6][k][l] + x * (cube.corner[7][k][l] - cube.corner[6][k][l]);
-      const double low = a + y * (b - a);
-      const double high = c + y * (d - c);
-      out[k][l] = low + z * (high - low);
+/// The maps of cubes with these corners. @param position three components and one to fill up for each node
+CALOT_LANE_KERNEL void mapCubes(const Index8* cube, std::size_t count, const double* position, CubeMap* out) {
+  for (std::size_t c = 0; c < count; ++c) {
+    const double* p[8];
+    for (std::size_t k = 0; k < 8; ++k) p[k] = position + 4 * static_cast<std::size_t>(cube[c][k]);
+    double* to = out[c].data();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double x0 = p[1][i] - p[0][i];
+      const double x1 = p[3][i] - p[2][i];
+      const double x2 = p[5][i] - p[4][i];
+      const double x3 = p[7][i] - p[6][i];
+      const double y0 = p[2][i] - p[0][i];
+      const double y1 = p[6][i] - p[4][i];
+      to[i] = p[0][i];
+      to[4 + i] = x0;
+      to[8 + i] = y0;
+      to[12 + i] = p[4][i] - p[0][i];
+      to[16 + i] = x1 - x0;
+      to[20 + i] = x2 - x0;
+      to[24 + i] = y1 - y0;
+      to[28 + i] = (x3 - x2) - (x1 - x0);
+    }
+  }
+}
+
+/// out = the maps at the nodes, four numbers each.
+CALOT_LANE_KERNEL void mapNodes(const SurfaceNode* node, std::size_t count, const CubeMap* map, double* out) {
+  for (std::size_t n = 0; n < count; ++n) {
+    const double x = node[n].x;
+    const double y = node[n].y;
+    const double z = node[n].z;
+    const double* m = map[node[n].cube].data();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double low = (m[i] + x * m[4 + i]) + y * (m[8 + i] + x * m[16 + i]);
+      const double high = (m[12 + i] + x * m[20 + i]) + y * (m[24 + i] + x * m[28 + i]);
+      out[4 * n + i] = low + z * high;
     }
   }
 }
@@ -293,38 +319,36 @@ Vec3 CarvedContact::cellsOf(std::size_t node) const {
 
 void CarvedContact::place(std::span<const Vec3> solid, std::vector<Vec3>& out) const {
   out.resize(nodeRoom(), Vec3::Zero());
+  const std::vector<Index8>& cubes = model_.solid().cubes();
+  padded_.resize(4 * solid.size());
+  for (std::size_t n = 0; n < solid.size(); ++n) std::copy_n(solid[n].data(), 3, padded_.data() + 4 * n);
+  map_.resize(cubes.size());
+  mapCubes(cubes.data(), cubes.size(), padded_.data(), map_.data());
   const int k = model_.cellsPerCube();
-  CubeLanes lanes{};
-  std::array<std::size_t, laneCount> node{};
-  int count = 0;
-  const auto flush = [&] {
-    double placed[3][laneCount];
-    trilinear(lanes, static_cast<double>(k), placed);
-    for (int l = 0; l < count; ++l) out[node[slot(l)]] = Vec3(placed[0][l], placed[1][l], placed[2][l]);
-    count = 0;
-  };
+  const double inEdges = 1.0 / static_cast<double>(k);
+  std::array<SurfaceNode, 64> node;
+  std::array<double, 4 * 64> placed;
   for (std::size_t word = 0; word < mask_.size(); ++word) {
+    if (mask_[word] == 0) continue;
     const std::size_t axis = word % 3;
     const Index3& origin = origin_[word / 3];
+    std::size_t count = 0;
     for (std::uint64_t left = mask_[word]; left != 0; left &= left - 1) {
       const auto p = static_cast<int>(std::countr_zero(left));
       const std::size_t n = 64 * word + slot(p);
       const int cube = cube_[n];
       const Index3& h = model_.hexahedronOfCube(cube);
-      lanes.cells[0][count] = origin[0] + (p & 3) - k * h[0];
-      lanes.cells[1][count] = origin[1] + (p >> 2 & 3) - k * h[1];
-      lanes.cells[2][count] = origin[2] + (p >> 4) - k * h[2];
-      lanes.cells[axis][count] += cut_[n];
-      const Index8& corner = model_.solid().cubes()[slot(cube)];
-      for (std::size_t c = 0; c < 8; ++c) {
-        const double* at = solid[slot(corner[c])].data();
-        for (int a = 0; a < 3; ++a) lanes.corner[c][a][count] = at[a];
-      }
-      node[slot(count)] = n;
-      if (++count == laneCount) flush();
+      double cells[3] = {static_cast<double>(origin[0] + (p & 3) - k * h[0]),
+                         static_cast<double>(origin[1] + (p >> 2 & 3) - k * h[1]),
+                         static_cast<double>(origin[2] + (p >> 4) - k * h[2])};
+      cells[axis] += cut_[n];
+      node[count++] = {inEdges * cells[0], inEdges * cells[1], inEdges * cells[2], static_cast<std::uint32_t>(n), cube};
+    }
+    mapNodes(node.data(), count, map_.data(), placed.data());
+    for (std::size_t n = 0; n < count; ++n) {
+      out[node[n].number] = Vec3(placed[4 * n], placed[4 * n + 1], placed[4 * n + 2]);
     }
   }
-  flush();
 }
 
 SolidPlace CarvedContact::anchor(int node) const {

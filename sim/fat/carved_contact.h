@@ -26,6 +26,9 @@ namespace calot {
 /// A stroke's cost goes with the blocks that it changed, but for the list of patches (some 10 ns a patch).
 class CarvedContact final : public SurfaceTopology {
  public:
+  /// A trilinear map of one cube: of 1, x, y, z, xy, xz, yz, xyz, each three components and one to fill up.
+  using CubeMap = std::array<double, 32>;
+
   static constexpr std::uint32_t nodesOfBlock = 192;
   static constexpr std::uint32_t trianglesOfBlock = 320;
 
@@ -93,6 +96,9 @@ class CarvedContact final : public SurfaceTopology {
   std::vector<std::size_t> cornerStart_;
   std::vector<int> corner_;
   std::size_t listed_ = 0;  ///< room that the last lists ended with
+  // Room of place().
+  mutable std::vector<double> padded_;
+  mutable std::vector<CubeMap> map_;
   std::size_t growths_ = 0;
 };
 

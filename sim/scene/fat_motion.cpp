@@ -60,7 +60,7 @@ SolveReport FatMotion::freeMotion(State& state, const Vec3& gravity, std::span<c
 }
 
 SolveReport FatMotion::push(std::span<const Vec3> impulse) {
-  return solver_.push(fat_.model().solid(), impulse, responses_, executor_);
+  return solver_.push(fat_.model().solid(), impulse, responses_);
 }
 
 Mat3 FatMotion::turn(const State& state, int node) const { return fat_.turn(state.fat[index_], node); }

@@ -38,9 +38,7 @@ SolveReport OrganBody::freeMotion(State& state, const Vec3& gravity, std::span<c
                             {load_, {}, loads.joints});
 }
 
-SolveReport OrganBody::push(std::span<const Vec3> impulse) {
-  return solver_.push(solid_, impulse, responses_, executor_);
-}
+SolveReport OrganBody::push(std::span<const Vec3> impulse) { return solver_.push(solid_, impulse, responses_); }
 
 Mat3 OrganBody::turn(const State& state, int node) const {
   return nodeRotation(solid_, state.organ[organ_], node).toRotationMatrix();

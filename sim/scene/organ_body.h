@@ -22,7 +22,7 @@ class OrganBody final : public Body {
                          const Surroundings& loads) override;
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
   SolveReport push(std::span<const Vec3> impulse) override;
-  void require(std::span<const int> nodes) override { rest_.require(nodes, executor_); }
+  void require(std::span<const int> nodes) override { rest_.require(nodes); }
   [[nodiscard]] Mat3 turn(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return rest_.block(a, b); }
   bool advance(State& state) override;

@@ -24,37 +24,25 @@ std::vector<std::vector<int>> coloured(const std::vector<std::vector<int>>& neig
   return out;
 }
 
-BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& columns, std::span<const std::size_t> colours)
-    : left_(columns.size(), 0) {
+BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& columns) : left_(columns.size(), 0) {
   assert(columns.size() % laneCount == 0);
-  for (const std::size_t rows : colours) {
-    assert(rows % laneCount == 0);
-    colourStart_.push_back(colourStart_.back() + rows / laneCount);
-  }
-  assert(colourStart_.back() * laneCount == columns.size());
-  for (std::size_t r = 0; r < columns.size(); ++r) {
-    const auto left = std::lower_bound(columns[r].begin(), columns[r].end(), static_cast<int>(r)) - columns[r].begin();
-    assert(columns[r].empty() || columns[r][static_cast<std::size_t>(left)] == static_cast<int>(r));
-    assert(left < 256);
-    left_[r] = static_cast<std::uint8_t>(left);
-  }
   for (std::size_t s = 0; s < columns.size() / laneCount; ++s) {
-    std::size_t lower = 0;
-    std::size_t upper = 0;
+    std::size_t width = 0;
     for (std::size_t r = s * laneCount; r < (s + 1) * laneCount; ++r) {
       if (columns[r].empty()) continue;
-      lower = std::max(lower, std::size_t{left_[r]});
-      upper = std::max(upper, columns[r].size() - left_[r] - 1);
+      assert(columns[r].back() == static_cast<int>(r) && columns[r].size() <= 256);
+      left_[r] = static_cast<std::uint8_t>(columns[r].size() - 1);
+      width = std::max(width, std::size_t{left_[r]});
     }
-    diagonal_.push_back(sliceStart_.back() + lower);
-    sliceStart_.push_back(diagonal_.back() + 1 + upper);
+    diagonal_.push_back(sliceStart_.back() + width);
+    sliceStart_.push_back(diagonal_.back() + 1);
   }
   // Padding refers to the row itself, with value 0.
   column_.resize(sliceStart_.back() * laneCount);
   for (std::size_t s = 0; s < slices(); ++s) {
     for (std::size_t k = sliceStart_[s]; k < sliceStart_[s + 1]; ++k) {
       for (std::size_t l = 0; l < laneCount; ++l) {
-        column_[k * laneCount + l] = static_cast<std::int32_t>(laneOffset(s * laneCount + l));
+        column_[k * laneCount + l] = static_cast<std::int32_t>((s * laneCount + l) * rowStride);
       }
     }
   }
@@ -62,15 +50,15 @@ BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& columns, std::span
     for (std::size_t k = 0; k < columns[r].size(); ++k) {
       const std::size_t at = slot(r, k) / (9 * laneCount);
       column_[at * laneCount + r % laneCount] =
-          static_cast<std::int32_t>(laneOffset(static_cast<std::size_t>(columns[r][k])));
+          static_cast<std::int32_t>(static_cast<std::size_t>(columns[r][k]) * rowStride);
     }
   }
 }
 
 std::size_t BlockMatrix::slot(std::size_t row, std::size_t k) const {
   const std::size_t s = row / laneCount;
-  const std::size_t left = left_[row];
-  const std::size_t blockColumn = k < left ? sliceStart_[s] + k : diagonal_[s] + (k - left);
+  assert(k <= left_[row]);
+  const std::size_t blockColumn = k < left_[row] ? sliceStart_[s] + k : diagonal_[s];
   return blockColumn * 9 * laneCount + row % laneCount;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Symmetric block matrix of 3x3 blocks in slices of eight rows, one row a lane (sliced ELLPACK; Kreutzer et al. 2014,
-// "A unified sparse matrix data format", with C = 8), rows ordered by colour: rows of one colour do not depend on each
-// other, so a Gauss-Seidel sweep takes eight at a time, and its order is the same for one thread and for many.
+// "A unified sparse matrix data format", with C = 8): the diagonal and what is left of it. Half the numbers are half
+// the way through the caches, which is what a sweep waits for. Rows are ordered by colour: rows of one colour do not
+// depend on each other, so a Gauss-Seidel sweep takes eight at a time.
 #pragma once
 
 #include <array>
@@ -17,6 +18,8 @@ namespace calot {
 /// A vector over block rows: component i of row r stands at laneOffset(r) + 8 i. Rows are padded to whole slices.
 inline constexpr std::size_t laneStride = 3 * laneCount;
 constexpr std::size_t laneOffset(std::size_t row) { return row / laneCount * laneStride + row % laneCount; }
+/// Numbers of a row in a vector by rows: three components and one to fill up.
+inline constexpr std::size_t rowStride = 4;
 
 /// A block that the structure has no place for: y_row += value x_column.
 struct ExtraBlock {
@@ -33,13 +36,12 @@ std::vector<std::vector<int>> coloured(const std::vector<std::vector<int>>& neig
 class BlockMatrix {
  public:
   BlockMatrix() = default;
-  /// @param columns per row: the columns of its blocks, ascending, with the diagonal among them; none where the row
-  /// only fills a slice up.
-  /// @param colours how many rows each colour has, in row order.
-  /// @pre each of `colours` is a multiple of laneCount; rows of one colour have no blocks with each other.
-  BlockMatrix(const std::vector<std::vector<int>>& columns, std::span<const std::size_t> colours);
+  /// @param columns per row: the columns of its blocks up to the diagonal, ascending, the diagonal last; none where the
+  /// row only fills a slice up.
+  /// @pre whole slices; no two rows of a slice have a block with each other.
+  explicit BlockMatrix(const std::vector<std::vector<int>>& columns);
 
-  /// Of a slice: the blocks left of the diagonal, or those right of it.
+  /// Of a slice: the blocks left of the diagonal.
   struct Part {
     std::size_t first;  ///< block column in the values
     std::size_t width;  ///< block columns
@@ -49,31 +51,25 @@ class BlockMatrix {
   [[nodiscard]] std::size_t rows() const { return slices() * laneCount; }
   [[nodiscard]] std::size_t slices() const { return diagonal_.size(); }
   [[nodiscard]] std::size_t vectorSize() const { return slices() * laneStride; }
-  /// First slice of each colour, and the end.
-  [[nodiscard]] std::span<const std::size_t> colourStart() const { return colourStart_; }
-
   /// Place of block (row, k-th of its columns): entry (i, j) stands in the values at slot + 8 (3 i + j).
+  /// @pre k is less than the number of the row's columns
   [[nodiscard]] std::size_t slot(std::size_t row, std::size_t k) const;
   [[nodiscard]] std::size_t valueCount() const { return sliceStart_.back() * 9 * laneCount; }
 
   [[nodiscard]] Part lower(std::size_t slice) const {
     return {sliceStart_[slice], diagonal_[slice] - sliceStart_[slice]};
   }
-  [[nodiscard]] Part upper(std::size_t slice) const {
-    return {diagonal_[slice] + 1, sliceStart_[slice + 1] - diagonal_[slice] - 1};
-  }
   /// Where the values of a slice's diagonal blocks begin.
   [[nodiscard]] std::size_t diagonal(std::size_t slice) const { return diagonal_[slice] * 9 * laneCount; }
-  /// laneOffset of the column of each lane, per block column.
+  /// Where the column of each lane begins in a vector by rows, per block column.
   [[nodiscard]] const std::int32_t* column(std::size_t blockColumn) const {
     return column_.data() + blockColumn * laneCount;
   }
 
  private:
-  std::vector<std::size_t> colourStart_{0};
   std::vector<std::size_t> sliceStart_{0};  ///< in block columns
   std::vector<std::size_t> diagonal_;       ///< per slice: its block column
-  std::vector<std::uint8_t> left_;          ///< per row: how many blocks stand left of the diagonal
+  std::vector<std::uint8_t> left_;          ///< per row: how many of its blocks stand left of the diagonal
   std::vector<std::int32_t> column_;
 };
 

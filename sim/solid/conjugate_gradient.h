@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Conjugate gradients preconditioned by a symmetric Gauss-Seidel sweep (Saad 2003, section 10.2) on BlockMatrix, at the
 // price of one multiplication an iteration (Eisenstat 1981). With A = L + D + L^T + E, in the order of the colours, the
-// iteration runs on (D + L)^-1 A (D + L)^-T, which is applied to p by two sweeps:
-//   t = (D + L)^-T p,   s = (D + L)^-1 (p - D t + E t),   result t + s,
-// each over one half of the matrix. Always from a zero start, so that no warm start belongs to State and a cap that
-// binds cannot make the iteration grow. Matrix and vectors are float, sums are double, in an order fixed by the matrix:
-// any number of threads gives the same bits.
+// iteration runs on (D + L)^-1 A (D + L)^-T, which is applied to p by two sweeps over L:
+//   t = (D + L)^-T p,   s = (D + L)^-1 (p - D t + E t),   result t + s.
+// Going back, each row hands what it has found on to the rows before it, so that L alone is stored. Always from a zero
+// start, so that no warm start belongs to State and a cap that binds cannot make the iteration grow. Matrix and vectors
+// are float, sums are double, in an order fixed by the matrix. One thread: a sweep of a thousand rows takes less time
+// than handing its colours on.
 #pragma once
 
 #include <array>
@@ -13,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/math/executor.h"
 #include "sim/solid/block_matrix.h"
 
 namespace calot {
@@ -31,30 +31,19 @@ class ConjugateGradient {
   /// Inverts the diagonal blocks.
   /// @param extra E: belong to the matrix as well, a few; kept for the solves
   /// @pre the diagonal blocks are positive definite.
-  void prepare(const BlockMatrix& matrix, std::span<const float> values, Executor& executor,
-               std::span<const ExtraBlock> extra = {});
+  void prepare(const BlockMatrix& matrix, std::span<const float> values, std::span<const ExtraBlock> extra = {});
 
   /// Solves A x = b until the residual of SolveReport is at most `tolerance`. Layout of b and x: BlockMatrix vectors.
   /// @pre prepare() was called with these values.
   SolveReport solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
-                    std::span<float> x, double tolerance, std::uint32_t cap, Executor& executor);
+                    std::span<float> x, double tolerance, std::uint32_t cap);
 
   /// Eight right-hand sides at once: component i of row r of vector k stands at 24 r + 8 i + k. Zero ones cost nothing
-  /// extra and stay zero.
+  /// extra and stay zero. What becomes of one does not depend on the others.
   SolveReport solveMany(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
-                        std::span<float> x, double tolerance, std::uint32_t cap, Executor& executor);
+                        std::span<float> x, double tolerance, std::uint32_t cap);
 
  private:
-  /// Slices of one colour that one task takes.
-  struct Piece {
-    std::size_t first, last;
-  };
-  using Eight = std::array<double, laneCount>;
-
-  /// Calls slices(piece) for every piece; colours one after the other, ascending or descending, where `ordered`.
-  enum class Order : std::uint8_t { any, ascending, descending };
-  template <class F>
-  void run(Order order, Executor& executor, F&& slices) const;
   /// Sets the vectors of a solve to nothing.
   void clear(std::size_t size);
   void addExtra();
@@ -62,10 +51,8 @@ class ConjugateGradient {
 
   std::vector<float> inverse_;  ///< 3x3 inverse diagonal blocks: per slice 9 x 8 lanes
   std::vector<ExtraBlock> extra_;
-  std::vector<Piece> piece_;
-  std::vector<std::size_t> colourPiece_;  ///< first piece of each colour, and the end
-  std::vector<float> r_, z_, p_, t_, u_, s_;
-  std::vector<Eight> partial_;  ///< per piece and lane
+  std::vector<float> r_, z_, p_, t_, s_;
+  std::vector<float> u_, sRows_;  ///< u, and of one right-hand side a copy of s, by rows
 };
 
 }  // namespace calot

@@ -102,7 +102,7 @@ CALOT_LANE_KERNEL void forces(const CornerLanes& x, const std::array<Vec3, 8>& c
 }
 
 CALOT_LANE_KERNEL void blocks(const Stiffness& stiffness, const RotationLanes& r,
-                              const std::array<double, laneCount>& fill, HexahedronResult& out) {
+                              const std::array<double, laneCount>& fill, HexahedronBlocks* out) {
   std::array<std::array<std::array<float, laneCount>, 3>, 3> turn;
   std::array<float, laneCount> share;
   for (std::size_t l = 0; l < laneCount; ++l) share[l] = static_cast<float>(fill[l]);
@@ -134,7 +134,7 @@ CALOT_LANE_KERNEL void blocks(const Stiffness& stiffness, const RotationLanes& r
         }
       }
       for (std::size_t l = 0; l < laneCount; ++l) {
-        for (std::size_t k = 0; k < 9; ++k) out.block[l][HexahedralElements::pairOf(a, b)][k] = block[k][l];
+        for (std::size_t k = 0; k < 9; ++k) out[l][HexahedralElements::pairOf(a, b)][k] = block[k][l];
       }
     }
   }
@@ -200,7 +200,8 @@ HexahedralElements::HexahedralElements(std::span<const Index8> cells, double edg
 
 void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                                   int sweeps, std::span<const double> fill, std::span<RotationGroup> rotation,
-                                  std::span<HexahedronResult> result, Executor& executor) const {
+                                  std::span<HexahedronResult> result, std::span<HexahedronBlocks> block,
+                                  Executor& executor) const {
   executor.run((groups_.size() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
     const std::size_t end = std::min(groups_.size(), (task + 1) * groupsPerTask);
@@ -224,7 +225,7 @@ void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<cons
         }
       }
       forces(x, corner_, stiffness_, r, share, result[g]);
-      blocks(stiffness_, r, share, result[g]);
+      blocks(stiffness_, r, share, block.data() + g * laneCount);
     }
   });
 }

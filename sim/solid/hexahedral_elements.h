@@ -34,10 +34,11 @@ struct HexahedronGroup {
 /// What one pass over a group leaves for the assembly.
 struct HexahedronResult {
   std::array<std::array<std::array<double, laneCount>, 3>, 8> force;  ///< on the nodes (N)
-  /// fill R K_ab R^T for a <= b (N/m), pairs in the order of pairOf(): entry (i, j) at [3 i + j]. Not in lanes: the
-  /// assembly takes each cube's by itself.
-  std::array<std::array<std::array<float, 9>, 36>, laneCount> block;
 };
+
+/// Blocks of one cube: fill R K_ab R^T for a <= b (N/m), pairs in the order of pairOf(), entry (i, j) at [3 i + j]. Not
+/// in lanes: the assembly takes each cube's by itself.
+using HexahedronBlocks = std::array<std::array<float, 9>, 36>;
 
 class HexahedralElements {
  public:
@@ -57,9 +58,10 @@ class HexahedralElements {
   /// `sweeps` Newton steps; forces at position + lookAhead * velocity, and the rotated stiffness.
   /// @param fill per cube, 0 to 1: share of stiffness and mass that is left; empty: all full
   /// @param rotation in: last step's; out: this step's (unit)
+  /// @param block per cube and lane that is not used
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead, int sweeps,
                 std::span<const double> fill, std::span<RotationGroup> rotation, std::span<HexahedronResult> result,
-                Executor& executor) const;
+                std::span<HexahedronBlocks> block, Executor& executor) const;
 
   /// Sum over the cubes of fill times the deformed volume (m^3), trilinear, in order of the cubes.
   [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill) const;

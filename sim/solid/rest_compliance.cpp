@@ -15,34 +15,38 @@ RestCompliance::RestCompliance(const SolidModel& model, const SolidSolver::Setti
   solver_.freeMotion(model, rest, Vec3::Zero(), {}, settings_, executor, surroundings);
 }
 
-void RestCompliance::require(std::span<const int> nodes, Executor& executor) {
-  // A batch always holds the same right-hand sides for the same columns: iterations stop together, so a column's bits
-  // would otherwise depend on its company. Two neighbouring numbers, three axes each, make a batch of six.
-  for (const int asked : nodes) {
-    const auto first = static_cast<std::size_t>(asked) / 2 * 2;
-    if (!column_[static_cast<std::size_t>(asked)].empty()) continue;
-    const std::size_t last = std::min(first + 2, model_.nodes());
-    impulses_.clear();
-    for (std::size_t node = first; node < last; ++node) {
-      for (int axis = 0; axis < 3; ++axis) {
-        SolidSolver::Impulse impulse;
-        impulse.node[0] = static_cast<int>(node);
-        impulse.weight[0] = 1.0;
-        impulse.count = 1;
-        impulse.impulse = Vec3::Unit(axis);
-        impulses_.push_back(impulse);
-      }
+void RestCompliance::require(std::span<const int> nodes) {
+  // Eight right-hand sides cost as much as one, and each lane of a solve goes on until it is done, whatever the others
+  // do: lanes that are left take nodes next to those that are asked for, which are likely to be asked for as well.
+  pending_.clear();
+  const auto take = [this](std::size_t node) {
+    if (!column_[node].empty()) return;
+    column_[node].resize(9 * model_.nodes());
+    for (std::size_t axis = 0; axis < 3; ++axis) pending_.emplace_back(node, axis);
+  };
+  for (const int node : nodes) take(static_cast<std::size_t>(node));
+  const std::size_t room = laneGroups(pending_.size()) * laneCount;
+  for (const int node : nodes) {
+    const std::size_t next = static_cast<std::size_t>(node) ^ 1U;
+    if (pending_.size() + 3 <= room && next < model_.nodes()) take(next);
+  }
+  for (std::size_t from = 0; from < pending_.size(); from += laneCount) {
+    const std::size_t count = std::min(pending_.size() - from, std::size_t{laneCount});
+    impulses_.assign(count, {});
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [node, axis] = pending_[from + k];
+      impulses_[k].node[0] = static_cast<int>(node);
+      impulses_[k].weight[0] = 1.0;
+      impulses_[k].count = 1;
+      impulses_[k].impulse = Vec3::Unit(static_cast<int>(axis));
     }
-    solver_.responses(model_, impulses_, settings_, response_, executor);
-    for (std::size_t node = first; node < last; ++node) {
-      std::vector<float>& column = column_[node];
-      column.resize(9 * model_.nodes());
+    solver_.responses(model_, impulses_, settings_, response_);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [node, axis] = pending_[from + k];
       for (std::size_t a = 0; a < model_.nodes(); ++a) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const Vec3& v = response_[3 * (node - first) + axis][a];
-          for (std::size_t i = 0; i < 3; ++i) {
-            column[9 * a + 3 * i + axis] = static_cast<float>(v[static_cast<int>(i)]);
-          }
+        const Vec3& v = response_[k][a];
+        for (std::size_t i = 0; i < 3; ++i) {
+          column_[node][9 * a + 3 * i + axis] = static_cast<float>(v[static_cast<int>(i)]);
         }
       }
     }

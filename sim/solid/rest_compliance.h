@@ -8,7 +8,9 @@
 // It decides contact forces only; what they do to the solid is solved with the step's own matrix.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/solid/solid.h"
@@ -25,7 +27,7 @@ class RestCompliance {
 
   /// Works out the columns of these nodes that are not known yet, eight right-hand sides at a time. A column is a
   /// function of the model alone: in which order and company it is asked for changes nothing.
-  void require(std::span<const int> nodes, Executor& executor);
+  void require(std::span<const int> nodes);
 
   /// C_ab: velocity of node a (m/s) for an impulse on node b (N s). @pre b was required
   [[nodiscard]] Mat3 block(int a, int b) const;
@@ -35,6 +37,7 @@ class RestCompliance {
   SolidSolver::Settings settings_;
   SolidSolver solver_;
   std::vector<std::vector<float>> column_;  ///< per node: 9 numbers for each node, row-major; empty: not known
+  std::vector<std::pair<std::size_t, std::size_t>> pending_;  ///< nodes and axes that are asked for
   std::vector<SolidSolver::Impulse> impulses_;
   std::vector<std::vector<Vec3>> response_;
 };

@@ -69,8 +69,8 @@ std::vector<std::vector<int>> SolidModel::neighbours() const {
 }
 
 /// Numbers the rows by colours. @param near neighbours of each node
-/// @return how many rows each colour has
-std::vector<std::size_t> SolidModel::orderRows(const std::vector<std::vector<int>>& near) {
+/// @return how many rows there are, each colour filled up to whole slices
+std::size_t SolidModel::orderRows(const std::vector<std::vector<int>>& near) {
   row_.assign(rest_.size(), -1);
   freeNode_.clear();
   for (std::size_t node = 0; node < rest_.size(); ++node) {
@@ -90,13 +90,11 @@ std::vector<std::size_t> SolidModel::orderRows(const std::vector<std::vector<int
   for (std::size_t c = 0; c < colours.size(); ++c) {
     for (const int i : colours[c]) colourOf[static_cast<std::size_t>(i)] = c;
   }
-  std::vector<std::size_t> sizes;
   std::size_t row = 0;
   for (std::size_t c = 0; c < colours.size(); ++c) {
     const auto blocksOf = [&](int i) {
-      std::size_t left = 0;
-      for (const int n : graph[static_cast<std::size_t>(i)]) left += colourOf[static_cast<std::size_t>(n)] < c ? 1 : 0;
-      return std::pair(left, graph[static_cast<std::size_t>(i)].size() - left);
+      const std::vector<int>& own = graph[static_cast<std::size_t>(i)];
+      return std::count_if(own.begin(), own.end(), [&](int n) { return colourOf[static_cast<std::size_t>(n)] < c; });
     };
     for (std::size_t first = 0; first < colours[c].size(); first += sortedRows) {
       const std::size_t last = std::min(first + sortedRows, colours[c].size());
@@ -107,27 +105,26 @@ std::vector<std::size_t> SolidModel::orderRows(const std::vector<std::vector<int
     for (std::size_t i = 0; i < colours[c].size(); ++i) {
       row_[static_cast<std::size_t>(freeNode_[static_cast<std::size_t>(colours[c][i])])] = static_cast<int>(row + i);
     }
-    sizes.push_back(laneGroups(colours[c].size()) * laneCount);
-    row += sizes.back();
+    row += laneGroups(colours[c].size()) * laneCount;
   }
-  return sizes;
+  return row;
 }
 
 void SolidModel::buildStructure() {
   const std::size_t nodeCount = rest_.size();
   const std::vector<std::vector<int>> near = neighbours();
-  const std::vector<std::size_t> colours = orderRows(near);
-  std::vector<std::vector<int>> columns(std::accumulate(colours.begin(), colours.end(), std::size_t{0}));
+  std::vector<std::vector<int>> columns(orderRows(near));
   for (const int node : freeNode_) {
     const int row = row_[static_cast<std::size_t>(node)];
     std::vector<int>& own = columns[static_cast<std::size_t>(row)];
     own.push_back(row);
     for (const int n : near[static_cast<std::size_t>(node)]) {
-      if (row_[static_cast<std::size_t>(n)] >= 0) own.push_back(row_[static_cast<std::size_t>(n)]);
+      const int column = row_[static_cast<std::size_t>(n)];
+      if (column >= 0 && column < row) own.push_back(column);
     }
     std::sort(own.begin(), own.end());
   }
-  matrix_ = BlockMatrix(columns, colours);
+  matrix_ = BlockMatrix(columns);
 
   // Contributions to each block, in element order; incident corners of each node likewise.
   std::vector<std::vector<std::vector<Contribution>>> perSlot(columns.size());
@@ -142,7 +139,7 @@ void SolidModel::buildStructure() {
       const auto r = static_cast<std::size_t>(row_[node]);
       for (std::size_t b = 0; b < corner.size(); ++b) {
         const int c = row_[static_cast<std::size_t>(corner[b])];
-        if (c < 0) continue;
+        if (c < 0 || c > row_[node]) continue;
         const auto k =
             static_cast<std::size_t>(std::lower_bound(columns[r].begin(), columns[r].end(), c) - columns[r].begin());
         perSlot[r][k].push_back(
@@ -155,16 +152,27 @@ void SolidModel::buildStructure() {
   for (std::size_t r = 0; r < columns.size(); ++r) {
     rowSlot_.push_back(slotColumn_.size());
     for (std::size_t k = 0; k < columns[r].size(); ++k) {
-      const auto c = static_cast<std::size_t>(columns[r][k]);
       slotColumn_.push_back(columns[r][k]);
       slotPlace_.push_back(matrix_.slot(r, k));
-      if (c < r) continue;
-      const auto mirror =
-          std::lower_bound(columns[c].begin(), columns[c].end(), static_cast<int>(r)) - columns[c].begin();
-      const std::size_t first = contribution_.size();
-      contribution_.insert(contribution_.end(), perSlot[r][k].begin(), perSlot[r][k].end());
-      slot_.push_back({matrix_.slot(r, k), matrix_.slot(c, static_cast<std::size_t>(mirror)), nodeOf[r], first,
-                       contribution_.size()});
+      const std::int32_t node = columns[r][k] == static_cast<int>(r) ? nodeOf[r] : -1;
+      if (!madeOfCubes()) {
+        const std::size_t first = contribution_.size();
+        contribution_.insert(contribution_.end(), perSlot[r][k].begin(), perSlot[r][k].end());
+        slot_.push_back({slotPlace_.back(), node, first, contribution_.size(), contribution_.size()});
+        continue;
+      }
+      const std::size_t first = cubeBlock_.size();
+      std::size_t turned = first;
+      for (const bool transposed : {false, true}) {
+        for (const Contribution& c : perSlot[r][k]) {
+          if ((c.a > c.b) != transposed) continue;
+          cubeBlock_.push_back(
+              static_cast<std::uint32_t>(36 * static_cast<std::size_t>(c.element) +
+                                         HexahedralElements::pairOf(std::min(c.a, c.b), std::max(c.a, c.b))));
+        }
+        if (!transposed) turned = cubeBlock_.size();
+      }
+      slot_.push_back({slotPlace_.back(), node, first, cubeBlock_.size(), turned});
     }
   }
   rowSlot_.push_back(slotColumn_.size());
@@ -173,7 +181,7 @@ void SolidModel::buildStructure() {
       for (const int b : cornersOf(e)) {
         const int row = row_[static_cast<std::size_t>(a)];
         const int column = row_[static_cast<std::size_t>(b)];
-        elementSlot_.push_back(row < 0 || column < 0 ? noSlot : slotOf(row, column));
+        elementSlot_.push_back(column < 0 || column > row ? noSlot : slotOf(row, column));
       }
     }
   }

@@ -67,7 +67,7 @@ class SolidModel {
     return laneOffset(static_cast<std::size_t>(row_[node]));
   }
   static constexpr std::size_t noSlot = ~std::size_t{0};
-  /// Slot of block (row, column), or noSlot where no element has both as corners.
+  /// Slot of block (row, column), or noSlot where no element has both as corners. @pre column <= row
   [[nodiscard]] std::size_t slotOf(int row, int column) const;
   /// Nodal masses of partly filled cubes (kg).
   void massOf(std::span<const double> fill, std::vector<double>& mass) const;
@@ -84,13 +84,13 @@ class SolidModel {
   [[nodiscard]] std::size_t elementCount() const { return madeOfCubes() ? cube_.size() : tetrahedra_.size(); }
   struct SlotRange {
     std::size_t slot;         ///< in the matrix values
-    std::size_t mirror;       ///< of block (column, row), its transpose
-    std::int32_t node;        ///< of the row
-    std::size_t first, last;  ///< in contributions
+    std::int32_t node;        ///< of a diagonal block; else -1
+    std::size_t first, last;  ///< in contributions; of cubes in cubeBlock_,
+    std::size_t turned;       ///< of which those from here on are transposed
   };
 
   void buildStructure();
-  std::vector<std::size_t> orderRows(const std::vector<std::vector<int>>& near);
+  std::size_t orderRows(const std::vector<std::vector<int>>& near);
   [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
 
   std::vector<Vec3> rest_;
@@ -103,12 +103,14 @@ class SolidModel {
   std::vector<int> row_;
   std::vector<int> freeNode_;  ///< nodes that move, ascending
   BlockMatrix matrix_;
-  std::vector<SlotRange> slot_;           ///< blocks with column >= row, in row order
-  std::vector<std::size_t> rowSlot_;      ///< per row: the first of its places in the next two; and the end
-  std::vector<int> slotColumn_;           ///< columns of all blocks of a row, ascending
-  std::vector<std::size_t> slotPlace_;    ///< and where they stand in the matrix values
-  std::vector<std::size_t> elementSlot_;  ///< of the blocks of each element's corners, row by row; noSlot where fixed
-  std::vector<Contribution> contribution_;
+  std::vector<SlotRange> slot_;             ///< blocks with column <= row, in row order
+  std::vector<std::size_t> rowSlot_;        ///< per row: the first of its places in the next two; and the end
+  std::vector<int> slotColumn_;             ///< columns of a row's blocks up to the diagonal, ascending
+  std::vector<std::size_t> slotPlace_;      ///< and where they stand in the matrix values
+  std::vector<std::size_t> elementSlot_;    ///< of the blocks of each element's corners, row by row; noSlot where fixed
+                                            ///< or right of the diagonal
+  std::vector<Contribution> contribution_;  ///< of tetrahedra
+  std::vector<std::uint32_t> cubeBlock_;    ///< of cubes: which of their blocks, 36 of each, are added into a slot
   std::vector<std::size_t> incidentStart_;  ///< per node
   std::vector<Contribution> incident_;      ///< element and corner of each incident element
 };
@@ -198,8 +200,7 @@ class SolidSolver {
 
   /// Adds the answer to impulses on the nodes to freeVelocity(): dv = A^-1 impulse. @pre freeMotion() of this step was
   /// called. @param impulse per node (N s)
-  SolveReport push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings,
-                   Executor& executor);
+  SolveReport push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings);
 
   /// Velocity responses to up to eight unit impulses, each spread over nodes: column k answers impulse[k].
   /// @pre freeMotion() of this step was called.
@@ -211,7 +212,7 @@ class SolidSolver {
     Vec3 impulse = Vec3::Zero();             ///< N s
   };
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
-                        std::vector<std::vector<Vec3>>& response, Executor& executor);
+                        std::vector<std::vector<Vec3>>& response);
 
   /// v = freeVelocity() + correction (or nothing), x += h v. Cubes' corners are held back to 5 m/s, nodes of tetrahedra
   /// to as much beyond the mean of all. Values that are not finite stop the node instead of entering State.
@@ -228,11 +229,14 @@ class SolidSolver {
   bool addToElement(const SolidModel& model, const Attachment& attachment, double step);
   void addPair(const SolidModel& model, const SolidPlace& p, const SolidPlace& q, const Mat3& damper, double step);
   void addBlock(const SolidModel& model, const SolidModel::Contribution& contribution, std::array<float, 9>& block,
-                float lambda, float mu, float scale) const;
+                float lambda, float mu) const;
+  void addCubes(const SolidModel& model, const SolidModel::SlotRange& range, std::array<float, 9>& block,
+                float scale) const;
   [[nodiscard]] Vec3 cornerForce(const SolidModel& model, const SolidModel::Contribution& contribution) const;
 
   std::vector<ElementResult> element_;
   std::vector<HexahedronResult> hexahedron_;
+  std::vector<HexahedronBlocks> hexahedronBlock_;
   std::vector<double> mass_;  ///< of the nodes, where cubes are not full
   std::vector<Vec3> load_;    ///< on the nodes from outside (N)
   std::vector<float> values_;

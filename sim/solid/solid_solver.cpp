@@ -21,25 +21,13 @@ constexpr double orphanMass = 1.0;  ///< of a node that only empty cubes hold (k
 
 }  // namespace
 
-/// Block K_ab of one element, scaled for the system.
+/// Block K_ab of one tetrahedron, scaled for the system.
 inline void SolidSolver::addBlock(const SolidModel& model, const SolidModel::Contribution& contribution,
-                                  std::array<float, 9>& block, float lambda, float mu, float scale) const {
+                                  std::array<float, 9>& block, float lambda, float mu) const {
   const auto e = static_cast<std::size_t>(contribution.element);
   const std::size_t l = e % laneCount;
   const auto a = static_cast<std::size_t>(contribution.a);
   const auto b = static_cast<std::size_t>(contribution.b);
-  if (model.madeOfCubes()) {
-    const auto& stored =
-        hexahedron_[e / laneCount].block[l][HexahedralElements::pairOf(std::min(a, b), std::max(a, b))];
-    if (a <= b) {
-      for (std::size_t k = 0; k < 9; ++k) block[k] += scale * stored[k];
-      return;
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += scale * stored[3 * j + i];
-    }
-    return;
-  }
   const ElementResult& element = element_[e / laneCount];
   const auto volume = static_cast<float>(model.elements().groups()[e / laneCount].volume[l]);
   const float ga[3] = {element.gradient[a][0][l], element.gradient[a][1][l], element.gradient[a][2][l]};
@@ -50,6 +38,26 @@ inline void SolidSolver::addBlock(const SolidModel& model, const SolidModel::Con
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += lv * (ga[i] * gb[j]) + mv * (gb[i] * ga[j]);
     block[4 * i] += diagonal;
+  }
+}
+
+/// A block of the matrix of cubes.
+inline void SolidSolver::addCubes(const SolidModel& model, const SolidModel::SlotRange& range,
+                                  std::array<float, 9>& block, float scale) const {
+  std::array<float, 9> sum{};
+  std::array<float, 9> turned{};
+  static_assert(sizeof(HexahedronBlocks) == 36 * sizeof(std::array<float, 9>));
+  const std::array<float, 9>* block0 = hexahedronBlock_.front().data();  // of all cubes, one after the other
+  const auto add = [&](std::size_t first, std::size_t last, std::array<float, 9>& to) {
+    for (std::size_t c = first; c < last; ++c) {
+      const std::array<float, 9>& from = block0[model.cubeBlock_[c]];
+      for (std::size_t k = 0; k < 9; ++k) to[k] += from[k];
+    }
+  };
+  add(range.first, range.turned, sum);
+  add(range.turned, range.last, turned);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] = scale * (sum[3 * i + j] + turned[3 * j + i]);
   }
 }
 
@@ -78,20 +86,19 @@ void SolidSolver::assemble(const SolidModel& model, const Settings& settings, co
     for (std::size_t s = task * blocksPerTask; s < last; ++s) {
       const SolidModel::SlotRange& range = model.slot_[s];
       std::array<float, 9> block{};
-      for (std::size_t c = range.first; c < range.last; ++c) {
-        addBlock(model, model.contribution_[c], block, lambda, mu, scale);
+      if (model.madeOfCubes()) {
+        addCubes(model, range, block, scale);
+      } else {
+        for (std::size_t c = range.first; c < range.last; ++c) {
+          addBlock(model, model.contribution_[c], block, lambda, mu);
+        }
       }
-      if (range.slot == range.mirror) {
+      if (range.node >= 0) {
         const double own = masses[static_cast<std::size_t>(range.node)];
         const auto mass = static_cast<float>(own > 0.0 ? massScale * own : orphanMass);
         for (std::size_t i = 0; i < 3; ++i) block[4 * i] += mass;
       }
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-          values_[range.slot + (3 * i + j) * laneCount] = block[3 * i + j];
-          values_[range.mirror + (3 * j + i) * laneCount] = block[3 * i + j];
-        }
-      }
+      for (std::size_t k = 0; k < 9; ++k) values_[range.slot + k * laneCount] = block[k];
     }
   });
   addAttachments(model, settings, surroundings.attachments);
@@ -144,7 +151,9 @@ void SolidSolver::addPair(const SolidModel& model, const SolidPlace& p, const So
     for (std::size_t b = 0; b < q.count; ++b) {
       const int column = model.row(static_cast<std::size_t>(q.node[b]));
       if (column < 0) continue;
-      const std::size_t at = model.slotOf(row, column);
+      const bool mirrored = column > row;  // its transpose comes as well, for the damper is symmetric
+      const std::size_t at = mirrored ? model.slotOf(column, row) : model.slotOf(row, column);
+      if (mirrored && at != SolidModel::noSlot) continue;
       const double share = step * (p.weight[a] * q.weight[b]);
       if (isotropic && at != SolidModel::noSlot) {
         const auto own = static_cast<float>(share * damper(0, 0));
@@ -173,8 +182,9 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
   const SolidModel::Material& m = model.material_;
   if (model.madeOfCubes()) {
     hexahedron_.resize(model.groups());
+    hexahedronBlock_.resize(model.groups() * laneCount);
     model.hexahedra().evaluate(state.position, state.velocity, h + m.stiffnessDamping, settings.rotationSweeps,
-                               surroundings.fill, state.rotation, hexahedron_, executor);
+                               surroundings.fill, state.rotation, hexahedron_, hexahedronBlock_, executor);
     if (!surroundings.fill.empty()) model.massOf(surroundings.fill, mass_);
   } else {
     element_.resize(model.groups());
@@ -224,8 +234,8 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
       }
     }
   });
-  cg_.prepare(model.matrix_, values_, executor, extra_);
-  const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
+  cg_.prepare(model.matrix_, values_, extra_);
+  const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());
   for (const int f : model.freeNode_) {
     const auto node = static_cast<std::size_t>(f);
@@ -236,7 +246,7 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
 }
 
 SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
-                                   std::vector<std::vector<Vec3>>& response, Executor& executor) {
+                                   std::vector<std::vector<Vec3>>& response) {
   const std::size_t size = model.matrix_.vectorSize() * laneCount;
   b_.assign(size, 0.0F);
   x_.resize(size);
@@ -250,7 +260,7 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
       }
     }
   }
-  const SolveReport report = cg_.solveMany(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
+  const SolveReport report = cg_.solveMany(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap);
   response.resize(impulses.size());
   for (std::size_t n = 0; n < impulses.size(); ++n) {
     response[n].assign(model.nodes(), Vec3::Zero());
@@ -263,8 +273,7 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
   return report;
 }
 
-SolveReport SolidSolver::push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings,
-                              Executor& executor) {
+SolveReport SolidSolver::push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings) {
   b_.assign(model.matrix_.vectorSize(), 0.0F);
   x_.resize(model.matrix_.vectorSize());
   for (const int f : model.freeNode_) {
@@ -273,7 +282,7 @@ SolveReport SolidSolver::push(const SolidModel& model, std::span<const Vec3> imp
       b_[model.offsetOf(node) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(impulse[node][i]);
     }
   }
-  const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap, executor);
+  const SolveReport report = cg_.solve(model.matrix_, values_, b_, x_, settings.tolerance, settings.cap);
   for (const int f : model.freeNode_) {
     const auto node = static_cast<std::size_t>(f);
     const std::size_t at = model.offsetOf(node);

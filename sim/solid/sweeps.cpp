@@ -1,141 +1,272 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/solid/sweeps.h"
 
+#include <cstring>
+
 namespace calot::sweeps {
 
 namespace {
 
 #define CALOT_INLINE inline __attribute__((always_inline))  // into the clones of the kernels
 
-/// Entry `at` of the blocks of all lanes: of each its own, or of one row for all.
-template <bool many>
-CALOT_INLINE float entry(const float* value, std::size_t at, std::size_t lane) {
-  return value[at * laneCount + (many ? 0 : lane)];
+// Vectors by name: left to itself the compiler takes rows one by one here. Passed by reference, for by value they would
+// follow another calling convention where the machine is not known to have registers as wide.
+using Four = float __attribute__((vector_size(4 * sizeof(float))));
+using Eight = float __attribute__((vector_size(laneCount * sizeof(float))));
+using EightDoubles = double __attribute__((vector_size(laneCount * sizeof(double))));
+
+template <class Vector, class Number>
+CALOT_INLINE void read(const Number* at, Vector& out) {
+  std::memcpy(&out, at, sizeof out);
 }
 
-/// y = sum of blocks x.
+template <class Vector, class Number>
+CALOT_INLINE void write(const Vector& v, Number* at) {
+  std::memcpy(at, &v, sizeof v);
+}
+
+/// Two rows of four numbers after one another in each half.
+CALOT_INLINE void join(const Four& low, const Four& high, Eight& out) {
+  out = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+/// Eight rows, which begin row[l] numbers from x, as three components of eight lanes.
+CALOT_INLINE void turned(const float* x, const std::int32_t* row, Eight* out) {
+  Four first[4];  // of rows 2 l and 2 l + 1: x x y y
+  Four last[4];   // and z z and what fills up
+  for (std::size_t l = 0; l < 4; ++l) {
+    Four a;
+    Four b;
+    read(x + row[2 * l], a);
+    read(x + row[2 * l + 1], b);
+    first[l] = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+    last[l] = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  }
+  Eight even;
+  Eight odd;
+  join(first[0], first[2], even);
+  join(first[1], first[3], odd);
+  out[0] = __builtin_shufflevector(even, odd, 0, 1, 8, 9, 4, 5, 12, 13);
+  out[1] = __builtin_shufflevector(even, odd, 2, 3, 10, 11, 6, 7, 14, 15);
+  join(last[0], last[2], even);
+  join(last[1], last[3], odd);
+  out[2] = __builtin_shufflevector(even, odd, 0, 1, 8, 9, 4, 5, 12, 13);
+}
+
+/// Three components of eight lanes as eight rows: row l in half l / 4 of out[l % 4].
+CALOT_INLINE void turnedBack(const Eight* lanes, Eight* out) {
+  const Eight none{};
+  const Eight low = __builtin_shufflevector(lanes[0], lanes[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Eight high = __builtin_shufflevector(lanes[0], lanes[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Eight lowLast = __builtin_shufflevector(lanes[2], none, 0, 8, 1, 9, 4, 12, 5, 13);
+  const Eight highLast = __builtin_shufflevector(lanes[2], none, 2, 10, 3, 11, 6, 14, 7, 15);
+  out[0] = __builtin_shufflevector(low, lowLast, 0, 1, 8, 9, 4, 5, 12, 13);
+  out[1] = __builtin_shufflevector(low, lowLast, 2, 3, 10, 11, 6, 7, 14, 15);
+  out[2] = __builtin_shufflevector(high, highLast, 0, 1, 8, 9, 4, 5, 12, 13);
+  out[3] = __builtin_shufflevector(high, highLast, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// Adds four numbers.
+CALOT_INLINE void addTo(float* at, const Four& what) {
+  Four own;
+  read(at, own);
+  own += what;
+  write(own, at);
+}
+
+/// Adds three components of eight lanes to rows, which begin row[l] numbers from x, in order of the lanes.
+CALOT_INLINE void addRows(const Eight* lanes, const std::int32_t* row, float* x) {
+  Eight rows[4];
+  turnedBack(lanes, rows);
+  for (std::size_t l = 0; l < 4; ++l) addTo(x + row[l], __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3));
+  for (std::size_t l = 0; l < 4; ++l) addTo(x + row[4 + l], __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7));
+}
+
+/// Rows that follow one another.
+constexpr std::int32_t inOrder[laneCount] = {0, 4, 8, 12, 16, 20, 24, 28};
+static_assert(rowStride == 4 && laneCount == 8);
+
+/// Keeps a slice's rows in the copy of the vector by rows.
+CALOT_INLINE void keepRows(const Eight* lanes, float* rows) {
+  Eight out[4];
+  turnedBack(lanes, out);
+  for (std::size_t l = 0; l < 4; ++l) {
+    write(Four(__builtin_shufflevector(out[l], out[l], 0, 1, 2, 3)), rows + inOrder[l]);
+    write(Four(__builtin_shufflevector(out[l], out[l], 4, 5, 6, 7)), rows + inOrder[4 + l]);
+  }
+}
+
+/// One row of a block times d. @param value its first entry: of all lanes each its own, or (many) of one row for all
 template <bool many>
-CALOT_INLINE void addProducts(const Blocks& blocks, const float* x, float* y0, float* y1, float* y2) {
-  for (std::size_t k = 0; k < blocks.width; ++k) {
-    const float* v = blocks.value + k * 9 * laneCount;
-    const std::int32_t* c = blocks.column + k * laneCount;
-    // The offset of a row in the layout of one vector gives its row, and so its place in the layout of eight.
-    const auto first = static_cast<std::size_t>(c[0]);
-    const float* all = many ? x + (first / laneStride * laneCount + first % laneStride) * laneStride : x;
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      const std::size_t column = many ? l : static_cast<std::size_t>(c[l]);
-      const float x0 = all[column];
-      const float x1 = all[column + laneCount];
-      const float x2 = all[column + 2 * laneCount];
-      y0[l] += (entry<many>(v, 0, l) * x0 + entry<many>(v, 1, l) * x1) + entry<many>(v, 2, l) * x2;
-      y1[l] += (entry<many>(v, 3, l) * x0 + entry<many>(v, 4, l) * x1) + entry<many>(v, 5, l) * x2;
-      y2[l] += (entry<many>(v, 6, l) * x0 + entry<many>(v, 7, l) * x1) + entry<many>(v, 8, l) * x2;
-    }
+CALOT_INLINE void rowTimes(const float* value, const Eight* d, Eight& out) {
+  if constexpr (many) {
+    out = (value[0] * d[0] + value[laneCount] * d[1]) + value[2 * laneCount] * d[2];
+  } else {
+    Eight v[3];
+    read(value, v);
+    out = (v[0] * d[0] + v[1] * d[1]) + v[2] * d[2];
   }
 }
 
 /// out = block d.
 template <bool many>
-CALOT_INLINE void product(const float* block, const float* d0, const float* d1, const float* d2, float* out) {
-  for (std::size_t l = 0; l < laneCount; ++l) {
-    out[l] = (entry<many>(block, 0, l) * d0[l] + entry<many>(block, 1, l) * d1[l]) + entry<many>(block, 2, l) * d2[l];
-    out[8 + l] =
-        (entry<many>(block, 3, l) * d0[l] + entry<many>(block, 4, l) * d1[l]) + entry<many>(block, 5, l) * d2[l];
-    out[16 + l] =
-        (entry<many>(block, 6, l) * d0[l] + entry<many>(block, 7, l) * d1[l]) + entry<many>(block, 8, l) * d2[l];
+CALOT_INLINE void product(const float* block, const Eight* d, Eight* out) {
+  for (std::size_t i = 0; i < 3; ++i) rowTimes<many>(block + 3 * i * laneCount, d, out[i]);
+}
+
+/// One column of a block, which is a row of its transpose, times d.
+template <bool many>
+CALOT_INLINE void columnTimes(const float* value, const Eight* d, Eight& out) {
+  if constexpr (many) {
+    out = (value[0] * d[0] + value[3 * laneCount] * d[1]) + value[6 * laneCount] * d[2];
+  } else {
+    Eight v[3];
+    for (std::size_t i = 0; i < 3; ++i) read(value + 3 * i * laneCount, v[i]);
+    out = (v[0] * d[0] + v[1] * d[1]) + v[2] * d[2];
+  }
+}
+
+/// Of a row of a matrix of eight right-hand sides: where it begins.
+CALOT_INLINE std::size_t manyAt(std::int32_t column) {
+  return static_cast<std::size_t>(column) / rowStride * laneStride;
+}
+
+/// Where the rows of a slice begin in a vector by rows, or the row itself (many).
+template <bool many>
+CALOT_INLINE std::size_t rowsAt(std::size_t at) {
+  return many ? at : at / 3 * rowStride;
+}
+
+template <bool many>
+CALOT_INLINE void readRows(const float* rows, std::size_t at, Eight* out) {
+  if constexpr (many) {
+    std::memcpy(out, rows + at, 3 * sizeof *out);
+  } else {
+    turned(rows + rowsAt<many>(at), inOrder, out);
   }
 }
 
 template <bool many>
-CALOT_INLINE void backwardLanes(const Blocks& upper, const float* inverse, const float* z, const float* beta, float* p,
+CALOT_INLINE void backwardLanes(const Blocks& lower, const float* inverse, const float* z, const float* beta, float* p,
                                 float* t, float* u, std::size_t at) {
-  float y0[laneCount] = {};
-  float y1[laneCount] = {};
-  float y2[laneCount] = {};
-  addProducts<many>(upper, t, y0, y1, y2);
-  for (std::size_t l = 0; l < laneCount; ++l) {
-    u[at + l] = y0[l];
-    u[at + 8 + l] = y1[l];
-    u[at + 16 + l] = y2[l];
-  }
-  for (std::size_t l = 0; l < laneCount; ++l) {
-    const float p0 = z[at + l] + beta[l] * p[at + l];
-    const float p1 = z[at + 8 + l] + beta[l] * p[at + 8 + l];
-    const float p2 = z[at + 16 + l] + beta[l] * p[at + 16 + l];
-    y0[l] = p0 - y0[l];
-    y1[l] = p1 - y1[l];
-    y2[l] = p2 - y2[l];
-    p[at + l] = p0;
-    p[at + 8 + l] = p1;
-    p[at + 16 + l] = p2;
-  }
-  product<many>(inverse, y0, y1, y2, t + at);
-}
-
-template <bool many>
-CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const float* u, float* s, const float* p,
-                               const float* t, double* dot, std::size_t at) {
-  float y0[laneCount] = {};
-  float y1[laneCount] = {};
-  float y2[laneCount] = {};
-  addProducts<many>(lower, s, y0, y1, y2);
-  for (std::size_t l = 0; l < laneCount; ++l) {
-    y0[l] = u[at + l] - y0[l];
-    y1[l] = u[at + 8 + l] - y1[l];
-    y2[l] = u[at + 16 + l] - y2[l];
-  }
-  product<many>(inverse, y0, y1, y2, s + at);
+  Eight y[3];
+  readRows<many>(u, at, y);
+  Eight b;
+  read(beta, b);
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      const std::size_t a = at + i * laneCount + l;
-      dot[l] += static_cast<double>(p[a]) * static_cast<double>(t[a] + s[a]);
+    Eight own;
+    Eight before;
+    read(z + at + i * laneCount, own);
+    read(p + at + i * laneCount, before);
+    own += b * before;
+    write(own, p + at + i * laneCount);
+    y[i] = own - y[i];
+  }
+  Eight out[3];
+  product<many>(inverse, y, out);
+  std::memcpy(t + at, out, sizeof out);
+  for (std::size_t k = 0; k < lower.width; ++k) {
+    const std::int32_t* column = lower.column + k * laneCount;
+    Eight part[3];
+    for (std::size_t i = 0; i < 3; ++i) columnTimes<many>(lower.value + (9 * k + i) * laneCount, out, part[i]);
+    if constexpr (many) {
+      Eight own[3];
+      float* place = u + manyAt(column[0]);
+      std::memcpy(own, place, sizeof own);
+      for (std::size_t i = 0; i < 3; ++i) own[i] += part[i];
+      std::memcpy(place, own, sizeof own);
+    } else {
+      addRows(part, column, u);
     }
   }
+}
+
+template <bool many>
+CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const float* u, float* s, float* sRows,
+                               const float* p, const float* t, double* dot, std::size_t at) {
+  Eight y[3] = {};
+  for (std::size_t k = 0; k < lower.width; ++k) {
+    const std::int32_t* column = lower.column + k * laneCount;
+    Eight d[3];
+    if constexpr (many) {
+      std::memcpy(d, s + manyAt(column[0]), sizeof d);
+    } else {
+      turned(sRows, column, d);
+    }
+    Eight part[3];
+    product<many>(lower.value + k * 9 * laneCount, d, part);
+    for (std::size_t i = 0; i < 3; ++i) y[i] += part[i];
+  }
+  Eight own[3];
+  readRows<many>(u, at, own);
+  for (std::size_t i = 0; i < 3; ++i) y[i] = own[i] - y[i];
+  Eight out[3];
+  product<many>(inverse, y, out);
+  std::memcpy(s + at, out, sizeof out);
+  if constexpr (!many) keepRows(out, sRows + rowsAt<many>(at));
+  EightDoubles sum;
+  read(dot, sum);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Eight direction;
+    Eight before;
+    read(p + at + i * laneCount, direction);
+    read(t + at + i * laneCount, before);
+    sum += __builtin_convertvector(direction, EightDoubles) * __builtin_convertvector(before + out[i], EightDoubles);
+  }
+  write(sum, dot);
 }
 
 template <bool many>
 CALOT_INLINE void updateLanes(const float* diagonal, const float* alpha, const float* t, const float* s, float* x,
                               float* r, float* z, double* dot, std::size_t at) {
-  float next[3][laneCount];
+  Eight by;
+  read(alpha, by);
+  Eight next[3];
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      const std::size_t a = at + i * laneCount + l;
-      x[a] += alpha[l] * t[a];
-      next[i][l] = r[a] - alpha[l] * (t[a] + s[a]);
-    }
+    const std::size_t a = at + i * laneCount;
+    Eight step;
+    Eight rest;
+    Eight own;
+    read(t + a, step);
+    read(s + a, rest);
+    read(x + a, own);
+    own += by * step;
+    write(own, x + a);
+    read(r + a, own);
+    next[i] = own - by * (step + rest);
   }
-  float scaled[laneStride];
-  product<many>(diagonal, next[0], next[1], next[2], scaled);
+  Eight scaled[3];
+  product<many>(diagonal, next, scaled);
+  EightDoubles sum;
+  read(dot, sum);
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      const std::size_t a = at + i * laneCount + l;
-      r[a] = next[i][l];
-      z[a] = scaled[i * laneCount + l];
-      dot[l] += static_cast<double>(next[i][l]) * static_cast<double>(scaled[i * laneCount + l]);
-    }
+    sum += __builtin_convertvector(next[i], EightDoubles) * __builtin_convertvector(scaled[i], EightDoubles);
   }
+  write(sum, dot);
+  std::memcpy(r + at, next, sizeof next);
+  std::memcpy(z + at, scaled, sizeof scaled);
 }
 
 }  // namespace
 
-CALOT_LANE_KERNEL void backward(const Blocks& upper, const float* inverse, const float* z, const float* beta, float* p,
+CALOT_LANE_KERNEL void backward(const Blocks& lower, const float* inverse, const float* z, const float* beta, float* p,
                                 float* t, float* u, std::size_t at) {
-  backwardLanes<false>(upper, inverse, z, beta, p, t, u, at);
+  backwardLanes<false>(lower, inverse, z, beta, p, t, u, at);
 }
 
-CALOT_LANE_KERNEL void backwardMany(const Blocks& upper, const float* inverse, const float* z, const float* beta,
+CALOT_LANE_KERNEL void backwardMany(const Blocks& lower, const float* inverse, const float* z, const float* beta,
                                     float* p, float* t, float* u, std::size_t at) {
-  backwardLanes<true>(upper, inverse, z, beta, p, t, u, at);
+  backwardLanes<true>(lower, inverse, z, beta, p, t, u, at);
 }
 
-CALOT_LANE_KERNEL void forward(const Blocks& lower, const float* inverse, const float* u, float* s, const float* p,
-                               const float* t, double* dot, std::size_t at) {
-  forwardLanes<false>(lower, inverse, u, s, p, t, dot, at);
+CALOT_LANE_KERNEL void forward(const Blocks& lower, const float* inverse, const float* u, float* s, float* sRows,
+                               const float* p, const float* t, double* dot, std::size_t at) {
+  forwardLanes<false>(lower, inverse, u, s, sRows, p, t, dot, at);
 }
 
 CALOT_LANE_KERNEL void forwardMany(const Blocks& lower, const float* inverse, const float* u, float* s, const float* p,
                                    const float* t, double* dot, std::size_t at) {
-  forwardLanes<true>(lower, inverse, u, s, p, t, dot, at);
+  forwardLanes<true>(lower, inverse, u, s, nullptr, p, t, dot, at);
 }
 
 CALOT_LANE_KERNEL void update(const float* diagonal, const float* alpha, const float* t, const float* s, float* x,

@@ -6,9 +6,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/math/lanes.h"
+
 namespace calot {
 
 namespace {
+
+using Columns = BlockTree::Columns;
 
 /// Lower Cholesky factor in place, reciprocals on the diagonal.
 bool factorBlock(Block6& a) {
@@ -29,9 +33,11 @@ bool factorBlock(Block6& a) {
   return positive;
 }
 
+#define CALOT_INLINE inline __attribute__((always_inline))  // into the clones of the kernels
+
 /// x <- L^-1 x for `width` columns of row-major x.
 template <std::size_t width>
-void forward(const Block6& l, double* x) {
+CALOT_INLINE void forward(const Block6& l, double* x) {
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       const double f = l[6 * i + k];
@@ -43,7 +49,7 @@ void forward(const Block6& l, double* x) {
 
 /// x <- L^-T x.
 template <std::size_t width>
-void backward(const Block6& l, double* x) {
+CALOT_INLINE void backward(const Block6& l, double* x) {
   for (std::size_t i = 6; i-- > 0;) {
     for (std::size_t k = i + 1; k < 6; ++k) {
       const double f = l[6 * k + i];
@@ -55,7 +61,7 @@ void backward(const Block6& l, double* x) {
 
 /// y -= W^T x.
 template <std::size_t width>
-void subtractTransposed(const Block6& w, const double* x, double* y) {
+CALOT_INLINE void subtractTransposed(const Block6& w, const double* x, double* y) {
   for (std::size_t k = 0; k < 6; ++k) {
     for (std::size_t i = 0; i < 6; ++i) {
       const double f = w[6 * k + i];
@@ -66,12 +72,31 @@ void subtractTransposed(const Block6& w, const double* x, double* y) {
 
 /// y -= W x.
 template <std::size_t width>
-void subtract(const Block6& w, const double* x, double* y) {
+CALOT_INLINE void subtract(const Block6& w, const double* x, double* y) {
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t k = 0; k < 6; ++k) {
       const double f = w[6 * i + k];
       for (std::size_t c = 0; c < width; ++c) y[width * i + c] -= f * x[width * k + c];
     }
+  }
+}
+
+/// BlockTree::columns(). @param x room for each node
+CALOT_LANE_KERNEL void columnsOf(const Block6* diagonal, const Block6* coupling, std::span<const int> parent,
+                                 std::size_t node, Columns* x, double* out) {
+  for (std::size_t i = 0; i < parent.size(); ++i) x[i].fill(0.0);
+  for (std::size_t k = 0; k < 3; ++k) x[node][5 * k] = 1.0;
+  // Going up, only the way from the node to its root is touched.
+  for (int at = static_cast<int>(node); at >= 0;) {
+    const auto i = static_cast<std::size_t>(at);
+    forward<4>(diagonal[i], x[i].data());
+    at = parent[i];
+    if (at >= 0) subtractTransposed<4>(coupling[i], x[i].data(), x[static_cast<std::size_t>(at)].data());
+  }
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    if (parent[i] >= 0) subtract<4>(coupling[i], x[static_cast<std::size_t>(parent[i])].data(), x[i].data());
+    backward<4>(diagonal[i], x[i].data());
+    for (std::size_t k = 0; k < 9; ++k) out[9 * i + k] = x[i][k / 3 * 4 + k % 3];
   }
 }
 
@@ -109,20 +134,7 @@ void BlockTree::solve(std::span<const int> parent, std::span<Vector6> x) const {
 }
 
 void BlockTree::columns(std::span<const int> parent, std::size_t node, std::span<double> out) {
-  for (std::array<double, 18>& block : work_) block.fill(0.0);
-  for (std::size_t k = 0; k < 3; ++k) work_[node][4 * k] = 1.0;
-  // Going up, only the way from the node to its root is touched.
-  for (int at = static_cast<int>(node); at >= 0;) {
-    const auto i = static_cast<std::size_t>(at);
-    forward<3>(diagonal_[i], work_[i].data());
-    at = parent[i];
-    if (at >= 0) subtractTransposed<3>(coupling_[i], work_[i].data(), work_[static_cast<std::size_t>(at)].data());
-  }
-  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-    if (parent[i] >= 0) subtract<3>(coupling_[i], work_[static_cast<std::size_t>(parent[i])].data(), work_[i].data());
-    backward<3>(diagonal_[i], work_[i].data());
-    for (std::size_t k = 0; k < 9; ++k) out[9 * i + k] = work_[i][k];
-  }
+  columnsOf(diagonal_.data(), coupling_.data(), parent, node, work_.data(), out.data());
 }
 
 }  // namespace calot

@@ -24,6 +24,9 @@ using Vector6 = std::array<double, 6>;
 
 class BlockTree {
  public:
+  /// Three columns of one node's block row, and one to fill up.
+  using Columns = std::array<double, 24>;
+
   /// Sets all blocks to zero. Allocates only when the number of nodes grows. @param nodes rows of the system
   void reset(std::size_t nodes);
 
@@ -46,7 +49,7 @@ class BlockTree {
  private:
   std::vector<Block6> diagonal_;  ///< after factor(): L_i, reciprocals on its diagonal
   std::vector<Block6> coupling_;  ///< after factor(): W_i
-  std::vector<std::array<double, 18>> work_;
+  std::vector<Columns> work_;
 };
 
 }  // namespace calot

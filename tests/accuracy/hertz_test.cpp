@@ -95,7 +95,7 @@ Indentation press(int cells, double fineness, double depth) {
         impulses.push_back(impulse);
       }
       std::vector<std::vector<Vec3>> batch;
-      solver.responses(model, impulses, settings, batch, executor);
+      solver.responses(model, impulses, settings, batch);
       for (std::vector<Vec3>& one : batch) response.push_back(std::move(one));
     }
     const auto along = [&](const SurfaceContact& c, const std::vector<Vec3>& field) {

@@ -14,31 +14,42 @@
 namespace calot {
 namespace {
 
+/// With cells, and without.
+constexpr std::size_t mostSwept[] = {0, 2048};
+
 TEST(SortedGrid, FindsEveryOverlapSortedAndOnce) {
   SCOPED_TRACE("seed 51");
-  SortedGrid grid(0.02);
-  test::checkUpdates(grid, 51);
+  for (const std::size_t swept : mostSwept) {
+    SortedGrid grid(0.02, swept);
+    test::checkUpdates(grid, 51);
+  }
 }
 
 TEST(SortedGrid, RefitsWhatMoved) {
   SCOPED_TRACE("seed 52");
-  SortedGrid grid(0.02);
-  test::checkRefits(grid, 52);
+  for (const std::size_t swept : mostSwept) {
+    SortedGrid grid(0.02, swept);
+    test::checkRefits(grid, 52);
+  }
 }
 
 TEST(SortedGrid, BoxesThatOnlyTouchOverlap) {
   SCOPED_TRACE("seed 53");
-  SortedGrid grid(0.02);
-  test::checkTightBoxes(grid, 53);
+  for (const std::size_t swept : mostSwept) {
+    SortedGrid grid(0.02, swept);
+    test::checkTightBoxes(grid, 53);
+  }
 }
 
 TEST(SortedGrid, ARefitGivesWhatAnUpdateGives) {
   SCOPED_TRACE("seed 54");
   Random random(54);
-  SortedGrid refitted(0.02);
+  SortedGrid refitted(0.02, 0);
+  SortedGrid swept(0.02);
   std::vector<Box> leaves(150);
   for (Box& box : leaves) box = test::randomBox(random);
   refitted.update(leaves);
+  swept.update(leaves);
   for (int trial = 0; trial < 50; ++trial) {
     std::vector<Box> before = leaves;
     for (int k = 0; k < 20; ++k) leaves[random.next() % leaves.size()] = test::randomBox(random);
@@ -47,7 +58,8 @@ TEST(SortedGrid, ARefitGivesWhatAnUpdateGives) {
     EXPECT_LE(changed.size(), 20U);
     EXPECT_GE(changed.size(), 10U);
     refitted.refit(leaves, changed);
-    SortedGrid fresh(0.02);
+    swept.refit(leaves, changed);
+    SortedGrid fresh(0.02, 0);
     fresh.update(leaves);
     std::vector<Box> queries(30);
     for (Box& box : queries) box = test::randomBox(random);
@@ -55,6 +67,8 @@ TEST(SortedGrid, ARefitGivesWhatAnUpdateGives) {
     std::vector<BroadPhase::Pair> b;
     refitted.pairs(queries, a);
     fresh.pairs(queries, b);
+    ASSERT_EQ(a, b) << trial;
+    swept.pairs(queries, a);
     ASSERT_EQ(a, b) << trial;
   }
 }

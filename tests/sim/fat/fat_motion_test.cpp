@@ -132,11 +132,11 @@ TEST(FatMotion, ComplianceOfRestKnowsTheTies) {
       SolidSolver::Impulse place = rig.body.contact().influence({c[0], c[1], c[2]}, Vec3::Constant(1.0 / 3.0));
       place.impulse = Vec3::UnitZ();
       std::vector<std::vector<Vec3>> response;
-      rig.solver.responses(model->solid(), {&place, 1}, rig.settings, response, rig.executor);
+      rig.solver.responses(model->solid(), {&place, 1}, rig.settings, response);
       double exact = 0.0;
       for (std::size_t k = 0; k < place.count; ++k) exact += place.weight[k] * response[0][slot(place.node[k])][2];
       RestCompliance& used = free_ ? free : rest;
-      used.require({place.node.data(), place.count}, rig.executor);
+      used.require({place.node.data(), place.count});
       Mat3 sum = Mat3::Zero();
       for (std::size_t a = 0; a < place.count; ++a) {
         for (std::size_t b = 0; b < place.count; ++b) {
