@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# From a clean clone to graded attempts: builds Calot, lets two synthetic performers do the whole operation once and clip
-# and cut duct and artery three times each, re-simulates every recording bit for bit while it is assessed into a cohort
-# database, compares the two profiles, and draws moments of the operation. All that it makes lies below demo/. Run
-# again, it keeps what this build would make again.
+# From a clean clone to graded attempts: builds Calot, lets two synthetic performers do the whole operation three times
+# each, re-simulates every recording bit for bit while it is assessed into a cohort database, compares the two profiles,
+# and draws moments of the operation. All that it makes lies below demo/. Run again, it keeps what this build would make
+# again.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -15,22 +15,19 @@ calot=$root/build/release/bin/calot
 demo=$root/demo/simulation-$("$calot" --version | sed 's/.*simulation version //')
 export CALOT_PROFILES="skilled unskilled"
 
-say "the whole operation: record and assess (each is re-simulated: every step and force, bit for bit)"
-CALOT_SCENE=cholecystectomy "$root/scripts/cohort.sh" 1 "$demo/operation"
-
-say "clip and cut, three times each"
-CALOT_SCENE=clip-and-cut "$root/scripts/cohort.sh" 3 "$demo/clip-and-cut"
-"$calot" replay "$demo/clip-and-cut/clip-and-cut-skilled-1.h5"
+say "the whole operation, three times each: record and assess (each is re-simulated: every step and force, bit for bit)"
+"$root/scripts/cohort.sh" 3 "$demo"
+"$calot" replay "$demo/cholecystectomy-skilled-1.h5"
 
 say "study: the two profiles side by side (synthetic performers: no statement about people)"
-"$calot" study "$demo/clip-and-cut/cohort.db" --group-by performer --include-synthetic
+"$calot" study "$demo/cohort.db" --group-by performer --include-synthetic
 
 say "draw"
 for time in 15 30 60 90; do
-  "$calot" render "$demo/operation/cholecystectomy-skilled-1.h5" --at "$time" --size 1280x720 --force -o "$demo/operation-$time-s.png"
+  "$calot" render "$demo/cholecystectomy-skilled-1.h5" --at "$time" --size 1280x720 --force -o "$demo/operation-$time-s.png"
 done
 
 say "done"
-echo "cohort databases: $demo/{operation,clip-and-cut}/cohort.db"
-echo "look at one:      $root/build/release/bin/calot-dashboard $demo/operation/cohort.db"
-echo "pictures:         $demo/operation-*.png"
+echo "cohort database: $demo/cohort.db"
+echo "look at it:      $root/build/release/bin/calot-dashboard $demo/cohort.db"
+echo "pictures:        $demo/operation-*.png"

@@ -40,7 +40,11 @@ Json rowJson(const Study& study, const StudyRow& row) {
   });
   j["shift"] = answerJson(row.shift, [](double shift) { return Json{{"hodges_lehmann", shift}}; });
   j["shift_interval"] = answerJson(row.shiftInterval, [](const ShiftInterval& i) {
-    return Json{{"lower", i.lower}, {"upper", i.upper}, {"level_asked", 0.95}, {"level_attained", i.attained}};
+    return Json{{"lower", i.lower},
+                {"upper", i.upper},
+                {"level_asked", 0.95},
+                {"level_attained", i.attained},
+                {"method", nameOf(i.method)}};
   });
   j["published"] = row.publishedExpert
                        ? Json{{"expert_mean", *row.publishedExpert}, {"novice_mean", *row.publishedNovice}}

@@ -6,12 +6,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "analytics/statistics/samples.h"
+
 namespace calot::analytics {
 namespace {
-
-bool allFinite(std::span<const double> values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
 
 constexpr const char* noValues = "no values";
 constexpr const char* notFinite = "a value is not finite";

@@ -2,52 +2,33 @@
 #include "analytics/statistics/two_groups.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
-#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/distributions.h"
 #include "analytics/statistics/rank_sum_distribution.h"
+#include "analytics/statistics/samples.h"
 
 namespace calot::analytics {
 namespace {
-
-/// Why these two groups can't be compared, or empty.
-std::string objection(std::span<const double> x, std::span<const double> y) {
-  if (x.empty() && y.empty()) return "both groups are empty";
-  if (x.empty()) return "the first group is empty";
-  if (y.empty()) return "the second group is empty";
-  for (const auto group : {x, y}) {
-    if (!std::all_of(group.begin(), group.end(), [](double v) { return std::isfinite(v); }))
-      return "a value is not finite";
-  }
-  return {};
-}
 
 struct Ranked {
   std::vector<double> ranks;  ///< of x, then y
   double sumX = 0.0;
   double u = 0.0;
-  double tieTerm = 0.0;  ///< sum of t^3 - t over groups of t equal values
+  double tieTerm = 0.0;
 };
 
 Ranked ranked(std::span<const double> x, std::span<const double> y) {
-  std::vector<double> pooled(x.begin(), x.end());
-  pooled.insert(pooled.end(), y.begin(), y.end());
+  const std::vector<double> all = pooled(x, y);
   Ranked r;
-  r.ranks = midRanks(pooled);
+  r.ranks = midRanks(all);
+  r.tieTerm = tieTerm(all);
   for (std::size_t i = 0; i < x.size(); ++i) r.sumX += r.ranks[i];
   const double nx = static_cast<double>(x.size());
   r.u = r.sumX - nx * (nx + 1.0) / 2.0;
-  std::sort(pooled.begin(), pooled.end());
-  for (std::size_t first = 0; first < pooled.size();) {
-    std::size_t next = first;
-    while (next < pooled.size() && pooled[next] == pooled[first]) ++next;
-    const double t = static_cast<double>(next - first);
-    r.tieTerm += t * t * t - t;
-    first = next;
-  }
   return r;
 }
 
@@ -63,7 +44,7 @@ std::vector<double> allDifferences(std::span<const double> x, std::span<const do
 }  // namespace
 
 Answer<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y, RankTest method) {
-  if (const std::string reason = objection(x, y); !reason.empty()) return Answer<MannWhitney>::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<MannWhitney>::none(reason);
   const Ranked r = ranked(x, y);
   const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size()), n = nx + ny;
   if (r.tieTerm == n * n * n - n) return Answer<MannWhitney>::none("all values are equal");
@@ -81,20 +62,19 @@ Answer<MannWhitney> mannWhitney(std::span<const double> x, std::span<const doubl
   }
   const double variance = nx * ny / 12.0 * (n + 1.0 - r.tieTerm / (n * (n - 1.0)));
   const double distance = std::max(0.0, std::abs(r.u - nx * ny / 2.0) - 0.5);
-  const boost::math::normal standard;
-  result.p = std::min(1.0, 2.0 * boost::math::cdf(boost::math::complement(standard, distance / std::sqrt(variance))));
+  result.p = normalTwoSided(distance / std::sqrt(variance));
   return result;
 }
 
 Answer<Superiority> superiority(std::span<const double> x, std::span<const double> y) {
-  if (const std::string reason = objection(x, y); !reason.empty()) return Answer<Superiority>::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<Superiority>::none(reason);
   const double pairs = static_cast<double>(x.size()) * static_cast<double>(y.size());
   const double u = ranked(x, y).u;
   return Superiority{u / pairs, (2.0 * u - pairs) / pairs};
 }
 
 Answer<double> hodgesLehmann(std::span<const double> x, std::span<const double> y) {
-  if (const std::string reason = objection(x, y); !reason.empty()) return Answer<double>::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<double>::none(reason);
   // Selection instead of sorting: there are nx ny of them.
   std::vector<double> differences = allDifferences(x, y);
   const auto upper = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
@@ -104,26 +84,53 @@ Answer<double> hodgesLehmann(std::span<const double> x, std::span<const double> 
   return lower + 0.5 * (*upper - lower);
 }
 
+const char* nameOf(ShiftMethod method) {
+  switch (method) {
+    case ShiftMethod::exact:
+      return "exact";
+    case ShiftMethod::conservative:
+      return "conservative";
+    case ShiftMethod::asymptotic:
+      return "asymptotic";
+  }
+  return "";
+}
+
 Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y, double level) {
   using Result = Answer<ShiftInterval>;
   assert(level > 0.0 && level < 1.0);
-  if (const std::string reason = objection(x, y); !reason.empty()) return Result::none(reason);
-  if (x.size() + y.size() > exactRankTestLimit) return Result::none("too many values for the exact interval");
-  const Ranked r = ranked(x, y);
-  if (r.tieTerm > 0.0) return Result::none("tied values have no exact interval");
-  const bool byX = x.size() <= y.size();
-  const std::size_t n = byX ? x.size() : y.size();
-  const RankSumDistribution distribution(r.ranks, n);
-  const double smallestSum = static_cast<double>(n) * static_cast<double>(n + 1) / 2.0;
-  // Lowest u with P(U <= u) >= alpha / 2, as R's qwilcox; U and nx ny - U have the same distribution without ties.
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
+  const double n = static_cast<double>(x.size() + y.size()), ties = tieTerm(pooled(x, y));
+  if (ties == n * n * n - n) return Result::none("all values are equal");
   const std::size_t pairs = x.size() * y.size();
+  // Rank u of the difference that ends the interval, from below and from above.
   std::size_t u = 0;
-  while (distribution.atMost(smallestSum + static_cast<double>(u)) < (1.0 - level) / 2.0) ++u;
-  if (u == 0) return Result::none("the groups are too small for an interval of this level");
+  ShiftInterval result;
+  if (x.size() + y.size() <= exactRankTestLimit) {
+    // The distribution without ties, whether there are any or not: that makes the closed interval conservative.
+    std::vector<double> ranks(x.size() + y.size());
+    std::iota(ranks.begin(), ranks.end(), 1.0);
+    const std::size_t fewer = std::min(x.size(), y.size());
+    const RankSumDistribution distribution(ranks, fewer);
+    const double smallestSum = static_cast<double>(fewer) * static_cast<double>(fewer + 1) / 2.0;
+    // Lowest u with P(U <= u) >= alpha / 2, as R's qwilcox; U and nx ny - U have the same distribution.
+    while (distribution.atMost(smallestSum + static_cast<double>(u)) < (1.0 - level) / 2.0) ++u;
+    if (u == 0) return Result::none("the groups are too small for an interval of this level");
+    result.attained = 1.0 - 2.0 * distribution.atMost(smallestSum + static_cast<double>(u) - 1.0);
+    result.method = ties > 0.0 ? ShiftMethod::conservative : ShiftMethod::exact;
+  } else {
+    const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size());
+    const double rank = nx * ny / 2.0 - normalQuantile(0.5 + level / 2.0) * std::sqrt(nx * ny * (n + 1.0) / 12.0);
+    if (rank < 1.0) return Result::none("the groups are too small for an interval of this level");
+    u = static_cast<std::size_t>(rank);
+    result.attained = level;
+    result.method = ShiftMethod::asymptotic;
+  }
   std::vector<double> differences = allDifferences(x, y);
   std::sort(differences.begin(), differences.end());
-  return ShiftInterval{differences[u - 1], differences[pairs - u],
-                       1.0 - 2.0 * distribution.atMost(smallestSum + static_cast<double>(u) - 1.0)};
+  result.lower = differences[u - 1];
+  result.upper = differences[pairs - u];
+  return result;
 }
 
 }  // namespace calot::analytics

@@ -39,14 +39,25 @@ Answer<Superiority> superiority(std::span<const double> x, std::span<const doubl
 /// Hodges-Lehmann estimate of the shift: median of all x_i - y_j (positive: x is larger). O(nx ny) memory.
 Answer<double> hodgesLehmann(std::span<const double> x, std::span<const double> y);
 
-struct ShiftInterval {
-  double lower = 0.0, upper = 0.0;
-  double attained = 0.0;  ///< coverage that the discrete distribution really gives, >= the one asked for
+enum class ShiftMethod {
+  exact,         ///< without ties
+  conservative,  ///< ties: the closed interval at the quantiles of the distribution without ties covers at least as
+                 ///< often
+  asymptotic     ///< beyond exactRankTestLimit values: the quantile of U by its normal approximation
 };
 
-/// Distribution-free interval of that shift: order statistics of the differences at the quantiles of the exact
-/// distribution of U (Hollander and Wolfe). No answer with ties, beyond exactRankTestLimit, or where the groups are too
-/// small for the level. @pre 0 < level < 1.
+const char* nameOf(ShiftMethod method);
+
+struct ShiftInterval {
+  double lower = 0.0, upper = 0.0;
+  double attained = 0.0;  ///< exact: coverage that the discrete distribution really gives, >= the one asked for;
+                          ///< conservative: its lower bound; asymptotic: the one asked for
+  ShiftMethod method = ShiftMethod::exact;
+};
+
+/// Distribution-free interval of that shift: order statistics of the differences at the quantiles of the distribution
+/// of U (Hollander and Wolfe 1999, 4.3); with ties, Noether (1967, J. Am. Stat. Assoc. 62:184). No answer where all
+/// values are equal or the groups are too small for the level. @pre 0 < level < 1.
 Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y, double level = 0.95);
 
 }  // namespace calot::analytics

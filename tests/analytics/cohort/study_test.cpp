@@ -249,6 +249,7 @@ TEST(Study, jsonAndCsvHoldTheTable) {
   const auto json = nlohmann::json::parse(studyJson(study));
   EXPECT_EQ(json.at("watermark"), "SYNTHETIC");
   EXPECT_EQ(json.at("rows").at(0).at("mann_whitney").at("method"), "exact");
+  EXPECT_EQ(json.at("rows").at(0).at("shift_interval").at("method"), "exact");
   EXPECT_DOUBLE_EQ(json.at("rows").at(0).at("groups").at(1).at("upper_quartile").get<double>(), 17.75);
   const std::string out = folder.file("csv");
   writeStudyCsv(study, out, false);

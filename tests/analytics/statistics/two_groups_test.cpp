@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analytics/statistics/rank_sum_distribution.h"
+#include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {
 namespace {
@@ -22,9 +23,7 @@ using Values = std::vector<double>;
 const Values term{0.80, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46};
 const Values early{1.15, 0.88, 0.90, 0.74, 1.21};
 
-// R, ?sleep: extra hours under two drugs (Student 1908), here as independent groups.
-const Values sleep1{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0};
-const Values sleep2{1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+using data::sleep1, data::sleep2;
 
 /// Two-sided p by going through every subset of the pooled mid-ranks.
 double bruteForceP(const Values& x, const Values& y) {
@@ -111,8 +110,13 @@ TEST(MannWhitney, sleepHasTies) {
   const auto effect = superiority(sleep1, sleep2);
   EXPECT_NEAR(effect->delta, -0.49, 1e-15);
   EXPECT_NEAR(effect->a, 0.255, 1e-15);
-  EXPECT_FALSE(hodgesLehmannInterval(sleep1, sleep2));
-  EXPECT_NE(hodgesLehmannInterval(sleep1, sleep2).reason().find("tied"), std::string::npos);
+  // R: d <- sort(outer(x, y, "-")); q <- qwilcox(.025, 10, 10); d[q], d[101 - q], 1 - 2 * pwilcox(q - 1, 10, 10).
+  const auto interval = hodgesLehmannInterval(sleep1, sleep2);
+  ASSERT_TRUE(interval) << interval.reason();
+  EXPECT_NEAR(interval->lower, -3.6, 1e-14);
+  EXPECT_NEAR(interval->upper, 0.1, 1e-14);
+  EXPECT_NEAR(interval->attained, 0.956742947455022, 5e-15);
+  EXPECT_EQ(interval->method, ShiftMethod::conservative);
 }
 
 TEST(MannWhitney, exactEqualsEnumerationWithAndWithoutTies) {
@@ -182,6 +186,7 @@ TEST(MannWhitney, degenerateInputAnswersWithAReason) {
   EXPECT_EQ(superiority(none, same).reason(), "the first group is empty");
   EXPECT_EQ(hodgesLehmann(same, none).reason(), "the second group is empty");
   EXPECT_NE(hodgesLehmannInterval(one, Values{2.0, 3.0}).reason().find("too small"), std::string::npos);
+  EXPECT_EQ(hodgesLehmannInterval(same, same).reason(), "all values are equal");
   // One against one is a legal, uninformative test.
   EXPECT_DOUBLE_EQ(mannWhitney(one, Values{2.0})->p, 1.0);
   EXPECT_DOUBLE_EQ(superiority(same, same)->delta, 0.0);
@@ -193,6 +198,23 @@ TEST(HodgesLehmannInterval, attainedLevelIsThatOfTheEnumeration) {
   const auto interval = hodgesLehmannInterval(x, y);
   ASSERT_TRUE(interval);
   EXPECT_NEAR(interval->attained, 1.0 - 4.0 / 126.0, 1e-14);
+}
+
+TEST(HodgesLehmannInterval, beyondTheLimitTheNormalQuantileOfU) {
+  // R: 41 and 72 values of aSAH's s100b; d <- sort(outer(x, y, "-")); u <- floor(41 * 72 / 2 - qnorm(.975) * sqrt(41 *
+  // 72 * 114 / 12)) is 1147; d[u] .06, d[41 * 72 + 1 - u] .25, median(d) .16. wilcox.test's search gives the same to
+  // 1e-4.
+  const auto interval = hodgesLehmannInterval(data::s100bPoor, data::s100bGood);
+  ASSERT_TRUE(interval) << interval.reason();
+  EXPECT_EQ(interval->method, ShiftMethod::asymptotic);
+  EXPECT_NEAR(interval->lower, 0.06, 1e-14);
+  EXPECT_NEAR(interval->upper, 0.25, 1e-14);
+  EXPECT_NEAR(*hodgesLehmann(data::s100bPoor, data::s100bGood), 0.16, 1e-14);
+  // wilcox.test(x, y): W 2159, p 4.50920257632946e-05.
+  const auto test = mannWhitney(data::s100bPoor, data::s100bGood);
+  EXPECT_FALSE(test->exact);
+  EXPECT_DOUBLE_EQ(test->u, 2159.0);
+  EXPECT_NEAR(test->p, 4.50920257632946e-05, 5e-18);
 }
 
 }  // namespace

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/statistics/bootstrap.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "analytics/statistics/distributions.h"
+#include "analytics/statistics/random_stream.h"
+#include "analytics/statistics/samples.h"
+
+namespace calot::analytics {
+namespace {
+
+using Groups = std::vector<std::vector<double>>;
+using OfGroups = std::function<Answer<double>(const Groups&)>;
+
+/// Order statistic (B + 1) p, linear in between; `extreme` is set where that is outside of them.
+double tail(const std::vector<double>& sorted, double p, bool& extreme) {
+  const double count = static_cast<double>(sorted.size()), place = (count + 1.0) * p;
+  if (place <= 1.0 || place >= count) extreme = true;
+  const double inside = std::clamp(place, 1.0, count);
+  const double below = std::min(std::floor(inside), count - 1.0);
+  const auto i = static_cast<std::size_t>(below) - 1;
+  return sorted[i] + (inside - below) * (sorted[i + 1] - sorted[i]);
+}
+
+/// BCa's acceleration.
+Answer<double> acceleration(const Groups& groups, const OfGroups& statistic) {
+  double cubes = 0.0, squares = 0.0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::size_t count = groups[g].size();
+    if (count < 2) return Answer<double>::none("BCa needs two values in each group");
+    std::vector<double> without(count);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      Groups rest = groups;
+      rest[g].erase(rest[g].begin() + static_cast<std::ptrdiff_t>(i));
+      const Answer<double> value = statistic(rest);
+      if (!value) return Answer<double>::none("BCa: with a value left out, " + value.reason());
+      without[i] = *value;
+      sum += *value;
+    }
+    const double n = static_cast<double>(count);
+    for (const double value : without) {
+      const double influence = (n - 1.0) * (sum / n - value) / n;
+      squares += influence * influence;
+      cubes += influence * influence * influence;
+    }
+  }
+  if (!(squares > 0.0)) return Answer<double>::none("BCa: no single value has any influence");
+  return cubes / (6.0 * squares * std::sqrt(squares));
+}
+
+Answer<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, const BootstrapOptions& options) {
+  using Result = Answer<Bootstrap>;
+  assert(options.resamples >= 99 && options.level > 0.0 && options.level < 1.0);
+  const Answer<double> estimate = statistic(groups);
+  if (!estimate) return Result::none(estimate.reason());
+  Bootstrap result;
+  result.estimate = *estimate;
+  result.seed = options.seed;
+  result.resamples = options.resamples;
+  RandomStream random(options.seed);
+  std::vector<double> values;
+  values.reserve(options.resamples);
+  Groups drawn = groups;
+  std::string lastReason;
+  for (std::size_t resample = 0; resample < options.resamples; ++resample) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (double& v : drawn[g]) v = groups[g][static_cast<std::size_t>(random.below(groups[g].size()))];
+    }
+    if (const Answer<double> value = statistic(drawn)) {
+      values.push_back(*value);
+    } else {
+      ++result.without;
+      lastReason = value.reason();
+    }
+  }
+  if (static_cast<double>(result.without) > mostResamplesWithout * static_cast<double>(options.resamples)) {
+    return Result::none(std::to_string(result.without) + " of " + std::to_string(options.resamples) +
+                        " resamples have no answer (" + lastReason + ")");
+  }
+  std::sort(values.begin(), values.end());
+  if (values.front() == values.back()) return Result::none("all resamples agree");
+  const double half = (1.0 - options.level) / 2.0;
+  double lower = half, upper = 1.0 - half;
+  if (options.method == BootstrapMethod::bca) {
+    const auto [first, last] = std::equal_range(values.begin(), values.end(), *estimate);
+    const double share = (static_cast<double>(first - values.begin()) + 0.5 * static_cast<double>(last - first)) /
+                         static_cast<double>(values.size());
+    if (!(share > 0.0 && share < 1.0)) return Result::none("BCa: all resamples are on one side of the estimate");
+    const Answer<double> a = acceleration(groups, statistic);
+    if (!a) return Result::none(a.reason());
+    result.bias = normalQuantile(share);
+    result.acceleration = *a;
+    const auto corrected = [&](double p) {
+      const double z = result.bias + normalQuantile(p);
+      const double denominator = 1.0 - *a * z;
+      // Beyond the pole the correction has left the data behind: the outermost resample, marked extreme.
+      if (!(denominator > 0.0)) return z > 0.0 ? 1.0 : 0.0;
+      return normalCdf(result.bias + z / denominator);
+    };
+    lower = corrected(half);
+    upper = corrected(1.0 - half);
+  }
+  result.interval.lower = tail(values, lower, result.extreme);
+  result.interval.upper = tail(values, upper, result.extreme);
+  result.interval.level = options.level;
+  result.interval.method = options.method == BootstrapMethod::bca ? "BCa bootstrap" : "percentile bootstrap";
+  return result;
+}
+
+}  // namespace
+
+Answer<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic, const BootstrapOptions& options) {
+  if (x.empty()) return Answer<Bootstrap>::none("no values");
+  if (!allFinite(x)) return Answer<Bootstrap>::none("a value is not finite");
+  return bootstrapOf(
+      {{x.begin(), x.end()}}, [&](const Groups& g) { return statistic(g[0]); }, options);
+}
+
+Answer<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
+                            const BootstrapOptions& options) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<Bootstrap>::none(reason);
+  return bootstrapOf(
+      {{x.begin(), x.end()}, {y.begin(), y.end()}}, [&](const Groups& g) { return statistic(g[0], g[1]); }, options);
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A pass mark from two groups that are known to pass and not to pass (Livingston and Zieky 1982; contrasting groups).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "analytics/statistics/answer.h"
+#include "analytics/statistics/interval.h"
+
+namespace calot::analytics {
+
+/// Which values are the better ones: the checkpoint's own direction, never the data's.
+enum class Better : std::uint8_t { lower, higher };
+
+struct NormalCurve {
+  double mean = 0.0, deviation = 1.0;
+};
+
+/// Where the two densities cross between their means: the root there of
+///   ln(s2 / s1) + (x - m2)^2 / (2 s2^2) - (x - m1)^2 / (2 s1^2) = 0.
+/// Between the means the left side is monotone, so there is one root or none: no answer where one curve lies above the
+/// other all the way, for equal means, or for a deviation that is not positive.
+Answer<double> crossing(const NormalCurve& first, const NormalCurve& second);
+
+struct ContrastingGroupsOptions {
+  bool logScale = false;  ///< curves of the logarithms (times); the cut is turned back
+  double level = 0.95;
+  std::size_t resamples = 9999;
+  std::uint64_t seed = 1;
+};
+
+struct Misjudged {
+  std::size_t observed = 0;  ///< people
+  double share = 0.0;        ///< of their group
+  double theoretical = 0.0;  ///< share under the fitted curve
+};
+
+struct ContrastingGroups {
+  double cut = 0.0;          ///< in the unit of the values; at the cut one passes
+  Misjudged falsePositives;  ///< novices who pass
+  Misjudged falseNegatives;  ///< experts who fail
+  /// Percentile bootstrap, groups resampled each for itself; with ten a group it is wide.
+  Answer<Interval> interval = Answer<Interval>::none("not computed");
+  std::size_t resamplesWithoutCut = 0;  ///< when there is an interval
+  std::uint64_t seed = 0;
+};
+
+/// The cut where the normal curves of the two groups cross between their means. No answer for fewer than two values in
+/// a group, a group without spread, curves that do not cross there, experts whose mean is not the better one, or values
+/// that are not positive on the log scale. @pre as bootstrap().
+Answer<ContrastingGroups> contrastingGroups(std::span<const double> experts, std::span<const double> novices,
+                                            Better better, const ContrastingGroupsOptions& options = {});
+
+}  // namespace calot::analytics

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The distributions that the statistics need, from Boost.Math, in one place.
+#pragma once
+
+namespace calot::analytics {
+
+double normalCdf(double z);
+/// @pre 0 < p < 1, here and below.
+double normalQuantile(double p);
+/// P(|Z| >= |z|).
+double normalTwoSided(double z);
+
+/// Student's t. @pre df > 0, not necessarily whole.
+double studentQuantile(double p, double df);
+/// P(|T| >= |t|).
+double studentTwoSided(double t, double df);
+
+/// Upper tail of chi-squared. @pre x >= 0.
+double chiSquaredUpper(double x, double df);
+
+/// Fisher's F. @pre df1 > 0, df2 > 0.
+double fisherQuantile(double p, double df1, double df2);
+
+/// Non-centrality for which P(T <= t) = p, T non-central t with df degrees of freedom. NaN where the series of Boost
+/// does not converge (|t| beyond some hundreds).
+double noncentralStudentParameter(double t, double df, double p);
+
+}  // namespace calot::analytics

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Several independent groups.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "analytics/statistics/answer.h"
+
+namespace calot::analytics {
+
+struct KruskalWallis {
+  double h = 0.0;   ///< corrected for ties
+  double df = 0.0;  ///< groups less one
+  double p = 1.0;   ///< chi-squared: an approximation, rough where groups have fewer than five values
+};
+
+/// Kruskal and Wallis (1952, J. Am. Stat. Assoc. 47:583), with mean ranks r_g of N pooled values and t equal ones a
+/// tie:
+///   H = 12 / (N (N + 1)) sum n_g (r_g - (N + 1) / 2)^2 / (1 - sum(t^3 - t) / (N^3 - N)).
+/// No answer for fewer than two groups, an empty one, or when all values are equal.
+Answer<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups);
+
+/// Two of the groups, by their places in the input.
+struct DunnPair {
+  std::size_t first = 0, second = 0;
+  double z = 0.0;         ///< positive: the first has the higher ranks
+  double p = 1.0;         ///< two-sided, alone
+  double adjusted = 1.0;  ///< Holm over all pairs
+};
+
+/// Dunn's comparisons of all pairs on the ranks of the whole (Dunn 1964, Technometrics 6:241):
+///   z = (r_a - r_b) / sqrt((N (N + 1) / 12 - sum(t^3 - t) / (12 (N - 1))) (1 / n_a + 1 / n_b)).
+/// Pairs in the order (0,1), (0,2), ..., (1,2), ... Refuses as kruskalWallis().
+Answer<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups);
+
+}  // namespace calot::analytics

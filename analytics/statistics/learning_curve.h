@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "analytics/statistics/answer.h"
+
+namespace calot::analytics {
+
+enum class CurveShape : std::uint8_t {
+  inverse,     ///< a - b / x
+  power,       ///< a - b x^-c
+  exponential  ///< a - b exp(-c x)
+};
+
+/// A figure over the number x >= 1 of the attempt: towards the plateau a, from below (b > 0) or from above (b < 0).
+struct LearningCurve {
+  CurveShape shape = CurveShape::inverse;
+  double plateau = 0.0;                       ///< a, the figure's unit
+  double gap = 0.0;                           ///< b: for inverse and power what is missing at x = 1
+  double rate = 1.0;                          ///< c > 0; 1 for inverse
+  double plateauError = 0.0, gapError = 0.0;  ///< standard errors, from s^2 (J'J)^-1 at the minimum
+  std::optional<double> rateError;            ///< none for inverse
+  double residualSumOfSquares = 0.0;
+  double sigma = 0.0;  ///< sqrt(residualSumOfSquares / (values - parameters))
+
+  [[nodiscard]] double at(double x) const;
+};
+
+/// Least squares. For a given c the curve is linear in a and b, so the sum of squares is minimised over c alone
+/// (variable projection: Golub and Pereyra 1973): the best of a grid over ln c, Brent's method around it, then
+/// Gauss-Newton steps for the last digits. No answer for x that is not positive or not finite, fewer distinct x than
+/// parameters or no more values than parameters, values all equal, and where the sum of squares falls to the end of the
+/// grid: no plateau in sight (c to 0: a straight line, or for the power a logarithm) or all change over after the first
+/// attempt (c to infinity).
+Answer<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double> x, std::span<const double> y);
+
+}  // namespace calot::analytics

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "analytics/statistics/answer.h"
+
+namespace calot::analytics {
+
+/// y = X b + e, by a pivoted QR factorisation of X with its columns scaled to one length. Small problems: dense.
+struct LeastSquares {
+  std::vector<double> coefficients;  ///< b, a column each
+  std::vector<double> residuals;
+  std::vector<double> leverages;  ///< diagonal h of X (X'X)^-1 X'
+  std::vector<double> unscaled;   ///< (X'X)^-1, row after row; times sigma^2 the usual covariance of b
+  double residualSumOfSquares = 0.0;
+  double df = 0.0;              ///< values less columns
+  double sigma = 0.0;           ///< sqrt(residualSumOfSquares / df)
+  double logDeterminant = 0.0;  ///< ln |X'X|
+
+  /// sigma times the root of the diagonal: errors where all residuals have one variance.
+  [[nodiscard]] std::vector<double> standardErrors() const;
+};
+
+/// @param columns of X, each as long as y. No answer for lengths that differ, values not finite, no more values than
+/// columns, or columns that depend on each other linearly.
+Answer<LeastSquares> leastSquares(const std::vector<std::vector<double>>& columns, std::span<const double> y);
+
+/// Errors that hold where the residuals' variances differ: roots of the diagonal of (X'X)^-1 X' diag(e^2 / (1 - h)^2) X
+/// (X'X)^-1, HC3 (MacKinnon and White 1985, J. Econometrics 29:305). No answer where a value has leverage 1: it alone
+/// determines a coefficient.
+Answer<std::vector<double>> hc3Errors(const LeastSquares& fit, const std::vector<std::vector<double>>& columns);
+
+}  // namespace calot::analytics

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "analytics/statistics/answer.h"
+#include "analytics/statistics/interval.h"
+
+namespace calot::analytics {
+
+enum class Adjustment : std::uint8_t { none, holm, benjaminiHochberg };
+
+enum class PowerShape : std::uint8_t {
+  normal,    ///< both groups normal with deviation 1
+  lognormal  ///< exp of such a normal: times; a rank test sees the same, a mean would not
+};
+
+/// A study to be planned: two groups, one value per participant and checkpoint.
+struct PowerPlan {
+  std::size_t nx = 10, ny = 10;
+  std::vector<double> effects{
+      0.8};                  ///< a checkpoint each: shift of x in deviations of the (logarithm of the) values; 0: none
+  double correlation = 0.0;  ///< of a participant's checkpoints with each other, 0 <= r < 1: one common normal factor
+  PowerShape shape = PowerShape::normal;
+  double step = 0.0;  ///< > 0: values are rounded to multiples of it (counts, scores), which makes ties
+  double level = 0.05;
+  Adjustment adjustment = Adjustment::holm;
+  std::size_t simulations = 10000;
+  std::uint64_t seed = 1;
+};
+
+/// A share of the simulations, with Wilson's score interval for what chance in the simulation itself leaves open.
+struct SimulatedShare {
+  double value = 0.0;
+  Interval interval;
+};
+
+struct Power {
+  std::vector<SimulatedShare> ofCheckpoint;  ///< rejected after adjustment; where the effect is 0, an error rate
+  SimulatedShare anyEffect;                  ///< at least one checkpoint with an effect is rejected
+  SimulatedShare allEffects;                 ///< all checkpoints with an effect are
+  std::size_t untestable = 0;                ///< tests without an answer (all tied): counted as not rejected, p 1
+  std::uint64_t seed = 0;
+};
+
+/// Simulates the study: draws it, takes mannWhitney() as it is, exact or not, adjusts the p values of all checkpoints
+/// together and holds them against the level. No answer for an empty group, no checkpoint, or parameters out of their
+/// range.
+Answer<Power> simulatePower(const PowerPlan& plan);
+
+}  // namespace calot::analytics

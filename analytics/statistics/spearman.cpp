@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/statistics/spearman.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "analytics/statistics/distributions.h"
+#include "analytics/statistics/rank_sum_distribution.h"
+#include "analytics/statistics/samples.h"
+
+namespace calot::analytics {
+namespace {
+
+/// Twice the mid-ranks about their mean: sums of products are whole numbers, and rounding decides nothing.
+std::vector<long> centredRanks(std::span<const double> values) {
+  const std::vector<double> ranks = midRanks(values);
+  std::vector<long> centred(ranks.size());
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+    centred[i] = std::lround(2.0 * ranks[i]) - static_cast<long>(ranks.size()) - 1;
+  return centred;
+}
+
+long product(const std::vector<long>& a, const std::vector<long>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0L);
+}
+
+double shareOfOrders(const std::vector<long>& a, std::vector<long> b) {
+  const long observed = std::labs(product(a, b));
+  std::vector<std::size_t> order(b.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<long> moved(b.size());
+  long hits = 0, all = 0;
+  do {
+    for (std::size_t i = 0; i < b.size(); ++i) moved[i] = b[order[i]];
+    ++all;
+    if (std::labs(product(a, moved)) >= observed) ++hits;
+  } while (std::next_permutation(order.begin(), order.end()));
+  return static_cast<double>(hits) / static_cast<double>(all);
+}
+
+/// ln of the product of the factorials of the sizes of the ties.
+double logTieFactorials(std::vector<long> values) {
+  std::sort(values.begin(), values.end());
+  double sum = 0.0;
+  for (auto first = values.begin(); first != values.end();) {
+    const auto next = std::upper_bound(first, values.end(), *first);
+    sum += std::lgamma(static_cast<double>(next - first) + 1.0);
+    first = next;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Answer<Spearman> spearman(std::span<const double> x, std::span<const double> y) {
+  using Result = Answer<Spearman>;
+  if (x.size() != y.size()) return Result::none("the two variables have different lengths");
+  if (x.size() < 3) return Result::none("fewer than three pairs");
+  if (!allFinite(x) || !allFinite(y)) return Result::none("a value is not finite");
+  const std::vector<long> a = centredRanks(x), b = centredRanks(y);
+  const long aa = product(a, a), bb = product(b, b), ab = product(a, b);
+  if (aa == 0 || bb == 0) return Result::none("a variable has all values equal");
+  Spearman result;
+  result.ties = tieTerm(x) > 0.0 || tieTerm(y) > 0.0;
+  const double n = static_cast<double>(x.size());
+  result.rho = static_cast<double>(ab) / (std::sqrt(static_cast<double>(aa)) * std::sqrt(static_cast<double>(bb)));
+  result.rho = std::clamp(result.rho, -1.0, 1.0);
+  if (x.size() <= exactSpearmanLimit) {
+    result.exact = true;
+    result.p = shareOfOrders(a, b);
+  } else if (aa == bb && std::labs(ab) == aa) {
+    result.p = 2.0 * std::exp(logTieFactorials(a) - std::lgamma(n + 1.0));
+  } else {
+    result.p = studentTwoSided(result.rho * std::sqrt((n - 2.0) / ((1.0 - result.rho) * (1.0 + result.rho))), n - 2.0);
+  }
+  return result;
+}
+
+}  // namespace calot::analytics

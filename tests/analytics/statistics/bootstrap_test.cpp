@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/statistics/bootstrap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/random_stream.h"
+#include "tests/analytics/statistics/support/published_data.h"
+
+namespace calot::analytics {
+namespace {
+
+using Values = std::vector<double>;
+
+const Values skewed{1.2, 0.3, 4.5, 2.2, 9.8, 0.7, 3.1, 1.9, 0.4, 6.0};
+
+Answer<double> meanDifference(std::span<const double> x, std::span<const double> y) { return *mean(x) - *mean(y); }
+
+TEST(RandomStream, bitsAreFixed) {
+  // The C++ standard: the 10,000th draw of a default mt19937_64, seed 5489, is 9981545732273789042.
+  RandomStream stream(5489);
+  std::uint64_t last = 0;
+  const std::uint64_t most = std::uint64_t{1} << 63;
+  for (int i = 0; i < 10000; ++i) last = stream.below(most);  // divides 2^64: nothing is drawn again
+  EXPECT_EQ(last, 9981545732273789042U % most);
+}
+
+TEST(RandomStream, isUniformNormalAndShuffles) {
+  const std::uint64_t seed = 3;
+  RandomStream random(seed);
+  std::array<int, 7> counts{};
+  for (int i = 0; i < 70000; ++i) ++counts[static_cast<std::size_t>(random.below(7))];
+  for (const int count : counts) EXPECT_NEAR(count, 10000, 4.0 * std::sqrt(10000.0 * 6.0 / 7.0));
+  double sum = 0.0, squares = 0.0, fourth = 0.0;
+  const int n = 100000;
+  for (int i = 0; i < n; ++i) {
+    const double z = random.normal();
+    ASSERT_TRUE(std::isfinite(z));
+    sum += z;
+    squares += z * z;
+    fourth += z * z * z * z;
+  }
+  EXPECT_NEAR(sum / n, 0.0, 4.0 / std::sqrt(n));
+  EXPECT_NEAR(squares / n, 1.0, 4.0 * std::sqrt(2.0 / n));
+  EXPECT_NEAR(fourth / n, 3.0, 4.0 * std::sqrt(96.0 / n));
+  // All six orders of three, equally often.
+  std::array<int, 6> orders{};
+  for (int i = 0; i < 60000; ++i) {
+    std::array<std::size_t, 3> items{0, 1, 2};
+    random.shuffle(std::span<std::size_t>(items));
+    ++orders[items[0] * 2 + (items[1] > items[2] ? 1 : 0)];
+  }
+  for (const int count : orders) EXPECT_NEAR(count, 10000, 4.0 * std::sqrt(10000.0 * 5.0 / 6.0));
+}
+
+TEST(Bootstrap, meanOfASkewedSampleAsRsBoot) {
+  // R 4.2.2, boot 1.3-28.1: set.seed(1); boot(x, function(d, i) mean(d[i]), R = 200000); boot.ci: percentile
+  // [1.42, 4.94], BCa [1.63, 5.41]. The generators differ: the simulated quantiles have a standard error of some .006
+  // (50,000 resamples).
+  BootstrapOptions options;
+  options.resamples = 49999;
+  const auto statistic = [](std::span<const double> v) { return mean(v); };
+  const auto bca = bootstrap(skewed, statistic, options);
+  ASSERT_TRUE(bca) << bca.reason();
+  EXPECT_NEAR(bca->estimate, 3.01, 1e-12);
+  EXPECT_NEAR(bca->interval.lower, 1.63, 0.03);
+  EXPECT_NEAR(bca->interval.upper, 5.41, 0.06);
+  EXPECT_EQ(bca->interval.method, "BCa bootstrap");
+  EXPECT_EQ(bca->seed, 1U);
+  EXPECT_FALSE(bca->extreme);
+  // Of a mean the acceleration is a sixth of the sample's skewness over sqrt(n).
+  double squares = 0.0, cubes = 0.0;
+  for (const double v : skewed) squares += std::pow(v - 3.01, 2), cubes += std::pow(v - 3.01, 3);
+  EXPECT_NEAR(bca->acceleration, cubes / 6.0 / std::pow(squares, 1.5), 1e-12);
+  options.method = BootstrapMethod::percentile;
+  const auto percentile = bootstrap(skewed, statistic, options);
+  EXPECT_NEAR(percentile->interval.lower, 1.42, 0.03);
+  EXPECT_NEAR(percentile->interval.upper, 4.94, 0.05);
+}
+
+TEST(Bootstrap, differenceOfTwoGroupsAsRsBoot) {
+  // The same of sleep, strata = group: percentile [-3.16, -.01], BCa [-3.16, -.01].
+  BootstrapOptions options;
+  options.resamples = 49999;
+  options.seed = 9;
+  for (const BootstrapMethod method : {BootstrapMethod::percentile, BootstrapMethod::bca}) {
+    options.method = method;
+    const auto b = bootstrap(data::sleep1, data::sleep2, meanDifference, options);
+    ASSERT_TRUE(b) << b.reason();
+    EXPECT_NEAR(b->interval.lower, -3.16, 0.04);
+    EXPECT_NEAR(b->interval.upper, -0.01, 0.04);
+  }
+}
+
+TEST(Bootstrap, everyResampleOfTwoValuesIsCounted) {
+  // Two values: the mean is a, (a + b) / 2 or b in shares 1/4, 1/2, 1/4, so the 5 % and 95 % quantiles are a and b.
+  BootstrapOptions options;
+  options.method = BootstrapMethod::percentile;
+  options.level = 0.9;
+  const auto b = bootstrap(
+      Values{1, 3}, [](std::span<const double> v) { return mean(v); }, options);
+  EXPECT_DOUBLE_EQ(b->interval.lower, 1.0);
+  EXPECT_DOUBLE_EQ(b->interval.upper, 3.0);
+  options.level = 0.4;  // 30 % and 70 %: both within the middle half
+  EXPECT_DOUBLE_EQ(bootstrap(
+                       Values{1, 3}, [](std::span<const double> v) { return mean(v); }, options)
+                       ->interval.upper,
+                   2.0);
+}
+
+TEST(Bootstrap, theSeedIsAllThatDecides) {
+  BootstrapOptions options;
+  options.resamples = 999;
+  const auto once = bootstrap(data::sleep1, data::sleep2, meanDifference, options);
+  const auto again = bootstrap(data::sleep1, data::sleep2, meanDifference, options);
+  EXPECT_EQ(once->interval.lower, again->interval.lower);
+  EXPECT_EQ(once->interval.upper, again->interval.upper);
+  options.seed = 2;
+  EXPECT_NE(bootstrap(data::sleep1, data::sleep2, meanDifference, options)->interval.lower, once->interval.lower);
+}
+
+TEST(Bootstrap, degenerate) {
+  const auto statistic = [](std::span<const double> v) { return mean(v); };
+  EXPECT_EQ(bootstrap(Values{}, statistic).reason(), "no values");
+  EXPECT_EQ(bootstrap(Values{1, NAN}, statistic).reason(), "a value is not finite");
+  EXPECT_EQ(bootstrap(Values{4, 4, 4}, statistic).reason(), "all resamples agree");
+  EXPECT_EQ(bootstrap(Values{4}, statistic).reason(), "all resamples agree");
+  EXPECT_EQ(bootstrap(Values{1, 2}, Values{}, meanDifference).reason(), "the second group is empty");
+  // The deviation of two values vanishes in half of the resamples, which here counts as no answer.
+  const auto inverse = [](std::span<const double> v) {
+    const auto s = standardDeviation(v);
+    return s && *s > 0.0 ? Answer<double>(1.0 / *s) : Answer<double>::none("no spread");
+  };
+  EXPECT_NE(bootstrap(Values{1, 2}, inverse).reason().find("resamples have no answer (no spread)"), std::string::npos);
+  // A statistic that is 99 in the order of the sample and in hardly any resample: all lie on one side, and BCa can't
+  // correct.
+  const Values ordered{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  const auto odd = [&](std::span<const double> v) {
+    return Answer<double>(std::equal(v.begin(), v.end(), ordered.begin(), ordered.end()) ? 99.0 : *mean(v));
+  };
+  EXPECT_EQ(bootstrap(ordered, odd).reason(), "BCa: all resamples are on one side of the estimate");
+  // A value left out leaves one, which has no deviation.
+  const auto spread = [](std::span<const double> v) { return standardDeviation(v); };
+  EXPECT_NE(bootstrap(Values{1, 2}, spread).reason().find("BCa: with a value left out"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace calot::analytics

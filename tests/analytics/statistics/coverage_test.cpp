@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How often the intervals that reports print hold the truth: simulated, and held against the table in
+// docs/statistics.md. With CALOT_HEAVY set every cell with 4,000 samples (and the table is printed), else the column of
+// ten with 400.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "analytics/statistics/bootstrap.h"
+#include "analytics/statistics/contrasting_groups.h"
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/distributions.h"
+#include "analytics/statistics/hedges.h"
+#include "analytics/statistics/random_stream.h"
+#include "analytics/statistics/superiority_interval.h"
+#include "analytics/statistics/welch.h"
+
+namespace calot::analytics {
+namespace {
+
+using Values = std::vector<double>;
+using Draw = std::function<double(RandomStream&)>;
+
+struct Ends {
+  double lower = 0.0, upper = 0.0;
+};
+
+/// One row of the table: an interval of a known truth.
+struct Case {
+  std::string interval, population;
+  double truth = 0.0;
+  Draw x, y;
+  std::function<std::optional<Ends>(const Values&, const Values&, std::uint64_t seed)> ends;
+};
+
+Draw normal(double mean, double deviation = 1.0) {
+  return [=](RandomStream& r) { return mean + deviation * r.normal(); };
+}
+Draw exponential(double shift) {
+  return [=](RandomStream& r) { return shift - std::log(r.uniform()); };
+}
+/// Normal, rounded to halves.
+Draw rounded(double shift) {
+  return [=](RandomStream& r) { return shift + std::round(2.0 * r.normal()) / 2.0; };
+}
+
+template <class T>
+std::optional<Ends> endsOf(const Answer<T>& answer) {
+  if (!answer) return std::nullopt;
+  return Ends{answer->lower, answer->upper};
+}
+
+std::optional<Ends> ofArea(const Values& x, const Values& y, AreaMethod method) {
+  const auto e = estimateSuperiority(x, y, Hypothesis::firstLarger, method);
+  if (!e) return std::nullopt;
+  // DeLong's alone, without the score interval that stands in for it at A = 0 and A = 1: there it is a point.
+  if (method == AreaMethod::wald && e->a.method != "DeLong") return Ends{e->value.a, e->value.a};
+  return Ends{e->a.lower, e->a.upper};
+}
+
+BootstrapOptions resampling(BootstrapMethod method, std::uint64_t seed) {
+  BootstrapOptions options;
+  options.method = method;
+  options.resamples = 1999;
+  options.seed = seed;
+  return options;
+}
+
+std::optional<Ends> ofBootstrap(const Answer<Bootstrap>& b) {
+  if (!b) return std::nullopt;
+  return Ends{b->interval.lower, b->interval.upper};
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> list;
+  for (const auto& [method, name] : {std::pair{AreaMethod::score, "A, score"}, std::pair{AreaMethod::logit, "A, logit"},
+                                     std::pair{AreaMethod::wald, "A, DeLong without fallback"}}) {
+    for (const double a : {0.5, 0.75, 0.95}) {
+      const AreaMethod chosen = method;
+      char population[40];
+      std::snprintf(population, sizeof population, "normal, A = %.2f", a);
+      list.push_back({name, population, a, normal(std::sqrt(2.0) * normalQuantile(a)), normal(0.0),
+                      [chosen](const Values& x, const Values& y, std::uint64_t) { return ofArea(x, y, chosen); }});
+    }
+  }
+  const auto shift = [](const Values& x, const Values& y, std::uint64_t) {
+    return endsOf(hodgesLehmannInterval(x, y));
+  };
+  list.push_back({"shift, Hodges-Lehmann", "normal, shift 1", 1.0, normal(1.0), normal(0.0), shift});
+  list.push_back({"shift, Hodges-Lehmann", "normal in halves (ties), shift 1", 1.0, rounded(1.0), rounded(0.0), shift});
+  const auto effect = [](const Values& x, const Values& y, std::uint64_t) {
+    const auto g = hedgesG(x, y);
+    return g ? endsOf(g->interval) : std::nullopt;
+  };
+  list.push_back({"g, non-central t", "normal, 0", 0.0, normal(0.0), normal(0.0), effect});
+  list.push_back({"g, non-central t", "normal, 0.8", 0.8, normal(0.8), normal(0.0), effect});
+  list.push_back({"g, non-central t", "normal, 2", 2.0, normal(2.0), normal(0.0), effect});
+  list.push_back({"g, non-central t", "exponential, 0.8", 0.8, exponential(0.8), exponential(0.0), effect});
+  const auto oneMean = [](BootstrapMethod method) {
+    return [method](const Values& x, const Values&, std::uint64_t seed) {
+      return ofBootstrap(bootstrap(
+          x, [](std::span<const double> v) { return mean(v); }, resampling(method, seed)));
+    };
+  };
+  list.push_back({"mean, BCa", "normal", 0.0, normal(0.0), normal(0.0), oneMean(BootstrapMethod::bca)});
+  list.push_back({"mean, BCa", "exponential", 1.0, exponential(0.0), normal(0.0), oneMean(BootstrapMethod::bca)});
+  list.push_back(
+      {"mean, percentile", "exponential", 1.0, exponential(0.0), normal(0.0), oneMean(BootstrapMethod::percentile)});
+  list.push_back(
+      {"difference of means, BCa", "exponential, shift 1", 1.0, exponential(1.0), exponential(0.0),
+       [](const Values& x, const Values& y, std::uint64_t seed) {
+         return ofBootstrap(bootstrap(
+             x, y,
+             [](std::span<const double> a, std::span<const double> b) { return Answer<double>(*mean(a) - *mean(b)); },
+             resampling(BootstrapMethod::bca, seed)));
+       }});
+  list.push_back({"difference of means, Welch", "exponential, shift 1", 1.0, exponential(1.0), exponential(0.0),
+                  [](const Values& x, const Values& y, std::uint64_t) -> std::optional<Ends> {
+                    const auto w = welch(x, y);
+                    if (!w) return std::nullopt;
+                    return Ends{w->interval.lower, w->interval.upper};
+                  }});
+  list.push_back({"cut of contrasting groups", "normal, 70 (5) and 50 (10)", *crossing({70, 5}, {50, 10}),
+                  normal(70, 5), normal(50, 10),
+                  [](const Values& x, const Values& y, std::uint64_t seed) -> std::optional<Ends> {
+                    ContrastingGroupsOptions options;
+                    options.resamples = 1999;
+                    options.seed = seed;
+                    const auto g = contrastingGroups(x, y, Better::higher, options);
+                    return g ? endsOf(g->interval) : std::nullopt;
+                  }});
+  return list;
+}
+
+struct Covered {
+  std::size_t held = 0, answered = 0, drawn = 0;
+  [[nodiscard]] double percent() const { return 100.0 * static_cast<double>(held) / static_cast<double>(answered); }
+};
+
+Covered simulate(const Case& c, std::size_t n, std::size_t samples, std::uint64_t seed) {
+  RandomStream random(seed);
+  Covered result;
+  // Sums of rounded numbers may miss a truth that they meet exactly by the last bit.
+  constexpr double rounding = 1e-9;
+  for (std::size_t sample = 0; sample < samples; ++sample) {
+    Values x(n), y(n);
+    for (double& v : x) v = c.x(random);
+    for (double& v : y) v = c.y(random);
+    ++result.drawn;
+    if (const auto ends = c.ends(x, y, seed + sample)) {
+      ++result.answered;
+      if (ends->lower <= c.truth + rounding && c.truth <= ends->upper + rounding) ++result.held;
+    }
+  }
+  return result;
+}
+
+const std::vector<std::size_t> sizes{5, 10, 20, 40};
+
+/// A cell as the table prints it: bold below 93; how many per cent have an interval at all, where fewer than 99.5 do.
+std::string cellOf(const Covered& c) {
+  const double answered = 100.0 * static_cast<double>(c.answered) / static_cast<double>(c.drawn);
+  if (answered < 50.0) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, std::round(10.0 * c.percent()) < 930.0 ? "**%.1f**" : "%.1f", c.percent());
+  std::string cell = text;
+  if (answered < 99.5) {
+    std::snprintf(text, sizeof text, " (of %.0f %%)", answered);
+    cell += text;
+  }
+  return cell;
+}
+
+/// First numbers of the four cells of the row in the documentation; none where there is "-".
+std::map<std::string, std::vector<std::optional<double>>> documented() {
+  std::ifstream file(CALOT_SOURCE_DIR "/docs/statistics.md");
+  std::map<std::string, std::vector<std::optional<double>>> rows;
+  std::string line;
+  while (std::getline(file, line)) {
+    std::vector<std::string> cells;
+    std::istringstream parts(line);
+    for (std::string cell; std::getline(parts, cell, '|');) cells.push_back(cell);
+    if (cells.size() != 7) continue;
+    if (cells[1].size() < 2 || cells[2].size() < 2) continue;
+    // Between the bars' blanks.
+    const std::string name = cells[1].substr(1) + "|" + cells[2].substr(0, cells[2].size() - 1);
+    std::vector<std::optional<double>>& row = rows[name];
+    for (std::size_t i = 3; i < 7; ++i) {
+      const std::size_t digit = cells[i].find_first_of("0123456789");
+      row.push_back(digit == std::string::npos ? std::nullopt
+                                               : std::optional<double>(std::strtod(cells[i].c_str() + digit, nullptr)));
+    }
+  }
+  return rows;
+}
+
+TEST(Coverage, isWhatTheDocumentationSays) {
+  const bool heavy = std::getenv("CALOT_HEAVY") != nullptr;
+  const std::size_t samples = heavy ? 4000 : 400;
+  const std::uint64_t seed = 20140517;
+  RecordProperty("seed", std::to_string(seed));
+  const auto table = documented();
+  for (const Case& c : cases()) {
+    const std::string name = c.interval + " | " + c.population;
+    std::string line{"| "};
+    line.append(name).append(" |");
+    const auto row = table.find(name);
+    EXPECT_NE(row, table.end()) << "not in docs/statistics.md: " << line;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      if (!heavy && sizes[i] != 10) continue;
+      const Covered covered = simulate(c, sizes[i], samples, heavy ? seed : seed + 1);
+      line.append(" ").append(cellOf(covered)).append(" |");
+      if (row == table.end()) continue;
+      const std::optional<double> printed = row->second[i];
+      ASSERT_EQ(printed.has_value(), cellOf(covered) != "-") << line;
+      if (!printed) continue;
+      // Both are simulated: four standard errors of either, and the rounding of the table.
+      const auto error = [&](double n) {
+        return std::sqrt(std::max(*printed, 1.0) * std::max(100.0 - *printed, 1.0) / n);
+      };
+      const double apart = std::hypot(error(static_cast<double>(covered.answered)), error(4000.0));
+      EXPECT_NEAR(covered.percent(), *printed, 4.0 * apart + 0.05) << line << " n = " << sizes[i];
+    }
+    if (heavy) std::printf("%s\n", line.c_str());
+  }
+}
+
+TEST(Coverage, ofTheExactIntervalIsNeverBelowItsLevel) {
+  // 5 against 5: attained 1 - 2 * 4 / 252 (U <= 2 in 4 of 252 assignments).
+  const auto shiftOf = [](Draw x, Draw y, double truth) {
+    Case c{"",
+           "",
+           truth,
+           std::move(x),
+           std::move(y),
+           [](const Values& a, const Values& b, std::uint64_t) {
+             return endsOf(hodgesLehmannInterval(a, b)); }};
+    return simulate(c, 5, 4000, 55).percent();
+  };
+  const double attained = 100.0 * (1.0 - 8.0 / 252.0), chance = 400.0 * std::sqrt(0.0317 * 0.9683 / 4000.0);
+  EXPECT_NEAR(shiftOf(normal(3.0), normal(0.0), 3.0), attained, chance);
+  EXPECT_NEAR(shiftOf(exponential(-1.0), exponential(0.0), -1.0), attained, chance);
+  EXPECT_GE(shiftOf(rounded(1.0), rounded(0.0), 1.0), attained - chance);
+}
+
+}  // namespace
+}  // namespace calot::analytics
