@@ -41,6 +41,10 @@ std::string nameOf(Aggregation aggregation) {
       return "hand";
     case Aggregation::organ:
       return "organ";
+    case Aggregation::phase:
+      return "phase";
+    case Aggregation::handAndPhase:
+      return "hand and phase";
   }
   return "unknown";
 }

@@ -26,15 +26,16 @@ enum class Origin : std::uint8_t {
   samples = 2,      ///< motion of the operator's hands alone (the real tip)
 };
 
-/// What the figure is given for: once for the attempt, for each hand, or for each organ of the scene.
-enum class Aggregation : std::uint8_t { attempt, hand, organ };
+/// What the figure is given for: once for the attempt, for each hand, organ of the scene, phase of the procedure, or
+/// hand and phase.
+enum class Aggregation : std::uint8_t { attempt, hand, organ, phase, handAndPhase };
 
 /// `running`: known after every step. `final`: its filter looks ahead, so before the end it is provisional.
 enum class Finality : std::uint8_t { running, final };
 
 std::string nameOf(Direction direction);      ///< "none", "lower", "higher"
 std::string nameOf(Origin origin);            ///< "re-simulated", "observables", "samples"
-std::string nameOf(Aggregation aggregation);  ///< "attempt", "hand", "organ"
+std::string nameOf(Aggregation aggregation);  ///< "attempt", "hand", "organ", "phase", "hand and phase"
 std::string nameOf(Finality finality);        ///< "running", "final"
 
 /// What a checkpoint declares of itself.
@@ -66,7 +67,7 @@ enum class Availability : std::uint8_t {
 /// One figure. @invariant availability == value exactly when `value` holds a finite number; else `reason` is not empty.
 struct CheckpointValue {
   std::string name;
-  std::string subject;        ///< "" (attempt), "left" / "right" (hand), or the organ's name
+  std::string subject;        ///< "" (attempt), "left" / "right" (hand), the organ's name, the phase's, "left clipping"
   std::uint32_t version = 1;  ///< of the checkpoint's definition
   Availability availability = Availability::value;
   std::optional<double> value;  ///< in `unit`
@@ -85,6 +86,7 @@ struct AttemptContext {
   std::vector<std::string> structures;  ///< organs, vessels, fat: as bits of `touching` and subjects of events count
   std::uint32_t resultVersion = 0;      ///< of the StepResults
   bool procedure = false;               ///< the scene has a procedure
+  std::string handedness = "unknown";   ///< as recorded: "right", "left", "unknown"
   SceneFacts scene;
 };
 
@@ -92,6 +94,7 @@ struct AttemptContext {
 std::string whyTooOld(const AttemptContext& context, std::uint32_t needed);
 
 struct Motion;
+struct PhaseMotion;
 class ForceTrack;
 
 /// What is known after the last step (or, for provisional values, after the newest one).
@@ -101,7 +104,9 @@ struct AttemptEnd {
   recorder::Outcome outcome = recorder::Outcome::running;
   Origin origin = Origin::resimulated;            ///< of forces and contacts; motion is always `samples`
   std::array<const Motion*, handCount> motion{};  ///< both hands' motion, never null (checkpoints/motion.h)
-  const ForceTrack* force = nullptr;              ///< both hands' haptic forces, never null (checkpoints/force.h)
+  /// The same for each phase of a procedure, in its order (checkpoints/phases.h), never null.
+  const std::vector<PhaseMotion>* phases = nullptr;
+  const ForceTrack* force = nullptr;  ///< haptic forces of both hands, never null (checkpoints/force.h)
 };
 
 /// One running computation of one definition over one attempt. Deterministic contract: IEEE + - * / sqrt in

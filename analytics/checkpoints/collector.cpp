@@ -7,21 +7,42 @@
 
 #include "analytics/checkpoints/force.h"
 #include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/phases.h"
 #include "analytics/checkpoints/registry.h"
+#include "recorder/sources/kinematics_file.h"
 
 namespace calot::analytics {
+namespace {
+
+/// A kinematics file's rows were interpolated to ticks by its source; a device that plays one holds them.
+double sourceRate(const recorder::Provenance& provenance) {
+  const bool interpolated = provenance.kind == recorder::OperatorKind::kinematics && provenance.device.empty();
+  return interpolated ? recorder::kinematicsRowsPerSecond : 0.0;
+}
+
+}  // namespace
 
 struct CheckpointCollector::Storage {
-  Storage(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin from)
-      : origin(from), track{MotionTrack(header.tickSeconds), MotionTrack(header.tickSeconds)} {
+  Storage(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin from, double cut)
+      : origin(from),
+        cutoff(cut),
+        tickSeconds(header.tickSeconds),
+        ticksPerStep(header.ticksPerStep),
+        track{MotionTrack(header.tickSeconds, sourceRate(header.provenance)),
+              MotionTrack(header.tickSeconds, sourceRate(header.provenance))},
+        force(header.tickSeconds) {
     const std::vector<std::string>& components = header.layout.components;
     const bool procedure = std::find(components.begin(), components.end(), "procedure") != components.end();
-    const AttemptContext context{header.tickSeconds,       header.ticksPerStep, header.structures(),
-                                 header.stepResultVersion, procedure,           sceneFacts(scene)};
+    const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
+                                 procedure,          header.handedness,   sceneFacts(scene)};
     for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint.push_back(entry.make(context));
   }
   Origin origin;
+  double cutoff;
+  double tickSeconds;
+  std::uint64_t ticksPerStep;
   std::array<MotionTrack, handCount> track;
+  PhaseTrack phases;
   ForceTrack force;
   std::vector<std::unique_ptr<Checkpoint>> checkpoint;
   std::uint64_t steps = 0;
@@ -31,8 +52,8 @@ struct CheckpointCollector::Storage {
 };
 
 CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, const SceneDescription& scene,
-                                         Origin origin)
-    : storage_(std::make_unique<Storage>(header, scene, origin)) {
+                                         Origin origin, double cutoff)
+    : storage_(std::make_unique<Storage>(header, scene, origin, cutoff)) {
   assert(origin != Origin::samples);
 }
 
@@ -44,6 +65,7 @@ void CheckpointCollector::onStep(const recorder::StepRecord& record) {
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
   }
   storage_->force.add(record);
+  storage_->phases.add(record.result.procedure.phase, storage_->ticksPerStep);
   for (const Event& event : record.result.events) {
     if (event.kind == EventKind::clockStretched) storage_->stretched += event.value;
   }
@@ -65,9 +87,11 @@ std::vector<CheckpointValue> CheckpointCollector::values() const {
   end.origin = storage_->origin;
   end.force = &storage_->force;
   for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
-    motion[h] = storage_->track[h].motion();
+    motion[h] = storage_->track[h].motion(storage_->cutoff);
     end.motion[h] = &motion[h];
   }
+  const std::vector<PhaseMotion> phases = storage_->phases.cut(motion, storage_->tickSeconds);
+  end.phases = &phases;
   std::vector<CheckpointValue> result;
   for (const auto& checkpoint : storage_->checkpoint) {
     for (CheckpointValue& value : checkpoint->values(end)) result.push_back(std::move(value));

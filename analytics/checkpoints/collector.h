@@ -15,8 +15,9 @@ class CheckpointCollector final : public recorder::Observer {
  public:
   /// @param scene the attempt's own: the Model's, or recorder::sceneFromAssets() of the recording's assets.
   /// @param origin what the StepRecords are: `resimulated` (live or replay) or `observables` (read from the file).
+  /// @param cutoff of the motion filter (Hz), one of motionCutoffs. Values that are stored are of the default.
   CheckpointCollector(const recorder::AttemptHeader& header, const SceneDescription& scene,
-                      Origin origin = Origin::resimulated);
+                      Origin origin = Origin::resimulated, double cutoff = 6.0);
   ~CheckpointCollector() override;
   CheckpointCollector(const CheckpointCollector&) = delete;
   CheckpointCollector& operator=(const CheckpointCollector&) = delete;

@@ -5,17 +5,31 @@
 #include <cmath>
 
 namespace calot::analytics {
+namespace {
+
+double magnitudeOf(const Vec3& f) { return std::sqrt(f.x() * f.x() + f.y() * f.y() + f.z() * f.z()); }
+
+}  // namespace
 
 void ForceTrack::add(const recorder::StepRecord& record) {
   const std::size_t ticks = std::min(record.samples.size(), record.ticks.size());
   for (std::size_t t = 0; t < ticks; ++t) {
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
-      if (record.samples[t].hand[h].instrument == InstrumentKind::none) continue;
+      Newest& newest = newest_[h];
+      if (record.samples[t].hand[h].instrument == InstrumentKind::none) {
+        newest.ticks = 0;
+        continue;
+      }
       mounted_[h] = true;
       const Vec3& f = record.ticks[t].hand[h].force;
-      const double magnitude = std::sqrt(f.x() * f.x() + f.y() * f.y() + f.z() * f.z());
+      const double magnitude = magnitudeOf(f);
       largest_[h] = std::max(largest_[h], magnitude);
+      sum_[h] += magnitude;
       if (magnitude >= leastForce) felt_[h].push_back(magnitude);
+      if (newest.ticks >= 2 && magnitudeOf(newest.force[1]) >= leastForce)
+        rates_[h].push_back(magnitudeOf(f - newest.force[0]) / (2.0 * tickSeconds_));
+      newest.force = {newest.force[1], f};
+      newest.ticks = std::min(newest.ticks + 1, 2);
     }
   }
 }

@@ -16,17 +16,33 @@ inline constexpr double leastForce = 0.01;
 /// Magnitudes of the forces that the haptic ticks sent to the hands, tick by tick.
 class ForceTrack {
  public:
+  /// @param tickSeconds length of a tick (s).
+  explicit ForceTrack(double tickSeconds) : tickSeconds_(tickSeconds) {}
+
   void add(const recorder::StepRecord& record);
   [[nodiscard]] bool mounted(int hand) const { return mounted_[static_cast<std::size_t>(hand)]; }
   /// Those of at least leastForce (N), in the order of ticks.
   [[nodiscard]] const std::vector<double>& felt(int hand) const { return felt_[static_cast<std::size_t>(hand)]; }
   /// The largest of all (N), felt or not.
   [[nodiscard]] double largest(int hand) const { return largest_[static_cast<std::size_t>(hand)]; }
+  /// Integral of the magnitude over time (N s).
+  [[nodiscard]] double impulse(int hand) const { return sum_[static_cast<std::size_t>(hand)] * tickSeconds_; }
+  /// |f(t+1) - f(t-1)| / (2 ticks) of each tick with a force of at least leastForce and an instrument at all three
+  /// (N/s), in the order of ticks.
+  [[nodiscard]] const std::vector<double>& rates(int hand) const { return rates_[static_cast<std::size_t>(hand)]; }
 
  private:
+  /// Forces of the two newest ticks in a row with an instrument, the newer one last.
+  struct Newest {
+    std::array<Vec3, 2> force{Vec3::Zero(), Vec3::Zero()};
+    int ticks = 0;
+  };
+  double tickSeconds_;
+  std::array<Newest, handCount> newest_{};
+  std::array<double, handCount> sum_{};
   std::array<bool, handCount> mounted_{};
   std::array<double, handCount> largest_{};
-  std::array<std::vector<double>, handCount> felt_;
+  std::array<std::vector<double>, handCount> felt_, rates_;
 };
 
 }  // namespace calot::analytics

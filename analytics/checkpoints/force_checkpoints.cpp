@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The family of haptic force: largest, 99th percentile and mean of what each hand felt.
+// The family of haptic force: largest, 99th percentile, mean, impulse and rate of change of what each hand felt.
 #include "analytics/checkpoints/entries.h"
 
 #include <algorithm>
@@ -50,6 +50,28 @@ const CheckpointDefinition& meanDefinition() {
   return d;
 }
 
+const CheckpointDefinition& impulseDefinition() {
+  static const CheckpointDefinition d = [] {
+    CheckpointDefinition impulse = familyMember("force-impulse", "Impulse of the haptic force",
+                                                "tick length * sum of |f_W| over all ticks", "none");
+    impulse.unit = impulse.displayUnit = "N s";
+    return impulse;
+  }();
+  return d;
+}
+
+const CheckpointDefinition& rateDefinition() {
+  static const CheckpointDefinition d = [] {
+    CheckpointDefinition rate = familyMember(
+        "force-rate-p95", "95th percentile of the haptic force's rate of change",
+        "quantile of type 7 at 0.95 of |f_W(t+1) - f_W(t-1)| / (2 ticks) over the ticks t with |f_W(t)| >= 0.01 N",
+        "ticks of at least 0.01 N; central differences");
+    rate.unit = rate.displayUnit = "N/s";
+    return rate;
+  }();
+  return d;
+}
+
 /// One member: `figure` gives its value from the track, @pre for members other than the maximum: something was felt.
 template <const CheckpointDefinition& (*definition)(), double (*figure)(const ForceTrack&, int), bool needsFelt>
 class Force final : public Checkpoint {
@@ -75,10 +97,18 @@ class Force final : public Checkpoint {
 
 double maximumOf(const ForceTrack& track, int hand) { return track.largest(hand); }
 
-double percentileOf(const ForceTrack& track, int hand) {
-  std::vector<double> sorted = track.felt(hand);
-  std::sort(sorted.begin(), sorted.end());
-  return quantileOfSorted(sorted, 0.99);
+double quantileOf(std::vector<double> values, double p) {
+  std::sort(values.begin(), values.end());
+  return quantileOfSorted(values, p);
+}
+
+double percentileOf(const ForceTrack& track, int hand) { return quantileOf(track.felt(hand), 0.99); }
+
+double impulseOf(const ForceTrack& track, int hand) { return track.impulse(hand); }
+
+/// A force that was felt at the first or the last tick alone has no rate of change.
+double rateOf(const ForceTrack& track, int hand) {
+  return track.rates(hand).empty() ? 0.0 : quantileOf(track.rates(hand), 0.95);
 }
 
 double meanOf(const ForceTrack& track, int hand) {
@@ -104,6 +134,18 @@ CheckpointEntry forcePercentileEntry() {
 CheckpointEntry forceMeanEntry() {
   return {meanDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<Force<meanDefinition, meanOf, true>>();
+          }};
+}
+
+CheckpointEntry forceImpulseEntry() {
+  return {impulseDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
+            return std::make_unique<Force<impulseDefinition, impulseOf, false>>();
+          }};
+}
+
+CheckpointEntry forceRateEntry() {
+  return {rateDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
+            return std::make_unique<Force<rateDefinition, rateOf, true>>();
           }};
 }
 

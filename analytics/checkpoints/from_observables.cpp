@@ -9,10 +9,10 @@
 
 namespace calot::analytics {
 
-std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording) {
+std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording, double cutoff) {
   const recorder::AttemptHeader& header = recording.header();
   const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
-  CheckpointCollector collector(header, scene, Origin::observables);
+  CheckpointCollector collector(header, scene, Origin::observables, cutoff);
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     const recorder::RecordedStep& step = recording.step(n);
     // Columns are counted by the header, structures by the scene: a checkpoint goes by the scene's.

@@ -36,6 +36,8 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
   if (known.startUtc != incoming.startUtc) return "start";
   if (known.simulationVersion != incoming.simulationVersion) return "simulation version";
   if (known.parent != incoming.parent) return "parent";
+  if (known.mode != incoming.mode) return "mode";
+  if (known.device != incoming.device || known.calibration != incoming.calibration) return "device";
   if (known.chainHead == incoming.chainHead) return {};
   // Only an incomplete recording has a continuation. That the longer one begins with the shorter is the replay's to
   // show.

@@ -4,13 +4,16 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/from_observables.h"
+#include "analytics/checkpoints/motion.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
+#include "apps/calot/value_report.h"
 #include "recorder/attempt.h"
 #include "recorder/errors.h"
 #include "recorder/replay.h"
@@ -23,6 +26,7 @@ struct Options {
   std::vector<std::string> files;
   std::string cohort;
   unsigned threads = 1;
+  double cutoff = 0.0;  ///< 0: values are stored
   bool json = false;
 };
 
@@ -40,35 +44,26 @@ analytics::Verdict verdictOf(recorder::ReplayVerdict verdict) {
   return analytics::Verdict::notChecked;
 }
 
-const char* importedName(analytics::Imported imported) {
-  switch (imported) {
-    case analytics::Imported::added:
-      return "added";
-    case analytics::Imported::unchanged:
-      return "unchanged";
-    case analytics::Imported::extended:
-      return "extended";
-  }
-  return "";
-}
-
 /// What one file gave, beside the replay's report.
 struct Stored {
   std::string how = "not stored";
   std::vector<analytics::CheckpointValue> values;
 };
 
-/// Replays one recording with the checkpoints watching and stores the result. A damaged file is no attempt of the
-/// cohort; a diverged one is, without values; one of another simulation version with those of its observables.
-recorder::ReplayReport assessOne(const std::string& file, const Options& o, analytics::CohortDatabase& database,
+/// Replays one recording with the checkpoints watching and stores the result, where there is a database. A damaged file
+/// is no attempt of the cohort; a diverged one is, without values; one of another simulation version with those of its
+/// observables.
+recorder::ReplayReport assessOne(const std::string& file, const Options& o, analytics::CohortDatabase* database,
                                  Stored& stored) {
+  const double cutoff = o.cutoff > 0.0 ? o.cutoff : analytics::motionCutoff;
   recorder::AttemptHeader header;
   std::unique_ptr<analytics::CheckpointCollector> collector;
   recorder::ReplaySettings settings;
   settings.threads = o.threads;
   settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
     header = h;
-    collector = std::make_unique<analytics::CheckpointCollector>(h, model.scene());
+    collector =
+        std::make_unique<analytics::CheckpointCollector>(h, model.scene(), analytics::Origin::resimulated, cutoff);
     return std::vector<recorder::Observer*>{collector.get()};
   };
   recorder::ReplayReport report = recorder::replayRecording(file, settings);
@@ -86,40 +81,25 @@ recorder::ReplayReport assessOne(const std::string& file, const Options& o, anal
   if (report.verdict == recorder::ReplayVerdict::exact) assessed.values = collector->values();
   if (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact) {
     recorder::Recording recording(file);
-    assessed.values = analytics::valuesFromObservables(recording);
+    assessed.values = analytics::valuesFromObservables(recording, cutoff);
   }
   assessed.fileName = std::filesystem::path(file).filename().string();
-  stored.how = importedName(analytics::store(database, assessed));
+  if (database != nullptr) stored.how = importedName(analytics::store(*database, assessed));
   stored.values = std::move(assessed.values);
   return report;
 }
 
-nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const analytics::CheckpointValue& v : values) {
-    nlohmann::ordered_json row = {{"name", v.name}, {"subject", v.subject}, {"version", v.version}};
-    row["value"] = v.value ? nlohmann::ordered_json(*v.value) : nlohmann::ordered_json();
-    row["unit"] = v.unit;
-    row["origin"] = nameOf(v.origin);
-    if (!v.value) {
-      row["missing"] = v.availability == analytics::Availability::notApplicable ? "not applicable" : "not available";
-      row["reason"] = v.reason;
-    }
-    if (!v.note.empty()) row["note"] = v.note;
-    list.push_back(row);
-  }
-  return list;
-}
-
 int assess(const Options& o) {
-  analytics::CohortDatabase database(o.cohort, analytics::CohortDatabase::Access::create);
+  checkStored(o.cohort, o.cutoff);
+  std::optional<analytics::CohortDatabase> database;
+  if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
   std::vector<recorder::ReplayReport> reports;
   nlohmann::json list = nlohmann::json::array();
   Progress progress("assessing, recordings", o.json);
   for (const std::string& file : o.files) {
     Stored stored;
     try {
-      reports.push_back(assessOne(file, o, database, stored));
+      reports.push_back(assessOne(file, o, database ? &*database : nullptr, stored));
     } catch (const Error& e) {
       if (e.code() != ExitCode::no) throw;
       // A conflict with what the cohort holds is this file's answer; the others are still assessed.
@@ -137,7 +117,7 @@ int assess(const Options& o) {
       list.push_back(row);
     } else {
       printReport(reports.back());
-      if (o.files.size() == 1) {
+      if (o.files.size() == 1 || !database) {
         std::fflush(stdout);
         analytics::printValues(stored.values, std::cout);
         std::cout << '\n' << std::flush;
@@ -149,7 +129,7 @@ int assess(const Options& o) {
   } else {
     std::cout << std::flush;
     std::fflush(stdout);
-    analytics::printAttempts(database, std::cout);
+    if (database) analytics::printAttempts(*database, std::cout);
   }
   return static_cast<int>(worstOf(reports));
 }
@@ -161,7 +141,7 @@ void addAssess(CLI::App& app, Run& run) {
   CLI::App* command =
       app.add_subcommand("assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.");
   command->add_option("recordings", o->files, "recordings")->required();
-  command->add_option("--cohort", o->cohort, "cohort database; made where there is none")->required();
+  addStoring(*command, o->cohort, o->cutoff);
   command->add_option("--threads", o->threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();

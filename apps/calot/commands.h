@@ -20,6 +20,7 @@ void addState(CLI::App& app, Run& run);
 void addDiff(CLI::App& app, Run& run);
 void addMesh(CLI::App& app, Run& run);
 void addRender(CLI::App& app, Run& run);
+void addImport(CLI::App& app, Run& run);
 void addAssess(CLI::App& app, Run& run);
 void addStudy(CLI::App& app, Run& run);
 void addParticipant(CLI::App& app, Run& run);

@@ -26,8 +26,8 @@ int main(int argc, char** argv) {
   apps::Run run;
   for (const auto add :
        {apps::addRecord, apps::addReplay, apps::addBranch, apps::addInspect, apps::addRecover, apps::addExport,
-        apps::addState, apps::addDiff, apps::addAssess, apps::addStudy, apps::addParticipant, apps::addRender,
-        apps::addMesh, apps::addScenes, apps::addCheckpoints, apps::addDevices, apps::addGolden}) {
+        apps::addState, apps::addDiff, apps::addImport, apps::addAssess, apps::addStudy, apps::addParticipant,
+        apps::addRender, apps::addMesh, apps::addScenes, apps::addCheckpoints, apps::addDevices, apps::addGolden}) {
     add(app, run);
   }
   const auto isCommand = [&app](const std::string& word) {

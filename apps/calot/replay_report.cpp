@@ -62,14 +62,18 @@ nlohmann::json reportJson(const recorder::ReplayReport& r) {
   return json;
 }
 
-ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports) {
+ExitCode worstOf(const std::vector<ExitCode>& codes) {
   for (const ExitCode code : {ExitCode::failure, ExitCode::damaged, ExitCode::no, ExitCode::undecided}) {
-    if (std::any_of(reports.begin(), reports.end(),
-                    [code](const recorder::ReplayReport& r) { return r.code() == code; })) {
-      return code;
-    }
+    if (std::find(codes.begin(), codes.end(), code) != codes.end()) return code;
   }
   return ExitCode::yes;
+}
+
+ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports) {
+  std::vector<ExitCode> codes;
+  codes.reserve(reports.size());
+  for (const recorder::ReplayReport& report : reports) codes.push_back(report.code());
+  return worstOf(codes);
 }
 
 }  // namespace calot::apps

@@ -14,6 +14,7 @@ void printReport(const recorder::ReplayReport& report);
 nlohmann::json reportJson(const recorder::ReplayReport& report);
 
 /// Exit code over many inputs: the first present of 1, 4, 3, 5, 0.
+ExitCode worstOf(const std::vector<ExitCode>& codes);
 ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports);
 
 }  // namespace calot::apps

@@ -19,8 +19,6 @@ constexpr std::size_t groupColumns = 19;
 constexpr std::array<std::size_t, handCount> slaveColumn{2 * groupColumns, 3 * groupColumns};
 constexpr std::size_t mostBytes = std::size_t{1} << 30U;
 constexpr std::size_t mostRows = 1000000;
-constexpr double farthest = 5.0;         // m
-constexpr double orthonormality = 1e-3;  // the format's own rounding is below 1e-4
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -52,19 +50,18 @@ class LineReader {
   [[nodiscard]] KinematicsPose pose(const std::array<double, columns>& v, std::size_t first) const {
     KinematicsPose pose;
     pose.position = Vec3(v[first], v[first + 1], v[first + 2]);
-    if (!(pose.position.cwiseAbs().maxCoeff() <= farthest)) {
+    if (!(pose.position.cwiseAbs().maxCoeff() <= farthestPosition)) {
       fail(fmt::format("columns {} to {}: a position farther than {} m; positions are in metres", first + 1, first + 3,
-                       farthest));
+                       farthestPosition));
     }
     Mat3 rotation;
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) rotation(r, c) = v[first + 3 + static_cast<std::size_t>(3 * r + c)];
     }
-    const double off = (rotation * rotation.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff();
-    const double handed = rotation.col(0).cross(rotation.col(1)).dot(rotation.col(2));
-    if (!(off <= orthonormality) || !(handed > 0.0)) {
+    const double off = rotationDefect(rotation);  // the format's own rounding is below 1e-4
+    if (!(off <= rotationTolerance)) {
       fail(fmt::format("columns {} to {}: no rotation matrix (off by {:.2g}; {:.2g} is allowed)", first + 4, first + 12,
-                       handed > 0.0 ? off : 2.0, orthonormality));
+                       off, rotationTolerance));
     }
     pose.orientation = quaternionOf(rotation);
     pose.gripper = v[first + 18];

@@ -50,6 +50,12 @@ Quat alignedToShaft(const Quat& orientation, const Vec3& shaft) {
   return unit(unit(Quat(real, axis.x(), axis.y(), axis.z())) * orientation);
 }
 
+double rotationDefect(const Mat3& matrix) {
+  const double handed = matrix.col(0).cross(matrix.col(1)).dot(matrix.col(2));
+  if (handed <= 0.0) return 2.0;
+  return (matrix * matrix.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff();
+}
+
 Quat quaternionOf(const Mat3& r) {
   const double trace = r(0, 0) + r(1, 1) + r(2, 2);
   Quat q;

@@ -22,6 +22,13 @@ Quat pointing(const Vec3& port, const Vec3& tip, double roll = 0.0);
 /// @pre `shaft` is a unit vector
 Quat alignedToShaft(const Quat& orientation, const Vec3& shaft);
 
+/// How far a matrix is off a rotation: the largest part of |R R^T - 1|, 2 for a reflection; NaN where it has NaN.
+double rotationDefect(const Mat3& matrix);
+/// What files of poses may be off by: their numbers are rounded.
+inline constexpr double rotationTolerance = 1e-3;
+/// Positions in files of poses are nearer than this (m), or their unit is another.
+inline constexpr double farthestPosition = 5.0;
+
 /// Quaternion of a rotation matrix, from the largest of its four components (Shepperd 1978); normalised, w >= 0.
 /// @pre the matrix is a rotation within about 1e-3
 Quat quaternionOf(const Mat3& rotation);

@@ -12,6 +12,7 @@ void registerDetection();      ///< contact/narrow, contact/broad
 void registerHaptics();        ///< haptics/tick
 void registerCarving();        ///< carving/transform, carving/stroke, carving/growth
 void registerFat();            ///< fat/step, fat/stroke
+void registerCheckpoints();    ///< checkpoints/motion
 void registerScenes();         ///< scene/step: whole steps of every scene
 
 inline void registerAll() {
@@ -22,6 +23,7 @@ inline void registerAll() {
   registerHaptics();
   registerCarving();
   registerFat();
+  registerCheckpoints();
   registerScenes();
 }
 

@@ -41,7 +41,7 @@ MAY_SEE = {
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui"),
     "apps/calot-bench": ("recorder", "tests/bench"),
-    "tests/bench": ("sim", "recorder"),
+    "tests/bench": ("sim", "recorder", "analytics"),
     "assets": ("sim", "recorder"),
 }
 # What lies at the top of recorder/ and belongs to all of its folders.

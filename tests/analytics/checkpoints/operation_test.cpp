@@ -195,6 +195,28 @@ TEST(Connective, isThatOfTheGallbladder) {
   expectNotApplicable(without.value("connective-torn"), "no connective tissue holds a gallbladder in this scene");
 }
 
+TEST(BurnPerBed, isTheCharForTheWorkDone) {
+  Operation o;
+  o.now.organ[0].charredArea = 1e-5;
+  o.step();
+  expectNotApplicable(o.value("burn-per-bed"), "less than 1 % of the bed came free");
+  o.now.organ[0].charredArea = 2e-5;
+  o.now.organ[1].charredArea = 1e-5;
+  o.now.connective[0] = {0.4, 0.5, 0.1, 0.0, 3};
+  o.step();
+  EXPECT_DOUBLE_EQ(*o.value("burn-per-bed").value, 3e-5 / 0.6);
+  o.now.connective[0] = {0.0, 0.9, 0.1, 0.0, 0};  // the rest freed without another burn: a better figure
+  o.step();
+  o.end();
+  EXPECT_DOUBLE_EQ(*o.value("burn-per-bed").value, 3e-5);
+  SceneDescription scene = operationScene();
+  scene.connective.clear();
+  Operation without(scene);
+  without.step();
+  without.end();
+  expectNotApplicable(without.value("burn-per-bed"), "no connective tissue holds a gallbladder in this scene");
+}
+
 TEST(OrganBurned, isAShareOfTheWholeSkin) {
   Operation o;
   o.now.organ[1].charredArea = 1e-5;

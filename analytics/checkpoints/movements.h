@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stretches of a motion by the speed of the tip: movements, and rest between them.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "analytics/checkpoints/motion.h"
+
+namespace calot::analytics {
+
+/// A movement: speed of at least so much (m/s) for at least so long (s). The figures of an open tool for hand motion.
+inline constexpr double movementSpeed = 0.05;
+inline constexpr double movementTime = 0.2;
+/// Idle: speed below so much (m/s) for at least so long (s).
+inline constexpr double idleSpeed = 0.005;
+inline constexpr double idleTime = 0.5;
+
+/// Points [begin, end) of a segment.
+struct Stretch {
+  std::size_t begin = 0, end = 0;
+  [[nodiscard]] std::size_t points() const { return end - begin; }
+};
+
+/// Points that a stretch of so many seconds has at least: each stands for 1 / motionRate.
+std::size_t pointsOf(double seconds);
+
+/// Maximal runs of points that are all `true`, of at least `least` points.
+std::vector<Stretch> stretchesOf(const std::vector<bool>& points, std::size_t least);
+
+/// Movements of a segment, in order: from the magnitude of the velocity, whatever its direction.
+std::vector<Stretch> movementsOf(const MotionSegment& segment);
+
+/// Length of the way over the filtered points [begin, end) (m).
+double pathLength(const MotionSegment& segment, std::size_t begin, std::size_t end);
+/// The same over all segments.
+double pathLength(const Motion& motion);
+
+}  // namespace calot::analytics

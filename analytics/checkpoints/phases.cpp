@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/checkpoints/phases.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calot::analytics {
+namespace {
+
+template <class T>
+std::vector<T> part(const std::vector<T>& all, std::int64_t from, std::int64_t to) {
+  if (all.empty()) return {};
+  return {all.begin() + from, all.begin() + to};
+}
+
+/// The points k of `segment` with begin <= k < end, appended to `motion`.
+void append(const MotionSegment& segment, std::int64_t begin, std::int64_t end, Motion& motion) {
+  const auto size = static_cast<std::int64_t>(segment.filtered.size());
+  const std::int64_t from = std::max<std::int64_t>(begin - segment.first, 0);
+  const std::int64_t to = std::min(end - segment.first, size);
+  if (to <= from) return;
+  motion.segments.push_back({segment.first + from, part(segment.raw, from, to), part(segment.filtered, from, to),
+                             part(segment.orientation, from, to), part(segment.speed, from, to)});
+}
+
+}  // namespace
+
+const char* nameOf(Phase phase) {
+  switch (phase) {
+    case Phase::identification:
+      return "identification";
+    case Phase::clipping:
+      return "clipping";
+    case Phase::cutting:
+      return "cutting";
+    case Phase::dissection:
+      return "dissection";
+    case Phase::none:
+    case Phase::done:
+      break;
+  }
+  return "none";
+}
+
+std::string whyNoPhases(const AttemptContext& context) {
+  return context.procedure ? whyTooOld(context, 3) : "the scene has no procedure";
+}
+
+void PhaseTrack::add(Phase phase, std::uint64_t ticks) {
+  if (spans_.empty() || spans_.back().phase != phase) {
+    const std::uint64_t begin = spans_.empty() ? 0 : spans_.back().end;
+    spans_.push_back({phase, begin, begin});
+  }
+  spans_.back().end += ticks;
+}
+
+std::vector<PhaseMotion> PhaseTrack::cut(const std::array<Motion, handCount>& motion, double tickSeconds) const {
+  const double ticksPerPoint = 1.0 / (motionRate * tickSeconds);
+  const auto firstPoint = [&](std::uint64_t tick) {
+    return static_cast<std::int64_t>(std::ceil(static_cast<double>(tick) / ticksPerPoint));
+  };
+  std::vector<PhaseMotion> phases;
+  for (const Phase phase : windowPhases) {
+    PhaseMotion part;
+    part.phase = phase;
+    std::uint64_t ticks = 0;
+    for (std::size_t h = 0; h < motion.size(); ++h) {
+      part.motion[h].mounted = motion[h].mounted;
+      part.motion[h].rate = motion[h].rate;
+      part.motion[h].cutoff = motion[h].cutoff;
+    }
+    for (const Span& span : spans_) {
+      if (span.phase != phase) continue;
+      ticks += span.end - span.begin;
+      for (std::size_t h = 0; h < motion.size(); ++h) {
+        for (const MotionSegment& segment : motion[h].segments)
+          append(segment, firstPoint(span.begin), firstPoint(span.end), part.motion[h]);
+      }
+    }
+    part.seconds = static_cast<double>(ticks) * tickSeconds;
+    phases.push_back(std::move(part));
+  }
+  return phases;
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How motion without a scene enters the cohort database.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/cohort_database.h"
+#include "recorder/sources/tracked_motion.h"
+
+namespace calot::analytics {
+
+/// What the caller says of motion files: they don't say it themselves.
+struct MotionDeclaration {
+  std::string task = "unnamed-task";  ///< what was done; attempts of different tasks are never compared
+  std::string participant;            ///< pseudonym, or empty
+  recorder::Mode mode = recorder::Mode::practice;
+  std::string purpose = "training";
+  std::string handedness = "unknown";
+  recorder::Outcome outcome = recorder::Outcome::stopped;
+  std::string startUtc;  ///< ISO 8601 with Z, or empty: not known
+};
+
+/// The row of the database: operator kind `kinematics`, no simulation, not checkable here (there is nothing to simulate
+/// again). The attempt's uuid (version 8 of RFC 9562) and chain head are the SHA-256 of the file's bytes, so the same
+/// file is the same attempt whatever its name.
+AttemptRecord recordOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration);
+
+/// Computes the motion's checkpoints and stores them; one transaction, idempotent.
+/// @return what was stored, and whether it was there already. @throws Error 3 on a conflict
+/// (CohortDatabase::storeAttempt).
+struct StoredMotion {
+  Imported imported = Imported::unchanged;
+  std::vector<CheckpointValue> values;
+};
+StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion& motion,
+                         const MotionDeclaration& declaration);
+
+}  // namespace calot::analytics

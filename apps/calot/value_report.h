@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What commands that compute checkpoints share: whether values are stored or only shown, and the values as JSON.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/cohort_database.h"
+
+namespace calot::apps {
+
+/// "added", "unchanged", "extended".
+const char* importedName(analytics::Imported imported);
+
+/// A row for each value: its name, subject, version, number or the reason why there is none, filter.
+nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values);
+
+/// Adds --cohort, where values are stored, and --cutoff, with which they are only shown.
+/// @param[out] cutoff Hz; 0: not given
+void addStoring(CLI::App& command, std::string& cohort, double& cutoff);
+/// What is stored has one filter: one of both options is wanted. @throws Error (usage)
+void checkStored(const std::string& cohort, double cutoff);
+
+}  // namespace calot::apps

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/column_map.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "recorder/errors.h"
+#include "sim/math/random.h"
+
+namespace calot::recorder {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::byte> bytesOf(const std::string& text) {
+  std::vector<std::byte> bytes(text.size());
+  if (!text.empty()) std::memcpy(bytes.data(), text.data(), text.size());
+  return bytes;
+}
+
+json validMap() {
+  return json::parse(R"({"format": "calot-columns", "formatVersion": 1, "device": "tracker", "frame": "world",
+    "length": "mm", "time": {"column": "t", "unit": "ms"},
+    "left": {"position": ["lx", "ly", "lz"], "quaternion": ["qw", "qx", "qy", "qz"], "axis": "x"},
+    "right": {"position": ["rx", "ry", "rz"]}})");
+}
+
+ColumnMap mapOf(const json& map) { return parseColumnMap(bytesOf(map.dump()), "m.json"); }
+
+template <class Read>
+std::string faultOf(Read read) {
+  try {
+    read();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::damaged);
+    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+    return e.what();
+  }
+  return "(no fault)";
+}
+
+std::string mapFault(const json& map) {
+  return faultOf([&] { (void)mapOf(map); });
+}
+
+std::string motionFault(const std::string& text, const json& map = validMap()) {
+  return faultOf([&] { (void)parseCsvMotion(bytesOf(text), "m.csv", mapOf(map)); });
+}
+
+const std::string names = "note, t ,lx,ly,lz,qw,qx,qy,qz,\"rx\",ry,rz\n";
+const std::string rowA = "a,1000,10,20,30,1,0,0,0,-1,-2,-3\n";
+const std::string rowB = "nan,1010,11,20,30,0.8,0.6,0,0,-1,-2,-4\n";
+
+TEST(CsvMotion, readsUnitsOrderAndAxis) {
+  // Order of columns is the file's; blanks, quotes, Windows line ends and a byte order mark are of no account.
+  std::string text = "\xEF\xBB\xBF" + names + rowA + rowB + "\n\n";
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, 1, '\r');
+  const TrackedMotion m = parseCsvMotion(bytesOf(text), "m.csv", mapOf(validMap()));
+  ASSERT_EQ(m.time.size(), 2U);
+  EXPECT_EQ(m.time[0], 0.0);
+  EXPECT_NEAR(m.time[1], 0.01, 1e-15);
+  EXPECT_EQ(m.rate, 0.0);
+  EXPECT_LT((m.hand[0].position[1] - Vec3(0.011, 0.02, 0.03)).norm(), 1e-15);
+  EXPECT_LT((m.hand[1].position[1] - Vec3(-0.001, -0.002, -0.004)).norm(), 1e-15);
+  EXPECT_TRUE(m.hand[0].oriented);
+  EXPECT_FALSE(m.hand[1].oriented);
+  // The file's x axis is the shaft: z of the instrument is x of the file's orientation.
+  const Quat given(0.8, 0.6, 0.0, 0.0);
+  EXPECT_LT((m.hand[0].orientation[1] * Vec3::UnitZ() - given * Vec3::UnitX()).norm(), 1e-14);
+  EXPECT_EQ(m.device, "tracker");
+  EXPECT_EQ(m.frame, "world");
+}
+
+TEST(CsvMotion, everyAxisIsTurnedOntoZ) {
+  const std::pair<const char*, Vec3> axes[] = {{"x", Vec3::UnitX()},   {"-x", -Vec3::UnitX()}, {"y", Vec3::UnitY()},
+                                               {"-y", -Vec3::UnitY()}, {"z", Vec3::UnitZ()},   {"-z", -Vec3::UnitZ()}};
+  for (const auto& [name, axis] : axes) {
+    json map = validMap();
+    map["left"]["axis"] = name;
+    EXPECT_LT((mapOf(map).hand[0]->axis * Vec3::UnitZ() - axis).norm(), 1e-15) << name;
+  }
+}
+
+TEST(CsvMotion, aMatrixARateAndAnotherDelimiter) {
+  json map = validMap();
+  map.erase("time");
+  map.erase("left");
+  map["rate"] = 50;
+  map["delimiter"] = "tab";
+  map["right"]["matrix"] = {"a", "b", "c", "d", "e", "f", "g", "h", "i"};
+  const std::string text =
+      "rx\try\trz\ta\tb\tc\td\te\tf\tg\th\ti\n1\t2\t3\t0\t-1\t0\t1\t0\t0\t0\t0\t1\n2\t2\t3\t1\t0\t0\t0\t1\t0\t0\t0\t1";
+  const TrackedMotion m = parseCsvMotion(bytesOf(text), "m.csv", mapOf(map));
+  EXPECT_EQ(m.rate, 50.0);
+  EXPECT_FALSE(m.hand[0].present);
+  EXPECT_LT((m.hand[1].orientation[0] * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
+  std::string mirrored = text;
+  mirrored.replace(mirrored.rfind('1'), 1, "-1");
+  EXPECT_EQ(motionFault(mirrored, map), "m.csv: line 3: no rotation matrix (off by 2; 0.001 is allowed)");
+}
+
+TEST(CsvMotion, everyFaultIsNamedWithItsLine) {
+  EXPECT_EQ(motionFault(names + rowA + rowB), "(no fault)");
+  EXPECT_EQ(motionFault(""), "m.csv: the file is empty");
+  EXPECT_EQ(motionFault(names), "m.csv: no row below the names of line 1");
+  EXPECT_EQ(motionFault(names + rowA), "m.csv: 1 row; a motion has at least 2");
+  EXPECT_EQ(motionFault("t,lx\n1,2\n"), "m.csv: line 1: no column \"ly\"; there are t, lx");
+  EXPECT_EQ(motionFault(std::string("t,").append(names).append("1,").append(rowA)),
+            "m.csv: line 1: column \"t\" is there twice");
+  EXPECT_EQ(motionFault(names + rowA + "a,1010,10,20\n"),
+            "m.csv: line 3: 4 cells; the 12 columns of line 1 are wanted");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string row = rowB;
+    row.replace(row.find(from), from.size(), to);
+    return motionFault(names + rowA + row);
+  };
+  EXPECT_EQ(with("1010", "nan"), "m.csv: line 3: column \"t\": \"nan\" is not a finite number");
+  EXPECT_EQ(with("1010", "1e999"), "m.csv: line 3: column \"t\": \"1e999\" is not a number");
+  EXPECT_EQ(with("-2", "two"), "m.csv: line 3: column \"ry\": \"two\" is not a number");
+  EXPECT_EQ(with("-2", ""), "m.csv: line 3: column \"ry\": \"\" is not a number");
+  EXPECT_EQ(with("-2", "6000"), "m.csv: line 3: a position farther than 5 m: the map's unit of length may be wrong");
+  EXPECT_EQ(with("1010", "1000"), "m.csv: line 3: its time is not after the row before");
+  EXPECT_EQ(with("1010", "1e13"),
+            "m.csv: line 3: more than 1e+06 s after the first row: the map's unit of time may be wrong");
+  EXPECT_EQ(with("0.8", "0.1"), "m.csv: line 3: a quaternion of length 0.608; 1 is wanted");
+  EXPECT_EQ(motionFault(names + rowA + "\n" + rowB), "m.csv: line 3: an empty line between rows");
+}
+
+TEST(CsvMotion, whatIsDamagedAtRandomIsRefusedInOneLineOrRead) {
+  const unsigned seed = 5;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Random random(seed, 1);
+  std::string text = names;
+  for (int i = 0; i < 20; ++i) text += fmt::format("n,{},10,20,30,1,0,0,0,-1,-2,-3\n", 1000 + 10 * i);
+  const std::string map = validMap().dump();
+  std::size_t refused = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    std::string csv = text, columns = map;
+    std::string& victim = trial % 4 == 0 ? columns : csv;
+    for (std::uint32_t change = 0, changes = 1 + random.next() % 3; change < changes && !victim.empty(); ++change) {
+      const std::size_t at = random.next() % victim.size();
+      switch (random.next() % 4) {
+        case 0:
+          victim[at] = static_cast<char>(random.next() % 256);
+          break;
+        case 1:
+          victim.erase(at, random.next() % 30);
+          break;
+        case 2:
+          victim.insert(at, 1, ",\n\r\"-e9"[random.next() % 7]);
+          break;
+        default:
+          victim.resize(at);
+      }
+    }
+    try {
+      const TrackedMotion m = parseCsvMotion(bytesOf(csv), "m.csv", parseColumnMap(bytesOf(columns), "m.json"));
+      for (std::size_t i = 1; i < m.time.size(); ++i) ASSERT_LT(m.time[i - 1], m.time[i]);
+      for (const TrackedHand& hand : m.hand) {
+        ASSERT_EQ(hand.position.size(), hand.present ? m.time.size() : 0U);
+        for (const Quat& q : hand.orientation) ASSERT_NEAR(q.norm(), 1.0, 1e-9);
+      }
+    } catch (const Error& e) {
+      ++refused;
+      ASSERT_EQ(e.code(), ExitCode::damaged);
+      const std::string says = e.what();
+      ASSERT_EQ(says.find('\n'), std::string::npos) << says;
+      ASSERT_EQ(says.substr(0, 2), "m.") << says;
+    }
+  }
+  EXPECT_GT(refused, 1000U);
+  EXPECT_LT(refused, 4000U);
+}
+
+TEST(ColumnMap, everyFaultIsNamedWithItsPlace) {
+  const auto with = [](const char* pointer, const json& value) {
+    json map = validMap();
+    map[json::json_pointer(pointer)] = value;
+    return mapFault(map);
+  };
+  EXPECT_EQ(mapFault(validMap()), "(no fault)");
+  EXPECT_EQ(with("/length", "millimetres"), "m.json: /length: none of m, cm, mm");
+  EXPECT_EQ(with("/time/unit", "min"), "m.json: /time/unit: none of s, ms, us, ns");
+  EXPECT_EQ(with("/format", "other"), "m.json: /format: none of calot-columns");
+  EXPECT_EQ(with("/delimiter", "|"), "m.json: /delimiter: none of ,, ;, tab");
+  EXPECT_EQ(with("/left/axis", "w"), "m.json: /left/axis: none of z, -z, x, -x, y, -y");
+  EXPECT_EQ(with("/frame", "two words"), "m.json: /frame: a word without blanks is wanted");
+  EXPECT_EQ(with("/rate", 30), "m.json: /: either \"rate\" (rows a second) or \"time\" (a column) is wanted");
+  EXPECT_EQ(with("/left/position/1", ""), "m.json: /left/position/1: the text is empty");
+  EXPECT_EQ(with("/right/axis", "x"), "m.json: /right/axis: an axis without an orientation");
+  EXPECT_NE(with("/left/position", {"lx", "ly"}), "(no fault)");
+  EXPECT_NE(with("/more", 1), "(no fault)");
+  json map = validMap();
+  map.erase("time");
+  EXPECT_EQ(mapFault(map), "m.json: /: either \"rate\" (rows a second) or \"time\" (a column) is wanted");
+  map["rate"] = 0.5;
+  EXPECT_EQ(mapFault(map), "m.json: /rate: 0.5 is not in [1, 100000]");
+  map = validMap();
+  map.erase("left");
+  map.erase("right");
+  EXPECT_EQ(mapFault(map), "m.json: /: neither \"left\" nor \"right\": a hand is wanted");
+  map = validMap();
+  map.erase("frame");
+  EXPECT_NE(mapFault(map).find("\"frame\" is missing"), std::string::npos);
+}
+
+TEST(ColumnMap, readerAndSchemaAgree) {
+  std::ifstream in(std::string(CALOT_SOURCE_DIR) + "/schemas/columns.schema.json");
+  ASSERT_TRUE(in);
+  const json schema = json::parse(in);
+  for (const ObjectRule& rule : columnMapRules()) {
+    SCOPED_TRACE(rule.definition);
+    const json& object = rule.definition.empty() ? schema : schema.at("$defs").at(rule.definition);
+    std::set<std::string> keys, required, schemaKeys;
+    for (const KeyRule& key : rule.keys) {
+      keys.insert(key.key);
+      if (key.required) required.insert(key.key);
+      const json& property = object.at("properties").at(key.key);
+      const std::string type = property.value("type", "");
+      if (type != "number" && type != "integer") continue;
+      EXPECT_EQ(property.at("minimum").get<double>(), key.lower) << key.key;
+      EXPECT_EQ(property.at("maximum").get<double>(), key.upper) << key.key;
+    }
+    for (const auto& property : object.at("properties").items()) schemaKeys.insert(property.key());
+    EXPECT_EQ(keys, schemaKeys);
+    EXPECT_EQ(required, object.at("required").get<std::set<std::string>>());
+    EXPECT_EQ(object.at("additionalProperties"), false);
+  }
+}
+
+}  // namespace
+}  // namespace calot::recorder
