@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/embedded.h"
-#include "analytics/statistics/descriptive.h"
+#include "analytics/report/study_rows.h"
 #include "recorder/errors.h"
 
 namespace calot::analytics {
@@ -18,11 +20,17 @@ namespace {
 
 /// Why an attempt stays out, or empty. The order is the flow table's.
 const std::vector<std::string>& exclusionReasons() {
-  static const std::vector<std::string> reasons{"excluded by hand",  "recording diverged or damaged",
-                                                "not verified yet",  "recording incomplete",
-                                                "technical failure", "synthetic (performer)",
-                                                "practice",          "branch of another attempt",
-                                                "golden recording",  "no group"};
+  static const std::vector<std::string> reasons{"excluded by hand",
+                                                "recording diverged or damaged",
+                                                "not verified yet",
+                                                "recording incomplete",
+                                                "technical failure",
+                                                "synthetic (performer)",
+                                                "practice",
+                                                "branch of another attempt",
+                                                "golden recording",
+                                                "no group",
+                                                "not comparable (another key)"};
   return reasons;
 }
 
@@ -43,119 +51,125 @@ std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
   if (!a.parent.empty() && !options.includeBranches) return reason[7];
   if (a.purpose == "golden") return reason[8];
   if (groupOf(a, options.grouping).empty()) return reason[9];
+  if (!options.key.empty() && a.comparabilityKey != options.key) return reason[10];
   return {};
 }
 
 /// Whose value it is: a person, or one performer's run.
 std::string unitOf(const AttemptRow& a) { return a.participant.empty() ? "attempt " + a.uuid : a.participant; }
 
-/// skilled before intermediate before unskilled, expert before novice; else by name.
-bool before(const std::string& a, const std::string& b) {
-  const auto rank = [](const std::string& s) {
-    const std::vector<std::string> known{"expert", "skilled", "intermediate", "novice", "unskilled"};
-    return std::find(known.begin(), known.end(), s) - known.begin();
-  };
-  return rank(a) != rank(b) ? rank(a) < rank(b) : a < b;
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text;
-}
-
-std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
-                                        const StudyOptions& options, const std::string& path, const Study& study) {
-  std::vector<std::string> names;
-  names.reserve(present.size());
-  for (const auto& item : present) names.push_back(item.first);
-  std::sort(names.begin(), names.end(), before);
-  if (!options.groups.empty()) {
-    if (options.groups.size() != 2 || options.groups[0] == options.groups[1]) {
-      throw Error(ExitCode::usage, "study: --groups takes two different names");
-    }
-    for (const std::string& name : options.groups) {
-      if (present.count(name) == 0) {
-        throw Error(ExitCode::no, fmt::format("{}: no attempts for the study in group \"{}\" (there are: {})", path,
-                                              name, names.empty() ? "none" : joined(names)));
-      }
-    }
-    return {options.groups[0], options.groups[1]};
-  }
-  if (names.size() == 2) return {names[0], names[1]};
-  if (names.size() > 2) {
-    throw Error(ExitCode::no,
-                fmt::format("{}: {} groups ({}); name two with --groups A,B", path, names.size(), joined(names)));
-  }
+std::string leftOut(const Study& study) {
   std::string left;
   for (const FlowRow& row : study.flow)
     left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
-  throw Error(ExitCode::no, fmt::format("{}: a study needs two groups, {} left of {} attempts{}", path,
-                                        names.empty() ? "none is" : "only " + names[0] + " is", study.recruited,
-                                        left.empty() ? "" : " (left out: " + left + ")"));
+  return fmt::format(" of {} attempts{}", study.recruited, left.empty() ? "" : " (left out: " + left + ")");
 }
 
-struct Cell {
-  double sum = 0.0;
-  std::uint64_t count = 0;
-};
-
-/// Values of one checkpoint and subject, by group and participant.
+/// Values of one checkpoint and subject.
 struct Column {
-  std::array<std::map<std::string, Cell>, 2> participant;
-  std::array<std::map<std::string, std::string>, 2> reason;  ///< of participants without a value so far
+  StudySample sample;
   std::set<std::uint32_t> versions;
   std::set<std::string> origins;
+  std::string unit;  ///< of a checkpoint that the registry does not know
 };
 
-GroupSummary summarise(const std::vector<double>& values, const std::map<std::string, std::string>& reasons) {
-  GroupSummary s;
-  s.n = values.size();
-  s.missing = reasons.size();
-  std::map<std::string, int> counts;
-  for (const auto& item : reasons) ++counts[item.second];
-  int most = 0;
-  for (const auto& item : counts) {
-    if (item.second > most) {
-      most = item.second;
-      s.missingReason = item.first;
+using ColumnKey = std::pair<std::string, std::string>;  ///< checkpoint, subject
+
+struct Member {
+  std::size_t group = 0;
+  std::string participant;
+  std::size_t number = 0;  ///< by start
+};
+
+/// Who is in the study, by attempt; fills the study's counts and the rest of its flow.
+std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow>& attempts,
+                                      const StudyOptions& options, const std::string& name) {
+  std::map<std::string, Member> member;
+  std::set<std::string> keys;
+  std::array<std::map<std::string, std::vector<const AttemptRow*>>, 2> people;
+  std::uint64_t elsewhere = 0, later = 0;
+  for (const AttemptRow& a : attempts) {
+    const auto at = std::find(study.groups.begin(), study.groups.end(), groupOf(a, options.grouping));
+    if (at == study.groups.end()) {
+      ++elsewhere;
+    } else {
+      people[static_cast<std::size_t>(at - study.groups.begin())][unitOf(a)].push_back(&a);
     }
   }
-  const auto take = [](const Answer<double>& answer) { return answer ? std::optional<double>(*answer) : std::nullopt; };
-  s.mean = take(mean(values));
-  s.standardDeviation = take(standardDeviation(values));
-  s.median = take(median(values));
-  s.lowerQuartile = take(quantile(values, 0.25));
-  s.upperQuartile = take(quantile(values, 0.75));
-  return s;
+  std::size_t several = 0;
+  std::string whose;
+  for (std::size_t g = 0; g < 2; ++g) {
+    study.participants[g] = people[g].size();
+    for (auto& [person, list] : people[g]) {
+      if (g == 1 && people[0].count(person) > 0) {
+        throw Error(ExitCode::no,
+                    fmt::format("{}: participant \"{}\" is in both groups, which must be independent", name, person));
+      }
+      if (list.size() > 1 && several++ == 0) whose = fmt::format("\"{}\" has {}", person, list.size());
+      if (list.size() > 1 && options.attemptRule == AttemptRule::first) {
+        std::stable_sort(list.begin(), list.end(),
+                         [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
+        if (list[0]->startUtc == list[1]->startUtc) {
+          throw Error(ExitCode::no, fmt::format("{}: two attempts of participant \"{}\" start at {}: neither is the "
+                                                "first; take --attempt-rule mean, or exclude one",
+                                                name, person, list[0]->startUtc));
+        }
+        later += list.size() - 1;
+        list.erase(list.begin() + 1, list.end());
+      }
+      for (const AttemptRow* a : list) {
+        member.emplace(a->uuid, Member{g, person, static_cast<std::size_t>(a - attempts.data())});
+        ++study.attempts[g];
+        ++study.analysed;
+        keys.insert(a->comparabilityKey);
+        study.synthetic = study.synthetic || a->synthetic;
+      }
+    }
+  }
+  if (several > 0 && !options.attemptRule) {
+    throw Error(ExitCode::no,
+                fmt::format("{}: participant {} attempts ({} participant{} with several), which are not independent; "
+                            "declare --attempt-rule first or mean",
+                            name, whose, several, several == 1 ? "" : "s"));
+  }
+  study.attemptRule = several == 0                                ? "one attempt each"
+                      : options.attemptRule == AttemptRule::first ? "the first of a participant's attempts"
+                                                                  : "the mean of a participant's attempts";
+  if (elsewhere > 0) study.flow.push_back({"another group", elsewhere});
+  if (later > 0) study.flow.push_back({"later attempt of a participant (the first counts)", later});
+  study.keys.assign(keys.begin(), keys.end());
+  return member;
 }
 
-StudyRow makeRow(const std::string& name, const std::string& subject, const Column& column, const std::string& unit) {
+void askForOneKey(Study& study, const StudyOptions& options, const std::string& name) {
+  if (study.keys.size() < 2) return;
+  if (!options.mixKeys) {
+    std::string list;
+    for (const auto& key : study.keys) list += (list.empty() ? "" : "; ") + key;
+    throw Error(ExitCode::no, fmt::format("{}: the attempts don't compare, they have {} comparability keys ({}); "
+                                          "choose one with --key, or ask for --mix-keys",
+                                          name, study.keys.size(), list));
+  }
+  study.remarks.push_back(
+      fmt::format("Attempts of {} comparability keys are mixed, as asked: differences between groups may be "
+                  "differences of scene, device or version.",
+                  study.keys.size()));
+}
+
+/// Display unit and factor of a checkpoint; stored as they are where the registry does not know it.
+StudyRow describedRow(const ColumnKey& key, const Column& column) {
   StudyRow row;
-  row.checkpoint = name;
-  row.subject = subject;
-  row.title = name;
-  row.unit = unit;
-  double factor = 1.0;
-  if (const CheckpointDefinition* d = findCheckpoint(name)) {
+  row.checkpoint = key.first;
+  row.subject = key.second;
+  row.title = key.first;
+  row.unit = column.unit;
+  if (const CheckpointDefinition* d = findCheckpoint(key.first)) {
     row.title = d->title;
     row.unit = d->displayUnit;
     row.direction = d->direction;
-    factor = d->displayFactor;
   }
   row.versions.assign(column.versions.begin(), column.versions.end());
   row.origins.assign(column.origins.begin(), column.origins.end());
-  for (std::size_t g = 0; g < 2; ++g) {
-    for (const auto& item : column.participant[g]) {
-      row.participants[g].push_back(item.first);
-      row.values[g].push_back(item.second.sum / static_cast<double>(item.second.count) * factor);
-    }
-    row.group[g] = summarise(row.values[g], column.reason[g]);
-  }
-  row.test = mannWhitney(row.values[0], row.values[1]);
-  row.effect = superiority(row.values[0], row.values[1]);
-  row.shift = hodgesLehmann(row.values[0], row.values[1]);
-  row.shiftInterval = hodgesLehmannInterval(row.values[0], row.values[1]);
   return row;
 }
 
@@ -184,6 +198,9 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
                 const StudyOptions& options, const std::string& name) {
   Study study;
   study.heading = "exploratory";
+  study.source = "cohort";
+  study.where = std::filesystem::path(name).filename().string();
+  study.counted = "attempts";
   std::map<std::string, std::uint64_t> out, present;
   std::vector<AttemptRow> attempts;
   for (const AttemptRow& a : recruited) {
@@ -198,75 +215,30 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   for (const std::string& reason : exclusionReasons()) {
     if (out.count(reason) > 0) study.flow.push_back({reason, out[reason]});
   }
-  study.groups = chooseGroups(present, options, name, study);
+  study.groups = chooseGroups(present, options, name, leftOut(study));
+  study.better = betterOf(study.groups, options);
+  const std::map<std::string, Member> member = members(study, attempts, options, name);
+  askForOneKey(study, options, name);
 
-  std::map<std::string, std::pair<std::size_t, std::string>> member;  // attempt -> group index, participant
-  std::set<std::string> keys;
-  std::array<std::set<std::string>, 2> people;
-  std::uint64_t elsewhere = 0;
-  for (const AttemptRow& a : attempts) {
-    const std::string group = groupOf(a, options.grouping);
-    const auto at = std::find(study.groups.begin(), study.groups.end(), group);
-    if (at == study.groups.end()) {
-      ++elsewhere;
-      continue;
-    }
-    const auto g = static_cast<std::size_t>(at - study.groups.begin());
-    member[a.uuid] = {g, unitOf(a)};
-    people[g].insert(unitOf(a));
-    ++study.attempts[g];
-    ++study.analysed;
-    keys.insert(a.comparabilityKey);
-    study.synthetic = study.synthetic || a.synthetic;
-  }
-  if (elsewhere > 0) study.flow.push_back({"another group", elsewhere});
-  for (std::size_t g = 0; g < 2; ++g) study.participants[g] = people[g].size();
-  for (const std::string& person : people[0]) {
-    if (people[1].count(person) > 0) {
-      throw Error(ExitCode::no,
-                  fmt::format("{}: participant \"{}\" is in both groups, which must be independent", name, person));
-    }
-  }
-  study.keys.assign(keys.begin(), keys.end());
-  if (study.keys.size() > 1) {
-    if (!options.mixKeys) {
-      throw Error(
-          ExitCode::no,
-          fmt::format(
-              "{}: the attempts don't compare, they have {} comparability keys ({}); choose, or ask for --mix-keys",
-              name, study.keys.size(), [&] {
-                std::string list;
-                for (const auto& key : study.keys) list += (list.empty() ? "" : "; ") + key;
-                return list;
-              }()));
-    }
-    study.remarks.push_back(
-        fmt::format("Attempts of {} comparability keys are mixed, as asked: differences between groups may be "
-                    "differences of scene, device or version.",
-                    study.keys.size()));
-  }
-
-  std::map<std::pair<std::string, std::string>, Column> columns;
-  std::vector<std::pair<std::string, std::string>> order;
-  std::map<std::pair<std::string, std::string>, std::string> unit;
+  std::map<ColumnKey, Column> columns;
+  std::vector<ColumnKey> order;
   for (const AttemptValue& item : values) {
     const auto at = member.find(item.attempt);
     if (at == member.end()) continue;
-    const std::pair<std::string, std::string> key{item.value.name, item.value.subject};
+    const ColumnKey key{item.value.name, item.value.subject};
     if (columns.count(key) == 0) order.push_back(key);
     Column& column = columns[key];
-    unit[key] = item.value.unit;
-    const auto& [g, person] = at->second;
-    if (!item.value.value) {
-      if (column.participant[g].count(person) == 0) column.reason[g].emplace(person, item.value.reason);
+    column.unit = item.value.unit;
+    const Member& m = at->second;
+    const CheckpointDefinition* definition = findCheckpoint(item.value.name);
+    const double shown = item.value.value.value_or(0.0) * (definition != nullptr ? definition->displayFactor : 1.0);
+    if (!item.value.value || !std::isfinite(shown)) {
+      column.sample.missing[m.group][m.participant].push_back(item.value.value ? "not finite" : item.value.reason);
       continue;
     }
     column.versions.insert(item.value.version);
     column.origins.insert(nameOf(item.value.origin));
-    Cell& cell = column.participant[g][person];
-    cell.sum += *item.value.value;
-    ++cell.count;
-    column.reason[g].erase(person);
+    column.sample.values[m.group].push_back({m.participant, m.number, shown});
   }
   const auto place = [](const std::string& checkpoint) {
     const auto& registry = checkpointRegistry();
@@ -276,7 +248,8 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](const auto& a, const auto& b) { return place(a.first) < place(b.first); });
-  for (const auto& key : order) {
+  std::array<std::map<std::string, double>, 2> duration;
+  for (const ColumnKey& key : order) {
     const Column& column = columns[key];
     if (column.versions.size() > 1) {
       if (!options.mixKeys) {
@@ -289,8 +262,15 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
       study.remarks.push_back(
           fmt::format("Values of {} versions of {} are mixed, as asked.", column.versions.size(), key.first));
     }
-    study.rows.push_back(makeRow(key.first, key.second, column, unit[key]));
+    StudyRow& row = study.rows.emplace_back(describedRow(key, column));
+    fillRow(row, column.sample);
+    if (row.checkpoint != "attempt-duration") continue;
+    for (std::size_t g = 0; g < 2; ++g) {
+      for (std::size_t i = 0; i < row.values[g].size(); ++i) duration[g][row.participants[g][i]] = row.values[g][i];
+    }
   }
+  for (StudyRow& row : study.rows) compareGroups(row, study, duration);
+  finishRows(study, options);
   addPublished(study);
   return study;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The comparison of two groups of a cohort, as data; study_output.h prints it.
+// The comparison of two groups, of a cohort or of a table from elsewhere, as data; study_output.h prints it.
 #pragma once
 
 #include <array>
@@ -11,22 +11,36 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/statistics/answer.h"
+#include "analytics/statistics/covariance_analysis.h"
+#include "analytics/statistics/hedges.h"
+#include "analytics/statistics/repeated_attempts.h"
+#include "analytics/statistics/spearman.h"
+#include "analytics/statistics/superiority_interval.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
 
 enum class Grouping : std::uint8_t { performer, group };
 
-struct StudyOptions {
-  Grouping grouping = Grouping::group;
+/// What the user declares of any study, before its figures are looked at.
+struct StudyChoices {
   std::vector<std::string> groups;  ///< the two to compare, in order; empty: the only two that are there
+  std::string better;               ///< the group that is expected to do better; empty: by the groups' names, if these
+                                    ///< are levels of skill (expert and skilled, intermediate, novice and unskilled)
+  std::optional<AttemptRule> attemptRule;  ///< what makes one value of a participant's several; none: refused
+  std::vector<std::string> family;         ///< checkpoints or outcomes that are adjusted for each other; empty: all
+};
+
+struct StudyOptions : StudyChoices {
+  Grouping grouping = Grouping::group;
   bool includeSynthetic = false;
   bool includePractice = false;
   bool includeBranches = false;
+  std::string key;       ///< only attempts of this comparability key; empty: all, which must then have one
   bool mixKeys = false;  ///< compare across comparability keys and checkpoint versions, and say so
 };
 
-/// One reason for which attempts stay out, in the order in which they are asked.
+/// One reason for which attempts (or a table's rows) stay out, in the order in which they are asked.
 struct FlowRow {
   std::string reason;
   std::uint64_t attempts = 0;
@@ -37,11 +51,20 @@ struct GroupSummary {
   std::uint64_t n = 0;
   std::uint64_t missing = 0;  ///< participants without any value
   std::string missingReason;  ///< the commonest
+  std::uint64_t partial = 0;  ///< participants whose mean lacks some of their attempts
   std::optional<double> mean, standardDeviation, median, lowerQuartile, upperQuartile;
 };
 
+/// The outcome held against its value at the baseline, of those who have both.
+struct BaselineAdjustment {
+  std::array<std::uint64_t, 2> n{};
+  std::array<std::uint64_t, 2> withoutBaseline{};  ///< have the outcome and not the baseline
+  Answer<CovarianceAnalysis> analysis = Answer<CovarianceAnalysis>::none("not computed");
+  std::optional<double> holm;  ///< p adjusted over the analyses of the family
+};
+
 struct StudyRow {
-  std::string checkpoint;  ///< name
+  std::string checkpoint;  ///< name; of a table: the column
   std::string subject;
   std::string title;
   std::string unit;  ///< display unit
@@ -52,30 +75,55 @@ struct StudyRow {
   std::array<std::vector<std::string>, 2> participants;  ///< whose, ascending; "attempt UUID" for a performer's run
   std::array<std::vector<double>, 2> values;             ///< as many, in the display unit
   Answer<MannWhitney> test = Answer<MannWhitney>::none("not computed");
-  Answer<Superiority> effect = Answer<Superiority>::none("not computed");
+  std::optional<double> holm;            ///< p adjusted over the family; none outside of it or without a test
+  std::optional<Hypothesis> hypothesis;  ///< from the direction and the group that is expected to do better
+  std::optional<bool> asHypothesised;    ///< A of the hypothesis above one half; none at one half, or without one
+  Answer<Superiority> effect = Answer<Superiority>::none("not computed");  ///< of the first group's values being larger
+  /// The same with its interval, in the direction of the hypothesis where there is one.
+  Answer<SuperiorityEstimate> area = Answer<SuperiorityEstimate>::none("not computed");
   Answer<double> shift = Answer<double>::none("not computed");
   Answer<ShiftInterval> shiftInterval = Answer<ShiftInterval>::none("not computed");
+  Answer<HedgesG> hedges = Answer<HedgesG>::none("not computed");
+  /// Over the participants of both groups; with `attempt-duration`, by the same rule.
+  Answer<Spearman> withDuration = Answer<Spearman>::none("not computed");
+  std::uint64_t withDurationPairs = 0;                     ///< participants in it
+  std::optional<BaselineAdjustment> adjusted;              ///< of a table with a baseline
+  std::vector<std::string> coverageWarnings;               ///< intervals whose published coverage is low at these sizes
   std::optional<double> publishedExpert, publishedNovice;  ///< the paper's means, for reference
+};
+
+/// A participant without a row at an occasion where others have one.
+struct AbsentRow {
+  std::string participant, group, occasion;
 };
 
 struct Study {
   std::string heading;     ///< "exploratory": there is no protocol
+  std::string source;      ///< "cohort" or "table"
+  std::string counted;     ///< what the flow counts: "attempts" or "rows"
+  std::string where;       ///< the file's name without its folder
   bool synthetic = false;  ///< contains what performers made: watermarked everywhere
   std::array<std::string, 2> groups;
+  std::string better;  ///< the group that is expected to do better, or empty: no hypothesis
   std::array<std::uint64_t, 2> participants{}, attempts{};
+  std::string attemptRule;        ///< how one value came of a participant's attempts, a clause
   std::vector<std::string> keys;  ///< comparability keys of the attempts in it
-  std::uint64_t recruited = 0;    ///< attempts in the database
+  std::uint64_t recruited = 0;    ///< attempts in the database, rows in the table
   std::vector<FlowRow> flow;
   std::uint64_t analysed = 0;        ///< attempts
+  std::vector<AbsentRow> absent;     ///< of a table with occasions, by participant
   std::vector<std::string> remarks;  ///< what a reader must know, whole sentences
+  std::string family;                ///< which p values are adjusted for each other, a sentence
   std::vector<StudyRow> rows;
   std::string publishedSource;  ///< of the paper's means
 };
 
-/// Two groups side by side. One value per participant: the mean over that participant's attempts; a performer's attempt
-/// without participant counts as one synthetic participant. Practice, branches, goldens, excluded attempts, unfinished
-/// recordings, technical failures and recordings that did not verify stay out, counted in the flow.
-/// @throws Error 3 when there are not two groups, or when comparability keys or checkpoint versions would mix.
+/// Two groups side by side, one value per participant. A participant with several attempts needs
+/// `StudyChoices::attemptRule`; a performer's attempt without participant counts as one synthetic participant.
+/// Practice, branches, goldens, excluded attempts, unfinished recordings, technical failures and recordings that did
+/// not verify stay out, counted in the flow.
+/// @throws Error 3 when there are not two groups, a participant has several attempts and there is no rule, or
+/// comparability keys or checkpoint versions would mix; Error 2 for a name that is none.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
 
 /// The same of attempts and values at hand: CohortDatabase::listAttempts() and allValues(). @param name of where they

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "analytics/report/study_output.h"
 #include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
 
 namespace calot::analytics {
 namespace {
@@ -25,12 +25,43 @@ std::string number(const std::optional<double>& value) { return value ? fmt::for
 
 std::string watermark(const Study& study) { return study.synthetic ? "SYNTHETIC" : ""; }
 
+std::string hypothesisCells(const StudyRow& row) {
+  const char* expects = !row.hypothesis                             ? ""
+                        : row.hypothesis == Hypothesis::firstLarger ? "first larger"
+                                                                    : "first smaller";
+  const char* found = !row.asHypothesised ? "" : *row.asHypothesised ? "yes" : "no";
+  return fmt::format(",{},{}", expects, found);
+}
+
+std::string effectCells(const StudyRow& row) {
+  std::string text =
+      row.area ? fmt::format(",{},{},{}", row.area->value.a, row.area->a.lower, row.area->a.upper) : ",,,";
+  text += fmt::format(",{}", number(row.holm));
+  text += row.hedges ? fmt::format(",{}", row.hedges->g) : ",";
+  text += row.hedges && row.hedges->interval
+              ? fmt::format(",{},{}", row.hedges->interval->lower, row.hedges->interval->upper)
+              : ",,";
+  text += row.withDuration ? fmt::format(",{},{},{}", row.withDuration->rho, row.withDuration->p, row.withDurationPairs)
+                           : ",,,";
+  return text + fmt::format(",{},{}", row.group[0].partial, row.group[1].partial);
+}
+
+std::string baselineCells(const StudyRow& row) {
+  if (!row.adjusted || !row.adjusted->analysis) return ",,,,,,,";
+  const CovarianceAnalysis& a = *row.adjusted->analysis;
+  return fmt::format(",{},{},{},{},{},{},{}", a.difference, a.interval.lower, a.interval.upper, a.p,
+                     number(row.adjusted->holm), a.slope,
+                     number(a.sameSlope ? std::optional(*a.sameSlope) : std::nullopt));
+}
+
 std::string summaryTable(const Study& study) {
   std::string text =
       "checkpoint,subject,unit,direction,group_a,n_a,missing_a,mean_a,sd_a,q1_a,median_a,q3_a,group_b,n_b,missing_b,"
       "mean_b,sd_b,"
       "q1_b,median_b,q3_b,shift,shift_lower,shift_upper,shift_level,u,p,p_method,cliffs_delta,a,no_test_because,"
-      "published_expert_mean,published_novice_mean,study,watermark\n";
+      "published_expert_mean,published_novice_mean,study,watermark,hypothesis,as_expected,area,area_lower,area_upper,"
+      "p_holm,g,g_lower,g_upper,rho_duration,rho_p,rho_n,partial_a,partial_b,baseline_difference,baseline_lower,"
+      "baseline_upper,baseline_p,baseline_p_holm,baseline_slope,baseline_slope_p,coverage_warnings\n";
   for (const StudyRow& row : study.rows) {
     text += fmt::format("{},{},{},{}", cell(row.checkpoint), cell(row.subject), cell(row.unit), nameOf(row.direction));
     for (std::size_t g = 0; g < 2; ++g) {
@@ -46,8 +77,12 @@ std::string summaryTable(const Study& study) {
     text +=
         row.test ? fmt::format(",{},{},{}", row.test->u, row.test->p, row.test->exact ? "exact" : "asymptotic") : ",,,";
     text += row.effect ? fmt::format(",{},{}", row.effect->delta, row.effect->a) : ",,";
-    text += fmt::format(",{},{},{},{},{}\n", cell(row.test.reason()), number(row.publishedExpert),
+    text += fmt::format(",{},{},{},{},{}", cell(row.test.reason()), number(row.publishedExpert),
                         number(row.publishedNovice), study.heading, watermark(study));
+    text += hypothesisCells(row) + effectCells(row) + baselineCells(row);
+    std::string warnings;
+    for (const std::string& w : row.coverageWarnings) warnings += (warnings.empty() ? "" : "; ") + w;
+    text += fmt::format(",{}\n", cell(warnings));
   }
   return text;
 }
@@ -65,25 +100,10 @@ std::string valuesTable(const Study& study) {
   return text;
 }
 
-std::string flowTable(const Study& study) {
-  std::string text = fmt::format("stage,attempts\nin the cohort,{}\n", study.recruited);
+std::string flowFile(const Study& study) {
+  std::string text = fmt::format("stage,{}\nin the {},{}\n", study.counted, study.source, study.recruited);
   for (const FlowRow& row : study.flow) text += fmt::format("{},{}\n", cell("left out: " + row.reason), row.attempts);
   return text + fmt::format("analysed,{}\n", study.analysed);
-}
-
-void writeFile(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path temporary = path.string() + ".part";
-  std::error_code ignored;
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(temporary, path, failed);
-  if (!out || failed) {
-    std::filesystem::remove(temporary, ignored);
-    throw Error(ExitCode::failure,
-                fmt::format("{}: can't be written; check folder, permissions and free space", path.string()));
-  }
 }
 
 }  // namespace
@@ -96,14 +116,9 @@ void writeStudyCsv(const Study& study, const std::string& folder, bool force) {
     throw Error(ExitCode::failure, fmt::format("{}: the folder can't be made", folder));
   }
   const std::pair<const char*, std::string> files[] = {
-      {"study.csv", summaryTable(study)}, {"values.csv", valuesTable(study)}, {"flow.csv", flowTable(study)}};
-  for (const auto& file : files) {
-    if (!force && std::filesystem::exists(root / file.first, error)) {
-      throw Error(ExitCode::usage,
-                  fmt::format("{}: is there already; use --force to replace it", (root / file.first).string()));
-    }
-  }
-  for (const auto& file : files) writeFile(root / file.first, file.second);
+      {"study.csv", summaryTable(study)}, {"values.csv", valuesTable(study)}, {"flow.csv", flowFile(study)}};
+  for (const auto& file : files) recorder::refuseOutput(root / file.first, force);
+  for (const auto& file : files) recorder::writeText(root / file.first, file.second, force);
 }
 
 }  // namespace calot::analytics

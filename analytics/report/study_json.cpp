@@ -15,6 +15,7 @@ Json groupJson(const std::string& name, const GroupSummary& s) {
           {"n", s.n},
           {"missing", s.missing},
           {"missing_reason", s.missingReason},
+          {"partial", s.partial},
           {"mean", numberOrNull(s.mean)},
           {"sd", numberOrNull(s.standardDeviation)},
           {"median", numberOrNull(s.median)},
@@ -28,16 +29,62 @@ Json answerJson(const Answer<T>& answer, Write write) {
   return write(*answer);
 }
 
+Json intervalJson(const Interval& i) {
+  return {{"lower", i.lower}, {"upper", i.upper}, {"level", i.level}, {"method", i.method}};
+}
+
+Json hypothesisJson(const Study& study, const StudyRow& row) {
+  if (!row.hypothesis) return nullptr;
+  return {{"better", study.better},
+          {"expects", row.hypothesis == Hypothesis::firstLarger ? "first larger" : "first smaller"},
+          {"as_expected", row.asHypothesised ? Json(*row.asHypothesised) : Json(nullptr)}};
+}
+
+Json areaJson(const StudyRow& row) {
+  return answerJson(row.area, [&](const SuperiorityEstimate& e) {
+    return Json{{"of", row.hypothesis ? "the hypothesis" : "the first group's values being larger"},
+                {"a", e.value.a},
+                {"interval", intervalJson(e.a)},
+                {"cliffs_delta", e.value.delta},
+                {"delta_interval", intervalJson(e.delta)}};
+  });
+}
+
+Json adjustedJson(const BaselineAdjustment& adjusted) {
+  Json j = answerJson(adjusted.analysis, [&](const CovarianceAnalysis& a) {
+    return Json{{"difference", a.difference},
+                {"interval", intervalJson(a.interval)},
+                {"error", a.error},
+                {"t", a.t},
+                {"df", a.df},
+                {"p", a.p},
+                {"p_holm", numberOrNull(adjusted.holm)},
+                {"slope", a.slope},
+                {"one_slope", answerJson(a.sameSlope, [](double p) {
+                   return Json{{"p", p}};
+                 })}};
+  });
+  j["n"] = adjusted.n;
+  j["without_baseline"] = adjusted.withoutBaseline;
+  return j;
+}
+
 Json rowJson(const Study& study, const StudyRow& row) {
   Json j{{"checkpoint", row.checkpoint},       {"subject", row.subject},   {"title", row.title},    {"unit", row.unit},
          {"direction", nameOf(row.direction)}, {"versions", row.versions}, {"origins", row.origins}};
   j["groups"] = Json::array({groupJson(study.groups[0], row.group[0]), groupJson(study.groups[1], row.group[1])});
-  j["mann_whitney"] = answerJson(row.test, [](const MannWhitney& t) {
-    return Json{{"u", t.u}, {"p", t.p}, {"method", t.exact ? "exact" : "asymptotic"}, {"ties", t.ties}};
+  j["hypothesis"] = hypothesisJson(study, row);
+  j["mann_whitney"] = answerJson(row.test, [&](const MannWhitney& t) {
+    return Json{{"u", t.u},
+                {"p", t.p},
+                {"p_holm", numberOrNull(row.holm)},
+                {"method", t.exact ? "exact" : "asymptotic"},
+                {"ties", t.ties}};
   });
   j["effect"] = answerJson(row.effect, [](const Superiority& e) {
     return Json{{"cliffs_delta", e.delta}, {"a", e.a}};
   });
+  j["area"] = areaJson(row);
   j["shift"] = answerJson(row.shift, [](double shift) { return Json{{"hodges_lehmann", shift}}; });
   j["shift_interval"] = answerJson(row.shiftInterval, [](const ShiftInterval& i) {
     return Json{{"lower", i.lower},
@@ -46,6 +93,18 @@ Json rowJson(const Study& study, const StudyRow& row) {
                 {"level_attained", i.attained},
                 {"method", nameOf(i.method)}};
   });
+  j["hedges"] = answerJson(row.hedges, [](const HedgesG& h) {
+    return Json{{"g", h.g}, {"d", h.d}, {"j", h.j}, {"interval", answerJson(h.interval, intervalJson)}};
+  });
+  j["spearman_with_duration"] = answerJson(row.withDuration, [&](const Spearman& s) {
+    return Json{{"rho", s.rho},
+                {"p", s.p},
+                {"n", row.withDurationPairs},
+                {"method", s.exact ? "exact" : "Student's t"},
+                {"ties", s.ties}};
+  });
+  j["at_one_baseline"] = row.adjusted ? adjustedJson(*row.adjusted) : Json(nullptr);
+  j["coverage_warnings"] = row.coverageWarnings;
   j["published"] = row.publishedExpert
                        ? Json{{"expert_mean", *row.publishedExpert}, {"novice_mean", *row.publishedNovice}}
                        : Json(nullptr);
@@ -61,7 +120,12 @@ std::string studyJson(const Study& study) {
          {"groups", {study.groups[0], study.groups[1]}},
          {"participants", {study.participants[0], study.participants[1]}},
          {"attempts", {study.attempts[0], study.attempts[1]}},
-         {"attempts_rule", "mean over a participant's attempts"},
+         {"source", study.source},
+         {"file", study.where},
+         {"better", study.better},
+         {"counted", study.counted},
+         {"attempts_rule", study.attemptRule},
+         {"family", study.family},
          {"quantile_type", 7},
          {"comparability_keys", study.keys},
          {"flow", {{"recruited", study.recruited}, {"analysed", study.analysed}}},
@@ -70,6 +134,9 @@ std::string studyJson(const Study& study) {
   Json excluded = Json::array();
   for (const FlowRow& row : study.flow) excluded.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
   j["flow"]["excluded"] = excluded;
+  j["absent"] = Json::array();
+  for (const AbsentRow& a : study.absent)
+    j["absent"].push_back({{"participant", a.participant}, {"group", a.group}, {"occasion", a.occasion}});
   j["rows"] = Json::array();
   for (const StudyRow& row : study.rows) j["rows"].push_back(rowJson(study, row));
   return j.dump(2, ' ', false, Json::error_handler_t::replace);

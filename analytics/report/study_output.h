@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A study as text, JSON and CSV. Numbers are written with a point, whatever the locale.
+// A study as text, JSON, CSV and a page. Numbers are written with a point, whatever the locale.
 #pragma once
 
 #include <ostream>
@@ -9,7 +9,7 @@
 
 namespace calot::analytics {
 
-/// Heading, flow, table and remarks for the terminal.
+/// Heading, flow, tables and remarks for a terminal of 120 columns.
 void printStudy(const Study& study, std::ostream& out);
 
 /// Everything of the model, in one JSON object; numbers that don't exist are null, with a reason beside them.
@@ -19,5 +19,9 @@ std::string studyJson(const Study& study);
 /// which is made; files that are there are kept unless `force`.
 /// @throws Error 2 when a file is there already, Error 1 when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
+
+/// One page that needs nothing else: no scripts, figures inline, every text escaped. The same content as the text, and
+/// a box plot with all points for each row.
+std::string studyHtml(const Study& study);
 
 }  // namespace calot::analytics

@@ -16,6 +16,8 @@ std::size_t widthOf(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+constexpr std::size_t narrowest = 10;
+
 }  // namespace
 
 TextTable::TextTable(std::vector<std::pair<std::string, Align>> columns) : columns_(std::move(columns)) {}
@@ -25,7 +27,7 @@ void TextTable::add(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
 }
 
-void TextTable::print(std::ostream& out) const {
+void TextTable::print(std::ostream& out, std::size_t most) const {
   std::vector<std::size_t> width(columns_.size(), 0);
   std::vector<bool> shown(columns_.size(), false);
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -35,6 +37,20 @@ void TextTable::print(std::ostream& out) const {
       shown[c] = shown[c] || !row[c].empty();
     }
   }
+  const auto total = [&] {
+    std::size_t sum = 0;
+    for (std::size_t c = 0; c < columns_.size(); ++c) sum += shown[c] ? width[c] + (sum == 0 ? 0 : 2) : 0;
+    return sum;
+  };
+  while (total() > most) {
+    std::size_t widest = columns_.size();
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      if (!shown[c] || columns_[c].second != Align::left || width[c] <= narrowest) continue;
+      if (widest == columns_.size() || width[c] > width[widest]) widest = c;
+    }
+    if (widest == columns_.size()) break;
+    --width[widest];
+  }
   const auto line = [&](const auto& cell, char fill) {
     std::string text;
     bool first = true;
@@ -42,7 +58,7 @@ void TextTable::print(std::ostream& out) const {
       if (!shown[c]) continue;
       if (!first) text += "  ";
       first = false;
-      const std::string content = cell(c);
+      const std::string content = cutTo(cell(c), width[c]);
       const std::string padding(width[c] - std::min(width[c], widthOf(content)), fill);
       text += columns_[c].second == Align::left ? content + padding : padding + content;
     }
@@ -52,6 +68,15 @@ void TextTable::print(std::ostream& out) const {
   line([&](std::size_t c) { return columns_[c].first; }, ' ');
   line([](std::size_t) { return std::string(); }, '-');
   for (const auto& row : rows_) line([&](std::size_t c) { return row[c]; }, ' ');
+}
+
+std::string cutTo(const std::string& text, std::size_t width) {
+  if (widthOf(text) <= width) return text;
+  std::size_t end = 0;
+  for (std::size_t seen = 0; end < text.size(); ++end) {
+    if ((static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U && seen++ == width - 3) break;
+  }
+  return text.substr(0, end) + "...";
 }
 
 std::string significant(double value, int digits) {

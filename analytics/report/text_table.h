@@ -15,14 +15,18 @@ class TextTable {
   explicit TextTable(std::vector<std::pair<std::string, Align>> columns);
   /// @pre as many cells as columns.
   void add(std::vector<std::string> cells);
-  /// Header, rule, rows; columns two blanks apart; empty columns are left out.
-  void print(std::ostream& out) const;
+  /// Header, rule, rows; columns two blanks apart; columns without cells are left out. Where the table is wider than
+  /// `most`, the widest left-aligned columns are cut ("fat-remaini...") as far as it takes, but not below ten.
+  void print(std::ostream& out, std::size_t most = std::string::npos) const;
   [[nodiscard]] std::size_t rows() const { return rows_.size(); }
 
  private:
   std::vector<std::pair<std::string, Align>> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
+
+/// The beginning of a text of more than `width` letters and three points: `width` in all. @pre width > 3.
+std::string cutTo(const std::string& text, std::size_t width);
 
 /// `digits` significant digits, never in a locale's way, no exponent between 1e-4 and 1e7: "0.0432", "113", "12.5".
 std::string significant(double value, int digits = 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words and numbers of text files that are read without trust. Internal to this folder.
+// Words and numbers of text files that are read without trust.
 #pragma once
 
 #include <string>

@@ -117,7 +117,7 @@ class Study(program.ProgramTest):
 
     def test_two_groups_side_by_side(self):
         table = self.well("study", self.cohort, "--group-by", "performer", "--include-synthetic").out
-        for word in ("skilled against unskilled", "mean skilled", "mean unskilled", "median", "delta", "SYNTHETIC"):
+        for word in ("skilled against unskilled", "exploratory", "median", "mean", "Holm", "SYNTHETIC"):
             self.assertIn(word, table)
         said = json.loads(self.well("study", self.cohort, "--group-by", "performer", "--include-synthetic", "--json").out)
         self.assertEqual((said["groups"], said["attempts"], said["synthetic"]), (["skilled", "unskilled"], [2, 2], True))

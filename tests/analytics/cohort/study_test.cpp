@@ -58,7 +58,12 @@ void addPerformers(CohortDatabase& database) {
   for (const double t : unskilled) database.storeAttempt(attemptOf(n++, "unskilled"), valuesOf(t, t / 1000));
 }
 
-const StudyOptions performers{.grouping = Grouping::performer, .groups = {}, .includeSynthetic = true};
+const StudyOptions performers = [] {
+  StudyOptions options;
+  options.grouping = Grouping::performer;
+  options.includeSynthetic = true;
+  return options;
+}();
 
 TEST(Study, comparesPerformersAndWatermarksThem) {
   const Folder folder;
@@ -95,7 +100,10 @@ TEST(Study, comparesPerformersAndWatermarksThem) {
   EXPECT_EQ(text.rfind("SYNTHETIC", 0), 0U) << "the watermark comes first";
   EXPECT_NE(text.find("exploratory"), std::string::npos);
   EXPECT_NE(text.find("0.1111"), std::string::npos);
-  EXPECT_NE(text.find("+0.700"), std::string::npos);
+  EXPECT_EQ(study.better, "skilled");
+  EXPECT_NEAR(time.area->value.a, 0.15, 1e-12) << "shorter was expected, and longer it is";
+  EXPECT_EQ(time.asHypothesised, false);
+  EXPECT_NE(text.find("0.150"), std::string::npos);
   EXPECT_NE(text.find("no instrument in this hand"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
 }
@@ -165,7 +173,11 @@ TEST(Study, takesOneValueAParticipant) {
   database.storeAttempt(humanAttempt(4, "E2"), valuesOf(50, 0.05));
   database.storeAttempt(humanAttempt(5, "N1"), valuesOf(100, 0.1));
   database.storeAttempt(humanAttempt(6, "N2"), valuesOf(120, 0.2));
-  const Study study = makeStudy(database, {});
+  expectRefusal(ExitCode::no, "participant \"E1\" has 3 attempts (1 participant with several)",
+                [&] { (void)makeStudy(database, {}); });
+  StudyOptions mean;
+  mean.attemptRule = AttemptRule::mean;
+  const Study study = makeStudy(database, mean);
   EXPECT_FALSE(study.synthetic);
   EXPECT_EQ(textOf(study).find("SYNTHETIC"), std::string::npos);
   EXPECT_EQ(study.groups[0], "expert");
@@ -175,7 +187,101 @@ TEST(Study, takesOneValueAParticipant) {
   EXPECT_EQ(time.values[0], (std::vector<double>{35.0, 50.0})) << "an abandoned attempt is not a fast one";
   EXPECT_EQ(time.participants[0], (std::vector<std::string>{"E1", "E2"}));
   EXPECT_EQ(time.group[0].missing, 0U);
+  EXPECT_EQ(time.group[0].partial, 1U) << "and whose mean lacks it is said";
+  EXPECT_NE(textOf(study).find("the mean of 1 of 2 expert lacks some of their attempts"), std::string::npos);
   EXPECT_NEAR(time.test->p, 1.0 / 3.0, 1e-15);
+  StudyOptions first;
+  first.attemptRule = AttemptRule::first;
+  const Study firsts = makeStudy(database, first);
+  EXPECT_EQ(rowOf(firsts, "elapsed-time", "").values[0], (std::vector<double>{30.0, 50.0}));
+  EXPECT_EQ(firsts.analysed, 4U);
+  ASSERT_EQ(firsts.flow.size(), 1U);
+  EXPECT_EQ(firsts.flow[0].reason, "later attempt of a participant (the first counts)");
+  EXPECT_EQ(firsts.flow[0].attempts, 2U);
+}
+
+TEST(Study, aFirstAttemptWithoutAValueIsNotReplacedByALaterOne) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  for (const char* p : {"E1", "E2"}) database.addParticipant({p, "expert", "", "", {}, {}});
+  for (const char* p : {"N1", "N2"}) database.addParticipant({p, "novice", "", "", {}, {}});
+  auto none = valuesOf(0, 0.07);
+  none[0] = makeMissing(*findCheckpoint("elapsed-time"), "", Origin::resimulated, Availability::notApplicable,
+                        "not completed: abandoned");
+  database.storeAttempt(humanAttempt(1, "E1"), none);
+  database.storeAttempt(humanAttempt(2, "E1"), valuesOf(40, 0.08));
+  for (unsigned n = 3; n < 6; ++n) {
+    const char* who[] = {"E2", "N1", "N2"};
+    database.storeAttempt(humanAttempt(n, who[n - 3]), valuesOf(10.0 * n, 0.05));
+  }
+  StudyOptions first;
+  first.attemptRule = AttemptRule::first;
+  const Study study = makeStudy(database, first);
+  const StudyRow& time = rowOf(study, "elapsed-time", "");
+  EXPECT_EQ(time.values[0], (std::vector<double>{30.0}));
+  EXPECT_EQ(time.group[0].missing, 1U);
+  EXPECT_EQ(time.group[0].missingReason, "not completed: abandoned");
+  AttemptRecord sameTime = humanAttempt(9, "N1");
+  sameTime.startUtc = humanAttempt(4, "N1").startUtc;
+  database.storeAttempt(sameTime, valuesOf(1, 1));
+  expectRefusal(ExitCode::no, "two attempts of participant \"N1\" start at", [&] { (void)makeStudy(database, first); });
+}
+
+TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  // Durations 1, 2, ... 8 in order; path lengths fall with them: rho is -1, exact p 2 / 8!.
+  for (unsigned n = 0; n < 8; ++n) {
+    const std::string person = fmt::format("P{}", n);
+    database.addParticipant({person, n % 2 == 0 ? "expert" : "novice", "", "", {}, {}});
+    auto values = valuesOf(5.0 + (n * 5) % 8, 8.0 - n);
+    values.push_back(makeValue(*findCheckpoint("attempt-duration"), "", Origin::resimulated, 1.0 + n));
+    database.storeAttempt(humanAttempt(n, person), values);
+  }
+  const Study study = makeStudy(database, {});
+  const StudyRow& path = rowOf(study, "path-length", "left");
+  ASSERT_TRUE(path.withDuration);
+  EXPECT_DOUBLE_EQ(path.withDuration->rho, -1.0);
+  EXPECT_NEAR(path.withDuration->p, 2.0 / 40320.0, 1e-15);
+  EXPECT_EQ(path.withDurationPairs, 8U);
+  EXPECT_EQ(rowOf(study, "attempt-duration", "").withDuration.reason(), "it is the duration");
+  // Three tests (the right hand has none): Holm by hand.
+  std::vector<double> p;
+  for (const StudyRow& row : study.rows) {
+    if (row.test) p.push_back(row.test->p);
+  }
+  ASSERT_EQ(p.size(), 3U);
+  std::sort(p.begin(), p.end());
+  const double a = std::min(1.0, 3 * p[0]), b = std::max(a, std::min(1.0, 2 * p[1])), c = std::max(b, p[2]);
+  std::vector<double> adjusted;
+  for (const StudyRow& row : study.rows) {
+    EXPECT_EQ(row.holm.has_value(), static_cast<bool>(row.test));
+    if (row.holm) adjusted.push_back(*row.holm);
+  }
+  std::sort(adjusted.begin(), adjusted.end());
+  EXPECT_EQ(adjusted, (std::vector<double>{a, b, c}));
+  StudyOptions one;
+  one.family = {"elapsed-time"};
+  const Study narrower = makeStudy(database, one);
+  EXPECT_DOUBLE_EQ(*rowOf(narrower, "elapsed-time", "").holm, rowOf(narrower, "elapsed-time", "").test->p);
+  EXPECT_FALSE(rowOf(narrower, "path-length", "left").holm);
+  EXPECT_NE(narrower.family.find("1 rank test of elapsed-time"), std::string::npos);
+  one.family = {"elapsed"};
+  expectRefusal(ExitCode::usage, "--family elapsed", [&] { (void)makeStudy(database, one); });
+}
+
+TEST(Study, pageIsWatermarkedWhereItIsSynthetic) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  const std::string page = studyHtml(makeStudy(database, performers));
+  EXPECT_NE(page.find("<title>SYNTHETIC"), std::string::npos);
+  EXPECT_NE(page.find("class=\"behind\""), std::string::npos);
+  std::size_t figures = 0, marks = 0;
+  for (std::size_t at = 0; (at = page.find("<svg", at)) != std::string::npos; ++at) ++figures;
+  for (std::size_t at = 0; (at = page.find("class=\"mark\"", at)) != std::string::npos; ++at) ++marks;
+  EXPECT_EQ(figures, 2U) << "a figure for each row with values";
+  EXPECT_EQ(marks, figures);
 }
 
 TEST(Study, refusesToMixComparabilityKeys) {
@@ -186,6 +292,15 @@ TEST(Study, refusesToMixComparabilityKeys) {
   other.comparabilityKey = "touch-liver/2 device=performer calibration=- simulation=1 results=1 mode=assessment";
   database.storeAttempt(other, valuesOf(22, 0.022));
   expectRefusal(ExitCode::no, "2 comparability keys", [&] { (void)makeStudy(database, performers); });
+  StudyOptions one = performers;
+  one.key = attemptOf(0, "skilled").comparabilityKey;
+  const Study chosen = makeStudy(database, one);
+  EXPECT_EQ(chosen.keys, (std::vector<std::string>{one.key}));
+  ASSERT_EQ(chosen.flow.size(), 1U);
+  EXPECT_EQ(chosen.flow[0].reason, "not comparable (another key)");
+  EXPECT_EQ(chosen.flow[0].attempts, 1U);
+  one.key = "another";
+  expectRefusal(ExitCode::no, "10 not comparable (another key)", [&] { (void)makeStudy(database, one); });
   StudyOptions mixed = performers;
   mixed.mixKeys = true;
   const Study study = makeStudy(database, mixed);

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/csv_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "recorder/errors.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::analytics {
+namespace {
+
+std::string_view trimmed(std::string_view cell) {
+  const std::size_t first = cell.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return cell.substr(first, cell.find_last_not_of(" \t") - first + 1);
+}
+
+[[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& what) {
+  throw Error(ExitCode::damaged, fmt::format("{}: line {}: {}", path, line, what));
+}
+
+/// Takes records off a text, one after the other.
+class Records {
+ public:
+  Records(std::string_view text, const std::string& path) : rest_(text), path_(path) {}
+
+  /// @return false at the end
+  bool next(CsvRow& row) {
+    while (!rest_.empty()) {
+      row.line = line_;
+      row.cells.clear();
+      bool quoted = false;
+      while (takeCell(row, quoted)) {
+      }
+      if (quoted || row.cells.size() > 1 || !row.cells[0].empty()) return true;
+    }
+    return false;
+  }
+
+ private:
+  /// @return whether another cell of this record follows
+  bool takeCell(CsvRow& row, bool& quoted) {
+    const std::size_t start = std::min(rest_.find_first_not_of(" \t"), rest_.size());
+    if (start < rest_.size() && rest_[start] == '"') {
+      rest_.remove_prefix(start + 1);
+      quoted = true;
+      row.cells.push_back(takeQuoted(row.line));
+      rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
+      if (!rest_.empty() && rest_[0] != ',' && rest_[0] != '\n' && rest_.substr(0, 2) != "\r\n")
+        fail(path_, line_, fmt::format("column {}: text behind a closing quote", row.cells.size()));
+    } else {
+      const std::size_t end = std::min(rest_.find_first_of(",\n"), rest_.size());
+      std::string_view cell = rest_.substr(0, end);
+      rest_.remove_prefix(end);
+      if (!cell.empty() && cell.back() == '\r' && (rest_.empty() || rest_[0] == '\n')) cell.remove_suffix(1);
+      row.cells.emplace_back(trimmed(cell));
+    }
+    if (rest_.substr(0, 2) == "\r\n") rest_.remove_prefix(1);
+    if (rest_.empty()) return false;
+    const bool more = rest_[0] == ',';
+    if (!more) ++line_;
+    rest_.remove_prefix(1);
+    if (more && rest_.empty()) row.cells.emplace_back();
+    return more && !rest_.empty();
+  }
+
+  std::string takeQuoted(std::size_t begun) {
+    std::string cell;
+    while (!rest_.empty()) {
+      const char c = rest_[0];
+      rest_.remove_prefix(1);
+      if (c == '"') {
+        if (rest_.empty() || rest_[0] != '"') return cell;
+        rest_.remove_prefix(1);
+      }
+      if (c == '\n') ++line_;
+      cell += c;
+    }
+    fail(path_, begun, "a quote is opened and never closed");
+  }
+
+  std::string_view rest_;
+  const std::string& path_;
+  std::size_t line_ = 1;
+};
+
+}  // namespace
+
+bool CsvTable::has(const std::string& name) const {
+  return std::find(columns.begin(), columns.end(), name) != columns.end();
+}
+
+std::size_t CsvTable::column(const std::string& name) const {
+  const auto at = std::find(columns.begin(), columns.end(), name);
+  if (at == columns.end()) {
+    std::string list;
+    for (const std::string& c : columns) list += (list.empty() ? "" : ", ") + recorder::shown(c);
+    throw Error(ExitCode::usage, fmt::format("{}: line 1: there is no column \"{}\" (there are: {})", path,
+                                             recorder::shown(name), list));
+  }
+  if (std::find(at + 1, columns.end(), name) != columns.end()) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: line 1: two columns are called \"{}\"; rename one", path, recorder::shown(name)));
+  }
+  return static_cast<std::size_t>(at - columns.begin());
+}
+
+CsvTable parseCsvTable(std::string_view text, const std::string& path) {
+  if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
+  if (text.find('\0') != std::string_view::npos)
+    throw Error(ExitCode::damaged, fmt::format("{}: is no table of text (CSV)", path));
+  Records records(text, path);
+  CsvTable table;
+  table.path = path;
+  CsvRow row;
+  if (!records.next(row)) throw Error(ExitCode::damaged, fmt::format("{}: line 1: is empty; a header is needed", path));
+  table.columns = std::move(row.cells);
+  if (table.columns.size() == 1) {
+    fail(path, row.line,
+         fmt::format("one column only (\"{}\"); the separator is a comma", recorder::shown(table.columns[0])));
+  }
+  while (records.next(row)) {
+    if (row.cells.size() != table.columns.size()) {
+      fail(path, row.line, fmt::format("{} cells, the header has {}", row.cells.size(), table.columns.size()));
+    }
+    table.rows.push_back(row);
+  }
+  if (table.rows.empty()) fail(path, 1, "a header and no rows");
+  return table;
+}
+
+CsvTable readCsvTable(const std::string& path) {
+  std::error_code ignored;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path, ignored))
+    throw Error(ExitCode::damaged, fmt::format("{}: cannot be read; name a CSV file", path));
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (file.bad()) throw Error(ExitCode::damaged, fmt::format("{}: cannot be read", path));
+  return parseCsvTable(text, path);
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/study_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/published_coverage.h"
+#include "recorder/errors.h"
+
+namespace calot::analytics {
+namespace {
+
+constexpr std::size_t notALevel = 3;
+
+/// 0: expert, skilled; 1: intermediate; 2: novice, unskilled.
+std::size_t levelOf(const std::string& group) {
+  if (group == "expert" || group == "skilled") return 0;
+  if (group == "intermediate") return 1;
+  return group == "novice" || group == "unskilled" ? 2 : notALevel;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+void summarise(GroupSummary& s, const std::vector<double>& values) {
+  s.n = values.size();
+  const auto take = [](const Answer<double>& answer) { return answer ? std::optional<double>(*answer) : std::nullopt; };
+  s.mean = take(mean(values));
+  s.standardDeviation = take(standardDeviation(values));
+  s.median = take(median(values));
+  s.lowerQuartile = take(quantile(values, 0.25));
+  s.upperQuartile = take(quantile(values, 0.75));
+}
+
+/// Counts who has no value at all and why, and whose mean lacks some attempts.
+void countMissing(GroupSummary& s, const std::vector<std::string>& present,
+                  const std::map<std::string, std::vector<std::string>>& missing) {
+  std::map<std::string, int> counts;
+  for (const auto& [person, reasons] : missing) {
+    if (std::binary_search(present.begin(), present.end(), person)) {
+      ++s.partial;
+      continue;
+    }
+    ++s.missing;
+    ++counts[reasons.front()];
+  }
+  int most = 0;
+  for (const auto& [reason, count] : counts) {
+    if (count <= most) continue;
+    most = count;
+    s.missingReason = reason;
+  }
+}
+
+Answer<Spearman> correlation(StudyRow& row, const std::array<std::map<std::string, double>, 2>& duration) {
+  if (row.checkpoint == "attempt-duration") return Answer<Spearman>::none("it is the duration");
+  std::vector<double> values, seconds;
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (std::size_t i = 0; i < row.values[g].size(); ++i) {
+      const auto at = duration[g].find(row.participants[g][i]);
+      if (at == duration[g].end()) continue;
+      values.push_back(row.values[g][i]);
+      seconds.push_back(at->second);
+    }
+  }
+  if (seconds.empty()) return Answer<Spearman>::none("no durations");
+  row.withDurationPairs = values.size();
+  return spearman(values, seconds);
+}
+
+void warnOfCoverage(StudyRow& row) {
+  const auto ask = [&](CoveredInterval interval, const char* name) {
+    CoverageDoubt doubt;
+    if (!doubtful(interval, row.group[0].n, row.group[1].n, doubt)) return;
+    row.coverageWarnings.push_back(
+        doubt.known ? fmt::format("{}: with {} a group an interval at 95 % covers {} % (population: {})", name,
+                                  doubt.size, doubt.percent, doubt.population)
+                    : fmt::format("{}: coverage is not known for fewer than {} in a group", name, doubt.size));
+  };
+  if (row.area) ask(CoveredInterval::areaScore, "A");
+  if (row.shiftInterval) ask(CoveredInterval::shift, "shift");
+  if (row.hedges && row.hedges->interval) ask(CoveredInterval::hedges, "g");
+}
+
+/// The adjusted p of every p that `get` finds in the family's rows, put back by `put`. @returns how many there are.
+template <class Get, class Put>
+std::size_t adjust(std::vector<StudyRow*>& family, Get get, Put put) {
+  std::vector<double> p;
+  std::vector<StudyRow*> whose;
+  for (StudyRow* row : family) {
+    const std::optional<double> one = get(*row);
+    if (!one) continue;
+    p.push_back(*one);
+    whose.push_back(row);
+  }
+  const Answer<std::vector<double>> adjusted = holm(p);
+  for (std::size_t i = 0; adjusted && i < p.size(); ++i) put(*whose[i], (*adjusted)[i]);
+  return p.size();
+}
+
+}  // namespace
+
+bool groupBefore(const std::string& a, const std::string& b) {
+  const auto rank = [](const std::string& s) {
+    static const std::vector<std::string> known{"expert", "skilled", "intermediate", "novice", "unskilled"};
+    return std::find(known.begin(), known.end(), s) - known.begin();
+  };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a < b;
+}
+
+std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
+                                        const StudyChoices& choices, const std::string& path, const std::string& left) {
+  std::vector<std::string> names;
+  names.reserve(present.size());
+  for (const auto& item : present) names.push_back(item.first);
+  std::sort(names.begin(), names.end(), groupBefore);
+  if (!choices.groups.empty()) {
+    if (choices.groups.size() != 2 || choices.groups[0] == choices.groups[1]) {
+      throw Error(ExitCode::usage, "study: --groups takes two different names");
+    }
+    for (const std::string& name : choices.groups) {
+      if (present.count(name) == 0) {
+        throw Error(ExitCode::no, fmt::format("{}: nothing for the study in group \"{}\" (there are: {})", path, name,
+                                              names.empty() ? "none" : joined(names)));
+      }
+    }
+    return {choices.groups[0], choices.groups[1]};
+  }
+  if (names.size() == 2) return {names[0], names[1]};
+  if (names.size() > 2) {
+    throw Error(ExitCode::no,
+                fmt::format("{}: {} groups ({}); name two with --groups A,B", path, names.size(), joined(names)));
+  }
+  throw Error(ExitCode::no, fmt::format("{}: a study needs two groups, {}{}", path,
+                                        names.empty() ? "none is left" : "only " + names[0] + " is there", left));
+}
+
+std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices) {
+  if (!choices.better.empty()) {
+    if (choices.better != groups[0] && choices.better != groups[1]) {
+      throw Error(ExitCode::usage,
+                  fmt::format("study: --better {}: the groups are {} and {}", choices.better, groups[0], groups[1]));
+    }
+    return choices.better;
+  }
+  const std::size_t a = levelOf(groups[0]), b = levelOf(groups[1]);
+  if (a == notALevel || b == notALevel || a == b) return {};
+  return a < b ? groups[0] : groups[1];
+}
+
+void fillRow(StudyRow& row, const StudySample& sample) {
+  for (std::size_t g = 0; g < 2; ++g) {
+    std::map<std::string, std::size_t> number;
+    for (const StudyValue& v : sample.values[g]) number.emplace(v.participant, 0);
+    std::size_t next = 0;
+    for (auto& item : number) {
+      item.second = next++;
+      row.participants[g].push_back(item.first);
+    }
+    std::vector<RepeatedValue> repeated;
+    repeated.reserve(sample.values[g].size());
+    for (const StudyValue& v : sample.values[g])
+      repeated.push_back({number[v.participant], static_cast<double>(v.attempt), v.value});
+    if (!repeated.empty()) {
+      const auto single = onePerParticipant(repeated, AttemptRule::mean);
+      for (const ParticipantValue& one : *single) row.values[g].push_back(one.value);
+    }
+    summarise(row.group[g], row.values[g]);
+    countMissing(row.group[g], row.participants[g], sample.missing[g]);
+  }
+}
+
+void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
+  const std::vector<double>&x = row.values[0], &y = row.values[1];
+  if (row.direction != Direction::none && !study.better.empty()) {
+    const bool firstBetter = study.better == study.groups[0];
+    row.hypothesis =
+        firstBetter == (row.direction == Direction::higher) ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
+  }
+  row.test = mannWhitney(x, y);
+  row.effect = superiority(x, y);
+  row.area = estimateSuperiority(x, y, row.hypothesis.value_or(Hypothesis::firstLarger));
+  if (row.hypothesis && row.area && row.area->value.a != 0.5) row.asHypothesised = row.area->value.a > 0.5;
+  row.shift = hodgesLehmann(x, y);
+  row.shiftInterval = hodgesLehmannInterval(x, y);
+  row.hedges = hedgesG(x, y);
+  row.withDuration = correlation(row, duration);
+  warnOfCoverage(row);
+}
+
+void finishRows(Study& study, const StudyChoices& choices) {
+  std::vector<StudyRow*> family;
+  for (StudyRow& row : study.rows) {
+    const bool named = std::find(choices.family.begin(), choices.family.end(), row.checkpoint) != choices.family.end();
+    if (choices.family.empty() || named) family.push_back(&row);
+  }
+  for (const std::string& name : choices.family) {
+    if (std::none_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return r.checkpoint == name; })) {
+      throw Error(ExitCode::usage, fmt::format("study: --family {}: the study has no such row", name));
+    }
+  }
+  const std::size_t tests = adjust(
+      family, [](const StudyRow& r) { return r.test ? std::optional(r.test->p) : std::nullopt; },
+      [](StudyRow& r, double p) { r.holm = p; });
+  const std::size_t analyses = adjust(
+      family,
+      [](const StudyRow& r) {
+        return r.adjusted && r.adjusted->analysis ? std::optional(r.adjusted->analysis->p) : std::nullopt;
+      },
+      [](StudyRow& r, double p) { r.adjusted->holm = p; });
+  study.family = fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
+                             choices.family.empty() ? "this study" : joined(choices.family));
+  if (analyses > 0) study.family += fmt::format("; the {} with the baseline are a family of their own", analyses);
+  study.family += ".";
+
+  std::vector<std::pair<std::string, std::size_t>> warnings;
+  for (const StudyRow& row : study.rows) {
+    for (const std::string& text : row.coverageWarnings) {
+      const auto at = std::find_if(warnings.begin(), warnings.end(), [&](const auto& w) { return w.first == text; });
+      if (at == warnings.end()) {
+        warnings.emplace_back(text, 1);
+      } else {
+        ++at->second;
+      }
+    }
+  }
+  for (const auto& [text, count] : warnings)
+    study.remarks.push_back(fmt::format("Warning ({} of {} rows): {}.", count, study.rows.size(), text));
+}
+
+}  // namespace calot::analytics

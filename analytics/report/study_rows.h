@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the values of two groups to a study's rows: what is the same whether they are from a cohort or from a table.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "analytics/report/study.h"
+
+namespace calot::analytics {
+
+/// Names of groups: levels of skill first, best first; others behind them, by name.
+bool groupBefore(const std::string& a, const std::string& b);
+
+/// The two groups to compare.
+/// @param present units by group; @param left what the error says of those that stay out, or empty
+/// @throws Error 2 for names that are not two different ones, Error 3 where there are not two groups.
+std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
+                                        const StudyChoices& choices, const std::string& path, const std::string& left);
+
+/// The group that is expected to do better, or empty. @throws Error 2 where `choices.better` is none of the two.
+std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices);
+
+/// One value of a participant's attempt.
+struct StudyValue {
+  std::string participant;
+  std::size_t attempt = 0;  ///< number within the study, by time
+  double value = 0.0;       ///< in the display unit
+};
+
+/// One row's values by group.
+struct StudySample {
+  std::array<std::vector<StudyValue>, 2> values;
+  /// Participants to attempts without a value, with the reason.
+  std::array<std::map<std::string, std::vector<std::string>>, 2> missing;
+};
+
+/// One value per participant: `row`'s participants, values and summaries. @pre a participant with several values is
+/// meant to have their mean.
+void fillRow(StudyRow& row, const StudySample& sample);
+
+/// Tests, effects and intervals of the values that are there, in the direction of the hypothesis.
+/// @param duration participants' durations by group, empty where they are not known
+void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration);
+
+/// Adjusts over the family, says which it is, and turns warnings of rows into remarks.
+/// @throws Error 2 where a name of `choices.family` is no row.
+void finishRows(Study& study, const StudyChoices& choices);
+
+}  // namespace calot::analytics

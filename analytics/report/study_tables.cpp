@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/study_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace calot::analytics {
+namespace {
+
+using Align = TextTable::Align;
+
+std::string number(const std::optional<double>& value) { return value ? significant(*value) : "-"; }
+std::string brackets(double lower, double upper) {
+  return fmt::format("[{}, {}]", significant(lower), significant(upper));
+}
+std::string pOrDash(const std::optional<double>& p) { return p ? pText(*p) : "-"; }
+std::string share(double a) { return fmt::format("{:.3f}", a); }
+
+bool empty(const StudyRow& row) { return row.group[0].n == 0 && row.group[1].n == 0; }
+
+template <class Test>
+bool any(const Study& study, Test test) {
+  return std::any_of(study.rows.begin(), study.rows.end(), test);
+}
+
+bool hasCorrelation(const StudyRow& row) { return static_cast<bool>(row.withDuration); }
+
+ReportTable valuesTable(const Study& study) {
+  ReportTable table{"Values",
+                    {{"checkpoint", Align::left},
+                     {"unit", Align::left},
+                     {"group", Align::left},
+                     {"n", Align::right},
+                     {"none", Align::right},
+                     {"median", Align::right},
+                     {"quartile 1", Align::right},
+                     {"quartile 3", Align::right},
+                     {"mean", Align::right},
+                     {"sd", Align::right},
+                     {"paper", Align::right}},
+                    {}};
+  for (const StudyRow& row : study.rows) {
+    if (empty(row)) continue;
+    for (std::size_t g = 0; g < 2; ++g) {
+      const GroupSummary& s = row.group[g];
+      std::string paper;
+      if (row.publishedExpert)
+        paper = g == 0 ? fmt::format("E {}", *row.publishedExpert) : fmt::format("N {}", *row.publishedNovice);
+      table.rows.push_back({g == 0 ? rowName(row) : "", g == 0 ? row.unit : "", study.groups[g], fmt::format("{}", s.n),
+                            s.missing == 0 ? "" : fmt::format("{}", s.missing), number(s.median),
+                            number(s.lowerQuartile), number(s.upperQuartile), number(s.mean),
+                            number(s.standardDeviation), paper});
+    }
+  }
+  return table;
+}
+
+ReportTable comparisonTable(const Study& study) {
+  ReportTable table{"Comparison",
+                    {{"checkpoint", Align::left},
+                     {"better", Align::left},
+                     {"shift", Align::right},
+                     {"95 %", Align::right},
+                     {"A", Align::right},
+                     {"95 %", Align::right},
+                     {"p", Align::right},
+                     {"Holm", Align::right},
+                     {"expected", Align::left}},
+                    {}};
+  for (const StudyRow& row : study.rows) {
+    if (empty(row)) continue;
+    std::string expected;
+    if (row.hypothesis && row.area) expected = !row.asHypothesised ? "neither" : *row.asHypothesised ? "yes" : "no";
+    table.rows.push_back({rowName(row), row.direction == Direction::none ? "" : nameOf(row.direction),
+                          row.shift ? significant(*row.shift) : "-",
+                          row.shiftInterval ? brackets(row.shiftInterval->lower, row.shiftInterval->upper) : "-",
+                          row.area ? share(row.area->value.a) : "-",
+                          row.area ? fmt::format("[{}, {}]", share(row.area->a.lower), share(row.area->a.upper)) : "-",
+                          row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-", pOrDash(row.holm),
+                          expected});
+  }
+  return table;
+}
+
+ReportTable furtherTable(const Study& study) {
+  ReportTable table{"Further",
+                    {{"checkpoint", Align::left},
+                     {"g", Align::right},
+                     {"95 %", Align::right},
+                     {"rho (duration)", Align::right},
+                     {"p", Align::right},
+                     {"n", Align::right}},
+                    {}};
+  const bool known = any(study, hasCorrelation);
+  for (const StudyRow& row : study.rows) {
+    if (empty(row)) continue;
+    const bool interval = row.hedges && row.hedges->interval, rho = hasCorrelation(row);
+    table.rows.push_back({rowName(row), row.hedges ? significant(row.hedges->g, 3) : "-",
+                          interval ? fmt::format("[{}, {}]", significant(row.hedges->interval->lower, 3),
+                                                 significant(row.hedges->interval->upper, 3))
+                                   : "-",
+                          rho     ? fmt::format("{:+.3f}", row.withDuration->rho)
+                          : known ? "-"
+                                  : "",
+                          rho     ? pText(row.withDuration->p)
+                          : known ? "-"
+                                  : "",
+                          rho     ? fmt::format("{}", row.withDurationPairs)
+                          : known ? "-"
+                                  : ""});
+  }
+  return table;
+}
+
+ReportTable baselineTable(const Study& study) {
+  ReportTable table{"At one baseline",
+                    {{"outcome", Align::left},
+                     {"n", Align::right},
+                     {"difference", Align::right},
+                     {"95 %", Align::right},
+                     {"p", Align::right},
+                     {"Holm", Align::right},
+                     {"slope", Align::right},
+                     {"p, one slope", Align::right}},
+                    {}};
+  for (const StudyRow& row : study.rows) {
+    if (!row.adjusted || empty(row)) continue;
+    const auto& analysis = row.adjusted->analysis;
+    const std::string n = fmt::format("{} + {}", row.adjusted->n[0], row.adjusted->n[1]);
+    if (!analysis) {
+      table.rows.push_back({rowName(row), n, "-", "-", "-", "-", "-", "-"});
+      continue;
+    }
+    table.rows.push_back({rowName(row), n, significant(analysis->difference),
+                          brackets(analysis->interval.lower, analysis->interval.upper), pText(analysis->p),
+                          pOrDash(row.adjusted->holm), significant(analysis->slope),
+                          analysis->sameSlope ? pText(*analysis->sameSlope) : "-"});
+  }
+  return table;
+}
+
+void explainColumns(const Study& study, std::vector<std::string>& notes) {
+  const std::string &a = study.groups[0], &b = study.groups[1];
+  notes.push_back(
+      fmt::format("none: participants without a value. shift: Hodges-Lehmann, {} - {}, with a distribution-free "
+                  "interval. p: Mann-Whitney, two-sided, exact with ties "
+                  "(~: normal approximation). {}",
+                  a, b, study.family));
+  if (study.better.empty()) {
+    notes.push_back(
+        fmt::format("A: P({} larger) + P(equal) / 2, the area under the ROC curve, score interval; no hypothesis: "
+                    "nobody said which "
+                    "group is expected to do better (--better GROUP).",
+                    a));
+  } else {
+    notes.push_back(fmt::format(
+        "A: probability that one of {} is better than one of the other group, ties half, by the direction that the "
+        "checkpoint declares (without one: that one of {} is larger); the area under the ROC curve, score interval. "
+        "expected: whether A is above one half.",
+        study.better, a));
+  }
+  const bool correlated = any(study, hasCorrelation);
+  notes.push_back(
+      fmt::format("g: Hedges, {} - {}, interval by non-central t, which assumes normal groups.{}", a, b,
+                  correlated ? " rho: Spearman's correlation with the attempt's duration, over both groups." : ""));
+  if (study.source == "cohort" && !correlated)
+    notes.push_back("No correlation with the attempt's duration: durations are missing, too few, or all equal.");
+  if (any(study, [](const StudyRow& r) { return r.adjusted.has_value(); })) {
+    notes.push_back(fmt::format(
+        "difference: {} - {} at one baseline, analysis of covariance with HC3 errors, Student's t; n: those "
+        "with both. p, one slope: small where the difference depends on the baseline.",
+        a, b));
+  }
+}
+
+void explainMissing(const Study& study, std::vector<std::string>& notes) {
+  for (const StudyRow& row : study.rows) {
+    const std::string name = rowName(row);
+    if (empty(row)) {
+      std::string why = row.group[0].missingReason;
+      if (row.group[1].missingReason != why) why += (why.empty() ? "" : "; ") + row.group[1].missingReason;
+      notes.push_back(fmt::format("{}: no value in either group ({})", name, why));
+      continue;
+    }
+    if (!row.test) notes.push_back(fmt::format("{}: no test, {}", name, row.test.reason()));
+    for (std::size_t g = 0; g < 2; ++g) {
+      const GroupSummary& s = row.group[g];
+      if (s.missing > 0) {
+        notes.push_back(fmt::format("{}: {} of {} {} without a value ({})", name, s.missing, s.missing + s.n,
+                                    study.groups[g], s.missingReason));
+      }
+      if (s.partial > 0) {
+        notes.push_back(fmt::format("{}: the mean of {} of {} {} lacks some of their {}", name, s.partial, s.n,
+                                    study.groups[g], study.counted));
+      }
+      if (row.adjusted && row.adjusted->withoutBaseline[g] > 0) {
+        notes.push_back(fmt::format("{}: {} of {} {} have no baseline", name, row.adjusted->withoutBaseline[g], s.n,
+                                    study.groups[g]));
+      }
+    }
+    if (row.adjusted && !row.adjusted->analysis)
+      notes.push_back(fmt::format("{}: no analysis of covariance, {}", name, row.adjusted->analysis.reason()));
+  }
+}
+
+}  // namespace
+
+std::string studyTitle(const Study& study) {
+  return fmt::format("Study ({}): {} against {}", study.heading, study.groups[0], study.groups[1]);
+}
+
+std::string rowName(const StudyRow& row) {
+  return row.subject.empty() ? row.checkpoint : fmt::format("{} {}", row.checkpoint, row.subject);
+}
+
+ReportTable flowTable(const Study& study) {
+  ReportTable table{"Flow", {{study.counted, Align::right}, {"", Align::left}}, {}};
+  table.rows.push_back({fmt::format("{}", study.recruited), "in the " + study.source});
+  for (const FlowRow& row : study.flow)
+    table.rows.push_back({fmt::format("{}", row.attempts), "left out: " + row.reason});
+  table.rows.push_back({fmt::format("{}", study.analysed),
+                        fmt::format("analysed: {} {} ({} {}), {} {} ({} {}); {}", study.participants[0],
+                                    study.groups[0], study.attempts[0], study.counted, study.participants[1],
+                                    study.groups[1], study.attempts[1], study.counted, study.attemptRule)});
+  return table;
+}
+
+std::vector<ReportTable> studyTables(const Study& study) {
+  std::vector<ReportTable> tables;
+  for (ReportTable table : {valuesTable(study), comparisonTable(study), furtherTable(study), baselineTable(study)}) {
+    if (!table.rows.empty()) tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+std::vector<std::string> studyNotes(const Study& study) {
+  std::vector<std::string> notes;
+  explainColumns(study, notes);
+  if (any(study, [](const StudyRow& r) { return r.publishedExpert.has_value(); })) {
+    notes.push_back(
+        fmt::format("paper: published means of ten experts (E) and ten novices (N), for reference only ({}).",
+                    study.publishedSource));
+  }
+  notes.insert(notes.end(), study.remarks.begin(), study.remarks.end());
+  explainMissing(study, notes);
+  return notes;
+}
+
+}  // namespace calot::analytics

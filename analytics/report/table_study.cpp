@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/table_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "analytics/report/study_rows.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::analytics {
+namespace {
+
+using recorder::shown;
+
+/// Squares of what is larger, and their sums, might not be finite.
+constexpr double largest = 1e100;
+
+struct Outcome {
+  std::string name;
+  Direction direction = Direction::none;
+  std::size_t column = 0;
+};
+
+/// What the study needs of one row.
+struct Record {
+  std::size_t line = 0;
+  std::string participant, group, occasion;
+  std::vector<std::optional<double>> values;  ///< by outcome
+};
+
+[[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
+  throw Error(ExitCode::damaged, fmt::format("{}: line {}: column \"{}\": {}", table.path, line, shown(column), what));
+}
+
+/// Names are printed: a line break or another control character in one would forge what is read there.
+void askForPlainName(const CsvTable& table, std::size_t line, const std::string& column, const std::string& name) {
+  const auto control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
+  if (std::any_of(name.begin(), name.end(), control))
+    failAt(table, line, column, fmt::format("\"{}\" holds a line break or a control character", shown(name)));
+}
+
+std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options) {
+  std::vector<Outcome> outcomes;
+  for (const std::string& text : options.outcomes) {
+    Outcome outcome{text, Direction::none, 0};
+    // A column may itself be called "a:lower".
+    if (const std::size_t colon = text.rfind(':'); !table.has(text) && colon != std::string::npos) {
+      const std::string word = text.substr(colon + 1);
+      if (word != "lower" && word != "higher") {
+        throw Error(ExitCode::usage, fmt::format("study: --outcome {}: behind the colon stands what is better, lower "
+                                                 "or higher",
+                                                 shown(text)));
+      }
+      outcome = {text.substr(0, colon), word == "lower" ? Direction::lower : Direction::higher, 0};
+    }
+    outcome.column = table.column(outcome.name);
+    askForPlainName(table, 1, outcome.name, outcome.name);
+    for (const Outcome& other : outcomes) {
+      if (other.column == outcome.column)
+        throw Error(ExitCode::usage, fmt::format("study: --outcome {}: is named twice", shown(outcome.name)));
+    }
+    outcomes.push_back(outcome);
+  }
+  return outcomes;
+}
+
+std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
+                              const std::vector<Outcome>& outcomes) {
+  const std::size_t participant = table.column(options.participantColumn), group = table.column(options.groupColumn);
+  std::vector<std::size_t> occasion;
+  for (const std::string& name : options.occasionColumns) occasion.push_back(table.column(name));
+  std::vector<Record> records;
+  records.reserve(table.rows.size());
+  for (const CsvRow& row : table.rows) {
+    Record record{row.line, row.cells[participant], row.cells[group], "", {}};
+    if (record.participant.empty())
+      failAt(table, row.line, options.participantColumn, "is empty; every row needs its participant");
+    askForPlainName(table, row.line, options.participantColumn, record.participant);
+    askForPlainName(table, row.line, options.groupColumn, record.group);
+    for (std::size_t i = 0; i < occasion.size(); ++i) {
+      if (row.cells[occasion[i]].empty())
+        failAt(table, row.line, options.occasionColumns[i], "is empty; every row needs its occasion");
+      askForPlainName(table, row.line, options.occasionColumns[i], row.cells[occasion[i]]);
+      record.occasion += (i == 0 ? "" : "/") + row.cells[occasion[i]];
+    }
+    for (const Outcome& outcome : outcomes) {
+      const std::string& cell = row.cells[outcome.column];
+      std::optional<double> value;
+      if (!cell.empty()) {
+        std::string fault;
+        value = recorder::readFiniteNumber(cell, fault);
+        if (fault.empty() && std::abs(*value) > largest)
+          failAt(table, row.line, outcome.name, fmt::format("\"{}\" is larger than {}", shown(cell), largest));
+        if (!fault.empty())
+          failAt(table, row.line, outcome.name, fault + "; leave the cell empty where a value is missing");
+      }
+      record.values.push_back(value);
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+std::set<std::string> occasionsOf(const std::vector<Record>& records) {
+  std::set<std::string> occasions;
+  for (const Record& r : records) occasions.insert(r.occasion);
+  return occasions;
+}
+
+void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion) {
+  const std::set<std::string> known = occasionsOf(records);
+  if (occasion.empty() || known.count(occasion) > 0) return;
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + shown(name);
+  throw Error(ExitCode::usage,
+              fmt::format("{}: there is no occasion \"{}\" (there are: {})", table.path, shown(occasion), list));
+}
+
+using Rows = std::map<std::string, std::vector<const Record*>>;  ///< by participant
+
+/// Of several rows of a participant the rule makes one value; without a rule they are refused.
+/// @param[out] several set where there were any @return how many rows went out because the first counts
+std::uint64_t applyRule(std::array<Rows, 2>& rows, const CsvTable& table, const TableStudyOptions& options,
+                        bool& several) {
+  std::uint64_t later = 0;
+  std::size_t repeated = 0;
+  const std::vector<const Record*>* example = nullptr;
+  for (Rows& group : rows) {
+    for (auto& [person, list] : group) {
+      if (list.size() < 2) continue;
+      ++repeated;
+      if (!options.attemptRule && (example == nullptr || list[1]->line < (*example)[1]->line)) example = &list;
+      if (options.attemptRule != AttemptRule::first) continue;
+      later += list.size() - 1;
+      list.erase(list.begin() + 1, list.end());
+    }
+  }
+  several = several || repeated > 0;
+  if (example == nullptr) return later;
+  throw Error(
+      ExitCode::no,
+      fmt::format("{}: line {}: participant \"{}\" has {} rows{} ({} participant{} with several), which are not "
+                  "independent; choose one occasion (--occasion-column, --occasion) or declare --attempt-rule "
+                  "first or mean",
+                  table.path, (*example)[1]->line, shown((*example)[0]->participant), example->size(),
+                  options.occasion.empty() ? "" : " at one occasion", repeated, repeated == 1 ? "" : "s"));
+}
+
+void nameAbsent(Study& study, const std::map<std::string, std::string>& groupOf, const std::vector<Record>& records) {
+  std::map<std::string, std::set<std::string>> seen;
+  for (const Record& r : records) seen[r.participant].insert(r.occasion);
+  std::set<std::string> occasions;
+  for (const auto& [person, group] : groupOf) occasions.insert(seen[person].begin(), seen[person].end());
+  for (const auto& [person, group] : groupOf) {
+    for (const std::string& occasion : occasions) {
+      if (seen[person].count(occasion) == 0) study.absent.push_back({person, group, occasion});
+    }
+  }
+  if (study.absent.empty()) return;
+  constexpr std::size_t most = 10;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(most, study.absent.size()); ++i) {
+    const AbsentRow& a = study.absent[i];
+    list += fmt::format("{}{} ({}) at {}", i == 0 ? "" : "; ", a.participant, a.group, a.occasion);
+  }
+  if (study.absent.size() > most) list += fmt::format("; and {} more", study.absent.size() - most);
+  study.remarks.push_back(fmt::format("Absent rows: {}.", list));
+}
+
+BaselineAdjustment adjustment(const StudyRow& row, const StudyRow& before) {
+  BaselineAdjustment result;
+  std::array<std::vector<double>, 2> baseline, outcome;
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (std::size_t i = 0; i < row.values[g].size(); ++i) {
+      const auto& people = before.participants[g];
+      const auto at = std::lower_bound(people.begin(), people.end(), row.participants[g][i]);
+      if (at == people.end() || *at != row.participants[g][i]) {
+        ++result.withoutBaseline[g];
+        continue;
+      }
+      baseline[g].push_back(before.values[g][static_cast<std::size_t>(at - people.begin())]);
+      outcome[g].push_back(row.values[g][i]);
+    }
+    result.n[g] = outcome[g].size();
+  }
+  result.analysis = covarianceAnalysis({baseline[0], outcome[0]}, {baseline[1], outcome[1]});
+  return result;
+}
+
+/// Values of one outcome in the rows of either group.
+StudySample sampleOf(const std::array<Rows, 2>& rows, std::size_t outcome) {
+  StudySample sample;
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (const auto& [person, list] : rows[g]) {
+      for (const Record* r : list) {
+        if (r->values[outcome]) {
+          sample.values[g].push_back({person, r->line, *r->values[outcome]});
+        } else {
+          sample.missing[g][person].emplace_back("empty cell");
+        }
+      }
+    }
+  }
+  return sample;
+}
+
+void checkOptions(const TableStudyOptions& options) {
+  const auto fail = [](const char* what) { throw Error(ExitCode::usage, fmt::format("study: {}", what)); };
+  if (options.participantColumn.empty()) fail("--table needs --participant-column");
+  if (options.groupColumn.empty()) fail("--table needs --group-column");
+  if (options.outcomes.empty()) fail("--table needs at least one --outcome");
+  if (options.occasionColumns.empty() && !(options.occasion + options.baselineOccasion).empty())
+    fail("--occasion and --baseline-occasion need --occasion-column");
+  if (options.baselineOccasion.empty()) return;
+  if (options.occasion.empty()) fail("--baseline-occasion needs --occasion");
+  if (options.occasion == options.baselineOccasion) fail("the baseline's occasion is the outcome's");
+}
+
+}  // namespace
+
+Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options) {
+  checkOptions(options);
+  const std::vector<Outcome> outcomes = outcomesOf(table, options);
+  const std::vector<Record> records = recordsOf(table, options, outcomes);
+  askForOccasion(table, records, options.occasion);
+  askForOccasion(table, records, options.baselineOccasion);
+
+  Study study;
+  study.heading = "exploratory";
+  study.source = "table";
+  study.counted = "rows";
+  study.where = std::filesystem::path(table.path).filename().string();
+  study.recruited = records.size();
+  std::map<std::string, std::uint64_t> present;
+  std::uint64_t ungrouped = 0, otherGroup = 0, otherOccasion = 0, asBaseline = 0;
+  for (const Record& r : records) {
+    if (r.group.empty()) {
+      ++ungrouped;
+    } else {
+      ++present[r.group];
+    }
+  }
+  study.groups =
+      chooseGroups(present, options, table.path, ungrouped == 0 ? "" : fmt::format(" ({} rows have none)", ungrouped));
+  study.better = betterOf(study.groups, options);
+
+  std::map<std::string, std::string> groupOf;
+  std::array<Rows, 2> rows, baseline;
+  for (const Record& r : records) {
+    const auto at = std::find(study.groups.begin(), study.groups.end(), r.group);
+    if (at == study.groups.end()) {
+      if (!r.group.empty()) ++otherGroup;
+      continue;
+    }
+    if (const auto [known, added] = groupOf.emplace(r.participant, r.group); !added && known->second != r.group) {
+      throw Error(ExitCode::no,
+                  fmt::format("{}: line {}: participant \"{}\" is in both groups ({}, {}), which must be "
+                              "independent",
+                              table.path, r.line, shown(r.participant), shown(known->second), shown(r.group)));
+    }
+    const auto g = static_cast<std::size_t>(at - study.groups.begin());
+    if (options.occasion.empty() || r.occasion == options.occasion) {
+      rows[g][r.participant].push_back(&r);
+    } else if (!options.baselineOccasion.empty() && r.occasion == options.baselineOccasion) {
+      ++asBaseline;
+      baseline[g][r.participant].push_back(&r);
+    } else {
+      ++otherOccasion;
+    }
+  }
+  bool several = false;
+  const std::uint64_t later = applyRule(rows, table, options, several);
+  (void)applyRule(baseline, table, options, several);
+  study.attemptRule = !several                                    ? "one row each"
+                      : options.attemptRule == AttemptRule::first ? "the first of a participant's rows in the table"
+                                                                  : "the mean of a participant's rows";
+  for (const auto& [reason, count] : std::initializer_list<std::pair<const char*, std::uint64_t>>{
+           {"no group", ungrouped},
+           {"another group", otherGroup},
+           {"the baseline, for adjustment", asBaseline},
+           {"another occasion", otherOccasion},
+           {"later row of a participant (the first counts)", later}}) {
+    if (count > 0) study.flow.push_back({reason, count});
+  }
+  for (std::size_t g = 0; g < 2; ++g) {
+    study.participants[g] = rows[g].size();
+    for (const auto& [person, list] : rows[g]) study.attempts[g] += list.size();
+    study.analysed += study.attempts[g];
+  }
+  if (!options.occasion.empty()) study.remarks.push_back(fmt::format("Compared at occasion {}.", options.occasion));
+  if (!options.occasionColumns.empty()) nameAbsent(study, groupOf, records);
+
+  for (std::size_t o = 0; o < outcomes.size(); ++o) {
+    StudyRow row;
+    row.checkpoint = row.title = outcomes[o].name;
+    row.direction = outcomes[o].direction;
+    StudySample sample = sampleOf(rows, o);
+    for (const auto& [person, group] : groupOf) {
+      const std::size_t g = group == study.groups[0] ? 0 : 1;
+      if (rows[g].count(person) == 0) sample.missing[g][person].push_back("no row at " + options.occasion);
+    }
+    fillRow(row, sample);
+    compareGroups(row, study, {});
+    if (!options.baselineOccasion.empty()) {
+      StudyRow before;
+      fillRow(before, sampleOf(baseline, o));
+      row.adjusted = adjustment(row, before);
+    }
+    study.rows.push_back(std::move(row));
+  }
+  finishRows(study, options);
+  return study;
+}
+
+}  // namespace calot::analytics

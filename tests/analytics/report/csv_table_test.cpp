@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/csv_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+
+#include "recorder/errors.h"
+
+namespace calot::analytics {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+void expectRefusal(ExitCode code, const std::string& text, const std::string& words) {
+  try {
+    const CsvTable table = parseCsvTable(text, "t.csv");
+    (void)table.column("a");
+    ADD_FAILURE() << "no error; expected: " << words;
+  } catch (const Error& error) {
+    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
+    EXPECT_NE(std::string(error.what()).find("t.csv: " + words), std::string::npos) << error.what();
+  }
+}
+
+TEST(CsvTable, readsWhatRfc4180Allows) {
+  const CsvTable table = parseCsvTable(
+      "\xEF\xBB\xBF"
+      "a,\"b \"\"c\"\"\", d \r\n1,\"two\nlines, one cell\",\r\n\r\n \"x\" ,,3",
+      "t.csv");
+  EXPECT_EQ(table.columns, (Cells{"a", "b \"c\"", "d"}));
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0].line, 2U);
+  EXPECT_EQ(table.rows[0].cells, (Cells{"1", "two\nlines, one cell", ""}));
+  EXPECT_EQ(table.rows[1].line, 5U) << "the cell above has two lines, and one is empty";
+  EXPECT_EQ(table.rows[1].cells, (Cells{"x", "", "3"}));
+  EXPECT_EQ(table.column("d"), 2U);
+  EXPECT_FALSE(table.has("e"));
+}
+
+TEST(CsvTable, namesWhereItIsWrong) {
+  using enum ExitCode;
+  expectRefusal(damaged, "", "line 1: is empty");
+  expectRefusal(damaged, "\n\n", "line 1: is empty");
+  expectRefusal(damaged, "a,b\n", "line 1: a header and no rows");
+  expectRefusal(damaged, "a;b\n1;2\n", "line 1: one column only (\"a;b\"); the separator is a comma");
+  expectRefusal(damaged, "a,b\n1,2\n1,2,3\n", "line 3: 3 cells, the header has 2");
+  expectRefusal(damaged, "a,b\n1\n", "line 2: 1 cells, the header has 2");
+  expectRefusal(damaged, "a,b\n1,\"2\n", "line 2: a quote is opened and never closed");
+  expectRefusal(damaged, "a,b\n\"1\"x,2\n", "line 2: column 1: text behind a closing quote");
+  expectRefusal(damaged, std::string("a,b\n1,\0\n", 8), "is no table of text");
+  expectRefusal(usage, "b,c\n1,2\n", "line 1: there is no column \"a\" (there are: b, c)");
+  expectRefusal(usage, "a,a\n1,2\n", "line 1: two columns are called \"a\"");
+}
+
+TEST(CsvTable, givesBackWhatWasWritten) {
+  const char* given = std::getenv("CALOT_SEED");
+  const unsigned seed = given != nullptr ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : 20261122U;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  const std::string alphabet = "a,\"\n 1.-";
+  for (int trial = 0; trial < 300; ++trial) {
+    const std::size_t columns = 2 + random() % 3, rows = 1 + random() % 5;
+    std::vector<Cells> written;
+    std::string text;
+    for (std::size_t r = 0; r <= rows; ++r) {
+      Cells cells;
+      for (std::size_t c = 0; c < columns; ++c) {
+        std::string cell;
+        for (std::size_t n = random() % 6; n > 0; --n) cell += alphabet[random() % alphabet.size()];
+        text += c == 0 ? "\"" : ",\"";
+        for (const char letter : cell) text += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+        text += '"';
+        cells.push_back(cell);
+      }
+      text += trial % 2 == 0 ? "\n" : "\r\n";
+      written.push_back(cells);
+    }
+    const CsvTable table = parseCsvTable(text, "t.csv");
+    EXPECT_EQ(table.columns, written[0]);
+    ASSERT_EQ(table.rows.size(), rows);
+    for (std::size_t r = 0; r < rows; ++r) EXPECT_EQ(table.rows[r].cells, written[r + 1]);
+  }
+}
+
+TEST(CsvTable, neverCrashesOnAnyBytes) {
+  std::mt19937 random(7);
+  const std::string alphabet = ",,\"\"\n\r x\xC3";
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::string text;
+    for (std::size_t n = random() % 24; n > 0; --n) text += alphabet[random() % alphabet.size()];
+    try {
+      for (const CsvRow& row : parseCsvTable(text, "t.csv").rows) EXPECT_GE(row.cells.size(), 2U);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::damaged);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace calot::analytics

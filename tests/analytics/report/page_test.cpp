@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page and the terminal are made of: escaping, box plots, tables that fit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <regex>
+#include <sstream>
+
+#include "analytics/report/box_plot.h"
+#include "analytics/report/html_text.h"
+#include "analytics/report/text_table.h"
+
+namespace calot::analytics {
+namespace {
+
+std::vector<double> attributes(const std::string& svg, const std::string& pattern) {
+  std::vector<double> found;
+  const std::regex expression(pattern);
+  for (std::sregex_iterator at(svg.begin(), svg.end(), expression), end; at != end; ++at)
+    found.push_back(std::stod((*at)[1].str()));
+  return found;
+}
+
+TEST(Html, escapesWhatWouldBeMarkup) {
+  EXPECT_EQ(escaped("<script>\"a\" & 'b'</script>"), "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;&lt;/script&gt;");
+  EXPECT_EQ(escaped("\u00e9\u2264\U0001F600"), "\u00e9\u2264\U0001F600");
+  const std::string bad = "\xEF\xBF\xBD";
+  EXPECT_EQ(escaped(std::string("a\0b\x1B", 4)), "a" + bad + "b" + bad);
+  EXPECT_EQ(escaped("\xC3<"), bad + "&lt;") << "half a letter does not swallow what follows";
+  EXPECT_EQ(escaped("\xC0\xBC"), bad + bad) << "an overlong '<'";
+  EXPECT_EQ(escaped("\xED\xA0\x80"), bad + bad + bad) << "half a surrogate pair";
+}
+
+TEST(BoxPlot, hasTheQuartilesTheWhiskersAndEveryPoint) {
+  // 1..9 and an outlier: type 7 quartiles 3.25, 5.5, 7.75; the whisker ends at 9, not at 30.
+  const std::vector<double> a{1, 2, 3, 4, 5, 6, 7, 8, 9, 30}, b{4, 4};
+  const std::string svg = boxPlotSvg({.title = "a <b>", .axis = "mm", .groups = {"x", "y"}, .values = {a, b}});
+  EXPECT_NE(svg.find("a &lt;b&gt;"), std::string::npos);
+  EXPECT_EQ(svg.find("<b>"), std::string::npos);
+  EXPECT_EQ(svg.find("SYNTHETIC"), std::string::npos);
+  const std::vector<double> y = attributes(svg, R"re(<circle class="point" cx="[^"]*" cy="([^"]*)")re");
+  ASSERT_EQ(y.size(), 12U);
+  // The scale is linear: from the points 1 and 30 every other follows. Two decimals are printed.
+  const double perUnit = (y[9] - y[0]) / 29.0;
+  EXPECT_LT(perUnit, 0.0) << "upwards is more";
+  const auto expected = [&](double value) { return y[0] + (value - 1.0) * perUnit; };
+  EXPECT_NEAR(y[4], expected(5.0), 0.02);
+  EXPECT_NEAR(y[10], expected(4.0), 0.02);
+  const auto boxes = attributes(svg, R"re(<rect class="box" x="[^"]*" y="([^"]*)")re");
+  const auto heights = attributes(svg, R"re(<rect class="box" [^>]*height="([^"]*)")re");
+  ASSERT_EQ(boxes.size(), 2U);
+  EXPECT_NEAR(boxes[0], expected(7.75), 0.02);
+  EXPECT_NEAR(heights[0], -4.5 * perUnit, 0.02);
+  EXPECT_NEAR(heights[1], 0.0, 0.01);
+  EXPECT_NEAR(attributes(svg, R"re(<line class="median" [^>]*y1="([^"]*)")re")[0], expected(5.5), 0.02);
+  const auto whiskers = attributes(svg, R"re(<line class="whisker" [^>]*y2="([^"]*)")re");
+  ASSERT_EQ(whiskers.size(), 8U);
+  EXPECT_NEAR(whiskers[1], expected(9.0), 0.02);
+}
+
+TEST(BoxPlot, staysInsideItsFrameForAnyValues) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (const double scale : {1e-290, 1e-9, 1.0, 1e12, 1e290}) {
+    for (const double centre : {0.0, 5.0}) {
+      std::vector<double> values(1 + random() % 30);
+      for (double& v : values) v = (normal(random) + centre) * scale;
+      const std::string svg =
+          boxPlotSvg({.title = "t", .axis = "", .groups = {"x", "y"}, .values = {values, {}}, .synthetic = true});
+      ASSERT_FALSE(svg.empty());
+      EXPECT_NE(svg.find(">SYNTHETIC<"), std::string::npos);
+      EXPECT_EQ(svg.find("nan"), std::string::npos);
+      EXPECT_EQ(svg.find("inf"), std::string::npos);
+      for (const double y : attributes(svg, R"re(c?y[12]?="([^"]*)")re")) {
+        EXPECT_GE(y, 0.0);
+        EXPECT_LE(y, 240.0);
+      }
+    }
+  }
+  const std::vector<double> none, huge{-1.7e308, 1.7e308}, same{3, 3, 3}, zero{0, 0};
+  EXPECT_EQ(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {none, none}}), "");
+  EXPECT_EQ(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {huge, none}}), "");
+  EXPECT_NE(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {same, zero}}), "");
+  EXPECT_NE(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {same, same}}), "");
+  EXPECT_NE(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {zero, none}}), "");
+}
+
+TEST(BoxPlot, ticksAreRoundAndWithin) {
+  EXPECT_EQ(roundTicks(0.0, 10.0), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  EXPECT_EQ(roundTicks(-1.2, 1.3), (std::vector<double>{-1.0, -0.5, 0.0, 0.5, 1.0}));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> exponent(-12.0, 12.0), part(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double low = (part(random) - 0.5) * std::pow(10.0, exponent(random));
+    const double high = low + std::max(std::abs(low) * 1e-6, std::pow(10.0, exponent(random)));
+    const std::vector<double> ticks = roundTicks(low, high);
+    EXPECT_GE(ticks.size(), 3U) << low << ' ' << high;
+    EXPECT_LE(ticks.size(), 10U) << low << ' ' << high;
+    EXPECT_GE(ticks.front(), low - (high - low) * 1e-9);
+    EXPECT_LE(ticks.back(), high + (high - low) * 1e-9);
+  }
+}
+
+TEST(TextTable, isCutWhereItMustFit) {
+  TextTable table(
+      {{"name", TextTable::Align::left}, {"other", TextTable::Align::left}, {"v", TextTable::Align::right}});
+  table.add({"a-very-long-name-of-something-\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9", "short", "1.5"});
+  table.add({"b", "a text that is longer than ten", "20"});
+  std::ostringstream wide, narrow;
+  table.print(wide);
+  table.print(narrow, 40);
+  EXPECT_NE(wide.str().find("something-\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9"), std::string::npos);
+  std::istringstream lines(narrow.str());
+  for (std::string line; std::getline(lines, line);) {
+    const auto letters = std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; });
+    EXPECT_LE(letters, 40) << line;
+  }
+  EXPECT_NE(narrow.str().find("..."), std::string::npos);
+  EXPECT_NE(narrow.str().find("1.5"), std::string::npos) << "numbers are never cut";
+}
+
+}  // namespace
+}  // namespace calot::analytics

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A study of a table: the model. tests/command_line/study_test.py holds its figures against its own calculation.
+#include "analytics/report/table_study.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "analytics/report/study_output.h"
+#include "analytics/statistics/published_coverage.h"
+#include "recorder/errors.h"
+
+namespace calot::analytics {
+namespace {
+
+/// R's `sleep` as a table of two unpaired groups. R 4.2.2 with exactRankTests and effectsize: W 25.5, exact p
+/// .0658165364, g -.7969352392 [-1.665171791, .0914077328], A .255.
+constexpr const char* sleep =
+    "id,drug,extra\n1,one,0.7\n2,one,-1.6\n3,one,-0.2\n4,one,-1.2\n5,one,-0.1\n6,one,3.4\n7,one,3.7\n8,one,0.8\n"
+    "9,one,0\n10,one,2\n11,two,1.9\n12,two,0.8\n13,two,1.1\n14,two,0.1\n15,two,-0.1\n16,two,4.4\n17,two,5.5\n"
+    "18,two,1.6\n19,two,4.6\n20,two,3.4\n";
+
+TableStudyOptions optionsFor(const std::string& outcome) {
+  TableStudyOptions options;
+  options.participantColumn = "id";
+  options.groupColumn = "drug";
+  options.outcomes = {outcome};
+  return options;
+}
+
+Study studyOf(const std::string& text, const TableStudyOptions& options) {
+  return makeTableStudy(parseCsvTable(text, "t.csv"), options);
+}
+
+template <class Call>
+void expectRefusal(ExitCode code, const std::string& words, Call call) {
+  try {
+    call();
+    ADD_FAILURE() << "no error; expected: " << words;
+  } catch (const Error& error) {
+    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+TEST(TableStudy, isTheStatisticsOfTheTable) {
+  TableStudyOptions options = optionsFor("extra:higher");
+  options.better = "two";
+  const Study study = studyOf(sleep, options);
+  EXPECT_EQ(study.heading, "exploratory");
+  EXPECT_FALSE(study.synthetic);
+  ASSERT_EQ(study.rows.size(), 1U);
+  const StudyRow& row = study.rows[0];
+  EXPECT_DOUBLE_EQ(row.test->u, 25.5);
+  EXPECT_NEAR(row.test->p, 0.0658165364, 1e-10);
+  EXPECT_NEAR(*row.holm, 0.0658165364, 1e-10);
+  EXPECT_NEAR(row.hedges->g, -0.7969352392, 1e-9);
+  EXPECT_NEAR(row.hedges->interval->lower, -1.665171791, 1e-8);
+  EXPECT_NEAR(row.hedges->interval->upper, 0.0914077328, 1e-8);
+  EXPECT_EQ(row.hypothesis, Hypothesis::firstSmaller);
+  EXPECT_NEAR(row.effect->a, 0.255, 1e-12);
+  EXPECT_NEAR(row.area->value.a, 0.745, 1e-12) << "of the hypothesis";
+  EXPECT_EQ(row.asHypothesised, true);
+}
+
+TEST(TableStudy, directionIsDeclaredAndNeverTakenFromTheData) {
+  for (const char* better : {"one", "two"}) {
+    for (const char* which : {"lower", "higher"}) {
+      TableStudyOptions options = optionsFor(std::string("extra:") + which);
+      options.better = better;
+      const Study study = studyOf(sleep, options);
+      const StudyRow& row = study.rows[0];
+      const bool right = (std::string(better) == "two") == (std::string(which) == "higher");
+      EXPECT_NEAR(row.area->value.a, right ? 0.745 : 0.255, 1e-12) << better << ' ' << which;
+      EXPECT_EQ(row.asHypothesised, right);
+      // Either way the interval is the same one, seen from its side.
+      const Interval against = studyOf(sleep, optionsFor("extra")).rows[0].area->a;
+      EXPECT_NEAR(row.area->a.lower, right ? 1.0 - against.upper : against.lower, 1e-9);
+      EXPECT_NEAR(row.area->a.upper, right ? 1.0 - against.lower : against.upper, 1e-9);
+    }
+  }
+  for (const char* outcome : {"extra", "extra:higher"}) {
+    const Study study = studyOf(sleep, optionsFor(outcome));
+    EXPECT_FALSE(study.rows[0].hypothesis) << "no group is expected to do better";
+    EXPECT_FALSE(study.rows[0].asHypothesised);
+  }
+  TableStudyOptions wrong = optionsFor("extra");
+  wrong.better = "three";
+  expectRefusal(ExitCode::usage, "--better three", [&] { (void)studyOf(sleep, wrong); });
+  expectRefusal(ExitCode::usage, "lower or higher", [&] { (void)studyOf(sleep, optionsFor("extra:up")); });
+  EXPECT_NO_THROW((void)studyOf("id,drug,a:up\n1,x,1\n2,y,2\n", optionsFor("a:up"))) << "a column's own name";
+}
+
+TEST(TableStudy, warnsWhereACoverageIsLow) {
+  std::string text = "id,drug,v\n";
+  for (int i = 0; i < 80; ++i) text += std::to_string(i) + (i < 40 ? ",a," : ",b,") + std::to_string(i * i % 97) + "\n";
+  const Study large = studyOf(text, optionsFor("v"));
+  ASSERT_EQ(large.rows[0].coverageWarnings.size(), 1U);
+  EXPECT_EQ(large.rows[0].coverageWarnings[0],
+            "g: with 40 a group an interval at 95 % covers 92.4 % (population: exponential, 0.8)");
+  EXPECT_TRUE(studyOf(sleep, optionsFor("extra")).rows[0].coverageWarnings.empty()) << "ten a group";
+  const Study few = studyOf("id,drug,v\n1,a,1\n2,a,2\n3,b,3\n4,b,4\n", optionsFor("v"));
+  ASSERT_FALSE(few.rows[0].coverageWarnings.empty());
+  EXPECT_NE(few.rows[0].coverageWarnings[0].find("not known for fewer than 5"), std::string::npos);
+  EXPECT_NE(few.remarks.back().find("Warning (1 of 1 rows)"), std::string::npos);
+}
+
+TEST(PublishedCoverage, isThatOfThePage) {
+  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/statistics.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  const std::string page = text.str();
+  for (const PublishedCoverage& row : publishedCoverage()) {
+    std::string line = fmt::format("| {} | {} |", row.name, row.population);
+    for (const double percent : row.percent)
+      line += percent < coverageWanted ? fmt::format(" **{:.1f}** |", percent) : fmt::format(" {:.1f} |", percent);
+    EXPECT_NE(page.find(line), std::string::npos) << line;
+  }
+}
+
+TEST(PublishedCoverage, takesTheWorseOfTheSizesAround) {
+  CoverageDoubt doubt;
+  EXPECT_FALSE(doubtful(CoveredInterval::hedges, 5, 100, doubt));
+  EXPECT_FALSE(doubtful(CoveredInterval::hedges, 20, 20, doubt));
+  for (const std::size_t n : {21U, 39U, 40U, 1000U}) {
+    EXPECT_TRUE(doubtful(CoveredInterval::hedges, n, 1000, doubt)) << n;
+    EXPECT_DOUBLE_EQ(doubt.percent, 92.4);
+    EXPECT_EQ(doubt.size, 40U);
+  }
+  EXPECT_FALSE(doubtful(CoveredInterval::shift, 40, 40, doubt));
+  EXPECT_TRUE(doubtful(CoveredInterval::areaScore, 4, 40, doubt));
+  EXPECT_FALSE(doubt.known);
+}
+
+TEST(TableStudy, makesOneValueOfSeveralRowsByTheRuleAlone) {
+  const std::string text = "id,drug,v\n1,a,1\n1,a,3\n2,a,5\n2,a,\n3,b,7\n4,b,8\n4,b,10\n4,b,12\n";
+  expectRefusal(ExitCode::no, "t.csv: line 3: participant \"1\" has 2 rows (3 participants with several)",
+                [&] { (void)studyOf(text, optionsFor("v")); });
+  TableStudyOptions options = optionsFor("v");
+  options.attemptRule = AttemptRule::first;
+  const Study first = studyOf(text, options);
+  EXPECT_EQ(first.rows[0].values[0], (std::vector<double>{1, 5}));
+  EXPECT_EQ(first.rows[0].values[1], (std::vector<double>{7, 8}));
+  EXPECT_EQ(first.analysed, 4U);
+  EXPECT_EQ(first.flow.at(0).attempts, 4U);
+  options.attemptRule = AttemptRule::mean;
+  const Study mean = studyOf(text, options);
+  EXPECT_EQ(mean.rows[0].values[0], (std::vector<double>{2, 5}));
+  EXPECT_EQ(mean.rows[0].values[1], (std::vector<double>{7, 10}));
+  EXPECT_EQ(mean.rows[0].group[0].partial, 1U) << "of 2 a cell is empty";
+  EXPECT_TRUE(mean.flow.empty());
+}
+
+TEST(TableStudy, fitsATerminalAndEscapesAPage) {
+  const std::string name = "<img src=x onerror=alert(1)> a name that goes on and on and on for a very long time";
+  std::string text = "id,drug,\"" + name + "\",\xC3\xA9,zero\n";
+  for (int i = 0; i < 12; ++i)
+    text += fmt::format("p{},{},{},{},0\n", i, i % 2 == 0 ? "<b>first</b> & a long name of a group" : "second \"'",
+                        1e-7 * i, -1e9 * i);
+  TableStudyOptions options = optionsFor(name);
+  options.outcomes.push_back("\xC3\xA9");
+  options.outcomes.push_back("zero");
+  const Study study = studyOf(text, options);
+  std::ostringstream out;
+  printStudy(study, out);
+  std::istringstream lines(out.str());
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; }), 120) << line;
+  }
+  EXPECT_NE(out.str().find("zero: no test, all values are equal"), std::string::npos);
+  const std::string page = studyHtml(study);
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find("<b>"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_NE(page.find("&lt;b&gt;first&lt;/b&gt; &amp; a long"), std::string::npos);
+  EXPECT_NE(page.find("exploratory"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace calot::analytics
