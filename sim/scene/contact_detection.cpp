@@ -50,18 +50,21 @@ void Stepper::Workspace::shapeAt(const State& state, std::size_t hand, const Pos
   shape.assign(world.capsules().begin(), world.capsules().end());
 }
 
-double Stepper::Workspace::allowance(const HandState& hand, const Capsule& capsule, std::size_t structure) {
+double Stepper::Workspace::allowance(const State& state, const HandState& hand, const Capsule& capsule,
+                                     std::size_t structure) const {
   const bool jaw = capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw;
-  return jaw && hand.grasped == structure ? heldDepth : 0.0;
+  if (!jaw) return 0.0;
+  if (isClosedOnClip(state, hand, structure)) return crushedDepth;
+  return hand.grasped == structure ? heldDepth : 0.0;
 }
 
 /// Least gap between the instrument in `shape` and all structures, at most `reach_`. @pre refreshBounds() since
 /// they moved
-double Stepper::Workspace::gapOf(const HandState& hand, double reach_) {
+double Stepper::Workspace::gapOf(const State& state, const HandState& hand, double reach_) {
   double least = reach_;
   for (std::size_t s = 0; s < skinOf.size(); ++s) {
     for (const Capsule& c : shape) {
-      const double allowed = allowance(hand, c, s);
+      const double allowed = allowance(state, hand, c, s);
       Box box;
       box.include(c.p0);
       box.include(c.p1);
@@ -95,7 +98,7 @@ void Stepper::Workspace::advanceFreely(State& state, std::size_t hand) {
            0.5 * std::abs(turn) * local.jawReach();
     if (!(left > 0.0)) break;
     shapeAt(state, hand, now, h.jaw);
-    const double room = gapOf(h, left + 2.0 * margin);
+    const double room = gapOf(state, h, left + 2.0 * margin);
     double share = 0.0;
     if (room >= left + margin) {
       share = 1.0;
@@ -162,7 +165,7 @@ void Stepper::Workspace::detectInstruments(const State& state) {
       const double far = reach[h] + std::min(std::sqrt(speed) * settings.step, largestSlide);
       found.clear();
       for (const Capsule& c : shape) {
-        const double allowed = allowance(state.hand[h], c, o);
+        const double allowed = allowance(state, state.hand[h], c, o);
         Box box;
         box.include(c.p0);
         box.include(c.p1);

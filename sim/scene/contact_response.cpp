@@ -103,7 +103,7 @@ void Stepper::Workspace::move(State& state) {
 
 /// The deepest an instrument in `shape` stands in any organ, and all places where it does.
 /// @pre refreshBounds() since organs moved
-double Stepper::Workspace::findInside(const HandState& hand, const Vec3& port, const Pose& pose) {
+double Stepper::Workspace::findInside(const State& state, const HandState& hand, const Vec3& port, const Pose& pose) {
   inside.clear();
   double depth = 0.0;
   for (std::size_t o = 0; o < skinOf.size(); ++o) {
@@ -115,7 +115,7 @@ double Stepper::Workspace::findInside(const HandState& hand, const Vec3& port, c
       box.grow(capsuleSearch(c.radius, 0.0));
       const std::size_t before = found.size();
       capsuleContacts(skinOf[o]->surface(), skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece, found);
-      if (const double allowed = allowance(hand, c, o); allowed > 0.0) allow(allowed, 0.0, before);
+      if (const double allowed = allowance(state, hand, c, o); allowed > 0.0) allow(allowed, 0.0, before);
     }
     for (const SurfaceContact& contact : found) {
       if (!(contact.gap < 0.0)) continue;
@@ -159,7 +159,7 @@ Stepper::Workspace::Withdrawal Stepper::Workspace::withdrawFrom(const State& sta
   double gone = 0.0;
   for (int pass = 0;; ++pass) {
     shapeAt(state, hand, pose, s.jaw);
-    const double depth = findInside(s, port, pose);
+    const double depth = findInside(state, s, port, pose);
     if (depth < best.depth) {
       best = {pose, depth, false};
       for (const Inside& a : inside) {

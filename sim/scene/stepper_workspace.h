@@ -34,6 +34,7 @@ inline constexpr double largestRecovery = 0.0005;  ///< by which overlapping org
 inline constexpr std::uint32_t quietSteps = 50;    ///< before an organ sleeps
 inline constexpr double leastForce = 1e-6;         ///< N; below, nothing counts as touching
 inline constexpr double heldDepth = 0.0035;        ///< that jaws may sink into what they hold (m)
+inline constexpr double crushedDepth = 0.02;       ///< the same about a clip: deeper than any vessel is thick (m)
 inline constexpr double broadCell = 0.02;          ///< m
 inline constexpr double openJaw = 0.35;            ///< jaws opened wider act when they close (rad)
 inline constexpr double cuttingJaw = 0.7;          ///< the same for scissors: blades that close further cut (rad)
@@ -89,9 +90,12 @@ struct Stepper::Workspace {
   /// Capsules of a hand's instrument at a pose, in W, into `local` and `shape`.
   void shapeAt(const State& state, std::size_t hand, const Pose& pose, double jaw);
   /// How deep this part of the instrument may stand in a structure (m): jaws in what they hold, for a mesh does not
-  /// fold between them; nothing else.
-  [[nodiscard]] static double allowance(const HandState& hand, const Capsule& capsule, std::size_t structure);
-  double gapOf(const HandState& hand, double reach);
+  /// fold between them, and in a vessel that they close a clip on, for a tube does not flatten between them; nothing
+  /// else.
+  [[nodiscard]] double allowance(const State& state, const HandState& hand, const Capsule& capsule,
+                                 std::size_t structure) const;
+  [[nodiscard]] bool isClosedOnClip(const State& state, const HandState& hand, std::size_t structure) const;
+  double gapOf(const State& state, const HandState& hand, double reach);
   void advanceFreely(State& state, std::size_t hand);
   void detectInstruments(const State& state);
   void detectTissue(const State& state);
@@ -182,7 +186,7 @@ struct Stepper::Workspace {
   void addForces(std::size_t which, std::span<const double> forces, double scale, std::vector<Vec3>& nodal) const;
   void carryOut(std::span<const double> change);
   void move(State& state);
-  double findInside(const HandState& hand, const Vec3& port, const Pose& pose);
+  double findInside(const State& state, const HandState& hand, const Vec3& port, const Pose& pose);
   ToolRow wayOut();
   Withdrawal withdrawFrom(const State& state, std::size_t hand, Pose pose);
   void withdraw(State& state, std::size_t hand);

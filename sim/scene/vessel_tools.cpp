@@ -86,6 +86,25 @@ bool Stepper::Workspace::isGripped(const State& state, std::size_t hand, const C
   return upper && lower;
 }
 
+/// Are these the jaws of an applier that has closed, and not opened since, about a clip of this vessel? They crush what
+/// they clip; blunt bodies that closed on a tube which cannot give way would throw it about.
+bool Stepper::Workspace::isClosedOnClip(const State& state, const HandState& hand, std::size_t structure) const {
+  const StructureModel& s = model.structures()[structure];
+  if (hand.instrument != InstrumentKind::clipApplier || hand.jawsOpened || s.kind != StructureKind::vessel)
+    return false;
+  const BeamModel::Branch& branch = model.vesselTrees()[s.index].beams.branches()[s.branch];
+  const BeamState& vessels = state.vessel[s.index];
+  const double reach_ = 1.5 * model.scene().clip.legs;
+  for (std::size_t c = 0; c < vessels.clips(); ++c) {
+    if (vessels.clipBranch[c] != s.branch) continue;
+    const auto after = std::lower_bound(branch.place.begin(), branch.place.end(), vessels.clipPlace[c]);
+    const auto i = std::min(static_cast<std::size_t>(after - branch.place.begin()), branch.node.size() - 1);
+    const Vec3& where = vessels.position[static_cast<std::size_t>(branch.node[i])];
+    if ((where - hand.simulatedPosition).squaredNorm() < reach_ * reach_) return true;
+  }
+  return false;
+}
+
 void Stepper::Workspace::closeOnVessels(State& state, std::size_t hand) {
   HandState& h = state.hand[hand];
   const bool clips = h.instrument == InstrumentKind::clipApplier;

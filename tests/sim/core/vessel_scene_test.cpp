@@ -77,6 +77,7 @@ class VesselScene : public testing::Test {
     const StepResult& result =
         rig_->stepper.step(rig_->state, std::vector<TickSamples>(model_->scene().ticksPerStep, tick));
     for (const Event& event : result.events) events_.push_back(event);
+    hardest_ = std::max(hardest_, result.hand[0].structureForce[duct]);
     EXPECT_EQ(rig_->stepper.digest(rig_->state), digestOf(rig_->state));
     return result;
   }
@@ -118,6 +119,7 @@ class VesselScene : public testing::Test {
   std::unique_ptr<test::Rig> rig_;
   Act act_;
   std::vector<Event> events_;
+  double hardest_ = 0.0;  ///< of the instrument on the duct so far (N)
 };
 
 TEST_F(VesselScene, StructuresAndBodies) {
@@ -191,6 +193,26 @@ TEST_F(VesselScene, AClipCloses) {
   EXPECT_TRUE(closes(vessels(), 0));
   EXPECT_EQ(step(act_).vessel[0].clips, 1U);
   EXPECT_EQ(step(act_).vessel[1].clips, 0U);
+}
+
+/// Jaws that go on closing about a clip crush it; they do not throw the duct about, however deep it lies between them.
+TEST_F(VesselScene, JawsAboutAClipDoNotPushTheDuct) {
+  double x = -0.022;
+  for (const double below : {0.003, 0.0042, 0.0058, 0.0062}) {
+    go({Vec3(x, 0.0, 0.06), 0.9, InstrumentKind::clipApplier, 0}, 40);
+    go({Vec3(x, 0.0, height - below), 0.9, InstrumentKind::clipApplier, 0}, 40);
+    go({Vec3(x, 0.0, height - below), 0.26, InstrumentKind::clipApplier, 0}, 20);
+    const int before = count(EventKind::clipSet);
+    hardest_ = 0.0;
+    go({Vec3(x, 0.0, height - below), 0.1, InstrumentKind::clipApplier, 0}, 10);
+    ASSERT_EQ(count(EventKind::clipSet), before + 1) << below;
+    const StepResult& closed = step(act_);
+    EXPECT_LT(hardest_, 0.1) << below << " m between the jaws";
+    EXPECT_LT(closed.vessel[0].largestStrain, 0.05) << below;
+    go({Vec3(x, 0.0, height - below), 0.9, InstrumentKind::clipApplier, 0}, 20);
+    EXPECT_LT(hardest_, 0.1) << below << " m, as they open";
+    x += 0.005;
+  }
 }
 
 /// What should not be done can be done, and is told: half on, on another clip, too near, on nothing.
