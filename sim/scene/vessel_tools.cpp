@@ -92,14 +92,12 @@ bool Stepper::Workspace::isClosedOnClip(const State& state, const HandState& han
   const StructureModel& s = model.structures()[structure];
   if (hand.instrument != InstrumentKind::clipApplier || hand.jawsOpened || s.kind != StructureKind::vessel)
     return false;
-  const BeamModel::Branch& branch = model.vesselTrees()[s.index].beams.branches()[s.branch];
+  const BeamModel& beams = model.vesselTrees()[s.index].beams;
   const BeamState& vessels = state.vessel[s.index];
   const double reach_ = 1.5 * model.scene().clip.legs;
   for (std::size_t c = 0; c < vessels.clips(); ++c) {
     if (vessels.clipBranch[c] != s.branch) continue;
-    const auto after = std::lower_bound(branch.place.begin(), branch.place.end(), vessels.clipPlace[c]);
-    const auto i = std::min(static_cast<std::size_t>(after - branch.place.begin()), branch.node.size() - 1);
-    const Vec3& where = vessels.position[static_cast<std::size_t>(branch.node[i])];
+    const Vec3 where = centreLine(beams, vessels, placeAt(beams, s.branch, vessels.clipPlace[c])).position;
     if ((where - hand.simulatedPosition).squaredNorm() < reach_ * reach_) return true;
   }
   return false;
