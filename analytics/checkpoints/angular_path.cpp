@@ -4,14 +4,13 @@
 #include "sim/math/no_fused_pairs.h"  // first
 
 #include <cmath>
+#include <numbers>
 
 #include "analytics/checkpoints/hand_motion.h"
 #include "sim/math/elementary.h"
 
 namespace calot::analytics {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 const CheckpointDefinition& definition() {
   static const CheckpointDefinition d = [] {
@@ -20,7 +19,7 @@ const CheckpointDefinition& definition() {
                          "sum angle(R(k)^T R(k+1)) over the filtered orientations (quaternion components filtered like "
                          "coordinates, then normalised), within segments");
     angle.displayUnit = "deg";
-    angle.displayFactor = 180.0 / pi;
+    angle.displayFactor = 180.0 / std::numbers::pi;
     return angle;
   }();
   return d;

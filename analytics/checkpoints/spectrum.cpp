@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "sim/math/elementary.h"
 
 namespace calot::analytics {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Complex numbers as two arrays, so that plain loops over them are wide.
 struct Complex {
@@ -24,7 +23,7 @@ struct Complex {
 Complex roots(std::size_t size, std::size_t count, std::size_t stride) {
   Complex w(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const double angle = 2.0 * pi * (static_cast<double>(k * stride) / static_cast<double>(size));
+    const double angle = 2.0 * std::numbers::pi * (static_cast<double>(k * stride) / static_cast<double>(size));
     w.re[k] = cosine(angle);
     w.im[k] = -sine(angle);
   }

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "analytics/checkpoints/hand_motion.h"
 
 namespace calot::analytics {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 /// 95 % quantile of the chi-squared distribution with 3 degrees of freedom.
 constexpr double chiSquared = 7.814727903251179;
 
@@ -52,7 +52,8 @@ Measured measure(const Motion& motion) {
   const double determinant =
       s[0] * (s[1] * s[2] - s[5] * s[5]) - s[3] * (s[3] * s[2] - s[5] * s[4]) + s[4] * (s[3] * s[5] - s[1] * s[4]);
   // Motion in a plane or on a line fills none; rounding may make its determinant negative.
-  return Measured::of(4.0 / 3.0 * pi * chiSquared * std::sqrt(chiSquared) * std::sqrt(std::max(determinant, 0.0)));
+  return Measured::of(4.0 / 3.0 * std::numbers::pi * chiSquared * std::sqrt(chiSquared) *
+                      std::sqrt(std::max(determinant, 0.0)));
 }
 
 }  // namespace

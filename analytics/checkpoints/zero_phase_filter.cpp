@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include "sim/math/elementary.h"
 
@@ -11,8 +12,7 @@ namespace calot::analytics {
 
 ZeroPhaseFilter::ZeroPhaseFilter(double cutoff, double rate) {
   assert(cutoff > 0.0 && cutoff < rate / 2.0);
-  constexpr double pi = 3.14159265358979323846;
-  const double angle = pi * cutoff / rate;
+  const double angle = std::numbers::pi * cutoff / rate;
   const double k = sine(angle) / cosine(angle);
   const double root2 = std::sqrt(2.0);
   const double scale = 1.0 / (1.0 + root2 * k + k * k);

@@ -19,29 +19,18 @@
 #include "analytics/cohort/sqlite_errors.h"
 #include "recorder/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
+#include "tests/analytics/support/refusal.h"
 
 namespace calot::analytics {
 namespace {
 
 using Access = CohortDatabase::Access;
 using support::attemptOf;
+using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
 using support::valuesOf;
-
-/// Runs `call`, which must throw calot::Error with this code and these words in one line.
-template <class Call>
-void expectError(ExitCode code, const std::string& words, Call call) {
-  try {
-    call();
-    ADD_FAILURE() << "no error; expected: " << words;
-  } catch (const Error& error) {
-    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-  }
-}
 
 /// Every row of every table, to compare two states of a database.
 std::string dump(const std::string& path) {
@@ -109,7 +98,7 @@ TEST(CohortDatabase, olderSchemaIsBroughtUpToDate) {
         "INSERT INTO participant (pseudonym, study_group, created_utc) VALUES ('P01', 'expert', "
         "'2026-01-01T00:00:00Z')");
   }
-  expectError(ExitCode::failure, "must be brought to", [&] { CohortDatabase(path, Access::read); });
+  expectRefusal(ExitCode::failure, "must be brought to", [&] { CohortDatabase(path, Access::read); });
   CohortDatabase database(path, Access::write);
   EXPECT_EQ(database.schemaVersion(), static_cast<int>(cohortMigrations().size()));
   EXPECT_EQ(database.participant("P01")->group, "expert");
@@ -122,31 +111,31 @@ TEST(CohortDatabase, refusesWhatIsNotItsOwn) {
     std::ofstream(folder.file(name), std::ios::binary) << bytes;
     return folder.file(name);
   };
-  expectError(ExitCode::damaged, "no such cohort database",
-              [&] { CohortDatabase(folder.file("none.db"), Access::read); });
-  expectError(ExitCode::damaged, "no such cohort database",
-              [&] { CohortDatabase(folder.file("none.db"), Access::write); });
+  expectRefusal(ExitCode::damaged, "no such cohort database",
+                [&] { CohortDatabase(folder.file("none.db"), Access::read); });
+  expectRefusal(ExitCode::damaged, "no such cohort database",
+                [&] { CohortDatabase(folder.file("none.db"), Access::write); });
   EXPECT_FALSE(std::filesystem::exists(folder.file("none.db")));
-  expectError(ExitCode::failure, "can't be opened",
-              [&] { CohortDatabase(folder.file("nowhere/c.db"), Access::create); });
-  expectError(ExitCode::damaged, "not a file", [&] { CohortDatabase(folder.file("."), Access::create); });
+  expectRefusal(ExitCode::failure, "can't be opened",
+                [&] { CohortDatabase(folder.file("nowhere/c.db"), Access::create); });
+  expectRefusal(ExitCode::damaged, "not a file", [&] { CohortDatabase(folder.file("."), Access::create); });
   const std::string empty = write("empty.db", "");
-  expectError(ExitCode::damaged, "empty file", [&] { CohortDatabase(empty, Access::read); });
+  expectRefusal(ExitCode::damaged, "empty file", [&] { CohortDatabase(empty, Access::read); });
   const std::string words = write("words.db", std::string(5000, 'x'));
   for (const Access access : {Access::read, Access::write, Access::create}) {
-    expectError(ExitCode::damaged, "not an SQLite file", [&] { CohortDatabase(words, access); });
+    expectRefusal(ExitCode::damaged, "not an SQLite file", [&] { CohortDatabase(words, access); });
   }
   EXPECT_EQ(std::filesystem::file_size(words), 5000U);
   const std::string other = folder.file("other.db");
   { SQLite::Database(other, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE t (x)"); }
   for (const Access access : {Access::read, Access::write, Access::create}) {
-    expectError(ExitCode::damaged, "another program's", [&] { CohortDatabase(other, access); });
+    expectRefusal(ExitCode::damaged, "another program's", [&] { CohortDatabase(other, access); });
   }
   const std::string newer = folder.file("newer.db");
   { const CohortDatabase database(newer, Access::create); }
   { SQLite::Database(newer, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
-  expectError(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::read); });
-  expectError(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::create); });
+  expectRefusal(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::read); });
+  expectRefusal(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::create); });
 }
 
 TEST(CohortDatabase, truncatedOrOverwrittenFilesAreReportedNotCrashedOn) {
@@ -251,8 +240,8 @@ TEST(CohortDatabase, anotherContentOfTheSameUuidIsAConflict) {
   const auto conflicts = [&](const char* what, auto change) {
     AttemptRecord other = attemptOf(1, "skilled");
     change(other);
-    expectError(ExitCode::no, "conflict", [&] { database.storeAttempt(other, valuesOf(3, 4)); });
-    expectError(ExitCode::no, what, [&] { database.storeAttempt(other, valuesOf(3, 4)); });
+    expectRefusal(ExitCode::no, "conflict", [&] { database.storeAttempt(other, valuesOf(3, 4)); });
+    expectRefusal(ExitCode::no, what, [&] { database.storeAttempt(other, valuesOf(3, 4)); });
   };
   conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; });
   conflicts("another content", [](AttemptRecord& a) {
@@ -309,13 +298,13 @@ TEST(CohortDatabase, refusesRecordsThatNoRecordingHas) {
   CohortDatabase database(folder.file("c.db"), Access::create);
   AttemptRecord a = attemptOf(1, "skilled");
   a.uuid = "not-a-uuid";
-  expectError(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
+  expectRefusal(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
   a = attemptOf(1, "skilled");
   a.uuid[0] = '\'';
-  expectError(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
+  expectRefusal(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
   a = attemptOf(1, "skilled");
   a.steps = ~0ULL;
-  expectError(ExitCode::damaged, "out of range", [&] { database.upsertAttempt(a); });
+  expectRefusal(ExitCode::damaged, "out of range", [&] { database.upsertAttempt(a); });
   EXPECT_TRUE(database.listAttempts().empty());
 }
 
@@ -323,7 +312,7 @@ TEST(CohortDatabase, participantsAreAddedAndChanged) {
   const Folder folder;
   CohortDatabase database(folder.file("c.db"), Access::create);
   database.addParticipant({"P01", "expert", "A", "north", {{"laparoscopies", "240"}}, {{"research", "2026-02-28"}}});
-  expectError(ExitCode::no, "is there already", [&] { database.addParticipant({"P01", "", "", "", {}, {}}); });
+  expectRefusal(ExitCode::no, "is there already", [&] { database.addParticipant({"P01", "", "", "", {}, {}}); });
   database.setParticipant("P01", {.group = std::nullopt,
                                   .arm = "B",
                                   .site = std::nullopt,
@@ -335,12 +324,12 @@ TEST(CohortDatabase, participantsAreAddedAndChanged) {
   EXPECT_EQ(p->arm, "B");
   EXPECT_EQ(p->experience, (std::map<std::string, std::string>{{"laparoscopies", "241"}, {"level", "attending"}}));
   EXPECT_EQ(p->consent.at("research"), "2026-02-28");
-  expectError(ExitCode::no, "no participant", [&] { database.setParticipant("P02", {}); });
+  expectRefusal(ExitCode::no, "no participant", [&] { database.setParticipant("P02", {}); });
   for (const char* bad : {"", " P", "P\n1"}) {
-    expectError(ExitCode::usage, "pseudonym", [&] { database.addParticipant({bad, "", "", "", {}, {}}); });
+    expectRefusal(ExitCode::usage, "pseudonym", [&] { database.addParticipant({bad, "", "", "", {}, {}}); });
   }
   for (const char* bad : {"", "2026-02-29", "2026-13-01", "26-01-01", "2026/01/01", "2026-01-01x", "2026-0a-01"}) {
-    expectError(ExitCode::usage, "not a date", [&] {
+    expectRefusal(ExitCode::usage, "not a date", [&] {
       database.addParticipant({"P03", "", "", "", {}, {{"research", bad}}});
     });
   }
@@ -375,7 +364,7 @@ TEST(CohortDatabase, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
   database.excludeAttempt(uuidOf(1), "", "instructor 2");
   EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
-  expectError(ExitCode::no, "no attempt", [&] { database.excludeAttempt(uuidOf(9), "x", "y"); });
+  expectRefusal(ExitCode::no, "no attempt", [&] { database.excludeAttempt(uuidOf(9), "x", "y"); });
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
   EXPECT_THROW(raw.exec("DELETE FROM audit"), SQLite::Exception);
@@ -419,7 +408,8 @@ TEST(CohortDatabase, aWriterThatNeverEndsIsReported) {
   CohortDatabase database(path, Access::create, std::chrono::milliseconds(50));
   SQLite::Database other(path, SQLite::OPEN_READWRITE);
   other.exec("BEGIN IMMEDIATE");
-  expectError(ExitCode::failure, "in use by another program", [&] { database.upsertAttempt(attemptOf(1, "skilled")); });
+  expectRefusal(ExitCode::failure, "in use by another program",
+                [&] { database.upsertAttempt(attemptOf(1, "skilled")); });
   EXPECT_TRUE(database.listAttempts().empty()) << "readers go on";
   other.exec("ROLLBACK");
   EXPECT_EQ(database.upsertAttempt(attemptOf(1, "skilled")), Imported::added);

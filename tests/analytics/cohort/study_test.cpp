@@ -15,12 +15,14 @@
 #include "analytics/report/text_table.h"
 #include "recorder/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
+#include "tests/analytics/support/refusal.h"
 
 namespace calot::analytics {
 namespace {
 
 using Access = CohortDatabase::Access;
 using support::attemptOf;
+using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
@@ -30,17 +32,6 @@ std::string textOf(const Study& study) {
   std::ostringstream out;
   printStudy(study, out);
   return out.str();
-}
-
-template <class Call>
-void expectRefusal(ExitCode code, const std::string& words, Call call) {
-  try {
-    call();
-    ADD_FAILURE() << "no error; expected: " << words;
-  } catch (const Error& error) {
-    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-  }
 }
 
 const StudyRow& rowOf(const Study& study, const std::string& name, const std::string& subject) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "recorder/errors.h"
+#include "tests/analytics/support/refusal.h"
 
 namespace calot::analytics {
 namespace {
@@ -14,14 +15,7 @@ namespace {
 using Cells = std::vector<std::string>;
 
 void expectRefusal(ExitCode code, const std::string& text, const std::string& words) {
-  try {
-    const CsvTable table = parseCsvTable(text, "t.csv");
-    (void)table.column("a");
-    ADD_FAILURE() << "no error; expected: " << words;
-  } catch (const Error& error) {
-    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
-    EXPECT_NE(std::string(error.what()).find("t.csv: " + words), std::string::npos) << error.what();
-  }
+  support::expectRefusal(code, "t.csv: " + words, [&] { (void)parseCsvTable(text, "t.csv").column("a"); });
 }
 
 TEST(CsvTable, readsWhatRfc4180Allows) {

@@ -12,9 +12,12 @@
 #include "analytics/report/study_output.h"
 #include "analytics/statistics/published_coverage.h"
 #include "recorder/errors.h"
+#include "tests/analytics/support/refusal.h"
 
 namespace calot::analytics {
 namespace {
+
+using support::expectRefusal;
 
 /// R's `sleep` as a table of two unpaired groups. R 4.2.2 with exactRankTests and effectsize: W 25.5, exact p
 /// .0658165364, g -.7969352392 [-1.665171791, .0914077328], A .255.
@@ -33,17 +36,6 @@ TableStudyOptions optionsFor(const std::string& outcome) {
 
 Study studyOf(const std::string& text, const TableStudyOptions& options) {
   return makeTableStudy(parseCsvTable(text, "t.csv"), options);
-}
-
-template <class Call>
-void expectRefusal(ExitCode code, const std::string& words, Call call) {
-  try {
-    call();
-    ADD_FAILURE() << "no error; expected: " << words;
-  } catch (const Error& error) {
-    EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(code)) << error.what();
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-  }
 }
 
 TEST(TableStudy, isTheStatisticsOfTheTable) {
