@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/math/vectors.h"
+
 namespace calot {
 namespace {
-
-#define CALOT_INLINE inline __attribute__((always_inline))
 
 /// One lane's vector; everything below is free of branches, so that a loop over lanes becomes vectors.
 struct V {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "sim/contact/broad_phase.h"
 #include "sim/contact/float_bounds.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -58,17 +60,19 @@ void forEachCell(const CellRange& range, F&& f) {
 CALOT_LANE_KERNEL std::size_t nextOverlap(const BoxLanes* group, std::size_t first, std::size_t last,
                                           const float* lower, const float* upper, std::int32_t* hit) {
   for (std::size_t g = first; g < last; ++g) {
-    std::int32_t any = 0;
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      std::int32_t in = 1;
-      for (std::size_t a = 0; a < 3; ++a) {
-        in &= static_cast<std::int32_t>(group[g].lower[a][l] <= upper[a]);
-        in &= static_cast<std::int32_t>(lower[a] <= group[g].upper[a][l]);
-      }
-      hit[l] = in;
-      any |= in;
+    EightInts in = EightInts{} - 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      EightFloats low;
+      EightFloats high;
+      readVector(group[g].lower[a], low);
+      readVector(group[g].upper[a], high);
+      in &= (low <= upper[a]) & (lower[a] <= high);
     }
-    if (any != 0) return g;
+    std::uint64_t any[4];
+    std::memcpy(any, &in, sizeof any);
+    if (((any[0] | any[1]) | (any[2] | any[3])) == 0) continue;
+    writeVector(in, hit);
+    return g;
   }
   return last;
 }

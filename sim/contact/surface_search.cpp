@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "sim/contact/surface_normal.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -21,6 +22,25 @@ bool isSliver(const TriangleLanes& group, std::size_t l) {
   const Vec3 ab = corner(1) - corner(0);
   const Vec3 ac = corner(2) - corner(0);
   return !(ab.cross(ac).squaredNorm() > 1e-6 * ab.squaredNorm() * ac.squaredNorm());
+}
+
+CALOT_LANE_KERNEL void boxKernel(const double (*lower)[laneCount], const double (*upper)[laneCount], const double* p,
+                                 double* squared) {
+  for (std::size_t from = 0; from < laneCount; from += 4) {
+    FourDoubles sum{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      FourDoubles below;
+      FourDoubles above;
+      readVector(lower[a] + from, below);
+      readVector(upper[a] + from, above);
+      below -= p[a];
+      above = p[a] - above;
+      FourDoubles d = below < above ? above : below;
+      d = d < 0.0 ? FourDoubles{} : d;
+      sum += d * d * (1.0 - 1e-12);
+    }
+    writeVector(sum, squared + from);
+  }
 }
 
 }  // namespace
@@ -60,14 +80,7 @@ void Candidates::boundsOf(const TriangleLanes& group, Bounds& bounds, Box& whole
 
 /// A little less than the squared distance of p from each box, so that rounding loses no triangle.
 void Candidates::boxDistances(const Bounds& bounds, const Vec3& p, LaneValues& squared) {
-  squared.fill(0.0);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double x = p[static_cast<int>(a)];
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      const double d = std::max(std::max(bounds.lower[a][l] - x, x - bounds.upper[a][l]), 0.0);
-      squared[l] += d * d * (1.0 - 1e-12);
-    }
-  }
+  boxKernel(bounds.lower, bounds.upper, p.data(), squared.data());
 }
 
 /// The same for the box of a whole group: not above that of any of its triangles, as rounding is monotonic.

@@ -7,13 +7,14 @@
 #include <bit>
 #include <cassert>
 
-#include "sim/math/lanes.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
 namespace {
 
 using CubeMap = CarvedContact::CubeMap;
+using SurfaceNode = CarvedContact::SurfaceNode;
 
 constexpr std::uint32_t brickNodes = BrickLattice::brickNodes;
 
@@ -48,35 +49,19 @@ std::uint64_t blockBits(const BrickBits& bits, std::uint32_t octant) {
   return out;
 }
 
-/// A node of the surface: in edges from its cube's corner, a little beyond the cube at most.
-struct SurfaceNode {
-  double x, y, z;
-  std::uint32_t number;
-  std::int32_t cube;
-};
-
 /// The maps of cubes with these corners. @param position three components and one to fill up for each node
 CALOT_LANE_KERNEL void mapCubes(const Index8* cube, std::size_t count, const double* position, CubeMap* out) {
   for (std::size_t c = 0; c < count; ++c) {
-    const double* p[8];
-    for (std::size_t k = 0; k < 8; ++k) p[k] = position + 4 * static_cast<std::size_t>(cube[c][k]);
-    double* to = out[c].data();
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double x0 = p[1][i] - p[0][i];
-      const double x1 = p[3][i] - p[2][i];
-      const double x2 = p[5][i] - p[4][i];
-      const double x3 = p[7][i] - p[6][i];
-      const double y0 = p[2][i] - p[0][i];
-      const double y1 = p[6][i] - p[4][i];
-      to[i] = p[0][i];
-      to[4 + i] = x0;
-      to[8 + i] = y0;
-      to[12 + i] = p[4][i] - p[0][i];
-      to[16 + i] = x1 - x0;
-      to[20 + i] = x2 - x0;
-      to[24 + i] = y1 - y0;
-      to[28 + i] = (x3 - x2) - (x1 - x0);
-    }
+    FourDoubles p[8];
+    for (std::size_t k = 0; k < 8; ++k) readVector(position + 4 * static_cast<std::size_t>(cube[c][k]), p[k]);
+    const FourDoubles x0 = p[1] - p[0];
+    const FourDoubles x1 = p[3] - p[2];
+    const FourDoubles x2 = p[5] - p[4];
+    const FourDoubles x3 = p[7] - p[6];
+    const FourDoubles y0 = p[2] - p[0];
+    const FourDoubles y1 = p[6] - p[4];
+    const FourDoubles map[8] = {p[0], x0, y0, p[4] - p[0], x1 - x0, x2 - x0, y1 - y0, (x3 - x2) - (x1 - x0)};
+    for (std::size_t k = 0; k < 8; ++k) writeVector(map[k], out[c].data() + 4 * k);
   }
 }
 
@@ -86,12 +71,11 @@ CALOT_LANE_KERNEL void mapNodes(const SurfaceNode* node, std::size_t count, cons
     const double x = node[n].x;
     const double y = node[n].y;
     const double z = node[n].z;
-    const double* m = map[node[n].cube].data();
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double low = (m[i] + x * m[4 + i]) + y * (m[8 + i] + x * m[16 + i]);
-      const double high = (m[12 + i] + x * m[20 + i]) + y * (m[24 + i] + x * m[28 + i]);
-      out[4 * n + i] = low + z * high;
-    }
+    FourDoubles m[8];
+    for (std::size_t k = 0; k < 8; ++k) readVector(map[node[n].cube].data() + 4 * k, m[k]);
+    const FourDoubles low = (m[0] + x * m[1]) + y * (m[2] + x * m[4]);
+    const FourDoubles high = (m[3] + x * m[5]) + y * (m[6] + x * m[7]);
+    writeVector(FourDoubles(low + z * high), out + 4 * n);
   }
 }
 
@@ -234,6 +218,7 @@ std::uint64_t CarvedContact::insideOfBlock(const Index3& block) const {
 
 /// Which of a block's edges are cut, where, and what they go with.
 void CarvedContact::measure(std::uint32_t rank) {
+  nodesListed_ = false;
   const Index3 block = origin_[rank] / 4;
   const std::uint64_t inside = insideOfBlock(block);
   const std::uint64_t next[3] = {
@@ -324,15 +309,22 @@ void CarvedContact::place(std::span<const Vec3> solid, std::vector<Vec3>& out) c
   for (std::size_t n = 0; n < solid.size(); ++n) std::copy_n(solid[n].data(), 3, padded_.data() + 4 * n);
   map_.resize(cubes.size());
   mapCubes(cubes.data(), cubes.size(), padded_.data(), map_.data());
+  if (!nodesListed_) listNodes();
+  placed_.resize(4 * surfaceNode_.size());
+  mapNodes(surfaceNode_.data(), surfaceNode_.size(), map_.data(), placed_.data());
+  for (std::size_t n = 0; n < surfaceNode_.size(); ++n) {
+    const double* from = placed_.data() + 4 * n;
+    out[surfaceNode_[n].number] = Vec3(from[0], from[1], from[2]);
+  }
+}
+
+void CarvedContact::listNodes() const {
   const int k = model_.cellsPerCube();
   const double inEdges = 1.0 / static_cast<double>(k);
-  std::array<SurfaceNode, 64> node;
-  std::array<double, 4 * 64> placed;
+  surfaceNode_.clear();
   for (std::size_t word = 0; word < mask_.size(); ++word) {
-    if (mask_[word] == 0) continue;
     const std::size_t axis = word % 3;
     const Index3& origin = origin_[word / 3];
-    std::size_t count = 0;
     for (std::uint64_t left = mask_[word]; left != 0; left &= left - 1) {
       const auto p = static_cast<int>(std::countr_zero(left));
       const std::size_t n = 64 * word + slot(p);
@@ -342,13 +334,11 @@ void CarvedContact::place(std::span<const Vec3> solid, std::vector<Vec3>& out) c
                          static_cast<double>(origin[1] + (p >> 2 & 3) - k * h[1]),
                          static_cast<double>(origin[2] + (p >> 4) - k * h[2])};
       cells[axis] += cut_[n];
-      node[count++] = {inEdges * cells[0], inEdges * cells[1], inEdges * cells[2], static_cast<std::uint32_t>(n), cube};
-    }
-    mapNodes(node.data(), count, map_.data(), placed.data());
-    for (std::size_t n = 0; n < count; ++n) {
-      out[node[n].number] = Vec3(placed[4 * n], placed[4 * n + 1], placed[4 * n + 2]);
+      surfaceNode_.push_back(
+          {inEdges * cells[0], inEdges * cells[1], inEdges * cells[2], static_cast<std::uint32_t>(n), cube});
     }
   }
+  nodesListed_ = true;
 }
 
 SolidPlace CarvedContact::anchor(int node) const {

@@ -28,6 +28,12 @@ class CarvedContact final : public SurfaceTopology {
  public:
   /// A trilinear map of one cube: of 1, x, y, z, xy, xz, yz, xyz, each three components and one to fill up.
   using CubeMap = std::array<double, 32>;
+  /// A node of the surface: in edges from its cube's corner, a little beyond the cube at most.
+  struct SurfaceNode {
+    double x, y, z;
+    std::uint32_t number;
+    std::int32_t cube;
+  };
 
   static constexpr std::uint32_t nodesOfBlock = 192;
   static constexpr std::uint32_t trianglesOfBlock = 320;
@@ -77,6 +83,7 @@ class CarvedContact final : public SurfaceTopology {
   void measure(std::uint32_t rank);
   void writeBlock(const CarvedSurface& surface, std::uint32_t rank);
   void listPatches(const CarvedSurface& surface);
+  void listNodes() const;
 
   const FatModel& model_;
   const CarvedField& field_;
@@ -99,6 +106,9 @@ class CarvedContact final : public SurfaceTopology {
   // Room of place().
   mutable std::vector<double> padded_;
   mutable std::vector<CubeMap> map_;
+  mutable std::vector<double> placed_;
+  mutable std::vector<SurfaceNode> surfaceNode_;  ///< all, once they are asked for
+  mutable bool nodesListed_ = false;              ///< since a stroke changed them
   std::size_t growths_ = 0;
 };
 

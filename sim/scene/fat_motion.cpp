@@ -28,7 +28,7 @@ FatMotion::FatMotion(const Model& model, std::size_t fat, const SolidSolver::Set
       responses_(responses),
       executor_(executor),
       fat_(*model.fat()[fat]),
-      rest_(model.fat()[fat]->solid(), settings, executor,
+      rest_(model.fat()[fat]->solid(), responses, executor,
             {model.fat()[fat]->restAttachments(settings.step), model.fat()[fat]->restFill()}) {}
 
 void FatMotion::beginStep(const State& state) {
@@ -59,9 +59,7 @@ SolveReport FatMotion::freeMotion(State& state, const Vec3& gravity, std::span<c
                             {load_, fat_.fill(), loads.joints});
 }
 
-SolveReport FatMotion::push(std::span<const Vec3> impulse) {
-  return solver_.push(fat_.model().solid(), impulse, responses_);
-}
+SolveReport FatMotion::push(std::span<const Vec3> impulse) { return solver_.push(impulse, responses_); }
 
 Mat3 FatMotion::turn(const State& state, int node) const { return fat_.turn(state.fat[index_], node); }
 

@@ -12,7 +12,7 @@ OrganBody::OrganBody(const Model& model, std::size_t organ, const SolidSolver::S
       settings_(settings),
       responses_(responses),
       executor_(executor),
-      rest_(solid_, settings, executor) {}
+      rest_(solid_, responses, executor) {}
 
 std::span<const Vec3> OrganBody::position(const State& state) const { return state.organ[organ_].position; }
 std::span<const Vec3> OrganBody::velocity(const State& state) const { return state.organ[organ_].velocity; }
@@ -38,7 +38,7 @@ SolveReport OrganBody::freeMotion(State& state, const Vec3& gravity, std::span<c
                             {load_, {}, loads.joints});
 }
 
-SolveReport OrganBody::push(std::span<const Vec3> impulse) { return solver_.push(solid_, impulse, responses_); }
+SolveReport OrganBody::push(std::span<const Vec3> impulse) { return solver_.push(impulse, responses_); }
 
 Mat3 OrganBody::turn(const State& state, int node) const {
   return nodeRotation(solid_, state.organ[organ_], node).toRotationMatrix();

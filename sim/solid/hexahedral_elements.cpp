@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/math/floating_point.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -31,12 +32,15 @@ void gather(const HexahedronGroup& group, std::span<const Vec3> values, CornerLa
 /// Mean of F over the cube: sum_a x_a g_a^T with g_a = (+-1, +-1, +-1) / (4 edge).
 CALOT_LANE_KERNEL void deformation(const CornerLanes& x, double edge, DeformationLanes& f) {
   const double g = 0.25 / edge;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t l = 0; l < laneCount; ++l) {
-        double sum = 0.0;
-        for (std::size_t a = 0; a < 8; ++a) sum += side(a, j) * x[a][i][l];
-        f[i][j][l] = g * sum;
+  for (std::size_t from = 0; from < laneCount; from += 4) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      FourDoubles at[8];
+      for (std::size_t a = 0; a < 8; ++a) readVector(x[a][i].data() + from, at[a]);
+      for (std::size_t j = 0; j < 3; ++j) {
+        FourDoubles sum{};
+        for (std::size_t a = 0; a < 8; ++a) sum += side(a, j) * at[a];
+        sum = g * sum;
+        writeVector(sum, f[i][j].data() + from);
       }
     }
   }
@@ -60,49 +64,58 @@ CALOT_LANE_KERNEL void matrices(const RotationGroup& q, RotationLanes& r) {
   }
 }
 
-/// u = R^T (x - middle) - corner, then f = -fill R K u.
-CALOT_LANE_KERNEL void forces(const CornerLanes& x, const std::array<Vec3, 8>& corner, const Stiffness& stiffness,
-                              const RotationLanes& r, const std::array<double, laneCount>& fill,
-                              HexahedronResult& out) {
-  std::array<std::array<double, laneCount>, 24> u;
-  std::array<std::array<double, laneCount>, 3> middle;
+/// u = R^T (x - middle) - corner, then f = -fill R K u, of lanes `from` to `from` + 3.
+CALOT_INLINE void forcesOf(const CornerLanes& x, const std::array<Vec3, 8>& corner, const Stiffness& stiffness,
+                           const RotationLanes& rotation, const std::array<double, laneCount>& fill, std::size_t from,
+                           HexahedronResult& out) {
+  FourDoubles r[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t l = 0; l < laneCount; ++l) {
-      double sum = 0.0;
-      for (std::size_t a = 0; a < 8; ++a) sum += x[a][i][l];
-      middle[i][l] = 0.125 * sum;
-    }
+    for (std::size_t j = 0; j < 3; ++j) readVector(rotation[i][j].data() + from, r[i][j]);
   }
+  FourDoubles middle[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    FourDoubles sum{};
+    for (std::size_t a = 0; a < 8; ++a) {
+      FourDoubles at;
+      readVector(x[a][i].data() + from, at);
+      sum += at;
+    }
+    middle[i] = 0.125 * sum;
+  }
+  FourDoubles u[24];
   for (std::size_t a = 0; a < 8; ++a) {
+    FourDoubles d[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      readVector(x[a][i].data() + from, d[i]);
+      d[i] -= middle[i];
+    }
     for (std::size_t j = 0; j < 3; ++j) {
-      const double rest = corner[a][static_cast<int>(j)];
-      for (std::size_t l = 0; l < laneCount; ++l) {
-        u[3 * a + j][l] = ((r[0][j][l] * (x[a][0][l] - middle[0][l]) + r[1][j][l] * (x[a][1][l] - middle[1][l])) +
-                           r[2][j][l] * (x[a][2][l] - middle[2][l])) -
-                          rest;
-      }
+      u[3 * a + j] = ((r[0][j] * d[0] + r[1][j] * d[1]) + r[2][j] * d[2]) - corner[a][static_cast<int>(j)];
     }
   }
+  FourDoubles share;
+  readVector(fill.data() + from, share);
   for (std::size_t a = 0; a < 8; ++a) {
-    std::array<std::array<double, laneCount>, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::array<double, laneCount> sum{};
-      for (std::size_t k = 0; k < 24; ++k) {
-        const double entry = stiffness[3 * a + i][k];
-        for (std::size_t l = 0; l < laneCount; ++l) sum[l] += entry * u[k][l];
-      }
-      p[i] = sum;
+    FourDoubles p[3]{};
+    for (std::size_t k = 0; k < 24; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) p[i] += stiffness[3 * a + i][k] * u[k];
     }
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t l = 0; l < laneCount; ++l) {
-        out.force[a][i][l] = -fill[l] * ((r[i][0][l] * p[0][l] + r[i][1][l] * p[1][l]) + r[i][2][l] * p[2][l]);
-      }
+      const FourDoubles force = -share * ((r[i][0] * p[0] + r[i][1] * p[1]) + r[i][2] * p[2]);
+      writeVector(force, out.force[a][i].data() + from);
     }
   }
 }
 
-CALOT_LANE_KERNEL void blocks(const Stiffness& stiffness, const RotationLanes& r,
-                              const std::array<double, laneCount>& fill, HexahedronBlocks* out) {
+CALOT_LANE_KERNEL void forces(const CornerLanes& x, const std::array<Vec3, 8>& corner, const Stiffness& stiffness,
+                              const RotationLanes& r, const std::array<double, laneCount>& fill,
+                              HexahedronResult& out) {
+  forcesOf(x, corner, stiffness, r, fill, 0, out);
+  forcesOf(x, corner, stiffness, r, fill, 4, out);
+}
+
+CALOT_LANE_KERNEL void turnedStiffness(const Stiffness& stiffness, const RotationLanes& r,
+                                       const std::array<double, laneCount>& fill, HexahedronBlocks* out) {
   std::array<std::array<std::array<float, laneCount>, 3>, 3> turn;
   std::array<float, laneCount> share;
   for (std::size_t l = 0; l < laneCount; ++l) share[l] = static_cast<float>(fill[l]);
@@ -198,18 +211,30 @@ HexahedralElements::HexahedralElements(std::span<const Index8> cells, double edg
   integrate(edge, material, stiffness_);
 }
 
+std::array<double, laneCount> HexahedralElements::fillOf(std::size_t group, std::span<const double> fill) const {
+  std::array<double, laneCount> out = groups_[group].weight;
+  if (!fill.empty()) {
+    for (std::size_t l = 0; l < laneCount; ++l) out[l] *= fill[std::min(group * laneCount + l, count_ - 1)];
+  }
+  return out;
+}
+
+void HexahedralElements::blocks(const RotationGroup& rotation, const std::array<double, laneCount>& fill,
+                                std::span<HexahedronBlocks, laneCount> out) const {
+  RotationLanes r;
+  matrices(rotation, r);
+  turnedStiffness(stiffness_, r, fill, out.data());
+}
+
 void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                                   int sweeps, std::span<const double> fill, std::span<RotationGroup> rotation,
-                                  std::span<HexahedronResult> result, std::span<HexahedronBlocks> block,
-                                  Executor& executor) const {
+                                  std::span<HexahedronResult> result, Executor& executor) const {
   executor.run((groups_.size() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
     const std::size_t end = std::min(groups_.size(), (task + 1) * groupsPerTask);
     for (std::size_t g = task * groupsPerTask; g < end; ++g) {
-      std::array<double, laneCount> share = groups_[g].weight;
-      if (!fill.empty()) {
-        for (std::size_t l = 0; l < laneCount; ++l) share[l] *= fill[std::min(g * laneCount + l, count_ - 1)];
-      }
+      const std::array<double, laneCount> share = fillOf(g, fill);
+      if (std::all_of(share.begin(), share.end(), [](double f) { return f == 0.0; })) continue;
       CornerLanes x;
       CornerLanes v;
       DeformationLanes f;
@@ -225,7 +250,6 @@ void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<cons
         }
       }
       forces(x, corner_, stiffness_, r, share, result[g]);
-      blocks(stiffness_, r, share, block.data() + g * laneCount);
     }
   });
 }

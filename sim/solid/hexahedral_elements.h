@@ -55,13 +55,19 @@ class HexahedralElements {
   static constexpr std::size_t pairOf(std::size_t a, std::size_t b) { return 8 * a - a * (a - 1) / 2 + (b - a); }
 
   /// For each group: turns `rotation` towards the polar rotation of the mean deformation gradient at `position` by
-  /// `sweeps` Newton steps; forces at position + lookAhead * velocity, and the rotated stiffness.
+  /// `sweeps` Newton steps, and forces at position + lookAhead * velocity. Groups without anything left are passed
+  /// over.
   /// @param fill per cube, 0 to 1: share of stiffness and mass that is left; empty: all full
   /// @param rotation in: last step's; out: this step's (unit)
-  /// @param block per cube and lane that is not used
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead, int sweeps,
                 std::span<const double> fill, std::span<RotationGroup> rotation, std::span<HexahedronResult> result,
-                std::span<HexahedronBlocks> block, Executor& executor) const;
+                Executor& executor) const;
+
+  /// Fill of a group's cubes, by lane: 0 where a lane is not used.
+  [[nodiscard]] std::array<double, laneCount> fillOf(std::size_t group, std::span<const double> fill) const;
+  /// Stiffness of a group's cubes, turned by `rotation`. @param fill by lane @param out per lane
+  void blocks(const RotationGroup& rotation, const std::array<double, laneCount>& fill,
+              std::span<HexahedronBlocks, laneCount> out) const;
 
   /// Sum over the cubes of fill times the deformed volume (m^3), trilinear, in order of the cubes.
   [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill) const;

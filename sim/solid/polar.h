@@ -22,4 +22,8 @@ using DeformationLanes = std::array<std::array<std::array<double, laneCount>, 3>
 /// @param q in: where to begin, unit; out: unit
 void turnTowardsPolar(const DeformationLanes& f, int sweeps, RotationGroup& q);
 
+/// Unit quaternions near q whose components, before they are normalised, are multiples of `grain`: at most an angle of
+/// 2 grain away. @param grain 0: q itself. @pre q unit, grain < 1/4
+void toGrain(const RotationGroup& q, double grain, RotationGroup& out);
+
 }  // namespace calot

@@ -1,142 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A deformable solid: what is fixed (SolidModel), what changes (SolidState), and implicit Euler over one step.
+// A deformable solid over one step: implicit Euler, and what holds the solid meanwhile.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <variant>
 #include <vector>
 
 #include "sim/math/executor.h"
 #include "sim/math/linear.h"
-#include "sim/solid/block_matrix.h"
 #include "sim/solid/conjugate_gradient.h"
-#include "sim/solid/hexahedral_elements.h"
-#include "sim/solid/tetrahedral_elements.h"
+#include "sim/solid/solid_model.h"
+#include "sim/solid/stiffness_assembly.h"
 
 namespace calot {
-
-/// Fixed data of one solid: of tetrahedra, or of cubes.
-class SolidModel {
- public:
-  struct Material {
-    LameConstants lame;
-    double density = 0.0;           ///< kg/m^3
-    double massDamping = 0.0;       ///< Rayleigh alpha (1/s)
-    double stiffnessDamping = 0.0;  ///< Rayleigh beta (s)
-  };
-
-  /// @param fixed per node: held at its rest position.
-  /// @pre positive volumes; every node belongs to a tetrahedron.
-  SolidModel(std::vector<Vec3> rest, std::vector<Index4> tetrahedra, std::vector<bool> fixed, Material material);
-
-  /// A solid of equal cubes.
-  /// @param edge of the cubes (m)
-  /// @pre at rest every cube's nodes lie as Index8 says; every node belongs to a cube.
-  SolidModel(std::vector<Vec3> rest, std::vector<Index8> cubes, double edge, std::vector<bool> fixed,
-             Material material);
-
-  [[nodiscard]] std::size_t nodes() const { return rest_.size(); }
-  [[nodiscard]] const std::vector<Vec3>& rest() const { return rest_; }
-  [[nodiscard]] const std::vector<Index4>& tetrahedra() const { return tetrahedra_; }
-  [[nodiscard]] const Material& material() const { return material_; }
-  [[nodiscard]] const std::vector<Index8>& cubes() const { return cube_; }
-  /// @pre made of tetrahedra
-  [[nodiscard]] const TetrahedralElements& elements() const { return std::get<TetrahedralElements>(elements_); }
-  /// @pre made of cubes
-  [[nodiscard]] const HexahedralElements& hexahedra() const { return std::get<HexahedralElements>(elements_); }
-  [[nodiscard]] bool madeOfCubes() const { return std::holds_alternative<HexahedralElements>(elements_); }
-  /// Groups of lanes that hold its elements: so many rotations has its State.
-  [[nodiscard]] std::size_t groups() const;
-  /// Lumped masses (kg): an equal share of each incident element, where all are full.
-  [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
-  /// Deformed volume (m^3). @param fill share of each cube that is there; empty: all of it
-  [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill = {}) const;
-  /// Row of a node in the system, or -1 where it is fixed. Some rows have no node: they only fill slices up.
-  [[nodiscard]] int row(std::size_t node) const { return row_[node]; }
-  [[nodiscard]] const std::vector<int>& freeNodes() const { return freeNode_; }
-  [[nodiscard]] const BlockMatrix& matrix() const { return matrix_; }
-  /// Elements at a node, ascending.
-  [[nodiscard]] std::vector<std::int32_t> elementsAt(std::size_t node) const;
-
- private:
-  friend class SolidSolver;
-  /// Where the values of a node that moves begin in vectors over the rows.
-  [[nodiscard]] std::size_t offsetOf(std::size_t node) const {
-    return laneOffset(static_cast<std::size_t>(row_[node]));
-  }
-  static constexpr std::size_t noSlot = ~std::size_t{0};
-  /// Slot of block (row, column), or noSlot where no element has both as corners. @pre column <= row
-  [[nodiscard]] std::size_t slotOf(int row, int column) const;
-  /// Nodal masses of partly filled cubes (kg).
-  void massOf(std::span<const double> fill, std::vector<double>& mass) const;
-  /// A block K_ab of one element that is added into a slot of the matrix, or a force that is added to a node.
-  struct Contribution {
-    std::int32_t element;
-    std::uint8_t a;  ///< corners of the element
-    std::uint8_t b;
-  };
-  /// Corners of an element, as the assembly numbers them.
-  [[nodiscard]] std::span<const int> cornersOf(std::size_t element) const {
-    return madeOfCubes() ? std::span<const int>(cube_[element]) : std::span<const int>(tetrahedra_[element].data(), 4);
-  }
-  [[nodiscard]] std::size_t elementCount() const { return madeOfCubes() ? cube_.size() : tetrahedra_.size(); }
-  struct SlotRange {
-    std::size_t slot;         ///< in the matrix values
-    std::int32_t node;        ///< of a diagonal block; else -1
-    std::size_t first, last;  ///< in contributions; of cubes in cubeBlock_,
-    std::size_t turned;       ///< of which those from here on are transposed
-  };
-
-  void buildStructure();
-  std::size_t orderRows(const std::vector<std::vector<int>>& near);
-  [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
-
-  std::vector<Vec3> rest_;
-  std::vector<Index4> tetrahedra_;
-  std::vector<Index8> cube_;
-  std::vector<bool> fixed_;
-  Material material_;
-  std::variant<TetrahedralElements, HexahedralElements> elements_;
-  std::vector<double> mass_;
-  std::vector<int> row_;
-  std::vector<int> freeNode_;  ///< nodes that move, ascending
-  BlockMatrix matrix_;
-  std::vector<SlotRange> slot_;             ///< blocks with column <= row, in row order
-  std::vector<std::size_t> rowSlot_;        ///< per row: the first of its places in the next two; and the end
-  std::vector<int> slotColumn_;             ///< columns of a row's blocks up to the diagonal, ascending
-  std::vector<std::size_t> slotPlace_;      ///< and where they stand in the matrix values
-  std::vector<std::size_t> elementSlot_;    ///< of the blocks of each element's corners, row by row; noSlot where fixed
-                                            ///< or right of the diagonal
-  std::vector<Contribution> contribution_;  ///< of tetrahedra
-  std::vector<std::uint32_t> cubeBlock_;    ///< of cubes: which of their blocks, 36 of each, are added into a slot
-  std::vector<std::size_t> incidentStart_;  ///< per node
-  std::vector<Contribution> incident_;      ///< element and corner of each incident element
-};
-
-/// Everything of one solid that changes.
-struct SolidState {
-  std::vector<Vec3> position;           ///< in W (m)
-  std::vector<Vec3> velocity;           ///< (m/s)
-  std::vector<RotationGroup> rotation;  ///< co-rotation of each element, warm start of the next step's
-  std::uint32_t quietSteps = 0;         ///< steps in a row without touch and slower than the sleeping speed
-  double volume = 0.0;                  ///< deformed (m^3); kept because a sleeping organ does not recompute it
-  double largestDisplacement = 0.0;     ///< (m)
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("position", self.position);
-    visit("velocity", self.velocity);
-    visit("rotation", self.rotation);
-    visit("quietSteps", self.quietSteps);
-    visit("volume", self.volume);
-    visit("largestDisplacement", self.largestDisplacement);
-  }
-};
-
-/// Rest: no displacement, no velocity, asleep.
-SolidState restState(const SolidModel& model);
 
 /// A place inside one element of a solid: its corners and their shares.
 struct SolidPlace {
@@ -177,9 +54,9 @@ struct Surroundings {
 
 /// Implicit Euler, one linearisation a step (Baraff and Witkin 1998): with h = dt,
 ///   [(1 + alpha h) M + (h^2 + beta h) K] dv = h (f_external + f(x + (h + beta) v) - alpha M v),  v += dv,  x += h v,
-/// where K and f are co-rotational with the rotations of x; attachments add h damper to the left and
-/// h (force - damper v) to the right, joints the same with their blocks. Nodes that only empty cubes hold stay where
-/// they are. Holds the matrix of the step for contact.
+/// where K and f are co-rotational with the rotations of x, K to Settings::grain; attachments add h damper to the left
+/// and h (force - damper v) to the right, joints the same with their blocks. Empty cubes and nodes that only they hold
+/// are no part of the system: such nodes go on as they went. Holds the matrix of the step for contact.
 class SolidSolver {
  public:
   struct Settings {
@@ -187,6 +64,7 @@ class SolidSolver {
     double tolerance = 1e-4;
     std::uint32_t cap = 200;
     int rotationSweeps = 2;
+    double grain = 0.0;  ///< of the rotations that the matrix is made with (StiffnessAssembly); 0: as they are
   };
 
   /// Assembles at the state's position and computes the free velocity (without contact) into freeVelocity().
@@ -200,7 +78,7 @@ class SolidSolver {
 
   /// Adds the answer to impulses on the nodes to freeVelocity(): dv = A^-1 impulse. @pre freeMotion() of this step was
   /// called. @param impulse per node (N s)
-  SolveReport push(const SolidModel& model, std::span<const Vec3> impulse, const Settings& settings);
+  SolveReport push(std::span<const Vec3> impulse, const Settings& settings);
 
   /// Velocity responses to up to eight unit impulses, each spread over nodes: column k answers impulse[k].
   /// @pre freeMotion() of this step was called.
@@ -222,24 +100,24 @@ class SolidSolver {
   [[nodiscard]] double heldBack() const { return heldBack_; }
 
  private:
-  void assemble(const SolidModel& model, const Settings& settings, const Surroundings& surroundings,
-                Executor& executor);
-  void addAttachments(const SolidModel& model, const Settings& settings, std::span<const Attachment> attachments);
-  void addJoint(const SolidModel& model, const Settings& settings, const JointAttachment& joint);
-  bool addToElement(const SolidModel& model, const Attachment& attachment, double step);
-  void addPair(const SolidModel& model, const SolidPlace& p, const SolidPlace& q, const Mat3& damper, double step);
-  void addBlock(const SolidModel& model, const SolidModel::Contribution& contribution, std::array<float, 9>& block,
-                float lambda, float mu) const;
-  void addCubes(const SolidModel& model, const SolidModel::SlotRange& range, std::array<float, 9>& block,
-                float scale) const;
-  [[nodiscard]] Vec3 cornerForce(const SolidModel& model, const SolidModel::Contribution& contribution) const;
+  void chooseSystem(const SolidModel& model, std::span<const double> fill);
+  void assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
+                const Surroundings& surroundings, Executor& executor);
+  void addAttachments(const Settings& settings, std::span<const Attachment> attachments);
+  void addJoint(const Settings& settings, const JointAttachment& joint);
+  bool addToElement(const Attachment& attachment, double step);
+  void addPair(const SolidPlace& p, const SolidPlace& q, const Mat3& damper, double step);
+  [[nodiscard]] Vec3 cornerForce(const SolidModel& model, const SolidSystem::Contribution& contribution) const;
 
+  const SolidSystem* system_ = nullptr;  ///< of the step: the model's, or part_
+  SolidSystem part_;                     ///< of the cubes that are there
+  std::vector<std::uint8_t> present_;    ///< per cube: is it, in part_?
   std::vector<ElementResult> element_;
   std::vector<HexahedronResult> hexahedron_;
-  std::vector<HexahedronBlocks> hexahedronBlock_;
   std::vector<double> mass_;  ///< of the nodes, where cubes are not full
   std::vector<Vec3> load_;    ///< on the nodes from outside (N)
-  std::vector<float> values_;
+  StiffnessAssembly stiffness_;
+  std::vector<float> values_;      ///< of the matrix
   std::vector<ExtraBlock> extra_;  ///< of joints between nodes that share no element
   std::vector<float> b_, x_;
   std::vector<Vec3> freeVelocity_;

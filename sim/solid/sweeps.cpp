@@ -3,27 +3,14 @@
 
 #include <cstring>
 
+#include "sim/math/vectors.h"
+
 namespace calot::sweeps {
 
 namespace {
 
-#define CALOT_INLINE inline __attribute__((always_inline))  // into the clones of the kernels
-
-// Vectors by name: left to itself the compiler takes rows one by one here. Passed by reference, for by value they would
-// follow another calling convention where the machine is not known to have registers as wide.
-using Four = float __attribute__((vector_size(4 * sizeof(float))));
-using Eight = float __attribute__((vector_size(laneCount * sizeof(float))));
-using EightDoubles = double __attribute__((vector_size(laneCount * sizeof(double))));
-
-template <class Vector, class Number>
-CALOT_INLINE void read(const Number* at, Vector& out) {
-  std::memcpy(&out, at, sizeof out);
-}
-
-template <class Vector, class Number>
-CALOT_INLINE void write(const Vector& v, Number* at) {
-  std::memcpy(at, &v, sizeof v);
-}
+using Four = FourFloats;
+using Eight = EightFloats;
 
 /// Two rows of four numbers after one another in each half.
 CALOT_INLINE void join(const Four& low, const Four& high, Eight& out) {
@@ -37,8 +24,8 @@ CALOT_INLINE void turned(const float* x, const std::int32_t* row, Eight* out) {
   for (std::size_t l = 0; l < 4; ++l) {
     Four a;
     Four b;
-    read(x + row[2 * l], a);
-    read(x + row[2 * l + 1], b);
+    readVector(x + row[2 * l], a);
+    readVector(x + row[2 * l + 1], b);
     first[l] = __builtin_shufflevector(a, b, 0, 4, 1, 5);
     last[l] = __builtin_shufflevector(a, b, 2, 6, 3, 7);
   }
@@ -69,9 +56,9 @@ CALOT_INLINE void turnedBack(const Eight* lanes, Eight* out) {
 /// Adds four numbers.
 CALOT_INLINE void addTo(float* at, const Four& what) {
   Four own;
-  read(at, own);
+  readVector(at, own);
   own += what;
-  write(own, at);
+  writeVector(own, at);
 }
 
 /// Adds three components of eight lanes to rows, which begin row[l] numbers from x, in order of the lanes.
@@ -91,8 +78,8 @@ CALOT_INLINE void keepRows(const Eight* lanes, float* rows) {
   Eight out[4];
   turnedBack(lanes, out);
   for (std::size_t l = 0; l < 4; ++l) {
-    write(Four(__builtin_shufflevector(out[l], out[l], 0, 1, 2, 3)), rows + inOrder[l]);
-    write(Four(__builtin_shufflevector(out[l], out[l], 4, 5, 6, 7)), rows + inOrder[4 + l]);
+    writeVector(Four(__builtin_shufflevector(out[l], out[l], 0, 1, 2, 3)), rows + inOrder[l]);
+    writeVector(Four(__builtin_shufflevector(out[l], out[l], 4, 5, 6, 7)), rows + inOrder[4 + l]);
   }
 }
 
@@ -103,7 +90,7 @@ CALOT_INLINE void rowTimes(const float* value, const Eight* d, Eight& out) {
     out = (value[0] * d[0] + value[laneCount] * d[1]) + value[2 * laneCount] * d[2];
   } else {
     Eight v[3];
-    read(value, v);
+    readVector(value, v);
     out = (v[0] * d[0] + v[1] * d[1]) + v[2] * d[2];
   }
 }
@@ -121,7 +108,7 @@ CALOT_INLINE void columnTimes(const float* value, const Eight* d, Eight& out) {
     out = (value[0] * d[0] + value[3 * laneCount] * d[1]) + value[6 * laneCount] * d[2];
   } else {
     Eight v[3];
-    for (std::size_t i = 0; i < 3; ++i) read(value + 3 * i * laneCount, v[i]);
+    for (std::size_t i = 0; i < 3; ++i) readVector(value + 3 * i * laneCount, v[i]);
     out = (v[0] * d[0] + v[1] * d[1]) + v[2] * d[2];
   }
 }
@@ -152,14 +139,14 @@ CALOT_INLINE void backwardLanes(const Blocks& lower, const float* inverse, const
   Eight y[3];
   readRows<many>(u, at, y);
   Eight b;
-  read(beta, b);
+  readVector(beta, b);
   for (std::size_t i = 0; i < 3; ++i) {
     Eight own;
     Eight before;
-    read(z + at + i * laneCount, own);
-    read(p + at + i * laneCount, before);
+    readVector(z + at + i * laneCount, own);
+    readVector(p + at + i * laneCount, before);
     own += b * before;
-    write(own, p + at + i * laneCount);
+    writeVector(own, p + at + i * laneCount);
     y[i] = own - y[i];
   }
   Eight out[3];
@@ -205,44 +192,44 @@ CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const 
   std::memcpy(s + at, out, sizeof out);
   if constexpr (!many) keepRows(out, sRows + rowsAt<many>(at));
   EightDoubles sum;
-  read(dot, sum);
+  readVector(dot, sum);
   for (std::size_t i = 0; i < 3; ++i) {
     Eight direction;
     Eight before;
-    read(p + at + i * laneCount, direction);
-    read(t + at + i * laneCount, before);
+    readVector(p + at + i * laneCount, direction);
+    readVector(t + at + i * laneCount, before);
     sum += __builtin_convertvector(direction, EightDoubles) * __builtin_convertvector(before + out[i], EightDoubles);
   }
-  write(sum, dot);
+  writeVector(sum, dot);
 }
 
 template <bool many>
 CALOT_INLINE void updateLanes(const float* diagonal, const float* alpha, const float* t, const float* s, float* x,
                               float* r, float* z, double* dot, std::size_t at) {
   Eight by;
-  read(alpha, by);
+  readVector(alpha, by);
   Eight next[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t a = at + i * laneCount;
     Eight step;
     Eight rest;
     Eight own;
-    read(t + a, step);
-    read(s + a, rest);
-    read(x + a, own);
+    readVector(t + a, step);
+    readVector(s + a, rest);
+    readVector(x + a, own);
     own += by * step;
-    write(own, x + a);
-    read(r + a, own);
+    writeVector(own, x + a);
+    readVector(r + a, own);
     next[i] = own - by * (step + rest);
   }
   Eight scaled[3];
   product<many>(diagonal, next, scaled);
   EightDoubles sum;
-  read(dot, sum);
+  readVector(dot, sum);
   for (std::size_t i = 0; i < 3; ++i) {
     sum += __builtin_convertvector(next[i], EightDoubles) * __builtin_convertvector(scaled[i], EightDoubles);
   }
-  write(sum, dot);
+  writeVector(sum, dot);
   std::memcpy(r + at, next, sizeof next);
   std::memcpy(z + at, scaled, sizeof scaled);
 }

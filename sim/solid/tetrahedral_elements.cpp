@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/math/floating_point.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -24,76 +25,98 @@ void gather(const ElementGroup& group, std::span<const Vec3> values, NodeLanes& 
   }
 }
 
-/// F = sum_a x_a grad_a^T.
-CALOT_LANE_KERNEL void deformation(const NodeLanes& x, const ElementGroup& group, DeformationLanes& f) {
+/// F = sum_a x_a grad_a^T of lanes `from` to `from` + 3.
+CALOT_INLINE void deformationOf(const NodeLanes& x, const ElementGroup& group, std::size_t from,
+                                FourDoubles (&f)[3][3]) {
+  FourDoubles at[4];
+  FourDoubles slope[4];
   for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t a = 0; a < 4; ++a) readVector(x[a][i].data() + from, at[a]);
     for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t l = 0; l < laneCount; ++l) {
-        f[i][j][l] = ((x[0][i][l] * group.gradient[0][j][l] + x[1][i][l] * group.gradient[1][j][l]) +
-                      x[2][i][l] * group.gradient[2][j][l]) +
-                     x[3][i][l] * group.gradient[3][j][l];
-      }
+      for (std::size_t a = 0; a < 4; ++a) readVector(group.gradient[a][j].data() + from, slope[a]);
+      f[i][j] = ((at[0] * slope[0] + at[1] * slope[1]) + at[2] * slope[2]) + at[3] * slope[3];
+    }
+  }
+}
+
+CALOT_LANE_KERNEL void deformation(const NodeLanes& x, const ElementGroup& group, DeformationLanes& f) {
+  for (std::size_t from = 0; from < laneCount; from += 4) {
+    FourDoubles part[3][3];
+    deformationOf(x, group, from, part);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) writeVector(part[i][j], f[i][j].data() + from);
+    }
+  }
+}
+
+CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameConstants material,
+                           const RotationGroup& q, std::size_t from, ElementResult& out) {
+  const double lambda = material.lambda;
+  const double mu = material.mu;
+  FourDoubles w;
+  FourDoubles qx;
+  FourDoubles qy;
+  FourDoubles qz;
+  readVector(q[0].data() + from, w);
+  readVector(q[1].data() + from, qx);
+  readVector(q[2].data() + from, qy);
+  readVector(q[3].data() + from, qz);
+  const FourDoubles r[3][3] = {{1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy - w * qz), 2.0 * (qx * qz + w * qy)},
+                               {2.0 * (qx * qy + w * qz), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz - w * qx)},
+                               {2.0 * (qx * qz - w * qy), 2.0 * (qy * qz + w * qx), 1.0 - 2.0 * (qx * qx + qy * qy)}};
+  FourDoubles f[3][3];
+  deformationOf(x, group, from, f);
+  FourDoubles b[3][3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) b[i][j] = (r[0][i] * f[0][j] + r[1][i] * f[1][j]) + r[2][i] * f[2][j];
+  }
+  const FourDoubles e00 = b[0][0] - 1.0;
+  const FourDoubles e11 = b[1][1] - 1.0;
+  const FourDoubles e22 = b[2][2] - 1.0;
+  const FourDoubles trace = lambda * ((e00 + e11) + e22);
+  const FourDoubles s00 = 2.0 * mu * e00 + trace;
+  const FourDoubles s11 = 2.0 * mu * e11 + trace;
+  const FourDoubles s22 = 2.0 * mu * e22 + trace;
+  const FourDoubles s01 = mu * (b[0][1] + b[1][0]);
+  const FourDoubles s02 = mu * (b[0][2] + b[2][0]);
+  const FourDoubles s12 = mu * (b[1][2] + b[2][1]);
+  FourDoubles volume;
+  readVector(group.volume.data() + from, volume);
+  FourDoubles p[3][3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    p[i][0] = (r[i][0] * s00 + r[i][1] * s01) + r[i][2] * s02;
+    p[i][1] = (r[i][0] * s01 + r[i][1] * s11) + r[i][2] * s12;
+    p[i][2] = (r[i][0] * s02 + r[i][1] * s12) + r[i][2] * s22;
+  }
+  for (std::size_t a = 0; a < 4; ++a) {
+    FourDoubles g[3];
+    for (std::size_t j = 0; j < 3; ++j) readVector(group.gradient[a][j].data() + from, g[j]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const FourDoubles force = -volume * ((p[i][0] * g[0] + p[i][1] * g[1]) + p[i][2] * g[2]);
+      writeVector(force, out.force[a][i].data() + from);
     }
   }
 }
 
 CALOT_LANE_KERNEL void forces(const NodeLanes& x, const ElementGroup& group, LameConstants material,
                               const RotationGroup& q, ElementResult& out) {
-  const double lambda = material.lambda;
-  const double mu = material.mu;
+  forcesOf(x, group, material, q, 0, out);
+  forcesOf(x, group, material, q, 4, out);
+}
+
+CALOT_LANE_KERNEL void rotated(const ElementGroup& group, const RotationGroup& q, RotatedGradients& out) {
   for (std::size_t l = 0; l < laneCount; ++l) {
     const double w = q[0][l];
-    const double qx = q[1][l];
-    const double qy = q[2][l];
-    const double qz = q[3][l];
-    double r[3][3];
-    r[0][0] = 1.0 - 2.0 * (qy * qy + qz * qz);
-    r[0][1] = 2.0 * (qx * qy - w * qz);
-    r[0][2] = 2.0 * (qx * qz + w * qy);
-    r[1][0] = 2.0 * (qx * qy + w * qz);
-    r[1][1] = 1.0 - 2.0 * (qx * qx + qz * qz);
-    r[1][2] = 2.0 * (qy * qz - w * qx);
-    r[2][0] = 2.0 * (qx * qz - w * qy);
-    r[2][1] = 2.0 * (qy * qz + w * qx);
-    r[2][2] = 1.0 - 2.0 * (qx * qx + qy * qy);
-    double f[3][3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        f[i][j] = ((x[0][i][l] * group.gradient[0][j][l] + x[1][i][l] * group.gradient[1][j][l]) +
-                   x[2][i][l] * group.gradient[2][j][l]) +
-                  x[3][i][l] * group.gradient[3][j][l];
-      }
-    }
-    double b[3][3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        b[i][j] = (r[0][i] * f[0][j] + r[1][i] * f[1][j]) + r[2][i] * f[2][j];
-      }
-    }
-    const double e00 = b[0][0] - 1.0;
-    const double e11 = b[1][1] - 1.0;
-    const double e22 = b[2][2] - 1.0;
-    const double trace = lambda * ((e00 + e11) + e22);
-    const double s00 = 2.0 * mu * e00 + trace;
-    const double s11 = 2.0 * mu * e11 + trace;
-    const double s22 = 2.0 * mu * e22 + trace;
-    const double s01 = mu * (b[0][1] + b[1][0]);
-    const double s02 = mu * (b[0][2] + b[2][0]);
-    const double s12 = mu * (b[1][2] + b[2][1]);
-    double p[3][3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      p[i][0] = (r[i][0] * s00 + r[i][1] * s01) + r[i][2] * s02;
-      p[i][1] = (r[i][0] * s01 + r[i][1] * s11) + r[i][2] * s12;
-      p[i][2] = (r[i][0] * s02 + r[i][1] * s12) + r[i][2] * s22;
-    }
-    const double volume = group.volume[l];
+    const double x = q[1][l];
+    const double y = q[2][l];
+    const double z = q[3][l];
+    const double r[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+                            {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
+                            {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}};
     for (std::size_t a = 0; a < 4; ++a) {
-      const double g0 = group.gradient[a][0][l];
-      const double g1 = group.gradient[a][1][l];
-      const double g2 = group.gradient[a][2][l];
       for (std::size_t i = 0; i < 3; ++i) {
-        out.force[a][i][l] = -volume * ((p[i][0] * g0 + p[i][1] * g1) + p[i][2] * g2);
-        out.gradient[a][i][l] = static_cast<float>((r[i][0] * g0 + r[i][1] * g1) + r[i][2] * g2);
+        out[a][i][l] = static_cast<float>((r[i][0] * group.gradient[a][0][l] + r[i][1] * group.gradient[a][1][l]) +
+                                          r[i][2] * group.gradient[a][2][l]);
       }
     }
   }
@@ -153,6 +176,10 @@ void TetrahedralElements::evaluate(std::span<const Vec3> position, std::span<con
       forces(x, groups_[g], material, rotation[g], result[g]);
     }
   });
+}
+
+void TetrahedralElements::gradients(std::size_t group, const RotationGroup& rotation, RotatedGradients& out) const {
+  rotated(groups_[group], rotation, out);
 }
 
 double TetrahedralElements::volume(std::span<const Vec3> position) const {

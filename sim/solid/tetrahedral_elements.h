@@ -31,11 +31,13 @@ struct ElementGroup {
   std::array<double, laneCount> volume;                                  ///< at rest (m^3)
 };
 
-/// What one pass over an element group leaves for the assembly.
+/// What one pass over an element group leaves for the right-hand side.
 struct ElementResult {
-  std::array<std::array<std::array<double, laneCount>, 3>, 4> force;    ///< on the nodes (N)
-  std::array<std::array<std::array<float, laneCount>, 3>, 4> gradient;  ///< rotated: R grad N_a (1/m)
+  std::array<std::array<std::array<double, laneCount>, 3>, 4> force;  ///< on the nodes (N)
 };
+
+/// Gradients of a group's shape functions, rotated: R grad N_a (1/m).
+using RotatedGradients = std::array<std::array<std::array<float, laneCount>, 3>, 4>;
 
 /// The tetrahedra of one solid at rest.
 class TetrahedralElements {
@@ -58,6 +60,8 @@ class TetrahedralElements {
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                 LameConstants material, int sweeps, std::span<RotationGroup> rotation, std::span<ElementResult> result,
                 Executor& executor) const;
+
+  void gradients(std::size_t group, const RotationGroup& rotation, RotatedGradients& out) const;
 
   /// Sum of signed volumes of the deformed tetrahedra (m^3), in element order.
   [[nodiscard]] double volume(std::span<const Vec3> position) const;

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "sim/math/lanes.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -33,52 +33,103 @@ bool factorBlock(Block6& a) {
   return positive;
 }
 
-#define CALOT_INLINE inline __attribute__((always_inline))  // into the clones of the kernels
+/// One row of the columns that are taken together, and how rows are read and written.
+template <std::size_t width>
+struct Row {
+  double number[width];
+};
+template <>
+struct Row<4> {
+  FourDoubles number;
+};
+
+template <std::size_t width>
+CALOT_INLINE void read(const double* at, Row<width>& row) {
+  std::memcpy(&row, at, sizeof row);
+}
+
+template <std::size_t width>
+CALOT_INLINE void write(const Row<width>& row, double* at) {
+  std::memcpy(at, &row, sizeof row);
+}
+
+/// row -= f other.
+template <std::size_t width>
+CALOT_INLINE void take(Row<width>& row, double f, const Row<width>& other) {
+  if constexpr (width == 4) {
+    row.number -= f * other.number;
+  } else {
+    for (std::size_t c = 0; c < width; ++c) row.number[c] -= f * other.number[c];
+  }
+}
+
+template <std::size_t width>
+CALOT_INLINE void scale(Row<width>& row, double f) {
+  if constexpr (width == 4) {
+    row.number *= f;
+  } else {
+    for (double& x : row.number) x *= f;
+  }
+}
+
+template <std::size_t width>
+CALOT_INLINE void readAll(const double* at, Row<width>* rows) {
+  for (std::size_t i = 0; i < 6; ++i) read(at + width * i, rows[i]);
+}
+
+template <std::size_t width>
+CALOT_INLINE void writeAll(const Row<width>* rows, double* at) {
+  for (std::size_t i = 0; i < 6; ++i) write(rows[i], at + width * i);
+}
 
 /// x <- L^-1 x for `width` columns of row-major x.
 template <std::size_t width>
 CALOT_INLINE void forward(const Block6& l, double* x) {
+  Row<width> row[6];
+  readAll(x, row);
   for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      const double f = l[6 * i + k];
-      for (std::size_t c = 0; c < width; ++c) x[width * i + c] -= f * x[width * k + c];
-    }
-    for (std::size_t c = 0; c < width; ++c) x[width * i + c] *= l[7 * i];
+    for (std::size_t k = 0; k < i; ++k) take(row[i], l[6 * i + k], row[k]);
+    scale(row[i], l[7 * i]);
   }
+  writeAll(row, x);
 }
 
 /// x <- L^-T x.
 template <std::size_t width>
 CALOT_INLINE void backward(const Block6& l, double* x) {
+  Row<width> row[6];
+  readAll(x, row);
   for (std::size_t i = 6; i-- > 0;) {
-    for (std::size_t k = i + 1; k < 6; ++k) {
-      const double f = l[6 * k + i];
-      for (std::size_t c = 0; c < width; ++c) x[width * i + c] -= f * x[width * k + c];
-    }
-    for (std::size_t c = 0; c < width; ++c) x[width * i + c] *= l[7 * i];
+    for (std::size_t k = i + 1; k < 6; ++k) take(row[i], l[6 * k + i], row[k]);
+    scale(row[i], l[7 * i]);
   }
+  writeAll(row, x);
 }
 
 /// y -= W^T x.
 template <std::size_t width>
 CALOT_INLINE void subtractTransposed(const Block6& w, const double* x, double* y) {
+  Row<width> from[6];
+  Row<width> to[6];
+  readAll(x, from);
+  readAll(y, to);
   for (std::size_t k = 0; k < 6; ++k) {
-    for (std::size_t i = 0; i < 6; ++i) {
-      const double f = w[6 * k + i];
-      for (std::size_t c = 0; c < width; ++c) y[width * i + c] -= f * x[width * k + c];
-    }
+    for (std::size_t i = 0; i < 6; ++i) take(to[i], w[6 * k + i], from[k]);
   }
+  writeAll(to, y);
 }
 
 /// y -= W x.
 template <std::size_t width>
 CALOT_INLINE void subtract(const Block6& w, const double* x, double* y) {
+  Row<width> from[6];
+  Row<width> to[6];
+  readAll(x, from);
+  readAll(y, to);
   for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      const double f = w[6 * i + k];
-      for (std::size_t c = 0; c < width; ++c) y[width * i + c] -= f * x[width * k + c];
-    }
+    for (std::size_t k = 0; k < 6; ++k) take(to[i], w[6 * i + k], from[k]);
   }
+  writeAll(to, y);
 }
 
 /// BlockTree::columns(). @param x room for each node

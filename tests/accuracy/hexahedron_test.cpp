@@ -54,8 +54,7 @@ Forces forcesAt(const CubeBox& box, const HexahedralElements& elements, const st
   identity[0].fill(1.0);
   std::vector<RotationGroup> rotation(elements.groups().size(), identity);
   std::vector<HexahedronResult> result(elements.groups().size());
-  std::vector<HexahedronBlocks> block(elements.groups().size() * laneCount);
-  elements.evaluate(position, still, 0.0, 40, {}, rotation, result, block, executor);
+  elements.evaluate(position, still, 0.0, 40, {}, rotation, result, executor);
   nodal.assign(position.size(), Vec3::Zero());
   for (std::size_t e = 0; e < box.cube.size(); ++e) {
     for (std::size_t a = 0; a < 8; ++a) {

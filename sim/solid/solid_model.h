@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A deformable solid: what is fixed (SolidModel) and what changes (SolidState).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "sim/math/linear.h"
+#include "sim/solid/hexahedral_elements.h"
+#include "sim/solid/solid_system.h"
+#include "sim/solid/tetrahedral_elements.h"
+
+namespace calot {
+
+/// Fixed data of one solid: of tetrahedra, or of cubes.
+class SolidModel {
+ public:
+  struct Material {
+    LameConstants lame;
+    double density = 0.0;           ///< kg/m^3
+    double massDamping = 0.0;       ///< Rayleigh alpha (1/s)
+    double stiffnessDamping = 0.0;  ///< Rayleigh beta (s)
+  };
+
+  /// @param fixed per node: held at its rest position.
+  /// @pre positive volumes; every node belongs to a tetrahedron.
+  SolidModel(std::vector<Vec3> rest, std::vector<Index4> tetrahedra, const std::vector<bool>& fixed, Material material);
+
+  /// A solid of equal cubes.
+  /// @param edge of the cubes (m)
+  /// @pre at rest every cube's nodes lie as Index8 says; every node belongs to a cube.
+  SolidModel(std::vector<Vec3> rest, std::vector<Index8> cubes, double edge, const std::vector<bool>& fixed,
+             Material material);
+
+  [[nodiscard]] std::size_t nodes() const { return rest_.size(); }
+  [[nodiscard]] const std::vector<Vec3>& rest() const { return rest_; }
+  [[nodiscard]] const std::vector<Index4>& tetrahedra() const { return tetrahedra_; }
+  [[nodiscard]] const Material& material() const { return material_; }
+  [[nodiscard]] const std::vector<Index8>& cubes() const { return cube_; }
+  /// @pre made of tetrahedra
+  [[nodiscard]] const TetrahedralElements& elements() const { return std::get<TetrahedralElements>(elements_); }
+  /// @pre made of cubes
+  [[nodiscard]] const HexahedralElements& hexahedra() const { return std::get<HexahedralElements>(elements_); }
+  [[nodiscard]] bool madeOfCubes() const { return std::holds_alternative<HexahedralElements>(elements_); }
+  /// Groups of lanes that hold its elements: so many rotations has its State.
+  [[nodiscard]] std::size_t groups() const;
+  /// Lumped masses (kg): an equal share of each incident element, where all are full.
+  [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
+  /// Deformed volume (m^3). @param fill share of each cube that is there; empty: all of it
+  [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill = {}) const;
+  /// Row of a node in the system, or -1 where it is fixed. Some rows have no node: they only fill slices up.
+  [[nodiscard]] int row(std::size_t node) const { return system_.row(node); }
+  [[nodiscard]] const std::vector<int>& freeNodes() const { return system_.nodes(); }
+  /// Of all elements.
+  [[nodiscard]] const SolidSystem& system() const { return system_; }
+  [[nodiscard]] std::size_t elementCount() const { return madeOfCubes() ? cube_.size() : tetrahedra_.size(); }
+  /// Nodal masses of partly filled cubes (kg). @pre made of cubes
+  void massOf(std::span<const double> fill, std::vector<double>& mass) const;
+  /// Elements at a node, ascending.
+  [[nodiscard]] std::vector<std::int32_t> elementsAt(std::size_t node) const;
+
+ private:
+  std::vector<Vec3> rest_;
+  std::vector<Index4> tetrahedra_;
+  std::vector<Index8> cube_;
+  Material material_;
+  std::variant<TetrahedralElements, HexahedralElements> elements_;
+  std::vector<double> mass_;
+  SolidSystem system_;
+};
+
+/// Everything of one solid that changes.
+struct SolidState {
+  std::vector<Vec3> position;           ///< in W (m)
+  std::vector<Vec3> velocity;           ///< (m/s)
+  std::vector<RotationGroup> rotation;  ///< co-rotation of each element, warm start of the next step's
+  std::uint32_t quietSteps = 0;         ///< steps in a row without touch and slower than the sleeping speed
+  double volume = 0.0;                  ///< deformed (m^3); kept because a sleeping organ does not recompute it
+  double largestDisplacement = 0.0;     ///< (m)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("position", self.position);
+    visit("velocity", self.velocity);
+    visit("rotation", self.rotation);
+    visit("quietSteps", self.quietSteps);
+    visit("volume", self.volume);
+    visit("largestDisplacement", self.largestDisplacement);
+  }
+};
+
+/// Rest: no displacement, no velocity, asleep.
+SolidState restState(const SolidModel& model);
+
+}  // namespace calot
