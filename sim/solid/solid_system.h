@@ -63,7 +63,7 @@ class SolidSystem {
   /// Where block (row, column) stands in the matrix values, or noSlot. @pre column <= row
   [[nodiscard]] std::size_t placeOf(int row, int column) const;
   /// In order of rows, then columns.
-  [[nodiscard]] const std::vector<Slot>& slots() const { return slot_; }
+  [[nodiscard]] const std::vector<Slot>& blocks() const { return slot_; }
   [[nodiscard]] const std::vector<Contribution>& contributions() const { return contribution_; }
   /// 36 block of a cube + HexahedralElements::pairOf().
   [[nodiscard]] const std::vector<std::uint32_t>& cubeBlocks() const { return cubeBlock_; }

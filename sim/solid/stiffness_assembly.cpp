@@ -26,7 +26,7 @@ const std::vector<float>& StiffnessAssembly::update(const SolidModel& model, con
   makeElements(model, rotation, fill, executor);
   if (values_.empty()) {
     values_.assign(system.matrix().valueCount(), 0.0F);
-    stale_.assign(system.slots().size(), 1);
+    stale_.assign(system.blocks().size(), 1);
   } else {
     for (std::size_t g = 0; g < changed_.size(); ++g) {
       for (std::size_t l = 0; l < laneCount; ++l) {
@@ -42,7 +42,7 @@ const std::vector<float>& StiffnessAssembly::update(const SolidModel& model, con
     for (std::size_t s = task * blocksPerTask; s < last; ++s) {
       if (stale_[s] == 0) continue;
       stale_[s] = 0;
-      const SolidSystem::Slot& slot = system.slots()[s];
+      const SolidSystem::Slot& slot = system.blocks()[s];
       Block block{};
       if (model.madeOfCubes()) {
         addCubes(system, slot, block);

@@ -13,7 +13,7 @@ void registerHaptics();        ///< haptics/tick
 void registerCarving();        ///< carving/transform, carving/stroke, carving/growth
 void registerFat();            ///< fat/step, fat/stroke
 void registerCheckpoints();    ///< checkpoints/motion
-void registerScenes();         ///< scene/step: whole steps of every scene
+void registerScenes();         ///< scene/step, scene/operation: whole steps of every scene
 
 inline void registerAll() {
   registerContactStep();
