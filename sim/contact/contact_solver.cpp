@@ -163,8 +163,16 @@ ContactReport sweepContacts(const ContactProblem& problem, std::span<double> lam
 
 ContactReport ContactSolver::solve(const ContactProblem& problem, std::span<double> lambda, std::span<double> gap,
                                    double tolerance, std::uint32_t cap) {
+  start_.assign(lambda.begin(), lambda.end());
+  const ContactReport before = sweepContacts(problem, start_, gap, tolerance, 0);
   ContactReport report = sweepContacts(problem, lambda, gap, tolerance, cap);
   if (!report.converged) newton(problem, lambda, gap, tolerance, report);
+  if (!(report.residual <= before.residual)) {
+    std::copy(start_.begin(), start_.end(), lambda.begin());
+    evaluateGaps(problem, lambda, gap);
+    report.residual = before.residual;
+    report.converged = before.converged;
+  }
   return report;
 }
 

@@ -50,7 +50,8 @@ ContactReport sweepContacts(const ContactProblem& problem, std::span<double> lam
 
 /// Sweeps; then, where they do not converge (rows that nearly repeat each other), semi-smooth Newton steps on the
 /// natural map (Alart and Curnier 1991) with a line search, at most `largestNewtonSteps` of them; the best iterate met
-/// is kept.
+/// is kept. Where W is not positive semidefinite, which rounding may do to rows that repeat each other, both may lead
+/// away: forces that leave a larger residual than those of the start are not taken.
 class ContactSolver {
  public:
   static constexpr std::uint32_t largestNewtonSteps = 20;
@@ -62,7 +63,7 @@ class ContactSolver {
               ContactReport& report);
   bool direction(const ContactProblem& problem, std::span<const double> lambda, std::span<const double> gap);
 
-  std::vector<double> matrix_, right_, trial_, trialGap_;
+  std::vector<double> start_, matrix_, right_, trial_, trialGap_;
 };
 
 /// Projects a block's forces onto what its kind admits.

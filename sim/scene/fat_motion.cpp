@@ -28,7 +28,7 @@ FatMotion::FatMotion(const Model& model, std::size_t fat, const SolidSolver::Set
       responses_(responses),
       executor_(executor),
       fat_(*model.fat()[fat]),
-      rest_(model.fat()[fat]->solid(), responses, executor,
+      rest_(model.fat()[fat]->solid(), settings, executor,
             {model.fat()[fat]->restAttachments(settings.step), model.fat()[fat]->restFill()}) {}
 
 void FatMotion::beginStep(const State& state) {

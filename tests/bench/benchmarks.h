@@ -15,6 +15,9 @@ void registerFat();            ///< fat/step, fat/stroke
 void registerCheckpoints();    ///< checkpoints/motion
 void registerScenes();         ///< scene/step, scene/operation: whole steps of every scene
 
+void registerPaperCases();  ///< paper: the meshes of the paper's Table 1
+void registerMeshGrowth();  ///< mesh: deformation alone, to 200,000 tetrahedra
+
 inline void registerAll() {
   registerContactStep();
   registerContactBudget();
@@ -25,6 +28,8 @@ inline void registerAll() {
   registerFat();
   registerCheckpoints();
   registerScenes();
+  registerPaperCases();
+  registerMeshGrowth();
 }
 
 }  // namespace calot::bench

@@ -10,10 +10,10 @@
 
 #include "recorder/formats/scene_file.h"
 #include "recorder/session.h"
-#include "recorder/sources/performer.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/numbers.h"
+#include "tests/bench/performed.h"
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 
@@ -29,44 +29,23 @@ const char* const scenes[] = {"touch-liver", "dissect-bed", "clip-and-cut", "car
 /// A scene and what a performer did in it: the same samples for every repetition.
 struct Work {
   std::unique_ptr<const Model> model;
-  std::vector<TickSamples> samples;
+  Motion motion;
 };
 
 Work workIn(const std::string& scene, double attemptSeconds) {
-  Work work;
-  work.model =
-      Model::build(recorder::loadScene(std::string(CALOT_ASSETS) + "/scenes/" + scene + ".json").description).model;
-  const auto profile = recorder::loadPerformer(std::string(CALOT_ASSETS) + "/performers/skilled.json");
-  const auto performer = recorder::makePerformer(profile, work.model->scene(), seed);
-  SerialExecutor executor;
-  recorder::Session session(*work.model, seed, executor);
-  if (performer->watcher() != nullptr) session.join(*performer->watcher());
-  const std::size_t perStep = work.model->scene().ticksPerStep;
-  std::vector<TickSamples> samples(perStep);
-  std::vector<recorder::TickOutcome> ticks(perStep);
-  const auto end = static_cast<std::uint64_t>(attemptSeconds / tickLength);
-  for (std::uint64_t tick = 0; tick < end;) {
-    for (std::size_t i = 0; i < perStep; ++i, ++tick) {
-      if (!performer->next(tick, samples[i])) return work;
-      ticks[i] = session.tick(samples[i]);
-    }
-    work.samples.insert(work.samples.end(), samples.begin(), samples.end());
-    session.step(samples, ticks, 0.0F);
-  }
-  return work;
+  return {built(recorder::loadScene(std::string(CALOT_ASSETS) + "/scenes/" + scene + ".json").description),
+          performed(scene, attemptSeconds)};
 }
 
 /// CPU time of each step with its ticks (s).
 std::vector<double> run(const Work& work) {
   SerialExecutor executor;
   recorder::Session session(*work.model, seed, executor);
-  const std::size_t perStep = work.model->scene().ticksPerStep;
-  std::vector<recorder::TickOutcome> ticks(perStep);
+  std::vector<recorder::TickOutcome> ticks(work.model->scene().ticksPerStep);
   std::vector<double> seconds;
-  for (std::size_t at = 0; at < work.samples.size(); at += perStep) {
-    const std::span<const TickSamples> samples(work.samples.data() + at, perStep);
+  for (const std::vector<TickSamples>& samples : work.motion.step) {
     const double begin = threadSeconds();
-    for (std::size_t i = 0; i < perStep; ++i) ticks[i] = session.tick(samples[i]);
+    for (std::size_t i = 0; i < samples.size(); ++i) ticks[i] = session.tick(samples[i]);
     session.step(samples, ticks, 0.0F);
     seconds.push_back(threadSeconds() - begin);
   }

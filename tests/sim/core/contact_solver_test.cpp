@@ -242,6 +242,39 @@ TEST(ContactSolver, WarmStartAtTheSolutionCostsNothing) {
   EXPECT_EQ(lambda, (std::vector<double>{1.0, 1.0}));
 }
 
+/// A compliance that is not positive semidefinite may drive sweeps and Newton steps away without bound. Then the forces of
+/// the start stay.
+TEST(ContactSolver, ForcesThatMakeItWorseAreNotTaken) {
+  SCOPED_TRACE("seed 29");
+  Random random(29);
+  ContactSolver solver;
+  int ledAway = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const int n = 2 + trial % 7;
+    Eigen::MatrixXd w(n, n);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j <= i; ++j) w(i, j) = w(j, i) = random.normal();
+      w(i, i) = 0.1 + random.uniform();  // positive, as it always is
+    }
+    Eigen::VectorXd free(n);
+    for (int i = 0; i < n; ++i) free[i] = random.normal() - 0.5;
+    const OwnedProblem problem = test::unilateralRows(w, free);
+    std::vector<double> lambda = problem.zeros();
+    for (double& l : lambda) l = random.uniform();
+    const double start = residualOf(problem, lambda);
+    std::vector<double> swept = lambda;
+    std::vector<double> gap = problem.zeros();
+    const ContactReport sweeps = sweepContacts(problem.view(), swept, gap, 1e-10, 75);
+    ledAway += sweeps.residual <= start ? 0 : 1;
+    const ContactReport report = solver.solve(problem.view(), lambda, gap, 1e-10, 75);
+    ASSERT_LE(report.residual, start) << "trial " << trial;
+    ASSERT_EQ(report.residual, residualOf(problem, lambda)) << "trial " << trial;
+    ASSERT_EQ(report.converged, report.residual <= 1e-10) << "trial " << trial;
+    for (const double l : lambda) ASSERT_GE(l, 0.0) << "trial " << trial;
+  }
+  EXPECT_GT(ledAway, 100);
+}
+
 TEST(ContactSolver, MakesForcesAdmissible) {
   std::vector<double> force{-1.0};
   makeAdmissible(BlockKind::unilateral, 0.0, force);

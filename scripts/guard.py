@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Guards the run time: instructions of golden replays within a narrow margin, ratios of benchmarks within a wide one.
+
+Instructions are counted by callgrind: they do not depend on what else the machine does, but on the compiler; kept are
+those of Debian 12's g++, optimised. Ratios compare with a peer in the same run. What is kept stands in
+tests/bench/guard.json; --update writes the counts anew, where a change is meant to cost what it costs.
+"""
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+kept_path = "tests/bench/guard.json"
+
+
+def instructions(calot: str, recording: str) -> int:
+    """Instructions of a replay, which must be bit-exact."""
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run(
+            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", calot, "replay", recording],
+            capture_output=True, text=True, check=False)
+    collected = re.search(r"Collected : (\d+)", run.stderr)
+    if run.returncode != 0 or collected is None:
+        sys.exit(f"guard: {recording}: replay under callgrind failed with exit code {run.returncode}: "
+                 f"{(run.stderr or run.stdout).strip().splitlines()[-1:]}")
+    return int(collected.group(1))
+
+
+def counters(bench: str, names: list[str]) -> dict[str, dict[str, float]]:
+    """Medians of the benchmarks' counters, by name."""
+    pattern = "^(" + "|".join(re.escape(name) for name in names) + ")(/|$)"
+    run = subprocess.run([bench, f"--benchmark_filter={pattern}", "--benchmark_format=json"], capture_output=True,
+                         text=True, check=False)
+    if run.returncode != 0:
+        sys.exit(f"guard: {bench} failed with exit code {run.returncode}: {run.stderr.strip()}")
+    found = {}
+    for row in json.loads(run.stdout)["benchmarks"]:
+        if row.get("aggregate_name") == "median":
+            found[row["run_name"].split("/manual_time")[0].split("/iterations")[0]] = row
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("calot")
+    parser.add_argument("bench")
+    parser.add_argument("--root", default=".")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--update", action="store_true", help="keep this run's instruction counts")
+    args = parser.parse_args()
+    path = os.path.join(args.root, kept_path)
+    with open(path, encoding="utf-8") as file:
+        kept = json.load(file)
+    failed = 0
+    recordings = list(kept["instructions"])
+    with ThreadPoolExecutor(args.jobs) as pool:
+        counts = list(pool.map(
+            lambda name: instructions(args.calot, os.path.join(args.root, "assets/golden", name + ".h5")), recordings))
+    for name, count in zip(recordings, counts):
+        before = kept["instructions"][name]
+        change = count / before - 1.0 if before else 0.0
+        good = args.update or change <= kept["instructionMargin"]
+        note = "" if good else f": more than {100 * kept['instructionMargin']:.0f} % above what is kept"
+        if not args.update and change < -kept["instructionMargin"]:
+            note = ": fewer; keep it with --update"
+        print(f"guard: {name}: {count / 1e9:.3f}e9 instructions, {100 * change:+.2f} %{note}")
+        failed += not good
+        kept["instructions"][name] = count if args.update else before
+    if args.update:
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(kept, file, indent=2)
+            file.write("\n")
+        return 0
+    measured = counters(args.bench, sorted({bound["benchmark"] for bound in kept["ratios"]}))
+    for bound in kept["ratios"]:
+        row = measured.get(bound["benchmark"])
+        if row is None or bound["counter"] not in row:
+            sys.exit(f"guard: {kept_path}: no counter {bound['counter']} of {bound['benchmark']}")
+        value = row[bound["counter"]]
+        good = bound.get("least", float("-inf")) <= value <= bound.get("most", float("inf"))
+        limits = ", ".join(f"at {side} {bound[side]:g}" for side in ("least", "most") if side in bound)
+        print(f"guard: {bound['benchmark']} {bound['counter']}: {value:.3g} ({limits}){'' if good else ': out of bounds'}")
+        failed += not good
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
