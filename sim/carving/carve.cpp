@@ -69,9 +69,7 @@ void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<con
           }
           double potential[laneCount];
           std::fill(potential, potential + laneCount, -1e300);
-          bool any = false;
-          for (const SweptCapsule& capsule : tool) any = toolPotential(capsule, lanes, depth, potential) || any;
-          if (!any) continue;
+          if (!toolPotential(tool, lanes, depth, potential)) continue;
           // What is deeper is left alone even where a lane beside it is not.
           for (double& p : potential) p = p >= -depth ? p : -1e300;
           field.raiseRow(node, {potential, slot(count)});

@@ -70,8 +70,24 @@ CALOT_INLINE double gap2(double low, double high) {
   return g * g;
 }
 
+/// How far from each node potentials above -reach can be: no |F^T n| exceeds the root of the largest row sum times the
+/// largest column sum.
+CALOT_LANE_KERNEL void reaches(const NodeLanes& n, double reach, double* out) {
+  for (int i = 0; i < laneCount; ++i) {
+    double row = 0.0;
+    double column = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      row = most(row, magnitude(n.gradient[3 * k][i]) + magnitude(n.gradient[3 * k + 1][i]) +
+                          magnitude(n.gradient[3 * k + 2][i]));
+      column =
+          most(column, magnitude(n.gradient[k][i]) + magnitude(n.gradient[k + 3][i]) + magnitude(n.gradient[k + 6][i]));
+    }
+    out[i] = reach * std::sqrt(row * column);
+  }
+}
+
 /// 1 where a node is near enough for its potential to matter.
-CALOT_LANE_KERNEL int anyNear(const SweptCapsule& c, const NodeLanes& n, double reach) {
+CALOT_LANE_KERNEL int anyNear(const SweptCapsule& c, const NodeLanes& n, const double* reach) {
   double near[laneCount];
   for (int i = 0; i < laneCount; ++i) {
     double distance2 = 0.0;
@@ -82,16 +98,7 @@ CALOT_LANE_KERNEL int anyNear(const SweptCapsule& c, const NodeLanes& n, double 
       const double high = most(most(c.p0[k], c.p1[k]) - y, most(c.q0[k], c.q1[k]) - x);
       distance2 += gap2(low, high);
     }
-    // No |F^T n| exceeds the root of the largest row sum times the largest column sum.
-    double row = 0.0;
-    double column = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      row = most(row, magnitude(n.gradient[3 * k][i]) + magnitude(n.gradient[3 * k + 1][i]) +
-                          magnitude(n.gradient[3 * k + 2][i]));
-      column =
-          most(column, magnitude(n.gradient[k][i]) + magnitude(n.gradient[k + 3][i]) + magnitude(n.gradient[k + 6][i]));
-    }
-    const double limit = c.radius + reach * std::sqrt(row * column);
+    const double limit = c.radius + reach[i];
     near[i] = limit * limit - distance2;
   }
   int any = 0;
@@ -135,10 +142,16 @@ CALOT_LANE_KERNEL void potentials(const SweptCapsule& c, const NodeLanes& n, dou
 
 }  // namespace
 
-bool toolPotential(const SweptCapsule& capsule, const NodeLanes& nodes, double reach, double (&out)[laneCount]) {
-  if (anyNear(capsule, nodes, reach) == 0) return false;
-  potentials(capsule, nodes, out);
-  return true;
+bool toolPotential(std::span<const SweptCapsule> tool, const NodeLanes& nodes, double reach, double (&out)[laneCount]) {
+  double reached[laneCount];
+  reaches(nodes, reach, reached);
+  bool any = false;
+  for (const SweptCapsule& capsule : tool) {
+    if (anyNear(capsule, nodes, reached) == 0) continue;
+    potentials(capsule, nodes, out);
+    any = true;
+  }
+  return any;
 }
 
 }  // namespace calot

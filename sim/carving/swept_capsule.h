@@ -2,6 +2,8 @@
 // Distance of moving tissue to a moving capsule, eight nodes at a time.
 #pragma once
 
+#include <span>
+
 #include "sim/math/lanes.h"
 #include "sim/math/linear.h"
 
@@ -23,7 +25,7 @@ struct NodeLanes {
   double gradient[9][laneCount];  ///< F = dx/dX, row by row: element 3 r + c is dx_r / dX_c
 };
 
-/// Raises out[i] to the tool's potential at node i, where that is higher:
+/// Raises out[i] to the tool's potential at node i, where that is higher, for each capsule of the tool:
 ///
 ///   (radius - d) / |F^T n|
 ///
@@ -35,6 +37,6 @@ struct NodeLanes {
 ///
 /// @param reach potentials below -reach need not be found (m)
 /// @return false: no node is near enough, nothing was written
-bool toolPotential(const SweptCapsule& capsule, const NodeLanes& nodes, double reach, double (&out)[laneCount]);
+bool toolPotential(std::span<const SweptCapsule> tool, const NodeLanes& nodes, double reach, double (&out)[laneCount]);
 
 }  // namespace calot

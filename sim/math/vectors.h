@@ -33,6 +33,32 @@ CALOT_INLINE void writeVector(const Vector& v, Number* at) {
   std::memcpy(at, &v, sizeof v);
 }
 
+/// Number l of vector k goes to number k of vector l.
+CALOT_INLINE void transpose(EightFloats (&v)[laneCount]) {
+  EightFloats pair[8];
+  for (std::size_t k = 0; k < 4; ++k) {
+    pair[2 * k] = __builtin_shufflevector(v[2 * k], v[2 * k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pair[2 * k + 1] = __builtin_shufflevector(v[2 * k], v[2 * k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  EightFloats four[8];
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      four[4 * k + 2 * i] = __builtin_shufflevector(pair[4 * k + i], pair[4 * k + 2 + i], 0, 1, 8, 9, 4, 5, 12, 13);
+      four[4 * k + 2 * i + 1] =
+          __builtin_shufflevector(pair[4 * k + i], pair[4 * k + 2 + i], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  }
+  for (std::size_t k = 0; k < 4; ++k) {
+    v[k] = __builtin_shufflevector(four[k], four[4 + k], 0, 1, 2, 3, 8, 9, 10, 11);
+    v[4 + k] = __builtin_shufflevector(four[k], four[4 + k], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+/// False where a number is none.
+CALOT_INLINE bool allBelow(const FourDoubles& v, double limit) {
+  return (int(v[0] < limit) & int(v[1] < limit) & int(v[2] < limit) & int(v[3] < limit)) != 0;
+}
+
 /// v = its root.
 CALOT_INLINE void takeRoot(FourDoubles& v) {
   double number[4];

@@ -49,9 +49,6 @@ std::uint64_t cameraInputs(std::span<const TickSamples> samples) {
   return digest64(bytes);
 }
 
-/// Of the rotations that the matrices are made with: 2 degrees, which errs as much as a tolerance of 1e-3 does
-/// (docs/simulation.md).
-constexpr double matrixGrain = 1.0 / 32.0;
 constexpr std::size_t mostPrepared = std::size_t{256} << 20U;  ///< of compliances of one body (bytes)
 
 Vec3 clampedToWorkspace(const SceneDescription& scene, const Vec3& p) {
@@ -171,7 +168,6 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
   settings.step = model.stepSeconds();
   settings.tolerance = model.scene().solver.tolerance;
   settings.cap = model.scene().solver.iterations;
-  settings.grain = matrixGrain;
   responseSettings = settings;
   responseSettings.tolerance = model.scene().solver.responseTolerance;
   for (std::size_t o = 0; o < organs; ++o) {

@@ -116,8 +116,8 @@ CALOT_LANE_KERNEL void forces(const CornerLanes& x, const std::array<Vec3, 8>& c
 
 CALOT_LANE_KERNEL void turnedStiffness(const Stiffness& stiffness, const RotationLanes& r,
                                        const std::array<double, laneCount>& fill, HexahedronBlocks* out) {
-  std::array<std::array<std::array<float, laneCount>, 3>, 3> turn;
-  std::array<float, laneCount> share;
+  EightFloats turn[3][3];
+  EightFloats share;
   for (std::size_t l = 0; l < laneCount; ++l) share[l] = static_cast<float>(fill[l]);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -126,28 +126,28 @@ CALOT_LANE_KERNEL void turnedStiffness(const Stiffness& stiffness, const Rotatio
   }
   for (std::size_t a = 0; a < 8; ++a) {
     for (std::size_t b = a; b < 8; ++b) {
-      std::array<std::array<std::array<float, laneCount>, 3>, 3> half;  // fill R K_ab
+      EightFloats half[3][3];  // fill R K_ab
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
           const auto k0 = static_cast<float>(stiffness[3 * a][3 * b + j]);
           const auto k1 = static_cast<float>(stiffness[3 * a + 1][3 * b + j]);
           const auto k2 = static_cast<float>(stiffness[3 * a + 2][3 * b + j]);
-          for (std::size_t l = 0; l < laneCount; ++l) {
-            half[i][j][l] = share[l] * ((turn[i][0][l] * k0 + turn[i][1][l] * k1) + turn[i][2][l] * k2);
-          }
+          half[i][j] = share * ((turn[i][0] * k0 + turn[i][1] * k1) + turn[i][2] * k2);
         }
       }
-      std::array<std::array<float, laneCount>, 9> block;
+      EightFloats block[9];
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
-          for (std::size_t l = 0; l < laneCount; ++l) {
-            block[3 * i + j][l] =
-                (half[i][0][l] * turn[j][0][l] + half[i][1][l] * turn[j][1][l]) + half[i][2][l] * turn[j][2][l];
-          }
+          block[3 * i + j] = (half[i][0] * turn[j][0] + half[i][1] * turn[j][1]) + half[i][2] * turn[j][2];
         }
       }
+      EightFloats first[laneCount];
+      for (std::size_t k = 0; k < laneCount; ++k) first[k] = block[k];
+      transpose(first);
       for (std::size_t l = 0; l < laneCount; ++l) {
-        for (std::size_t k = 0; k < 9; ++k) out[l][HexahedralElements::pairOf(a, b)][k] = block[k][l];
+        float* to = out[l][HexahedralElements::pairOf(a, b)].data();
+        writeVector(first[l], to);
+        to[8] = block[8][l];
       }
     }
   }

@@ -9,6 +9,9 @@ namespace calot {
 
 namespace {
 
+/// Increment (rad) after which another step would turn by less than its square.
+constexpr double settled = 1e-4;
+
 /// turnTowardsPolar() of lanes `from` to `from` + 3.
 CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup& q, std::size_t from) {
   FourDoubles m[3][3];
@@ -88,6 +91,7 @@ CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup&
     qx = nx * inverse;
     qy = ny * inverse;
     qz = nz * inverse;
+    if (allBelow(size, settled)) break;
   }
   writeVector(w, q[0].data() + from);
   writeVector(qx, q[1].data() + from);
@@ -100,27 +104,6 @@ CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup&
 CALOT_LANE_KERNEL void turnTowardsPolar(const DeformationLanes& f, int sweeps, RotationGroup& q) {
   turnFour(f, sweeps, q, 0);
   turnFour(f, sweeps, q, 4);
-}
-
-CALOT_LANE_KERNEL void toGrain(const RotationGroup& q, double grain, RotationGroup& out) {
-  if (grain == 0.0) {
-    out = q;
-    return;
-  }
-  // Adding and taking off 1.5 * 2^52 rounds to a whole number, on every machine in the same way.
-  constexpr double whole = 6755399441055744.0;
-  const double perGrain = 1.0 / grain;
-  for (std::size_t l = 0; l < laneCount; ++l) {
-    const double w = grain * ((q[0][l] * perGrain + whole) - whole);
-    const double x = grain * ((q[1][l] * perGrain + whole) - whole);
-    const double y = grain * ((q[2][l] * perGrain + whole) - whole);
-    const double z = grain * ((q[3][l] * perGrain + whole) - whole);
-    const double inverse = 1.0 / std::sqrt((w * w + x * x) + (y * y + z * z));
-    out[0][l] = w * inverse;
-    out[1][l] = x * inverse;
-    out[2][l] = y * inverse;
-    out[3][l] = z * inverse;
-  }
 }
 
 }  // namespace calot

@@ -54,7 +54,7 @@ struct Surroundings {
 
 /// Implicit Euler, one linearisation a step (Baraff and Witkin 1998): with h = dt,
 ///   [(1 + alpha h) M + (h^2 + beta h) K] dv = h (f_external + f(x + (h + beta) v) - alpha M v),  v += dv,  x += h v,
-/// where K and f are co-rotational with the rotations of x, K to Settings::grain; attachments add h damper to the left
+/// where K and f are co-rotational with the rotations of x; attachments add h damper to the left
 /// and h (force - damper v) to the right, joints the same with their blocks. Empty cubes and nodes that only they hold
 /// are no part of the system: such nodes go on as they went. Holds the matrix of the step for contact.
 class SolidSolver {
@@ -64,7 +64,6 @@ class SolidSolver {
     double tolerance = 1e-4;
     std::uint32_t cap = 200;
     int rotationSweeps = 2;
-    double grain = 0.0;  ///< of the rotations that the matrix is made with (StiffnessAssembly); 0: as they are
   };
 
   /// Assembles at the state's position and computes the free velocity (without contact) into freeVelocity().

@@ -46,7 +46,6 @@ inline Vec3 SolidSolver::cornerForce(const SolidModel& model, const SolidSystem:
 /// The whole system, or that of the cubes that are there.
 void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> fill) {
   if (std::find(fill.begin(), fill.end(), 0.0) == fill.end()) {
-    if (system_ != &model.system()) stiffness_.restructure();
     system_ = &model.system();
     return;
   }
@@ -57,18 +56,15 @@ void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> 
   std::transform(fill.begin(), fill.end(), present_.begin(), isThere);
   part_ = SolidSystem(model.system(), present_);
   system_ = &part_;
-  stiffness_.restructure();
 }
 
 void SolidSolver::assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
                            const Surroundings& surroundings, Executor& executor) {
   const double h = settings.step;
   const SolidModel::Material& m = model.material();
-  const StiffnessAssembly::Scale scale{1.0 + m.massDamping * h, h * h + m.stiffnessDamping * h, settings.grain};
+  const StiffnessAssembly::Scale scale{1.0 + m.massDamping * h, h * h + m.stiffnessDamping * h};
   const std::vector<double>& masses = surroundings.fill.empty() ? model.mass() : mass_;
-  const std::vector<float>& own =
-      stiffness_.update(model, *system_, state.rotation, surroundings.fill, masses, scale, executor);
-  values_.assign(own.begin(), own.end());
+  stiffness_.assemble(model, *system_, state.rotation, surroundings.fill, masses, scale, executor, values_);
   addAttachments(settings, surroundings.attachments);
   extra_.clear();
   for (const JointAttachment& joint : surroundings.joints) addJoint(settings, joint);

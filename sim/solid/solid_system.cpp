@@ -146,7 +146,6 @@ SolidSystem::SolidSystem(const ElementCorners& elements, const std::vector<bool>
     incidentStart_.push_back(incident_.size());
   }
   buildMatrix(columns);
-  listElements(elements.count());
   placeElements();
 }
 
@@ -223,7 +222,6 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
     incidentStart_.push_back(incident_.size());
   }
   buildMatrix(columns);
-  listElements(present.size());
   placeElements();
 }
 
@@ -237,25 +235,6 @@ void SolidSystem::buildMatrix(const std::vector<std::vector<int>>& columns) {
     }
   }
   rowSlot_.push_back(slotColumn_.size());
-}
-
-/// Lists the slots of each element.
-void SolidSystem::listElements(std::size_t elements) {
-  const auto elementOf = [this](std::size_t c) {
-    return cubeBlock_.empty() ? static_cast<std::size_t>(contribution_[c].element) : cubeBlock_[c] / 36;
-  };
-  elementStart_.assign(elements + 1, 0);
-  for (const Slot& slot : slot_) {
-    for (std::size_t c = slot.first; c < slot.last; ++c) ++elementStart_[elementOf(c) + 1];
-  }
-  for (std::size_t e = 0; e < elements; ++e) elementStart_[e + 1] += elementStart_[e];
-  slotAtElement_.resize(elementStart_.back());
-  std::vector<std::size_t> next(elementStart_.begin(), elementStart_.end() - 1);
-  for (std::size_t s = 0; s < slot_.size(); ++s) {
-    for (std::size_t c = slot_[s].first; c < slot_[s].last; ++c) {
-      slotAtElement_[next[elementOf(c)]++] = static_cast<std::uint32_t>(s);
-    }
-  }
 }
 
 void SolidSystem::placeElements() {

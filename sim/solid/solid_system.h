@@ -62,15 +62,13 @@ class SolidSystem {
   [[nodiscard]] const std::vector<int>& nodes() const { return node_; }
   /// Where block (row, column) stands in the matrix values, or noSlot. @pre column <= row
   [[nodiscard]] std::size_t placeOf(int row, int column) const;
-  /// In order of rows, then columns.
-  [[nodiscard]] const std::vector<Slot>& blocks() const { return slot_; }
+  /// Blocks of a row by columns, the diagonal last; none where it only fills a slice up.
+  [[nodiscard]] std::span<const Slot> ofRow(std::size_t row) const {
+    return {slot_.data() + rowSlot_[row], rowSlot_[row + 1] - rowSlot_[row]};
+  }
   [[nodiscard]] const std::vector<Contribution>& contributions() const { return contribution_; }
   /// 36 block of a cube + HexahedralElements::pairOf().
   [[nodiscard]] const std::vector<std::uint32_t>& cubeBlocks() const { return cubeBlock_; }
-  /// Numbers of the slots that an element is added into.
-  [[nodiscard]] std::span<const std::uint32_t> slotsAt(std::size_t element) const {
-    return {slotAtElement_.data() + elementStart_[element], elementStart_[element + 1] - elementStart_[element]};
-  }
   /// Where the blocks of an element's corners stand, row by row; noSlot where there is none or right of the diagonal.
   [[nodiscard]] const std::size_t* placesOf(std::size_t element) const {
     return elementPlace_.data() + element * corners_ * corners_;
@@ -84,7 +82,6 @@ class SolidSystem {
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
   void buildMatrix(const std::vector<std::vector<int>>& columns);
-  void listElements(std::size_t elements);
   void placeElements();
 
   std::size_t corners_ = 0;  ///< of an element
@@ -98,8 +95,6 @@ class SolidSystem {
   std::vector<int> slotColumn_;       ///< per slot
   std::vector<Contribution> contribution_;
   std::vector<std::uint32_t> cubeBlock_;
-  std::vector<std::size_t> elementStart_;
-  std::vector<std::uint32_t> slotAtElement_;
   std::vector<std::uint32_t> elementSlot_;  ///< numbers of slots, as elementPlace_; none
   std::vector<std::size_t> elementPlace_;
   std::vector<std::size_t> incidentStart_;

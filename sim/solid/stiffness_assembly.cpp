@@ -2,147 +2,153 @@
 #include "sim/solid/stiffness_assembly.h"
 
 #include <algorithm>
+#include <array>
 
 #include "sim/math/floating_point.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
 namespace {
 
 constexpr std::size_t groupsPerTask = 16;
-constexpr std::size_t blocksPerTask = 1024;
+constexpr std::size_t slicesPerTask = 16;
+
+using Block = std::array<float, 9>;
+
+/// Adds the blocks of some cubes, entries 0 to 7 and entry 8.
+CALOT_INLINE void addBlocks(const Block* block, const std::uint32_t* which, std::size_t count, EightFloats& first,
+                            float& last) {
+  for (std::size_t c = 0; c < count; ++c) {
+    const float* from = block[which[c]].data();
+    EightFloats own;
+    readVector(from, own);
+    first += own;
+    last += from[8];
+  }
+}
+
+/// One block column of a slice. @param slot of each lane, or null
+CALOT_LANE_KERNEL void cubeColumn(const Block* block, const std::uint32_t* which, const SolidSystem::Slot* const* slot,
+                                  float scale, float* out) {
+  EightFloats lane[laneCount];
+  float last[laneCount];
+  for (std::size_t l = 0; l < laneCount; ++l) {
+    EightFloats sum{};
+    EightFloats turned{};
+    float sumLast = 0.0F;
+    float turnedLast = 0.0F;
+    if (slot[l] != nullptr) {
+      const SolidSystem::Slot& s = *slot[l];
+      addBlocks(block, which + s.first, s.turned - s.first, sum, sumLast);
+      addBlocks(block, which + s.turned, s.last - s.turned, turned, turnedLast);
+    }
+    lane[l] = scale * (sum + __builtin_shufflevector(turned, turned, 0, 3, 6, 1, 4, 7, 2, 5));
+    last[l] = scale * (sumLast + turnedLast);
+  }
+  transpose(lane);
+  for (std::size_t k = 0; k < laneCount; ++k) writeVector(lane[k], out + k * laneCount);
+  std::memcpy(out + 8 * laneCount, last, sizeof last);
+}
+
+/// Adds K_ab of a tetrahedron: V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I).
+/// @param lv, mv lambda and mu times V
+void addTetrahedron(const RotatedGradients& gradient, std::size_t l, std::size_t a, std::size_t b, float lv, float mv,
+                    Block& block) {
+  const float ga[3] = {gradient[a][0][l], gradient[a][1][l], gradient[a][2][l]};
+  const float gb[3] = {gradient[b][0][l], gradient[b][1][l], gradient[b][2][l]};
+  const float diagonal = mv * ((ga[0] * gb[0] + ga[1] * gb[1]) + ga[2] * gb[2]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += lv * (ga[i] * gb[j]) + mv * (gb[i] * ga[j]);
+    block[4 * i] += diagonal;
+  }
+}
 
 }  // namespace
 
-const std::vector<float>& StiffnessAssembly::update(const SolidModel& model, const SolidSystem& system,
-                                                    std::span<const RotationGroup> rotation,
-                                                    std::span<const double> fill, std::span<const double> mass,
-                                                    const Scale& scale, Executor& executor) {
-  if (scale != scale_) {
-    scale_ = scale;
-    made_.clear();
-    values_.clear();
-  }
-  makeElements(model, rotation, fill, executor);
-  if (values_.empty()) {
-    values_.assign(system.matrix().valueCount(), 0.0F);
-    stale_.assign(system.blocks().size(), 1);
+void StiffnessAssembly::assemble(const SolidModel& model, const SolidSystem& system,
+                                 std::span<const RotationGroup> rotation, std::span<const double> fill,
+                                 std::span<const double> mass, const Scale& scale, Executor& executor,
+                                 std::vector<float>& values) {
+  values.resize(system.matrix().valueCount());
+  const auto stiffness = static_cast<float>(scale.stiffness);
+  if (model.madeOfCubes()) {
+    assembleCubes(model, system, rotation, fill, stiffness, executor, values);
   } else {
-    for (std::size_t g = 0; g < changed_.size(); ++g) {
-      for (std::size_t l = 0; l < laneCount; ++l) {
-        const std::size_t e = g * laneCount + l;
-        if ((changed_[g] >> l & 1U) == 0 || e >= model.elementCount()) continue;
-        for (const std::uint32_t s : system.slotsAt(e)) stale_[s] = 1;
-      }
-    }
+    assembleTetrahedra(model, system, rotation, stiffness, executor, values);
   }
-  executor.run((stale_.size() + blocksPerTask - 1) / blocksPerTask, [&](std::size_t task) {
-    const FloatingPointScope scope;
-    const std::size_t last = std::min(stale_.size(), (task + 1) * blocksPerTask);
-    for (std::size_t s = task * blocksPerTask; s < last; ++s) {
-      if (stale_[s] == 0) continue;
-      stale_[s] = 0;
-      const SolidSystem::Slot& slot = system.blocks()[s];
-      Block block{};
-      if (model.madeOfCubes()) {
-        addCubes(system, slot, block);
-      } else {
-        addTetrahedra(model, system, slot, block);
-      }
-      if (slot.node >= 0) {
-        const auto own = static_cast<float>(scale.mass * mass[static_cast<std::size_t>(slot.node)]);
-        for (std::size_t i = 0; i < 3; ++i) block[4 * i] += own;
-      }
-      for (std::size_t k = 0; k < 9; ++k) values_[slot.place + k * laneCount] = block[k];
-    }
-  });
-  return values_;
+  for (const int node : system.nodes()) {
+    const auto row = static_cast<std::size_t>(system.row(static_cast<std::size_t>(node)));
+    const auto own = static_cast<float>(scale.mass * mass[static_cast<std::size_t>(node)]);
+    float* diagonal = values.data() + system.ofRow(row).back().place;
+    for (std::size_t i = 0; i < 3; ++i) diagonal[4 * i * laneCount] += own;
+  }
 }
 
-/// Blocks of elements that have turned by a grain, or whose fill has changed. How an empty cube turns does not matter.
-void StiffnessAssembly::makeElements(const SolidModel& model, std::span<const RotationGroup> rotation,
-                                     std::span<const double> fill, Executor& executor) {
-  const bool first = made_.empty();
-  made_.resize(model.groups());
-  changed_.resize(model.groups());
-  if (model.madeOfCubes()) {
-    cube_.resize(model.groups() * laneCount);
-  } else {
-    gradient_.resize(model.groups());
-  }
+void StiffnessAssembly::assembleCubes(const SolidModel& model, const SolidSystem& system,
+                                      std::span<const RotationGroup> rotation, std::span<const double> fill,
+                                      float scale, Executor& executor, std::vector<float>& values) {
+  cube_.resize(model.groups() * laneCount);
   executor.run((model.groups() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
     const std::size_t last = std::min(model.groups(), (task + 1) * groupsPerTask);
     for (std::size_t g = task * groupsPerTask; g < last; ++g) {
-      Made now{};
-      toGrain(rotation[g], scale_.grain, now.rotation);
-      if (model.madeOfCubes()) now.fill = model.hexahedra().fillOf(g, fill);
-      changed_[g] = 0;
-      for (std::size_t l = 0; l < laneCount; ++l) {
-        bool same = !first && now.fill[l] == made_[g].fill[l];
-        const bool empty = model.madeOfCubes() && now.fill[l] == 0.0;
-        for (std::size_t k = 0; k < 4; ++k) same = same && (empty || now.rotation[k][l] == made_[g].rotation[k][l]);
-        if (!same) changed_[g] = static_cast<std::uint8_t>(changed_[g] | 1U << l);
-      }
-      if (changed_[g] == 0) continue;
-      made_[g] = now;
-      if (model.madeOfCubes()) {
-        model.hexahedra().blocks(now.rotation, now.fill,
-                                 std::span<HexahedronBlocks, laneCount>(cube_.data() + g * laneCount, laneCount));
-      } else {
-        model.elements().gradients(g, now.rotation, gradient_[g]);
+      const std::array<double, laneCount> share = model.hexahedra().fillOf(g, fill);
+      if (std::all_of(share.begin(), share.end(), [](double f) { return f == 0.0; })) continue;
+      model.hexahedra().blocks(rotation[g], share,
+                               std::span<HexahedronBlocks, laneCount>(cube_.data() + g * laneCount, laneCount));
+    }
+  });
+  static_assert(sizeof(HexahedronBlocks) == 36 * sizeof(Block));
+  const BlockMatrix& matrix = system.matrix();
+  executor.run((matrix.slices() + slicesPerTask - 1) / slicesPerTask, [&](std::size_t task) {
+    const FloatingPointScope scope;
+    const Block* block = cube_.front().data();  // of all cubes, one after the other
+    const std::size_t last = std::min(matrix.slices(), (task + 1) * slicesPerTask);
+    std::array<const SolidSystem::Slot*, laneCount> slot{};
+    for (std::size_t s = task * slicesPerTask; s < last; ++s) {
+      const std::size_t width = matrix.lower(s).width;
+      for (std::size_t k = 0; k <= width; ++k) {
+        for (std::size_t l = 0; l < laneCount; ++l) {
+          const std::span<const SolidSystem::Slot> row = system.ofRow(s * laneCount + l);
+          const bool isThere = k == width ? !row.empty() : k + 1 < row.size();
+          slot[l] = isThere ? &row[k == width ? row.size() - 1 : k] : nullptr;
+        }
+        const std::size_t place = k == width ? matrix.diagonal(s) : matrix.lower(s).value() + k * 9 * laneCount;
+        cubeColumn(block, system.cubeBlocks().data(), slot.data(), scale, values.data() + place);
       }
     }
   });
 }
 
-/// Adds K_ab of the tetrahedra at a block:
-///   V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I).
-void StiffnessAssembly::addTetrahedra(const SolidModel& model, const SolidSystem& system, const SolidSystem::Slot& slot,
-                                      Block& block) const {
-  const SolidModel::Material& m = model.material();
-  const auto scale = static_cast<float>(scale_.stiffness);
-  const float lambda = scale * static_cast<float>(m.lame.lambda);
-  const float mu = scale * static_cast<float>(m.lame.mu);
-  for (std::size_t c = slot.first; c < slot.last; ++c) {
-    const SolidSystem::Contribution& contribution = system.contributions()[c];
-    const auto e = static_cast<std::size_t>(contribution.element);
-    const std::size_t l = e % laneCount;
-    const RotatedGradients& gradient = gradient_[e / laneCount];
-    const auto volume = static_cast<float>(model.elements().groups()[e / laneCount].volume[l]);
-    float ga[3];
-    float gb[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      ga[i] = gradient[contribution.a][i][l];
-      gb[i] = gradient[contribution.b][i][l];
+void StiffnessAssembly::assembleTetrahedra(const SolidModel& model, const SolidSystem& system,
+                                           std::span<const RotationGroup> rotation, float scale, Executor& executor,
+                                           std::vector<float>& values) {
+  gradient_.resize(model.groups());
+  std::fill(values.begin(), values.end(), 0.0F);
+  const float lambda = scale * static_cast<float>(model.material().lame.lambda);
+  const float mu = scale * static_cast<float>(model.material().lame.mu);
+  executor.run((model.groups() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
+    const FloatingPointScope scope;
+    const std::size_t last = std::min(model.groups(), (task + 1) * groupsPerTask);
+    for (std::size_t g = task * groupsPerTask; g < last; ++g) model.elements().gradients(g, rotation[g], gradient_[g]);
+  });
+  executor.run((system.matrix().slices() + slicesPerTask - 1) / slicesPerTask, [&](std::size_t task) {
+    const FloatingPointScope scope;
+    const std::size_t last = std::min(system.matrix().rows(), (task + 1) * slicesPerTask * laneCount);
+    for (std::size_t r = task * slicesPerTask * laneCount; r < last; ++r) {
+      for (const SolidSystem::Slot& slot : system.ofRow(r)) {
+        Block block{};
+        for (std::size_t c = slot.first; c < slot.last; ++c) {
+          const SolidSystem::Contribution& from = system.contributions()[c];
+          const auto e = static_cast<std::size_t>(from.element);
+          const auto volume = static_cast<float>(model.elements().restVolume(e));
+          addTetrahedron(gradient_[e / laneCount], e % laneCount, from.a, from.b, lambda * volume, mu * volume, block);
+        }
+        for (std::size_t k = 0; k < 9; ++k) values[slot.place + k * laneCount] = block[k];
+      }
     }
-    const float lv = lambda * volume;
-    const float mv = mu * volume;
-    const float diagonal = mv * ((ga[0] * gb[0] + ga[1] * gb[1]) + ga[2] * gb[2]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] += lv * (ga[i] * gb[j]) + mv * (gb[i] * ga[j]);
-      block[4 * i] += diagonal;
-    }
-  }
-}
-
-void StiffnessAssembly::addCubes(const SolidSystem& system, const SolidSystem::Slot& slot, Block& block) const {
-  const auto scale = static_cast<float>(scale_.stiffness);
-  Block sum{};
-  Block turned{};
-  static_assert(sizeof(HexahedronBlocks) == 36 * sizeof(Block));
-  const Block* block0 = cube_.front().data();  // of all cubes, one after the other
-  const auto add = [&](std::size_t first, std::size_t last, Block& to) {
-    for (std::size_t c = first; c < last; ++c) {
-      const Block& from = block0[system.cubeBlocks()[c]];
-      for (std::size_t k = 0; k < 9; ++k) to[k] += from[k];
-    }
-  };
-  add(slot.first, slot.turned, sum);
-  add(slot.turned, slot.last, turned);
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) block[3 * i + j] = scale * (sum[3 * i + j] + turned[3 * j + i]);
-  }
+  });
 }
 
 }  // namespace calot

@@ -67,7 +67,7 @@ TEST(SweptCapsule, DistanceIsThatToItsTwoTrianglesInEveryDegenerateCase) {
     const Lanes nodes(random, (i / 8) % 2 == 1);
     double out[laneCount];
     std::fill(out, out + laneCount, -1e300);
-    ASSERT_TRUE(toolPotential(c, nodes.lanes, 10.0, out));
+    ASSERT_TRUE(toolPotential({&c, 1}, nodes.lanes, 10.0, out));
     for (int k = 0; k < laneCount; ++k) {
       const double error = std::abs(c.radius - out[k] - reference(c, nodes.now[k], nodes.before[k]));
       worst = std::max(worst, error);
@@ -91,9 +91,9 @@ TEST(SweptCapsule, FarNodesAreLeftOutOnlyWhereTheyDoNotMatter) {
     double some[laneCount];
     std::fill(all, all + laneCount, -1e300);
     std::fill(some, some + laneCount, -1e300);
-    ASSERT_TRUE(toolPotential(c, nodes.lanes, 1e3, all));
+    ASSERT_TRUE(toolPotential({&c, 1}, nodes.lanes, 1e3, all));
     const double reach = 0.5;
-    if (toolPotential(c, nodes.lanes, reach, some)) {
+    if (toolPotential({&c, 1}, nodes.lanes, reach, some)) {
       for (int k = 0; k < laneCount; ++k) ASSERT_EQ(some[k], all[k]);
       continue;
     }
@@ -116,7 +116,7 @@ TEST(SweptCapsule, PotentialIsADistanceInRestSpace) {
   }
   double out[laneCount];
   std::fill(out, out + laneCount, -1e300);
-  ASSERT_TRUE(toolPotential(c, lanes, 1.0, out));
+  ASSERT_TRUE(toolPotential({&c, 1}, lanes, 1.0, out));
   // The surface of the tool lies at x = 8 mm, at rest 4 mm.
   for (int i = 0; i < laneCount; ++i) EXPECT_NEAR(out[i], 0.0005 * i - 0.004, 1e-15);
 }

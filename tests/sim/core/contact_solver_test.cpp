@@ -242,8 +242,8 @@ TEST(ContactSolver, WarmStartAtTheSolutionCostsNothing) {
   EXPECT_EQ(lambda, (std::vector<double>{1.0, 1.0}));
 }
 
-/// A compliance that is not positive semidefinite may drive sweeps and Newton steps away without bound. Then the forces of
-/// the start stay.
+/// A compliance that is not positive semidefinite may drive sweeps and Newton steps away without bound. Then the forces
+/// of the start stay.
 TEST(ContactSolver, ForcesThatMakeItWorseAreNotTaken) {
   SCOPED_TRACE("seed 29");
   Random random(29);
