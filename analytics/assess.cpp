@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 
+#include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/from_observables.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/text_table.h"
+#include "recorder/attempt.h"
 #include "recorder/words.h"
 
 namespace calot::analytics {
@@ -40,7 +44,58 @@ std::string figureText(const std::vector<CheckpointValue>& values, const MainFig
   return "-";
 }
 
+Verdict verdictOf(recorder::ReplayVerdict verdict) {
+  switch (verdict) {
+    case recorder::ReplayVerdict::exact:
+      return Verdict::verified;
+    case recorder::ReplayVerdict::diverged:
+      return Verdict::diverged;
+    case recorder::ReplayVerdict::damaged:
+      return Verdict::damaged;
+    case recorder::ReplayVerdict::undecided:
+      return Verdict::notCheckableHere;
+  }
+  return Verdict::notChecked;
+}
+
 }  // namespace
+
+Assessment assessRecording(const std::string& file, unsigned threads, double cutoff) {
+  recorder::AttemptHeader header;
+  std::unique_ptr<CheckpointCollector> collector;
+  recorder::ReplaySettings settings;
+  settings.threads = threads;
+  settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
+    header = h;
+    collector = std::make_unique<CheckpointCollector>(h, model.scene(), Origin::resimulated, cutoff);
+    return std::vector<recorder::Observer*>{collector.get()};
+  };
+  Assessment result;
+  result.report = recorder::replayRecording(file, settings);
+  const recorder::ReplayReport& report = result.report;
+  if (report.verdict == recorder::ReplayVerdict::damaged) return result;
+  recorder::Recording recording(file);
+  if (header.attempt.empty()) header = recording.header();
+  AssessedAttempt& assessed = result.attempt.emplace();
+  assessed.header = std::move(header);
+  assessed.outcome = report.outcome;
+  assessed.complete = report.complete;
+  assessed.steps = report.steps;
+  assessed.chainHead = report.chainHead;
+  if (const auto& signed_ = recording.signature(); report.chainIntact && signed_ && signed_->value) {
+    RecordingSignature& s = assessed.signature.emplace();
+    const auto byte = [](std::uint8_t b) { return static_cast<std::byte>(b); };
+    std::transform(signed_->publicKey.begin(), signed_->publicKey.end(), s.publicKey.begin(), byte);
+    std::transform(signed_->value->begin(), signed_->value->end(), s.value.begin(), byte);
+  }
+  const bool exact = report.verdict == recorder::ReplayVerdict::exact;
+  assessed.verification = {verdictOf(report.verdict), exact ? "" : report.message, recorder::softwareName()};
+  if (exact) assessed.values = collector->values();
+  if (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact)
+    assessed.values = valuesFromObservables(recording, cutoff);
+  assessed.fileName = file;
+  return result;
+}
 
 AttemptRecord recordOf(const AssessedAttempt& assessed) {
   const recorder::AttemptHeader& h = assessed.header;
@@ -61,6 +116,7 @@ AttemptRecord recordOf(const AssessedAttempt& assessed) {
   a.seed = h.seed;
   a.device = h.provenance.device;
   a.calibration = h.provenance.calibration;
+  a.station = h.station;
   a.simulationVersion = h.simulationVersion;
   a.comparabilityKey = comparabilityKey(h);
   a.synthetic = h.provenance.kind == recorder::OperatorKind::performer;
@@ -70,6 +126,7 @@ AttemptRecord recordOf(const AssessedAttempt& assessed) {
   a.steps = assessed.steps;
   a.stepSeconds = h.tickSeconds * static_cast<double>(h.ticksPerStep);
   a.chainHead = assessed.chainHead;
+  a.signature = assessed.signature;
   a.verification = assessed.verification;
   return a;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "recorder/replay.h"
 
 namespace calot::analytics {
 
@@ -23,10 +25,22 @@ struct AssessedAttempt {
   bool complete = false;
   std::uint64_t steps = 0;
   std::array<std::byte, 32> chainHead{};
+  std::optional<RecordingSignature> signature;  ///< valid
   Verification verification;
   std::vector<CheckpointValue> values;  ///< of CheckpointCollector::values(); empty where the replay diverged
   std::string fileName;                 ///< base name or path; the base name is kept
 };
+
+/// A replay with the checkpoints watching.
+struct Assessment {
+  recorder::ReplayReport report;
+  std::optional<AssessedAttempt> attempt;  ///< none of a damaged file
+};
+
+/// Re-simulates a recording and computes its checkpoints. One that diverged has no values; one of another simulation
+/// version has those of its observables, where its content chain is intact.
+/// @param cutoff of the motion filter (Hz); values that are stored are of the default
+Assessment assessRecording(const std::string& file, unsigned threads, double cutoff = 6.0);
 
 /// One transaction; idempotent. @throws Error 3 on a conflict (CohortDatabase::storeAttempt).
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed);

@@ -15,10 +15,9 @@
 
 namespace calot::recorder {
 
-namespace {
+namespace {}  // namespace
 
-/// Random uuid (RFC 4122, version 4).
-std::string makeUuid() {
+std::string newUuid() {
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot be initialised");
   std::array<unsigned char, 16> b{};
   randombytes_buf(b.data(), b.size());
@@ -31,8 +30,6 @@ std::string makeUuid() {
   }
   return text;
 }
-
-}  // namespace
 
 std::string softwareName() { return "calot " CALOT_VERSION; }
 
@@ -49,7 +46,7 @@ std::string buildName() {
 AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Provenance& provenance,
                          const AttemptSettings& settings) {
   AttemptHeader header;
-  header.attempt = makeUuid();
+  header.attempt = newUuid();
   header.startUtc = fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
                                 fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   header.software = softwareName();

@@ -24,6 +24,9 @@ struct AttemptSettings {
   std::uint64_t seed = 0;
 };
 
+/// Random uuid (RFC 4122, version 4), lower case with hyphens.
+std::string newUuid();
+
 /// Header of a new attempt: a fresh uuid, the present time, this build.
 AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Provenance& provenance,
                          const AttemptSettings& settings);

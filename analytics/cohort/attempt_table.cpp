@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 
@@ -17,9 +18,16 @@ constexpr const char* attemptColumns =
     "r.chain_head, "
     "v.verdict, v.detail, v.software, v.verified_utc, coalesce(p.study_group, ''), coalesce(p.arm, ''), "
     "coalesce(p.site, ''), "
-    "a.imported_utc, e.reason, e.excluded_by FROM attempt a JOIN recording r ON r.attempt = a.id "
+    "a.imported_utc, a.station, s.public_key, s.signature, w.participant, e.reason, e.excluded_by "
+    "FROM attempt a JOIN recording r ON r.attempt = a.id "
     "LEFT JOIN verification v ON v.attempt = a.id LEFT JOIN participant p ON p.id = a.participant "
-    "LEFT JOIN exclusion e ON e.attempt = a.id ";
+    "LEFT JOIN exclusion e ON e.attempt = a.id LEFT JOIN recording_signature s ON s.attempt = a.id "
+    "LEFT JOIN research_withdrawal w ON w.participant = a.participant ";
+
+template <std::size_t N>
+void copyBlob(const SQLite::Column& column, std::array<std::byte, N>& to) {
+  std::memcpy(to.data(), column.getBlob(), std::min<std::size_t>(N, static_cast<std::size_t>(column.getBytes())));
+}
 
 AttemptRow attemptRow(SQLite::Statement& row) {
   AttemptRow a;
@@ -47,9 +55,7 @@ AttemptRow attemptRow(SQLite::Statement& row) {
   a.complete = row.getColumn(c++).getInt() != 0;
   a.steps = static_cast<std::uint64_t>(row.getColumn(c++).getInt64());
   a.stepSeconds = row.getColumn(c++).getDouble();
-  const SQLite::Column head = row.getColumn(c++);
-  std::memcpy(a.chainHead.data(), head.getBlob(),
-              std::min<std::size_t>(a.chainHead.size(), static_cast<std::size_t>(head.getBytes())));
+  copyBlob(row.getColumn(c++), a.chainHead);
   const SQLite::Column verdict = row.getColumn(c++);
   a.verification.verdict = verdict.isNull() ? Verdict::notChecked : enumeration<Verdict>(verdict);
   a.verification.text = text(row.getColumn(c++));
@@ -59,9 +65,21 @@ AttemptRow attemptRow(SQLite::Statement& row) {
   a.arm = text(row.getColumn(c++));
   a.site = text(row.getColumn(c++));
   a.importedUtc = text(row.getColumn(c++));
+  a.station = text(row.getColumn(c++));
+  if (!row.getColumn(c).isNull()) {
+    a.signature.emplace();
+    copyBlob(row.getColumn(c), a.signature->publicKey);
+    copyBlob(row.getColumn(c + 1), a.signature->value);
+  }
+  c += 2;
+  a.withdrawn = !row.getColumn(c++).isNull();
   const SQLite::Column reason = row.getColumn(c++);
-  a.excluded = !reason.isNull();
-  if (a.excluded) a.exclusionReason = fmt::format("{} ({})", text(reason), text(row.getColumn(c)));
+  a.excluded = a.withdrawn || !reason.isNull();
+  if (a.withdrawn) {
+    a.exclusionReason = "withdrawn from research";
+  } else if (a.excluded) {
+    a.exclusionReason = fmt::format("{} ({})", text(reason), text(row.getColumn(c)));
+  }
   return a;
 }
 

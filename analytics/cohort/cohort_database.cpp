@@ -160,8 +160,35 @@ void CohortDatabase::storeValues(const std::string& attempt, const std::vector<C
   });
 }
 
+namespace {
+
+void checkDecision(const std::string& reason, const std::string& by) {
+  const auto blank = [](const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; };
+  if (blank(by)) throw Error(ExitCode::usage, "exclusion: name who decides");
+  if (blank(reason)) throw Error(ExitCode::usage, "exclusion: a reason is wanted");
+}
+
+}  // namespace
+
 void CohortDatabase::excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by) {
-  if (by.empty()) throw Error(ExitCode::usage, "exclusion: name who decides");
+  checkDecision(reason, by);
+  guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::int64_t id = attemptId(db, attempt);
+    if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path(), attempt));
+    SQLite::Statement put(db,
+                          "INSERT INTO exclusion VALUES (?, ?, ?, ?) ON CONFLICT DO UPDATE SET reason = "
+                          "excluded.reason, excluded_by = excluded.excluded_by, excluded_utc = excluded.excluded_utc");
+    SQLite::bind(put, id, reason, by, nowUtc());
+    put.exec();
+    audit(db, "attempt-exclude", attempt, fmt::format("{} (by {})", reason, by));
+    transaction.commit();
+  });
+}
+
+void CohortDatabase::includeAttempt(const std::string& attempt, const std::string& reason, const std::string& by) {
+  checkDecision(reason, by);
   guarded(path(), [&] {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
@@ -169,14 +196,28 @@ void CohortDatabase::excludeAttempt(const std::string& attempt, const std::strin
     if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path(), attempt));
     SQLite::Statement clear(db, "DELETE FROM exclusion WHERE attempt = ?");
     clear.bind(1, id);
-    clear.exec();
-    if (!reason.empty()) {
-      SQLite::Statement put(db, "INSERT INTO exclusion VALUES (?, ?, ?, ?)");
-      SQLite::bind(put, id, reason, by, nowUtc());
-      put.exec();
-    }
-    audit(db, reason.empty() ? "attempt-include" : "attempt-exclude", attempt, fmt::format("{} (by {})", reason, by));
+    if (clear.exec() == 0) throw Error(ExitCode::no, fmt::format("{}: attempt {} is not excluded", path(), attempt));
+    audit(db, "attempt-include", attempt, fmt::format("{} (by {})", reason, by));
     transaction.commit();
+  });
+}
+
+std::string CohortDatabase::attemptNamed(const std::string& text) const {
+  return guarded(path(), [&] {
+    // Compared letter by letter: no pattern that the text could hold means anything.
+    SQLite::Statement find(*storage_->db,
+                           "SELECT uuid FROM attempt WHERE substr(uuid, 1, ?) = ? ORDER BY uuid LIMIT 2");
+    find.bind(1, static_cast<std::int64_t>(text.size()));
+    find.bind(2, text);
+    if (text.empty() || !find.executeStep()) {
+      throw Error(ExitCode::no, fmt::format("{}: no attempt \"{}\"", path(), text));
+    }
+    std::string uuid = find.getColumn(0).getString();
+    if (find.executeStep()) {
+      throw Error(ExitCode::no,
+                  fmt::format("{}: more than one attempt begins with \"{}\"; give more of its uuid", path(), text));
+    }
+    return uuid;
   });
 }
 

@@ -50,6 +50,13 @@ struct ParticipantChange {
   std::map<std::string, std::string> consent;
 };
 
+/// A station's word on a recording's content: an Ed25519 signature of its chain head, found valid.
+struct RecordingSignature {
+  std::array<std::byte, 32> publicKey{};
+  std::array<std::byte, 64> value{};
+  bool operator==(const RecordingSignature&) const = default;
+};
+
 /// An attempt as the database knows it from its recording.
 struct AttemptRecord {
   std::string uuid;
@@ -66,6 +73,7 @@ struct AttemptRecord {
   std::uint64_t seed = 0;
   std::string device;  ///< class
   std::string calibration;
+  std::string station;  ///< where it was recorded, or empty
   std::uint32_t simulationVersion = 0;
   std::string comparabilityKey;
   bool synthetic = false;  ///< made by a performer
@@ -75,6 +83,7 @@ struct AttemptRecord {
   std::uint64_t steps = 0;
   double stepSeconds = 0.01;
   std::array<std::byte, 32> chainHead{};  ///< BLAKE2b-256 of the content
+  std::optional<RecordingSignature> signature;
   Verification verification;
 };
 
@@ -83,11 +92,12 @@ struct AttemptRow : AttemptRecord {
   std::string group, arm, site;  ///< the participant's
   std::string verifiedUtc;       ///< when the verdict was reached
   std::string importedUtc;       ///< when the attempt first came in
-  bool excluded = false;
-  std::string exclusionReason;  ///< reason and by whom
+  bool withdrawn = false;        ///< the participant takes no part in research any more
+  bool excluded = false;         ///< by hand, or withdrawn
+  std::string exclusionReason;   ///< reason and by whom
 };
 
-/// What upsertAttempt() did.
+/// What storeAttempt() did.
 enum class Imported : std::uint8_t { added, unchanged, extended };
 
 struct GroupCount {
@@ -137,16 +147,21 @@ class CohortDatabase {
   /// file of the same uuid); one transaction. Running it again changes nothing. A participant unknown so far is added
   /// without group.
   /// @throws Error 3 "conflict" when the same uuid came in before with another content of the same length, or with
-  /// another scene, seed, participant or operator.
+  /// another scene, seed, participant or operator; or when it, or what it branches from, was withdrawn.
   Imported storeAttempt(const AttemptRecord& attempt, const std::vector<CheckpointValue>& values);
   /// The same without values.
   Imported upsertAttempt(const AttemptRecord& attempt);
   /// Replaces the attempt's values. @throws Error 3 if there is no such attempt.
   void storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values);
 
-  /// Marks an attempt as excluded from studies (an empty reason takes the mark away); audited.
+  /// Marks an attempt as excluded from studies, or replaces the mark; audited. @throws Error 2 without reason or name;
+  /// 3 if there is no such attempt.
   void excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
+  /// Takes the mark away; audited. @throws Error as excludeAttempt, and 3 if the attempt is not excluded.
+  void includeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
 
+  /// The uuid that begins with `text`. @throws Error 3 if there is none, or more than one.
+  [[nodiscard]] std::string attemptNamed(const std::string& text) const;
   [[nodiscard]] std::vector<AttemptRow> listAttempts() const;  ///< by start, then uuid
   [[nodiscard]] std::optional<AttemptRow> attempt(const std::string& uuid) const;
   /// An attempt's values in the order in which they were stored (the registry's).

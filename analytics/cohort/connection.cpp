@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <system_error>
@@ -98,6 +99,39 @@ int schemaOf(SQLite::Database& db, const std::string& path) {
   return version;
 }
 
+/// Keeps the database as it was beside it: migrations only go forward. A backup that is there already stays, too.
+void backUp(SQLite::Database& db, const std::string& path, int version) {
+  namespace fs = std::filesystem;
+  const std::string name = fmt::format("{}{}{}", path, backupMark, version);
+  std::string kept = name + ".bak";
+  for (int n = 2; fs::exists(kept); ++n) kept = fmt::format("{}-{}.bak", name, n);
+  const std::string fresh = fmt::format("{}.{}.part", kept, ::getpid());
+  std::error_code ignored;
+  fs::remove(fresh, ignored);
+  try {
+    SQLite::Statement copy(db, "VACUUM INTO ?");
+    copy.bind(1, fresh);
+    copy.exec();
+    const int copied = pragma(*std::make_unique<SQLite::Database>(fresh, SQLite::OPEN_READONLY), "user_version");
+    if (copied != version) {  // another process was first, and migrated it
+      fs::remove(fresh);
+      return;
+    }
+    fs::permissions(fresh, fs::status(path).permissions());
+    fs::rename(fresh, kept);
+  } catch (const SQLite::Exception& error) {
+    fs::remove(fresh, ignored);
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be backed up before its schema is brought up to date ({}); "
+                                               "nothing was changed, free space beside it and run again",
+                                               path, error.what()));
+  } catch (const fs::filesystem_error& error) {
+    fs::remove(fresh, ignored);
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be backed up before its schema is brought up to date ({}); "
+                                               "nothing was changed",
+                                               path, error.code().message()));
+  }
+}
+
 void migrate(SQLite::Database& db, const std::string& path) {
   // Asked again inside the transaction: another process may just have done it.
   SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
@@ -136,6 +170,7 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
     if (sqlite3_db_readonly(db->getHandle(), "main") == 1) throw databaseError(SQLITE_READONLY, "", path);
     setWriteAheadLog(*db, patience);
     db->exec("PRAGMA synchronous = FULL");
+    if (version >= 1 && version < known) backUp(*db, path, version);
     if (version < known) migrate(*db, path);
     return db;
   });

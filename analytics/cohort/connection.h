@@ -16,7 +16,11 @@ namespace calot::analytics {
 /// "Calo": what a cohort database says of itself in SQLite's header.
 inline constexpr int cohortApplicationId = 0x43616C6F;
 
-/// Opens, checks and (unless read-only) migrates. @throws Error as CohortDatabase says.
+/// Between a database's name and the number of the schema that a migration's backup of it has.
+inline constexpr const char* backupMark = ".schema-";
+
+/// Opens, checks and (unless read-only) migrates. What an older schema held is kept beside it as
+/// PATH.schema-N.bak, N its number. @throws Error as CohortDatabase says.
 std::unique_ptr<SQLite::Database> openCohort(const std::string& path, CohortDatabase::Access access,
                                              std::chrono::milliseconds patience);
 

@@ -37,6 +37,9 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
   if (known.simulationVersion != incoming.simulationVersion) return "simulation version";
   if (known.parent != incoming.parent) return "parent";
   if (known.mode != incoming.mode) return "mode";
+  if (known.signature && incoming.signature && known.signature->publicKey != incoming.signature->publicKey)
+    return "signer";
+  if (!known.station.empty() && known.station != incoming.station) return "station";
   if (known.device != incoming.device || known.calibration != incoming.calibration) return "device";
   if (known.chainHead == incoming.chainHead) return {};
   // Only an incomplete recording has a continuation. That the longer one begins with the shorter is the replay's to
@@ -73,6 +76,28 @@ void writeVerification(SQLite::Database& db, std::int64_t id, const Verification
   put.exec();
 }
 
+void writeSignature(SQLite::Database& db, std::int64_t id, const AttemptRecord& a) {
+  SQLite::Statement put(
+      db,
+      "INSERT INTO recording_signature VALUES (?, ?, ?, ?) ON CONFLICT DO UPDATE SET chain_head = excluded.chain_head, "
+      "public_key = excluded.public_key, signature = excluded.signature");
+  put.bind(1, id);
+  put.bind(2, a.chainHead.data(), static_cast<int>(a.chainHead.size()));
+  put.bind(3, a.signature->publicKey.data(), static_cast<int>(a.signature->publicKey.size()));
+  put.bind(4, a.signature->value.data(), static_cast<int>(a.signature->value.size()));
+  put.exec();
+}
+
+void refuseWithdrawn(SQLite::Database& db, const std::string& path, const AttemptRecord& a) {
+  for (const std::string* uuid : {&a.uuid, &a.parent}) {
+    if (!uuid->empty() && isWithdrawn(db, *uuid)) {
+      throw Error(ExitCode::no,
+                  fmt::format("{}: {} was withdrawn from {}; it is not taken in again, delete the file", a.fileName,
+                              uuid == &a.uuid ? "its attempt" : "what it branches from", path));
+    }
+  }
+}
+
 void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vector<CheckpointValue>* values) {
   std::int64_t participant = -1;
   if (!a.participant.empty()) {
@@ -88,8 +113,8 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
       db,
       "INSERT INTO attempt (uuid, parent_uuid, participant, scene, scene_major, scene_minor, operator_kind, profile, "
       "profile_version, mode, purpose, outcome, start_utc, seed, device, calibration, simulation_version, "
-      "comparability_key, synthetic, imported_utc) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?)");
+      "comparability_key, synthetic, imported_utc, station) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, ?, ?, ?)");
   int i = 1;
   put.bind(i++, a.uuid);
   put.bind(i++, a.parent);
@@ -115,9 +140,11 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
   put.bind(i++, a.comparabilityKey);
   put.bind(i++, a.synthetic ? 1 : 0);
   put.bind(i++, nowUtc());
+  put.bind(i++, a.station);
   put.exec();
   const std::int64_t id = db.getLastInsertRowid();
   writeRecording(db, id, a);
+  if (a.signature) writeSignature(db, id, a);
   writeVerification(db, id, a.verification);
   if (values != nullptr) replaceValues(db, id, *values);
   audit(db, "attempt-import", a.uuid,
@@ -145,6 +172,20 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
                       a.outcome != known.outcome;
   bool changed = longer || a.fileName != known.fileName;
   if (changed) writeRecording(db, id, a);
+  if (a.signature && a.signature != known.signature) {
+    writeSignature(db, id, a);
+    changed = true;
+  } else if (longer && !a.signature && known.signature) {
+    SQLite::Statement clear(db, "DELETE FROM recording_signature WHERE attempt = ?");  // it was of the shorter content
+    clear.bind(1, id);
+    clear.exec();
+  }
+  if (known.station.empty() && !a.station.empty()) {
+    SQLite::Statement put(db, "UPDATE attempt SET station = ? WHERE id = ?");  // came in before stations were kept
+    SQLite::bind(put, a.station, id);
+    put.exec();
+    changed = true;
+  }
   if (longer || !(trusted && blind)) {
     const Verification &was = known.verification, &is = a.verification;
     if (was.verdict != is.verdict || was.text != is.text || was.software != is.software) {
@@ -163,6 +204,7 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
 
 Imported importAttempt(SQLite::Database& db, const std::string& path, const AttemptRecord& attempt,
                        const std::vector<CheckpointValue>* values) {
+  refuseWithdrawn(db, path, attempt);
   if (const std::optional<AttemptRow> known = findAttempt(db, attempt.uuid))
     return updateAttempt(db, path, *known, attempt, values);
   insertAttempt(db, attempt, values);

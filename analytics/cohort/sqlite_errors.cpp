@@ -6,7 +6,15 @@
 
 namespace calot::analytics {
 
-Error databaseError(int sqliteCode, const std::string& message, const std::string& path) {
+std::string printable(std::string words) {
+  for (char& c : words) {
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7F) c = '?';
+  }
+  return words;
+}
+
+Error databaseError(int sqliteCode, const std::string& words, const std::string& path) {
+  const std::string message = printable(words);
   switch (sqliteCode & 0xFF) {
     case SQLITE_NOTADB:
       return {ExitCode::damaged, fmt::format("{}: not a cohort database (not an SQLite file)", path)};

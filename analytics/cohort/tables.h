@@ -5,6 +5,8 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <SQLiteCpp/VariadicBind.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -52,6 +54,10 @@ void checkAttempt(const AttemptRecord& attempt, const std::string& path);
 /// CohortDatabase::storeAttempt() without its transaction; null: values are left alone.
 Imported importAttempt(SQLite::Database& db, const std::string& path, const AttemptRecord& attempt,
                        const std::vector<CheckpointValue>* values);
+
+/// BLAKE2b-256 of a uuid, by which a withdrawn attempt is known again (schemas/cohort/0003_governance.sql).
+std::array<std::byte, 32> withdrawalDigest(const std::string& uuid);
+bool isWithdrawn(SQLite::Database& db, const std::string& uuid);
 
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
 std::vector<AttemptValue> readAllValues(SQLite::Database& db);

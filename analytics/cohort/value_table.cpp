@@ -37,12 +37,30 @@ std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t id) {
 }
 
 bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<CheckpointValue>& values) {
-  if (readValues(db, id) == values) return false;
-  SQLite::Statement clear(db, "DELETE FROM checkpoint_value WHERE attempt = ?");
-  clear.bind(1, id);
-  clear.exec();
+  std::vector<CheckpointValue> before = readValues(db, id);
+  if (before == values) return false;
+  SQLite::Statement last(db, "SELECT coalesce(max(position) + 1, 0) FROM checkpoint_value WHERE attempt = ?");
+  last.bind(1, id);
+  last.executeStep();
+  if (last.getColumn(0).getInt64() != static_cast<std::int64_t>(before.size())) {  // a gap: row i is not at position i
+    SQLite::Statement all(db, "DELETE FROM checkpoint_value WHERE attempt = ?");
+    all.bind(1, id);
+    all.exec();
+    before.clear();
+  }
+  last.reset();
+  // Rows that stay as they are, are not written. Those that go first: a value that moved would meet its old row.
+  const auto same = [&](std::size_t i) { return i < before.size() && i < values.size() && before[i] == values[i]; };
+  SQLite::Statement clear(db, "DELETE FROM checkpoint_value WHERE attempt = ? AND position = ?");
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (same(i)) continue;
+    clear.reset();
+    SQLite::bind(clear, id, static_cast<std::int64_t>(i));
+    clear.exec();
+  }
   SQLite::Statement put(db, "INSERT INTO checkpoint_value VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t i = 0; i < values.size(); ++i) {
+    if (same(i)) continue;
     const CheckpointValue& v = values[i];
     put.reset();
     put.clearBindings();

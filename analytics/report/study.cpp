@@ -20,7 +20,8 @@ namespace {
 
 /// Why an attempt stays out, or empty. The order is the flow table's.
 const std::vector<std::string>& exclusionReasons() {
-  static const std::vector<std::string> reasons{"excluded by hand",
+  static const std::vector<std::string> reasons{"withdrawn from research",
+                                                "excluded by hand",
                                                 "recording diverged or damaged",
                                                 "not verified yet",
                                                 "recording incomplete",
@@ -41,17 +42,18 @@ std::string groupOf(const AttemptRow& a, Grouping grouping) {
 
 std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
   const std::vector<std::string>& reason = exclusionReasons();
-  if (a.excluded) return reason[0];
-  if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged) return reason[1];
-  if (a.verification.verdict == Verdict::notChecked) return reason[2];
-  if (!a.complete || a.outcome == recorder::Outcome::running) return reason[3];
-  if (a.outcome == recorder::Outcome::technicalFailure) return reason[4];
-  if (a.synthetic && !options.includeSynthetic) return reason[5];
-  if (a.mode == recorder::Mode::practice && !options.includePractice) return reason[6];
-  if (!a.parent.empty() && !options.includeBranches) return reason[7];
-  if (a.purpose == "golden") return reason[8];
-  if (groupOf(a, options.grouping).empty()) return reason[9];
-  if (!options.key.empty() && a.comparabilityKey != options.key) return reason[10];
+  if (a.withdrawn) return reason[0];
+  if (a.excluded) return reason[1] + ": " + a.exclusionReason;
+  if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged) return reason[2];
+  if (a.verification.verdict == Verdict::notChecked) return reason[3];
+  if (!a.complete || a.outcome == recorder::Outcome::running) return reason[4];
+  if (a.outcome == recorder::Outcome::technicalFailure) return reason[5];
+  if (a.synthetic && !options.includeSynthetic) return reason[6];
+  if (a.mode == recorder::Mode::practice && !options.includePractice) return reason[7];
+  if (!a.parent.empty() && !options.includeBranches) return reason[8];
+  if (a.purpose == "golden") return reason[9];
+  if (groupOf(a, options.grouping).empty()) return reason[10];
+  if (!options.key.empty() && a.comparabilityKey != options.key) return reason[11];
   return {};
 }
 
@@ -213,7 +215,9 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     attempts.push_back(a);
   }
   for (const std::string& reason : exclusionReasons()) {
-    if (out.count(reason) > 0) study.flow.push_back({reason, out[reason]});
+    for (const auto& [why, count] : out) {
+      if (why == reason || why.rfind(reason + ": ", 0) == 0) study.flow.push_back({why, count});
+    }
   }
   study.groups = chooseGroups(present, options, name, leftOut(study));
   study.better = betterOf(study.groups, options);

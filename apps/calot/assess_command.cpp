@@ -7,14 +7,12 @@
 #include <optional>
 
 #include "analytics/assess.h"
-#include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/from_observables.h"
 #include "analytics/checkpoints/motion.h"
+#include "analytics/cohort/registers.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/value_report.h"
-#include "recorder/attempt.h"
 #include "recorder/errors.h"
 #include "recorder/replay.h"
 
@@ -30,63 +28,41 @@ struct Options {
   bool json = false;
 };
 
-analytics::Verdict verdictOf(recorder::ReplayVerdict verdict) {
-  switch (verdict) {
-    case recorder::ReplayVerdict::exact:
-      return analytics::Verdict::verified;
-    case recorder::ReplayVerdict::diverged:
-      return analytics::Verdict::diverged;
-    case recorder::ReplayVerdict::damaged:
-      return analytics::Verdict::damaged;
-    case recorder::ReplayVerdict::undecided:
-      return analytics::Verdict::notCheckableHere;
-  }
-  return analytics::Verdict::notChecked;
-}
-
 /// What one file gave, beside the replay's report.
 struct Stored {
+  std::string keyFault;
   std::string how = "not stored";
   std::vector<analytics::CheckpointValue> values;
 };
 
-/// Replays one recording with the checkpoints watching and stores the result, where there is a database. A damaged file
-/// is no attempt of the cohort; a diverged one is, without values; one of another simulation version with those of its
-/// observables.
+/// Where a station's key is registered, its recordings are signed by it; empty: nothing to say.
+std::string keyFaultOf(const analytics::AssessedAttempt& attempt, const std::string& cohort) {
+  const std::string& station = attempt.header.station;
+  if (station.empty()) return {};
+  std::optional<analytics::PublicKey> key;
+  if (attempt.signature) key = attempt.signature->publicKey;
+  switch (analytics::standingOf(analytics::readRegisters(cohort), station, key)) {
+    case analytics::KeyStanding::another:
+      return fmt::format("signed by another key than that of station {} in {}", station, cohort);
+    case analytics::KeyStanding::unsignedButExpected:
+      return fmt::format("not signed, though station {} has a key in {}", station, cohort);
+    default:
+      return {};
+  }
+}
+
+/// Assesses one recording and stores the result, where there is a database. A damaged file is no attempt of the cohort.
 recorder::ReplayReport assessOne(const std::string& file, const Options& o, analytics::CohortDatabase* database,
                                  Stored& stored) {
-  const double cutoff = o.cutoff > 0.0 ? o.cutoff : analytics::motionCutoff;
-  recorder::AttemptHeader header;
-  std::unique_ptr<analytics::CheckpointCollector> collector;
-  recorder::ReplaySettings settings;
-  settings.threads = o.threads;
-  settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
-    header = h;
-    collector =
-        std::make_unique<analytics::CheckpointCollector>(h, model.scene(), analytics::Origin::resimulated, cutoff);
-    return std::vector<recorder::Observer*>{collector.get()};
-  };
-  recorder::ReplayReport report = recorder::replayRecording(file, settings);
-  if (report.verdict == recorder::ReplayVerdict::damaged) return report;
-  if (header.attempt.empty()) header = recorder::Recording(file).header();
-  analytics::AssessedAttempt assessed;
-  assessed.header = std::move(header);
-  assessed.outcome = report.outcome;
-  assessed.complete = report.complete;
-  assessed.steps = report.steps;
-  assessed.chainHead = report.chainHead;
-  assessed.verification = {verdictOf(report.verdict),
-                           report.verdict == recorder::ReplayVerdict::exact ? "" : report.message,
-                           recorder::softwareName()};
-  if (report.verdict == recorder::ReplayVerdict::exact) assessed.values = collector->values();
-  if (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact) {
-    recorder::Recording recording(file);
-    assessed.values = analytics::valuesFromObservables(recording, cutoff);
+  analytics::Assessment assessment =
+      analytics::assessRecording(file, o.threads, o.cutoff > 0.0 ? o.cutoff : analytics::motionCutoff);
+  if (!assessment.attempt) return assessment.report;
+  if (database != nullptr) {
+    stored.how = importedName(analytics::store(*database, *assessment.attempt));
+    stored.keyFault = keyFaultOf(*assessment.attempt, o.cohort);
   }
-  assessed.fileName = std::filesystem::path(file).filename().string();
-  if (database != nullptr) stored.how = importedName(analytics::store(*database, assessed));
-  stored.values = std::move(assessed.values);
-  return report;
+  stored.values = std::move(assessment.attempt->values);
+  return assessment.report;
 }
 
 int assess(const Options& o) {
@@ -113,10 +89,12 @@ int assess(const Options& o) {
     if (o.json) {
       nlohmann::json row = reportJson(reports.back());
       row["stored"] = stored.how;
+      if (!stored.keyFault.empty()) row["key"] = stored.keyFault;
       row["checkpoints"] = jsonOf(stored.values);
       list.push_back(row);
     } else {
       printReport(reports.back());
+      if (!stored.keyFault.empty()) fmt::print(stderr, "calot: warning: {}: {}\n", file, stored.keyFault);
       if (o.files.size() == 1 || !database) {
         std::fflush(stdout);
         analytics::printValues(stored.values, std::cout);

@@ -8,6 +8,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/run_report.h"
 #include "apps/calot/source_options.h"
+#include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
 #include "recorder/blended_source.h"
 #include "recorder/branch.h"
@@ -22,7 +23,7 @@ namespace {
 
 struct Options {
   SourceOptions source;
-  std::string parent, at, output;
+  std::string parent, at, stationKey, output;
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
@@ -48,6 +49,7 @@ int branch(const Options& o) {
   if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
   stopOnSignals();
   const double at = parseTime(o.at);
+  std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
   recorder::BranchFile file(o.output, o.force);
   const recorder::ChainVerdict chain = recorder::probe(o.parent);
   recorder::Recording parent(o.parent);
@@ -55,9 +57,10 @@ int branch(const Options& o) {
   const std::uint64_t forkStep = recorder::forkStepAt(parent, at);
   const std::unique_ptr<const Model> model = recorder::modelOf(parent);
   const std::unique_ptr<recorder::SampleSource> source = makeSource(o.source, model->scene(), o.seed);
-  const recorder::AttemptHeader header = recorder::branchHeader(parent, *model, forkStep, source->provenance());
+  recorder::AttemptHeader header = recorder::branchHeader(parent, *model, forkStep, source->provenance());
+  if (key) header.station = key->station;  // of who signs, wherever the parent came from
 
-  recorder::RecordingWriter writer(file.path(), header, {true});
+  recorder::RecordingWriter writer(file.path(), header, {true, std::move(key)});
   recorder::WorkerPool pool(o.threads);
   recorder::Session session(*model, header.seed, pool);
   LastPose pose;
@@ -114,6 +117,7 @@ void addBranch(CLI::App& app, Run& run) {
   command->add_option("--seconds", o->seconds, "stop so long after the fork; 0: when the source ends")
       ->check(CLI::Range(0.0, 36000.0));
   command->add_flag("--live", o->live, "run at real time after the fork, the haptic ticks on a thread of their own");
+  addStationKey(*command, o->stationKey);
   command->add_option("--threads", o->threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();

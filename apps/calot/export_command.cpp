@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "analytics/cohort/withdraw.h"
 #include "apps/calot/commands.h"
 #include "recorder/errors.h"
 #include "recorder/recording/export_csv.h"
@@ -13,18 +14,21 @@ namespace calot::apps {
 
 void addExport(CLI::App& app, Run& run) {
   struct Options {
-    std::string file, folder;
+    std::string file, folder, cohort;
     bool force = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("export", "Write a recording as CSV files");
   command->add_option("recording", options->file, "Recording (.h5)")->required();
   command->add_option("--csv", options->folder, "Folder to write to")->required();
+  command->add_option("--cohort", options->cohort, "Cohort database that notes that this was handed out");
   command->add_flag("--force", options->force, "Replace files that are there");
   command->callback([options, &run] {
     run = [options] {
       const recorder::ChainVerdict chain = recorder::probe(options->file);
       recorder::Recording recording(options->file);
+      if (!options->cohort.empty())
+        analytics::recordExport(options->cohort, "recording-csv", options->folder, {recording.header().attempt});
       const bool terminal = ::isatty(STDERR_FILENO) != 0;
       const std::uint64_t steps = recording.stepCount();
       const auto progress = [terminal, steps](std::uint64_t done) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/calot/commands.h"
+#include "apps/calot/hex.h"
 #include "recorder/errors.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/raw_statistics.h"
@@ -87,9 +88,14 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
   out["flushes"] = recording.status().size() - 1;
   out["chain"] = chain.intact ? "intact" : "broken";
   if (!chain.intact) out["chain_broken_at_flush"] = chain.flush;
-  std::string head;
-  for (const std::uint8_t byte : recording.status().back().chain) head += fmt::format("{:02x}", byte);
+  const std::string head = toHex(recording.status().back().chain);
   out["chain_head"] = head;
+  const std::optional<recorder::RecordedSignature>& signature = recording.signature();
+  out["signature"] = !signature                                         ? "none"
+                     : !signature->value                                ? "unfinished: its writer was killed"
+                     : signature->fits(recording.status().back().chain) ? "valid"
+                                                                        : "invalid";
+  if (signature) out["public_key"] = toHex(signature->publicKey);
   out["this_simulation_version"] = simulationVersion;
   ordered_json attributes;
   Attributes visit{attributes};
@@ -137,13 +143,14 @@ void print(const ordered_json& d) {
 
 void addInspect(CLI::App& app, Run& run) {
   struct Options {
-    std::string file;
+    std::string file, key;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("inspect", "Say what a recording holds, and whether its content chain is intact");
   command->add_option("recording", options->file, "Recording (.h5)")->required();
+  command->add_option("--public-key", options->key, "The key that must have signed it; else the exit code is 3");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &run] {
     run = [options] {
@@ -154,6 +161,12 @@ void addInspect(CLI::App& app, Run& run) {
         fmt::print("{}\n", d.dump(2, ' ', false, ordered_json::error_handler_t::replace));
       } else {
         print(d);
+      }
+      if (!options->key.empty()) {
+        const auto wanted = fromHex<32>(options->key, "--public-key");
+        const auto& signature = recording.signature();
+        const bool by = signature && signature->value && toHex(signature->publicKey) == toHex(wanted);
+        if (!by && chain.intact) throw Error(ExitCode::no, fmt::format("{}: not signed by that key", options->file));
       }
       if (!chain.intact) throw Error(ExitCode::no, fmt::format("{}: {}", options->file, chain.what));
       return static_cast<int>(ExitCode::yes);

@@ -10,6 +10,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/withdraw_command.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -58,8 +59,10 @@ void addOptions(CLI::App* command, const std::shared_ptr<Options>& options) {
 }  // namespace
 
 void addParticipant(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("participant", "Add or change participants of a cohort");
+  CLI::App* command = app.add_subcommand("participant", "Add, change or withdraw participants of a cohort");
   command->require_subcommand(1);
+  addWithdraw(*command, run);
+  addKey(*command, run);
 
   const auto added = std::make_shared<Options>();
   CLI::App* add = command->add_subcommand("add", "Add a participant; makes the cohort database if there is none");

@@ -8,6 +8,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/run_report.h"
 #include "apps/calot/source_options.h"
+#include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
 #include "recorder/attempt.h"
 #include "recorder/errors.h"
@@ -21,7 +22,7 @@ namespace {
 
 struct Options {
   SourceOptions source;
-  std::string scene, participant, station, purpose = "training", handedness = "unknown", output;
+  std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", output;
   std::string mode = "practice";
   std::uint64_t seed = 1;
   double seconds = 0.0;
@@ -33,6 +34,7 @@ int record(const Options& o) {
   if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
   stopOnSignals();
   refuseExisting(o.output, o.force);
+  std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
   const Model::Built built = Model::build(scene.description);
@@ -42,14 +44,14 @@ int record(const Options& o) {
   const std::unique_ptr<recorder::SampleSource> source = makeSource(who, built.model->scene(), o.seed);
   recorder::AttemptSettings settings;
   settings.participant = o.participant;
-  settings.station = o.station;
+  settings.station = stationOf(o.station, key);
   settings.purpose = o.purpose;
   settings.handedness = o.handedness;
   settings.mode = who.mode;
   settings.seed = o.seed;
   const recorder::AttemptHeader header =
       recorder::makeHeader(*built.model, std::move(scene.assets), source->provenance(), settings);
-  recorder::RecordingWriter writer(o.output, header, {o.force});
+  recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
   recorder::WorkerPool pool(o.threads);
   recorder::Session session(*built.model, o.seed, pool);
   session.join(writer);
@@ -88,6 +90,7 @@ void addRecord(CLI::App& app, Run& run) {
     return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
   });
   command->add_option("--station", o->station, "name of this training station");
+  addStationKey(*command, o->stationKey);
   command->add_option("--purpose", o->purpose, "training, study, demo, golden")
       ->check(CLI::IsMember({"training", "study", "demo", "golden"}))
       ->capture_default_str();

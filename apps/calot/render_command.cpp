@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "analytics/cohort/withdraw.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "gui/render/picture.h"
@@ -15,7 +16,7 @@ namespace calot::apps {
 namespace {
 
 struct Options {
-  std::string recording, output, at = "0", size = "1280x720";
+  std::string recording, output, cohort, at = "0", size = "1280x720";
   bool force = false;
 };
 
@@ -37,6 +38,7 @@ int render(const Options& o) {
   }
   const double step = seconds / static_cast<double>(recording.stepCount());
   const auto n = std::min(static_cast<std::uint64_t>(std::floor(time / step)), recording.stepCount() - 1);
+  if (!o.cohort.empty()) analytics::recordExport(o.cohort, "picture", o.output, {recording.header().attempt});
   recorder::WorkerPool pool(1);
   recorder::Seeker seeker(recording, pool);
   seeker.seek(n);
@@ -54,6 +56,7 @@ void addRender(CLI::App& app, Run& run) {
   command->add_option("-o,--output", o->output, "picture (.png)")->required();
   command->add_option("--at", o->at, "time: seconds, or minutes:seconds")->capture_default_str();
   command->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command->add_option("--cohort", o->cohort, "cohort database that notes the picture, for withdrawals");
   command->add_flag("--force", o->force, "replace the output if it is there");
   command->callback([o, &run] { run = [o] { return render(*o); }; });
 }

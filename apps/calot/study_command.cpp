@@ -3,9 +3,11 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "analytics/cohort/withdraw.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/table_study.h"
 #include "apps/calot/commands.h"
@@ -75,6 +77,26 @@ analytics::Study studyOf(Options& options) {
   return analytics::makeStudy(database, options.cohort);
 }
 
+/// Notes in the cohort whose attempts went into files: a withdrawal lists them.
+void noteExports(const Options& options, const analytics::Study& study) {
+  if (options.database.empty() || (options.csv.empty() && options.html.empty())) return;
+  std::set<std::string> units;
+  for (const analytics::StudyRow& row : study.rows) {
+    for (const auto& group : row.participants) units.insert(group.begin(), group.end());
+  }
+  std::vector<std::string> attempts;
+  const analytics::CohortDatabase database(options.database, analytics::CohortDatabase::Access::read);
+  for (const analytics::AttemptRow& a : database.listAttempts()) {
+    if (units.count(a.participant.empty() ? "attempt " + a.uuid : a.participant) > 0) attempts.push_back(a.uuid);
+  }
+  try {
+    if (!options.csv.empty()) analytics::recordExport(options.database, "study-csv", options.csv, attempts);
+    if (!options.html.empty()) analytics::recordExport(options.database, "study-html", options.html, attempts);
+  } catch (const Error& e) {
+    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << e.what() << '\n';
+  }
+}
+
 }  // namespace
 
 void addStudy(CLI::App& app, Run& run) {
@@ -106,6 +128,7 @@ void addStudy(CLI::App& app, Run& run) {
       const analytics::Study study = studyOf(*options);
       if (!options->csv.empty()) analytics::writeStudyCsv(study, options->csv, options->force);
       if (!options->html.empty()) recorder::writeText(options->html, analytics::studyHtml(study), options->force);
+      noteExports(*options, study);
       if (options->json) {
         std::cout << analytics::studyJson(study) << '\n';
       } else {

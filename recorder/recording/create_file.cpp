@@ -164,7 +164,16 @@ void observables(Builder& builder, const AttemptHeader& header, const Layout& la
   builder.attribute(g.get(), "version", H5T_STD_U32LE, &header.stepResultVersion);
 }
 
-StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout) {
+/// The signer is known from the start; the signature comes with the last flush.
+void signature(Builder& builder, const PublicKey& signer) {
+  builder.group("/signature");
+  const Id type = hdf5::elementType(Element::u1);
+  const Id key = builder.dataset(publicKeyPath, type.get(), {signer.size()}, signer.size(), false, false);
+  builder.need(H5Dwrite(key.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, signer.data()) >= 0, publicKeyPath);
+  const Id value = builder.dataset(signaturePath, type.get(), {0}, std::tuple_size_v<Signature>, false, true);
+}
+
+StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout, const PublicKey* signer) {
   WriteAttributes attributes{builder};
   visitAttributes(header, attributes);
   for (const char* name : {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps"}) {
@@ -181,6 +190,7 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
     if (column.vector) shape.push_back(column.width);
     const Id d = builder.dataset(column.path, type.get(), shape, column.chunkRows, column.deflate, true);
   }
+  if (signer != nullptr) signature(builder, *signer);
   builder.names("/scene/organs", header.organs);
   builder.names("/scene/vessels", header.vessels);
   builder.names("/scene/fat", header.fat);
@@ -242,12 +252,13 @@ void checkHeader(const AttemptHeader& header) {
   if (header.assets.size() > 1000) refuse("more than 999 assets beside the scene");
 }
 
-StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout) {
+StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout,
+                              const PublicKey* signer) {
   checkHeader(header);
   const hdf5::Session session;
   try {
     Builder builder(path);
-    const StatusRow first = build(builder, header, layout);
+    const StatusRow first = build(builder, header, layout, signer);
     builder.close();
     return first;
   } catch (...) {

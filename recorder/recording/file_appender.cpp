@@ -27,6 +27,12 @@ FileAppender::FileAppender(const std::filesystem::path& path, const Layout& layo
   const hdf5::Id how = hdf5::datasetAccess(statusBytes);
   status_ = hdf5::dataset(H5Dopen2(file_.get(), "/status", how.get()));
   if (!status_.valid()) fail("cannot open /status");
+  if (H5Lexists(file_.get(), "/signature", H5P_DEFAULT) > 0) {
+    byteType_ = hdf5::elementType(Element::u1);
+    const hdf5::Id little = hdf5::datasetAccess(std::tuple_size_v<Signature>);
+    signature_ = hdf5::dataset(H5Dopen2(file_.get(), signaturePath, little.get()));
+    if (!signature_.valid()) fail(std::string("cannot open ") + signaturePath);
+  }
   if (!layout.deviceSamples) return;
   rawCountsType_ = hdf5::elementType(Element::rawCounts);
   const hdf5::Id small = hdf5::datasetAccess(rawCountsBytes * rawChunkRows);
@@ -39,6 +45,8 @@ FileAppender::~FileAppender() {
   dataset_.clear();
   status_.reset();
   rawCounts_.reset();
+  signature_.reset();
+  byteType_.reset();
   type_.clear();
   statusType_.reset();
   rawCountsType_.reset();
@@ -106,6 +114,11 @@ void FileAppender::append(const Block& block, std::int64_t wallNanoseconds) {
   last_ = row;
 }
 
+void FileAppender::sign(const Signature& signature) {
+  const hdf5::Session session;
+  writeRows(signature_, byteType_, 0, signature.size(), 1, false, signature.data(), signaturePath);
+}
+
 void FileAppender::close() {
   const hdf5::Session session;
   for (hdf5::Id& d : dataset_) {
@@ -113,6 +126,7 @@ void FileAppender::close() {
   }
   if (!status_.reset()) fail("cannot close /status");
   if (!rawCounts_.reset()) fail(std::string("cannot close ") + rawCountsPath);
+  if (!signature_.reset()) fail(std::string("cannot close ") + signaturePath);
   if (H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
   if (!file_.reset())
     throw Error(ExitCode::failure, fmt::format("{}: cannot be closed: {}", path_.string(), hdf5::reason()));

@@ -10,12 +10,15 @@
 #include "recorder/recording/block.h"
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/layout.h"
+#include "recorder/recording/station_key.h"
 
 namespace calot::recorder {
 
 /// Creates (or truncates) a file with root attributes, scene, every data set, and the first row of /status.
+/// @param signer where the recording will be signed: whose key makes the signature.
 /// @return that first row. @throws Error failure; the file is removed then. Takes the HDF5 session itself.
-StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout);
+StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout,
+                              const PublicKey* signer = nullptr);
 
 /// Checks what createRecordingFile asks of a header. @throws Error usage naming the field.
 void checkHeader(const AttemptHeader& header);
@@ -33,6 +36,10 @@ class FileAppender {
   /// Writes a block's rows and flushes them, then the row of /status that vouches for them. `wallNanoseconds` is the
   /// row's time. @throws Error failure; from then on nothing changes the file any more.
   void append(const Block& block, std::int64_t wallNanoseconds);
+
+  /// Writes the signature of the last row's chain head; nothing is appended after it. @pre the file was created with a
+  /// signer. @throws Error failure.
+  void sign(const Signature& signature);
 
   /// Closes the file. @throws Error failure.
   void close();
@@ -53,6 +60,7 @@ class FileAppender {
   std::vector<hdf5::Id> type_, dataset_;
   hdf5::Id statusType_, status_;
   hdf5::Id rawCountsType_, rawCounts_;  ///< where there is a /device
+  hdf5::Id byteType_, signature_;       ///< where it will be signed
   std::vector<std::byte> packed_;
 };
 

@@ -223,4 +223,28 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   return h;
 }
 
+std::optional<RecordedSignature> readSignature(const std::filesystem::path& path, const hdf5::Id& file) {
+  const auto bytes = [&](const char* place, auto& out, bool mayBeEmpty) {
+    const Id d = hdf5::dataset(H5Dopen2(file.get(), place, H5P_DEFAULT));
+    if (!d.valid()) throw damaged(path, place, "is missing");
+    const Id type = hdf5::type(H5Dget_type(d.get()));
+    const Id space = hdf5::space(H5Dget_space(d.get()));
+    if (H5Tequal(type.get(), H5T_STD_U8LE) <= 0) throw damaged(path, place, "has the wrong type");
+    hsize_t rows = 0;
+    if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &rows, nullptr) != 1)
+      throw damaged(path, place, "has the wrong shape");
+    if (rows == 0 && mayBeEmpty) return false;
+    if (rows != out.size()) throw damaged(path, place, "has the wrong shape");
+    if (H5Dread(d.get(), H5T_STD_U8LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
+      throw damaged(path, place, hdf5::reason());
+    return true;
+  };
+  if (H5Lexists(file.get(), "/signature", H5P_DEFAULT) <= 0) return std::nullopt;
+  RecordedSignature signature;
+  bytes(publicKeyPath, signature.publicKey, false);
+  Signature value{};
+  if (bytes(signaturePath, value, true)) signature.value = value;
+  return signature;
+}
+
 }  // namespace calot::recorder

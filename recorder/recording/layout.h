@@ -21,6 +21,8 @@ inline constexpr std::size_t mostRecordedStructures = 32;  // HandResult::touchi
 inline constexpr std::uint64_t keyframeChunkWords = 8192;
 inline constexpr std::uint64_t rawChunkRows = 64;
 inline constexpr const char* rawCountsPath = "/device/counts";
+inline constexpr const char* signaturePath = "/signature/value";
+inline constexpr const char* publicKeyPath = "/signature/public_key";
 
 /// Stored types, all little-endian. The last five are packed compounds.
 enum class Element : std::uint8_t { u1, u2, u4, u8, i8, f4, f8, event, keyframe, status, rawSample, rawCounts };

@@ -31,6 +31,7 @@ struct Recording::Impl {
   AttemptHeader header;
   std::unique_ptr<Layout> layout;
   std::unique_ptr<ColumnReader> columns;
+  std::optional<RecordedSignature> signature;
   std::vector<StatusRow> status;
   std::vector<KeyframeRow> keyframes;
   std::vector<std::uint64_t> keyframeSteps;
@@ -53,6 +54,7 @@ struct Recording::Impl {
       if (row > 0) columns->checkFollows(before, status.back(), row);
       columns->readRawCounts(before, row, status.back());
     }
+    signature = readSignature(path, file);
     readKeyframeIndex();
     block = std::make_unique<Block>(*layout);
   }
@@ -185,6 +187,8 @@ std::vector<RawSample> Recording::rawSamples(Hand hand, std::uint64_t first, std
   return out;
 }
 
+const std::optional<RecordedSignature>& Recording::signature() const { return impl_->signature; }
+
 ChainVerdict Recording::verifyChain() {
   Impl& impl = *impl_;
   ChainVerdict verdict;
@@ -206,6 +210,11 @@ ChainVerdict Recording::verifyChain() {
                   "was changed",
                   row, before.steps, after.steps - 1, static_cast<double>(before.ticks) * impl.header.tickSeconds)};
     }
+  }
+  if (impl.signature && impl.signature->value && !impl.signature->fits(impl.status.back().chain)) {
+    const std::size_t last = impl.status.size() - 1;
+    return {false, last, last > 0 ? impl.status[last - 1].steps : 0, impl.status[last].steps,
+            "the signature does not fit the content: one of both was changed after it was signed"};
   }
   return verdict;
 }

@@ -12,6 +12,7 @@
 #include "recorder/device_sample.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "recorder/recording/station_key.h"
 
 namespace calot::recorder {
 
@@ -46,6 +47,17 @@ struct ChainVerdict {
   std::uint64_t firstStep = 0;  ///< steps [firstStep, endStep) belong to that flush
   std::uint64_t endStep = 0;
   std::string what;  ///< one phrase for a message; empty if intact
+};
+
+/// What a recording's station says of its content (schemas/recording.md, "Signature").
+struct RecordedSignature {
+  PublicKey publicKey{};
+  std::optional<Signature> value;  ///< none: its writer was killed before it could sign
+
+  /// Is it the key's signature of this head?
+  [[nodiscard]] bool fits(const std::array<std::uint8_t, 32>& head) const {
+    return value && recorder::fits(*value, publicKey, head);
+  }
 };
 
 enum class Access {
@@ -96,7 +108,11 @@ class Recording {
   /// Some of them, in the order of arrival. @pre first + count <= rawSampleCount(hand)
   [[nodiscard]] std::vector<RawSample> rawSamples(Hand hand, std::uint64_t first, std::uint64_t count);
 
-  /// Computes the chain anew over the whole file. Throws where data cannot be read; a disagreement is a verdict.
+  /// Where a key was there to sign it. Checked by verifyChain().
+  [[nodiscard]] const std::optional<RecordedSignature>& signature() const;
+
+  /// Computes the chain anew over the whole file, and holds the signature, if there is one, against its last head.
+  /// Throws where data cannot be read; a disagreement is a verdict.
   ChainVerdict verifyChain();
 
  private:

@@ -48,6 +48,11 @@ class Salvage {
     file_ = openForReading(readable, Access::settled);
     header_ = readHeader(path, file_, fileBytes);
     try {
+      signature_ = readSignature(path, file_);
+    } catch (const Error&) {
+      signature_.reset();  // the content is worth saving without it
+    }
+    try {
       open(fileBytes);
     } catch (const Error&) {
       if (!header_.deviceSamples) throw;
@@ -69,6 +74,7 @@ class Salvage {
 
   [[nodiscard]] const AttemptHeader& header() const { return header_; }
   [[nodiscard]] const Layout& layout() const { return *layout_; }
+  [[nodiscard]] const std::optional<RecordedSignature>& signature() const { return signature_; }
 
   /// Reads the next flush. @return false at the end; `lost` then says why it is the end, if it came too early.
   bool next(Block& block, StatusRow& after, std::string& lost) {
@@ -120,6 +126,7 @@ class Salvage {
   std::string cut_;
   hdf5::Id file_;
   AttemptHeader header_;
+  std::optional<RecordedSignature> signature_;
   std::unique_ptr<Layout> layout_;
   std::unique_ptr<ColumnReader> columns_;
   StatusRow before_;
@@ -135,12 +142,15 @@ Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& 
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("nothing can be saved: {}", e.what()));
   }
-  const StatusRow first = createRecordingFile(temporary, source->header(), source->layout());
+  const StatusRow first = createRecordingFile(temporary, source->header(), source->layout(),
+                                              source->signature() ? &source->signature()->publicKey : nullptr);
   FileAppender out(temporary, source->layout(), first, false);
   Block block(source->layout());
   StatusRow row;
   Recovered result;
   while (source->next(block, row, result.lost)) out.append(block, row.wallNanoseconds);
+  // A signature is kept where it is one of what was saved: not where the end is lost.
+  if (source->signature() && source->signature()->fits(out.last().chain)) out.sign(*source->signature()->value);
   out.close();
   result.steps = out.last().steps;
   result.ticks = out.last().ticks;

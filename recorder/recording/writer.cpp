@@ -40,6 +40,7 @@ struct RecordingWriter::Impl {
 
   std::filesystem::path target;
   Layout layout;
+  std::optional<StationKey> key;
   std::unique_ptr<FileAppender> file;
 
   // The loop's side.
@@ -106,6 +107,7 @@ struct RecordingWriter::Impl {
         flushes.fetch_add(1, std::memory_order_relaxed);
         steps.store(file->last().steps, std::memory_order_relaxed);
       }
+      if (last && key) file->sign(signHead(*key, file->last().chain));
       if (last) file->close();
     } catch (...) {
       error = std::current_exception();
@@ -148,7 +150,9 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& target, const Atte
   impl_ = std::make_unique<Impl>(target, header);
   Impl& impl = *impl_;
   const std::filesystem::path temporary = temporaryName(target);
-  const StatusRow first = createRecordingFile(temporary, header, impl.layout);
+  impl.key = std::move(options.key);
+  const StatusRow first =
+      createRecordingFile(temporary, header, impl.layout, impl.key ? &impl.key->publicKey : nullptr);
   try {
     impl.file = std::make_unique<FileAppender>(temporary, impl.layout, first, true);
     publish(temporary, target, options.force);

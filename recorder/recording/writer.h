@@ -4,15 +4,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "recorder/device_sample.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "recorder/recording/station_key.h"
 
 namespace calot::recorder {
 
 struct WriterOptions {
-  bool force = false;  ///< replace a file that is already there
+  bool force = false;                  ///< replace a file that is already there
+  std::optional<StationKey> key = {};  ///< signs the last head of the chain
 };
 
 /// What the writer did; may be read from any thread while it records.

@@ -9,6 +9,7 @@ from contextlib import closing
 import h5py
 import program
 import recording_file
+from cohort_content import content, query
 from program import calot, recording
 
 
@@ -16,22 +17,6 @@ def attempts():
     """Two of each profile, as a study takes them."""
     return [recording(f"{who}-{seed}", "--performer", who, "--seed", seed, "--seconds", 2, "--mode", "assessment", "--purpose", "study")
             for who in ("skilled", "unskilled") for seed in (1, 2)]
-
-
-def content(path):
-    """Every row of every table, without the moments at which they were written."""
-    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
-        tables = [row[0] for row in database.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name")]
-        out = {}
-        for table in tables:
-            columns = [row[1] for row in database.execute(f"PRAGMA table_info({table})") if not row[1].endswith("_utc")]
-            out[table] = sorted(map(repr, database.execute(f"SELECT {', '.join(columns)} FROM {table}")))
-    return out
-
-
-def query(path, sql):
-    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
-        return database.execute(sql).fetchall()
 
 
 class Assess(program.ProgramTest):

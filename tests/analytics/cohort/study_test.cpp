@@ -139,7 +139,8 @@ TEST(Study, countsWhyAttemptsStayOut) {
   }
   EXPECT_EQ(out + study.analysed, study.recruited);
   EXPECT_EQ(reasons,
-            "excluded by hand:1;recording diverged or damaged:1;not verified yet:1;recording incomplete:1;technical "
+            "excluded by hand: fire alarm (instructor):1;recording diverged or damaged:1;not verified yet:1;recording "
+            "incomplete:1;technical "
             "failure:1;"
             "practice:2;branch of another attempt:1;golden recording:1;no group:1;");
   EXPECT_DOUBLE_EQ(*rowOf(study, "elapsed-time", "").group[0].mean, 22.0);

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/cohort/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <variant>
+
+#include "analytics/cohort/connection.h"
+#include "analytics/cohort/schema_facts.h"
+#include "analytics/cohort/tables.h"
+#include "analytics/cohort/withdraw.h"
+
+namespace calot::analytics {
+namespace {
+
+using namespace tables;
+
+using Blob = std::vector<unsigned char>;
+using Cell = std::variant<std::monostate, std::int64_t, double, std::string, Blob>;
+using Row = std::map<std::string, Cell>;
+
+/// Tables that are merged as attempts, not row by row.
+bool ofAttempts(const std::string& table) {
+  static const std::set<std::string> names{"attempt", "recording", "recording_signature", "verification",
+                                           "checkpoint_value"};
+  return names.count(table) > 0;
+}
+
+/// Tables whose empty entries say "not known".
+bool mayBeFilled(const std::string& table) {
+  static const std::set<std::string> names{"participant", "site", "arm", "station", "cohort"};
+  return names.count(table) > 0;
+}
+
+/// When a row was written says nothing of what it says, unless the row has no other name.
+bool isTime(const std::string& column) {
+  return column.size() > 4 && column.compare(column.size() - 4, 4, "_utc") == 0;
+}
+
+Cell cellOf(const SQLite::Column& column) {
+  if (column.isInteger()) return column.getInt64();
+  if (column.isFloat()) return column.getDouble();
+  if (column.isText()) return column.getString();
+  if (column.isBlob()) {
+    const auto* bytes = static_cast<const unsigned char*>(column.getBlob());
+    return Blob(bytes, bytes + column.getBytes());
+  }
+  return std::monostate{};
+}
+
+void bindCell(SQLite::Statement& statement, int at, const Cell& cell) {
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) {
+    statement.bind(at, *i);
+  } else if (const auto* d = std::get_if<double>(&cell)) {
+    statement.bind(at, *d);
+  } else if (const auto* s = std::get_if<std::string>(&cell)) {
+    statement.bind(at, *s);
+  } else if (const auto* b = std::get_if<Blob>(&cell)) {
+    statement.bind(at, b->data(), static_cast<int>(b->size()));
+  } else {
+    statement.bind(at);
+  }
+}
+
+bool isEmpty(const Cell& cell) {
+  const auto* s = std::get_if<std::string>(&cell);
+  return std::holds_alternative<std::monostate>(cell) || (s != nullptr && s->empty());
+}
+
+std::string shown(const Cell& cell) {
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *i);
+  if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
+  if (const auto* s = std::get_if<std::string>(&cell)) return fmt::format("\"{}\"", *s);
+  if (const auto* b = std::get_if<Blob>(&cell)) {
+    std::string hex;
+    for (const unsigned char byte : *b) hex += fmt::format("{:02x}", byte);
+    return hex.size() > 16 ? hex.substr(0, 16) + "..." : hex;
+  }
+  return "nothing";
+}
+
+std::string textOf(const Cell& cell) {
+  const auto* s = std::get_if<std::string>(&cell);
+  return s == nullptr ? std::string() : *s;
+}
+
+std::int64_t numberOf(const Cell& cell) {
+  const auto* i = std::get_if<std::int64_t>(&cell);
+  return i == nullptr ? 0 : *i;
+}
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+class Merge {
+ public:
+  Merge(SQLite::Database& into, std::string intoPath, SQLite::Database& from, std::string fromPath)
+      : into_(into), from_(from), intoPath_(std::move(intoPath)), fromPath_(std::move(fromPath)) {}
+
+  CohortMerge run() {
+    theirs_ = guarded(fromPath_, [&] { return readAttempts(from_); });
+    findSkipped();
+    for (const TableFacts& table : readTables(into_)) {
+      if (table.name == "attempt") {
+        mergeAttempts();
+      } else if (!ofAttempts(table.name)) {
+        mergeTable(table);
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// What was withdrawn here stays out; what was withdrawn there must go here first.
+  void findSkipped() {
+    std::map<std::string, std::pair<int, int>> attemptsOf;  // pseudonym -> all, withdrawn
+    for (const AttemptRow& a : theirs_) {
+      const bool gone = isWithdrawn(into_, a.uuid) || (!a.parent.empty() && isWithdrawn(into_, a.parent));
+      if (gone) skippedWords_.push_back(a.uuid);
+      if (a.participant.empty()) continue;
+      ++attemptsOf[a.participant].first;
+      attemptsOf[a.participant].second += gone ? 1 : 0;
+    }
+    result_.withdrawn = skippedWords_.size();
+    for (const auto& [pseudonym, count] : attemptsOf) {
+      if (count.first != count.second || participantId(into_, pseudonym) >= 0) continue;
+      skippedParticipants_.insert(pseudonym);
+      skippedWords_.push_back(pseudonym);
+    }
+    for (const AttemptRow& a : readAttempts(into_)) {
+      if (guarded(fromPath_, [&] { return isWithdrawn(from_, a.uuid); })) {
+        result_.conflicts.push_back(
+            fmt::format("attempt {} of participant \"{}\" was withdrawn from {}; withdraw it from {} first", a.uuid,
+                        a.participant, fromPath_, intoPath_));
+      }
+    }
+  }
+
+  void mergeAttempts() {
+    std::map<std::string, std::int64_t> number;
+    guarded(fromPath_, [&] {
+      SQLite::Statement ids(from_, "SELECT uuid, id FROM attempt");
+      while (ids.executeStep()) number[text(ids.getColumn(0))] = ids.getColumn(1).getInt64();
+    });
+    for (const AttemptRow& a : theirs_) {
+      checkAttempt(a, fromPath_);
+      if (isWithdrawn(into_, a.uuid) || (!a.parent.empty() && isWithdrawn(into_, a.parent))) continue;
+      try {
+        mergeAttempt(a, number[a.uuid]);
+      } catch (const Error& error) {
+        if (error.code() != ExitCode::no) throw;
+        result_.conflicts.emplace_back(error.what());
+        continue;
+      }
+      numbers_["attempt"][number[a.uuid]] = attemptId(into_, a.uuid);
+    }
+  }
+
+  void mergeAttempt(const AttemptRow& a, std::int64_t number) {
+    const std::vector<CheckpointValue> values = guarded(fromPath_, [&] { return readValues(from_, number); });
+    const std::optional<AttemptRow> known = findAttempt(into_, a.uuid);
+    if (!known) {
+      importAttempt(into_, intoPath_, a, &values);
+      ++result_.attempts;
+      return;
+    }
+    AttemptRecord incoming = a;
+    const bool same = known->chainHead == a.chainHead && known->steps == a.steps && known->complete == a.complete;
+    const bool judgedThere = a.verification.verdict == Verdict::verified || !a.verification.text.empty();
+    const bool judgedHere =
+        known->verification.verdict != Verdict::notChecked && known->verification.verdict != Verdict::notCheckableHere;
+    const std::vector<CheckpointValue>* taken = &values;
+    if (same) {
+      // The name of its file and its values stay; that it is one and the same attempt is still asked.
+      incoming.fileName = known->fileName;
+      if (judgedHere || !judgedThere) incoming.verification = known->verification;
+      if (judgedHere || !readValues(into_, attemptId(into_, a.uuid)).empty()) taken = nullptr;
+      if (known->signature) incoming.signature = known->signature;
+    }
+    if (importAttempt(into_, intoPath_, incoming, taken) == Imported::extended) ++result_.extended;
+  }
+
+  bool skipped(const TableFacts& table, const Row& row) const {
+    if (table.name == "participant") return skippedParticipants_.count(textOf(row.at("pseudonym"))) > 0;
+    if (table.name != "audit") return false;
+    const std::string about = textOf(row.at("subject")), detail = textOf(row.at("detail"));
+    return std::any_of(skippedWords_.begin(), skippedWords_.end(),
+                       [&](const std::string& word) { return namesWord(about, word) || namesWord(detail, word); });
+  }
+
+  /// Turns the numbers of other rows into those that they have here. @returns false where such a row stayed out.
+  bool translate(const TableFacts& table, Row& row) const {
+    for (const ForeignKey& key : table.foreign) {
+      const auto map = numbers_.find(key.parent);
+      Cell& cell = row[key.column];
+      if (map == numbers_.end() || !std::holds_alternative<std::int64_t>(cell)) continue;
+      const auto at = map->second.find(std::get<std::int64_t>(cell));
+      if (at == map->second.end()) return false;
+      cell = at->second;
+    }
+    return true;
+  }
+
+  void mergeTable(const TableFacts& table) {
+    if (!table.number.empty()) numbers_[table.name];
+    std::vector<std::string> columns;
+    for (const ColumnFacts& c : table.columns) columns.push_back(quotedName(c.name));
+    const std::vector<Row> rows = guarded(fromPath_, [&] {
+      SQLite::Statement read(from_, fmt::format("SELECT {} FROM {}", joined(columns, ", "), quotedName(table.name)));
+      std::vector<Row> all;
+      while (read.executeStep()) {
+        Row& row = all.emplace_back();
+        for (std::size_t c = 0; c < table.columns.size(); ++c)
+          row[table.columns[c].name] = cellOf(read.getColumn(static_cast<int>(c)));
+      }
+      return all;
+    });
+    for (Row row : rows) {
+      if (!skipped(table, row) && translate(table, row)) mergeRow(table, row);
+    }
+  }
+
+  void mergeRow(const TableFacts& table, const Row& row) {
+    const std::optional<Row> here = find(table, row);
+    const std::int64_t there = table.number.empty() ? 0 : numberOf(row.at(table.number));
+    if (!here) {
+      const std::int64_t number = insert(table, row);
+      if (!table.number.empty()) numbers_[table.name][there] = number;
+      ++(table.name == "participant" ? result_.participants : table.name == "audit" ? result_.audit : result_.rows);
+      return;
+    }
+    if (!table.number.empty()) numbers_[table.name][there] = numberOf(here->at(table.number));
+    for (const ColumnFacts& c : table.columns) {
+      const Cell &mine = here->at(c.name), &theirs = row.at(c.name);
+      if (c.name == table.number || isTime(c.name) || mine == theirs) continue;
+      if (mayBeFilled(table.name) && isEmpty(theirs)) continue;
+      if (mayBeFilled(table.name) && isEmpty(mine)) {
+        fill(table, row, c.name);
+        continue;
+      }
+      std::vector<std::string> name;
+      for (const std::string& k : table.key) name.push_back(named(table, k, row.at(k)));
+      result_.conflicts.push_back(fmt::format("{} {}: {} is {} in {} and {} in {}", table.name, joined(name, ", "),
+                                              c.name, shown(mine), intoPath_, shown(theirs), fromPath_));
+    }
+  }
+
+  /// A key's entry as people know it: a pseudonym or a uuid in the place of a row's number.
+  std::string named(const TableFacts& table, const std::string& column, const Cell& cell) const {
+    for (const ForeignKey& key : table.foreign) {
+      if (key.column != column || !std::holds_alternative<std::int64_t>(cell)) continue;
+      const char* word = key.parent == "attempt" ? "uuid" : key.parent == "participant" ? "pseudonym" : nullptr;
+      if (word == nullptr) continue;
+      SQLite::Statement find(into_, fmt::format("SELECT {} FROM {} WHERE id = ?", word, quotedName(key.parent)));
+      bindCell(find, 1, cell);
+      if (find.executeStep()) return find.getColumn(0).getString();
+    }
+    return shown(cell);
+  }
+
+  std::string whereKey(const TableFacts& table) const {
+    std::vector<std::string> tests;
+    for (const std::string& k : table.key) tests.push_back(quotedName(k) + " IS ?");
+    return joined(tests, " AND ");
+  }
+
+  std::optional<Row> find(const TableFacts& table, const Row& row) {
+    std::vector<std::string> columns;
+    for (const ColumnFacts& c : table.columns) columns.push_back(quotedName(c.name));
+    SQLite::Statement look(into_, fmt::format("SELECT {} FROM {} WHERE {} LIMIT 1", joined(columns, ", "),
+                                              quotedName(table.name), whereKey(table)));
+    int at = 1;
+    for (const std::string& k : table.key) bindCell(look, at++, row.at(k));
+    if (!look.executeStep()) return std::nullopt;
+    Row found;
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      found[table.columns[c].name] = cellOf(look.getColumn(static_cast<int>(c)));
+    return found;
+  }
+
+  std::int64_t insert(const TableFacts& table, const Row& row) {
+    std::vector<std::string> columns, marks;
+    for (const ColumnFacts& c : table.columns) {
+      if (c.name == table.number) continue;
+      columns.push_back(quotedName(c.name));
+      marks.emplace_back("?");
+    }
+    SQLite::Statement put(into_, fmt::format("INSERT INTO {} ({}) VALUES ({})", quotedName(table.name),
+                                             joined(columns, ", "), joined(marks, ", ")));
+    int at = 1;
+    for (const ColumnFacts& c : table.columns) {
+      if (c.name != table.number) bindCell(put, at++, row.at(c.name));
+    }
+    put.exec();
+    return into_.getLastInsertRowid();
+  }
+
+  void fill(const TableFacts& table, const Row& row, const std::string& column) {
+    SQLite::Statement put(into_, fmt::format("UPDATE {} SET {} = ? WHERE {}", quotedName(table.name),
+                                             quotedName(column), whereKey(table)));
+    bindCell(put, 1, row.at(column));
+    int at = 2;
+    for (const std::string& k : table.key) bindCell(put, at++, row.at(k));
+    put.exec();
+    ++result_.filled;
+  }
+
+  SQLite::Database &into_, &from_;
+  std::string intoPath_, fromPath_;
+  CohortMerge result_;
+  std::vector<AttemptRow> theirs_;
+  std::map<std::string, std::map<std::int64_t, std::int64_t>> numbers_;  ///< table -> number there -> number here
+  std::set<std::string> skippedParticipants_;
+  std::vector<std::string> skippedWords_;
+};
+
+}  // namespace
+
+CohortMerge mergeCohorts(const std::string& into, const std::string& from) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(into, from, ignored))
+    throw Error(ExitCode::usage, fmt::format("{}: is {}; name two databases", from, into));
+  constexpr auto patience = std::chrono::seconds(10);
+  const auto source = guarded(from, [&] { return openCohort(from, CohortDatabase::Access::read, patience); });
+  return guarded(into, [&] {
+    const auto target = openCohort(into, CohortDatabase::Access::write, patience);
+    SQLite::Transaction reading(*source);  // one moment of it
+    SQLite::Transaction transaction(*target, SQLite::TransactionBehavior::IMMEDIATE);
+    CohortMerge merge = Merge(*target, into, *source, from).run();
+    if (!merge.conflicts.empty()) return merge;  // rolled back
+    if (merge.changed()) {
+      audit(*target, "cohort-merge", std::filesystem::path(from).filename().string(),
+            fmt::format("{} participants, {} attempts, {} extended, {} other rows, {} filled", merge.participants,
+                        merge.attempts, merge.extended, merge.rows, merge.filled));
+    }
+    transaction.commit();
+    return merge;
+  });
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Computing the derived values of a cohort anew.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/checkpoints/checkpoint.h"
+#include "recorder/errors.h"
+
+namespace calot::analytics {
+
+/// A value before and after; one of both may be missing.
+struct ValueChange {
+  std::optional<CheckpointValue> before, now;
+
+  [[nodiscard]] const CheckpointValue& any() const { return now ? *now : *before; }
+};
+
+enum class Regraded : std::uint8_t {
+  unchanged,
+  changed,
+  missing,     ///< its recording is in none of the places
+  motion,      ///< motion without a scene: there is no recording, `calot import` computes it anew
+  unreadable,  ///< its recording is damaged
+  conflict,    ///< its recording diverged, or is not the one that the cohort holds
+};
+
+struct RegradedAttempt {
+  std::string uuid;
+  std::string file;  ///< as the cohort knows it; where it was found, its path
+  Regraded how = Regraded::missing;
+  ExitCode code = ExitCode::yes;
+  std::string message;  ///< why, where it could not be done, or not in full
+  std::vector<ValueChange> changes;
+};
+
+struct Regrade {
+  std::vector<RegradedAttempt> attempts;  ///< by start, then uuid
+  std::vector<std::string> notRead;       ///< files in the places that are no recordings, or damaged
+
+  /// The worst of all: 1, 4, 3, 5, 0.
+  [[nodiscard]] ExitCode code() const;
+};
+
+/// Re-simulates the recording of every attempt, `jobs` at a time, and brings verification and values up to date; what a
+/// person entered is not touched. Attempts are stored in their order, each whole or not at all, so that a run that was
+/// cut short is taken up by the next. The second run changes nothing. Where this build cannot re-simulate a
+/// recording, values that were re-simulated by the same version of their checkpoint stay, and the others come from its
+/// observables.
+/// @param places files and folders of recordings
+/// @param jobs 0: one for each processor
+/// @throws Error as CohortDatabase does; damaged where a place is not there
+Regrade regrade(const std::string& path, const std::vector<std::filesystem::path>& places, unsigned jobs,
+                const std::function<void(std::uint64_t done, std::uint64_t of)>& progress = {});
+
+/// Values of both lists that are not the same, in the order of the second, then what is left of the first.
+std::vector<ValueChange> changesOf(const std::vector<CheckpointValue>& before, const std::vector<CheckpointValue>& now);
+
+}  // namespace calot::analytics

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "apps/calot/commands.h"
+
+namespace calot::apps {
+
+/// `calot participant withdraw` and `calot participant key`.
+void addWithdraw(CLI::App& participant, Run& run);
+void addKey(CLI::App& participant, Run& run);
+
+}  // namespace calot::apps

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/recording/station_key.h"
+
+#include <fmt/format.h>
+#include <sodium.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "recorder/errors.h"
+#include "recorder/formats/secret_file.h"
+
+namespace calot::recorder {
+namespace {
+
+using Seed = std::array<std::uint8_t, crypto_sign_SEEDBYTES>;
+
+void ready() {
+  if (sodium_init() < 0) throw Error(ExitCode::failure, "libsodium cannot be initialised");
+}
+
+template <std::size_t N>
+std::string hex(const std::array<std::uint8_t, N>& bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+template <std::size_t N>
+bool unhex(const nlohmann::json& value, std::array<std::uint8_t, N>& out) {
+  if (!value.is_string()) return false;
+  const std::string& text = value.get_ref<const std::string&>();
+  std::size_t written = 0;
+  return text.size() == 2 * N &&
+         sodium_hex2bin(out.data(), N, text.data(), text.size(), nullptr, &written, nullptr) == 0 && written == N;
+}
+
+void checkStation(const std::string& station) {
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+  if (station.empty() || station.size() > 64 || std::any_of(station.begin(), station.end(), control))
+    throw Error(ExitCode::usage, "station: a name has 1 to 64 characters and no control characters");
+}
+
+void expand(const Seed& seed, StationKey& key) {
+  crypto_sign_seed_keypair(key.publicKey.data(), key.secret.data(), seed.data());
+}
+
+}  // namespace
+
+StationKey::~StationKey() { sodium_memzero(secret.data(), secret.size()); }
+
+StationKey makeStationKey(const std::string& station) {
+  ready();
+  checkStation(station);
+  Seed seed{};
+  randombytes_buf(seed.data(), seed.size());
+  StationKey key;
+  key.station = station;
+  expand(seed, key);
+  sodium_memzero(seed.data(), seed.size());
+  return key;
+}
+
+void writeStationKey(const std::filesystem::path& file, const StationKey& key) {
+  Seed seed{};
+  std::copy_n(key.secret.begin(), seed.size(), seed.begin());
+  std::string text;
+  try {
+    text = nlohmann::ordered_json{{"format", "calot-station-key"},
+                                  {"version", 1},
+                                  {"station", key.station},
+                                  {"public_key", hex(key.publicKey)},
+                                  {"seed", hex(seed)}}
+               .dump(2) +
+           "\n";
+  } catch (const nlohmann::json::exception&) {
+    throw Error(ExitCode::usage, "station: its name is no UTF-8 text");
+  }
+  writeSecret(file, text, false);
+  sodium_memzero(text.data(), text.size());
+  sodium_memzero(seed.data(), seed.size());
+}
+
+StationKey readStationKey(const std::filesystem::path& file) {
+  ready();
+  std::string text = readSecret(file, 65536);
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  sodium_memzero(text.data(), text.size());
+  StationKey key;
+  PublicKey said{};
+  Seed seed{};
+  const auto word = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
+  const bool good = json.is_object() && word("format") == "calot-station-key" && word("version") == 1 &&
+                    word("station").is_string() && unhex(word("public_key"), said) && unhex(word("seed"), seed);
+  if (!good) throw Error(ExitCode::damaged, fmt::format("{}: no station key, or of a newer Calot", file.string()));
+  key.station = json["station"].get<std::string>();
+  checkStation(key.station);
+  expand(seed, key);
+  sodium_memzero(seed.data(), seed.size());
+  if (key.publicKey != said)
+    throw Error(ExitCode::damaged, fmt::format("{}: its public key is not that of its seed", file.string()));
+  return key;
+}
+
+Signature signHead(const StationKey& key, const std::array<std::uint8_t, 32>& head) {
+  Signature signature{};
+  crypto_sign_detached(signature.data(), nullptr, head.data(), head.size(), key.secret.data());
+  return signature;
+}
+
+bool fits(const Signature& signature, const PublicKey& key, const std::array<std::uint8_t, 32>& head) {
+  ready();
+  return crypto_sign_verify_detached(signature.data(), head.data(), head.size(), key.data()) == 0;
+}
+
+}  // namespace calot::recorder

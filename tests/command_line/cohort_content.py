@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a cohort database holds, read with another program than ours."""
+
+import sqlite3
+from contextlib import closing
+
+
+def content(path):
+    """Every row of every table, without the moments at which they were written."""
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+        tables = [row[0] for row in database.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name")]
+        out = {}
+        for table in tables:
+            columns = [row[1] for row in database.execute(f"PRAGMA table_info({table})") if not row[1].endswith("_utc")]
+            out[table] = sorted(map(repr, database.execute(f"SELECT {', '.join(columns)} FROM {table}")))
+    return out
+
+
+def query(path, sql):
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+        return database.execute(sql).fetchall()

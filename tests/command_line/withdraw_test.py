@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""calot participant withdraw, key: nothing of a person is left in any store, byte for byte."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+import program
+import recording_file
+from cohort_content import content, query
+from program import calot, recording
+
+WHO, NAME = "Withdrawn-Q7", "Ada Quill"
+PASSPHRASE = {"CALOT_KEY_PASSPHRASE": "correct horse"}
+
+
+def of(participant, seed, purpose="study", mode="practice"):
+    return recording(f"w-{participant}-{seed}", "--performer", "skilled", "--seed", seed, "--seconds", 0.5, "--mode", mode,
+                     "--purpose", purpose, "--participant", participant)
+
+
+class Withdraw(program.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.cohort, self.key, self.data = self.path("c.db"), self.path("names.key"), self.path("data")
+        (self.data / "deep").mkdir(parents=True)
+        self.mine = [shutil.copy(of(WHO, 1), self.data / "deep" / "a.h5"), shutil.copy(of(WHO, 2, "training"), self.data / "b.h5")]
+        self.other = shutil.copy(of("P2", 3), self.data / "c.h5")
+        self.branch = self.data / "branch.h5"
+        self.well("branch", self.mine[0], "--at", 0.2, "--performer", "unskilled", "--seconds", 0.1, "-o", self.branch)
+        self.well("participant", "add", WHO, "--group", "novice", "--experience", "laparoscopies=2", "--consent", "research:2026-01-01",
+                  "--cohort", self.cohort)
+        self.well("assess", *self.mine, self.other, self.branch, "--cohort", self.cohort)
+        self.well("participant", "key", "add", WHO, "--name", NAME, "--file", self.key, environment=PASSPHRASE)
+        self.well("participant", "key", "add", "P2", "--name", "Someone Else", "--file", self.key, environment=PASSPHRASE)
+        self.uuids = [u for (u,) in query(self.cohort, "SELECT uuid FROM attempt WHERE participant = (SELECT id FROM participant WHERE "
+                                                       f"pseudonym = '{WHO}')")]
+        self.assertEqual(len(self.uuids), 3)  # a branch keeps its parent's participant
+        self.well("attempt", "exclude", self.uuids[0], "--cohort", self.cohort, "--reason", "late", "--by", "me")
+        self.well("export", self.mine[0], "--csv", self.path("handed-out"), "--cohort", self.cohort)
+        self.well("render", self.mine[0], "-o", self.path("picture.png"), "--size", "64x48", "--cohort", self.cohort)
+        shutil.copy(self.path("picture.png"), self.data / "deep" / "a.png")
+        # A backup, as a migration leaves one.
+        shutil.copyfile(self.cohort, self.path("c.db.schema-2.bak"))
+
+    def withdraw(self, *more, scope="all"):
+        return self.well("participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", scope, "--recordings", self.data, "--key", self.key,
+                         *more, environment=PASSPHRASE)
+
+    def left(self, *words):
+        """Files of the test's folder that hold one of the words anywhere in their bytes, or as text in the other endings."""
+        found = []
+        for file in sorted(p for p in self.folder.rglob("*") if p.is_file()):
+            held = file.read_bytes()
+            if any(w.encode(code) in held for w in words for code in ("utf-8", "utf-16-le", "utf-16-be")):
+                found.append(str(file.relative_to(self.folder)))
+        return found
+
+    def test_all_of_it_goes(self):
+        self.assertIn("c.db", "".join(self.left(WHO)))
+        self.assertGreater(len(self.left(*self.uuids)), 4)
+        others = [r for r in content(self.cohort)["participant"] if "'P2'" in r]
+        said = self.withdraw().out
+        self.assertIn(str(self.path("handed-out")), said)
+        for uuid in self.uuids:
+            self.assertIn(uuid, said)
+        # What was handed out is listed, not reached.
+        self.assertIn("was handed out: recording-csv", said)
+        shutil.rmtree(self.path("handed-out"))
+        self.assertEqual(self.left(WHO, *self.uuids), [])
+        self.assertEqual(sorted(p.name for p in self.data.rglob("*") if p.is_file()), ["c.h5"])
+        self.assertFalse(self.path("picture.png").exists())
+        self.assertFalse(self.path("c.db.schema-2.bak").exists())
+        self.well("cohort", "check", self.cohort)
+        self.assertEqual([r for r in content(self.cohort)["participant"] if "'P2'" in r], others)
+        self.assertEqual(query(self.cohort, "SELECT count(*) FROM attempt"), [(1,)])
+        self.assertEqual(query(self.cohort, "SELECT scope, attempts FROM tombstone"), [("all", 3)])
+        self.assertEqual(self.well("participant", "key", "show", "--file", self.key, environment=PASSPHRASE).out, "P2\tSomeone Else\n")
+        # It does not come back: not its recordings, not by a merge.
+        self.refused(3, "participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", "all", "--recordings", self.data, "--no-key",
+                     names=(WHO,))
+        answer = calot("assess", of(WHO, 1), "--cohort", self.cohort)
+        self.assertEqual(answer.code, 3, answer)
+        self.assertIn("was withdrawn", answer.err)
+        elsewhere = self.path("b.db")
+        self.well("assess", of(WHO, 1), of(WHO, 2), "--cohort", elsewhere)
+        self.assertIn("2 withdrawn attempts stay out", self.well("cohort", "merge", self.cohort, elsewhere).out)
+        elsewhere.unlink()
+        self.assertEqual(self.left(WHO, *self.uuids), [])
+
+    def test_a_database_that_still_has_it_is_told(self):
+        elsewhere = self.path("b.db")
+        shutil.copyfile(self.cohort, elsewhere)
+        self.withdraw()
+        answer = calot("cohort", "merge", elsewhere, self.cohort)
+        self.assertEqual(answer.code, 3, answer)
+        self.assertIn("withdraw it from", answer.err)
+
+    def test_research_only(self):
+        said = self.withdraw(scope="research").out
+        self.assertNotIn("key file", said)
+        self.assertEqual(sorted(p.name for p in self.data.rglob("*") if p.is_file()), ["b.h5", "c.h5"])
+        self.assertEqual(query(self.cohort, "SELECT study_group FROM participant WHERE pseudonym = ?".replace("?", f"'{WHO}'")), [("",)])
+        self.assertEqual(query(self.cohort, "SELECT count(*) FROM consent"), [(0,)])
+        training = query(self.cohort, "SELECT uuid FROM attempt WHERE purpose = 'training'")
+        gone = [u for u in self.uuids if (u,) not in training]
+        shutil.rmtree(self.path("handed-out"))
+        self.assertEqual(self.left(*gone), [])
+        self.assertIn(WHO, self.well("participant", "key", "show", "--file", self.key, environment=PASSPHRASE).out)
+        # New attempts stay out of studies, too.
+        self.well("participant", "set", WHO, "--group", "novice", "--cohort", self.cohort)
+        later = of(WHO, 9, mode="assessment")
+        self.well("assess", later, "--cohort", self.cohort)
+        answer = calot("study", self.cohort, "--include-synthetic", "--include-practice")
+        self.assertEqual(answer.code, 3)
+        self.assertIn("2 withdrawn from research", answer.err)
+
+    def test_says_first_what_it_would_do(self):
+        before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file() and p.suffix not in (".db-wal", ".db-shm")}
+        held = content(self.cohort)
+        said = self.withdraw("--dry-run").out
+        self.assertIn("nothing was changed", said)
+        self.assertEqual(content(self.cohort), held)
+        for file, data in before.items():
+            if not file.name.startswith("c.db"):
+                self.assertEqual(file.read_bytes(), data, file)
+
+    def test_stores_must_be_named(self):
+        base = ("participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", "all")
+        self.refused(2, *base, "--no-key", names=("--recordings",))
+        self.refused(2, *base, "--no-recordings", names=("--key",))
+        self.refused(2, *base[:-2], "--no-recordings", "--no-key")
+        self.refused(4, *base, "--recordings", self.path("nowhere"), "--no-key", names=("nowhere",))
+        self.refused(3, *base, "--no-recordings", "--key", self.key, names=(self.key, "passphrase"), environment={"CALOT_KEY_PASSPHRASE": "x"})
+        self.assertEqual(len(self.left(WHO)), len(self.left(WHO)))
+
+    def test_damaged_recordings_and_notes(self):
+        recording_file.flip_stored_byte(self.mine[0], "/ticks/left/force", 0)
+        cut = self.data / "cut.h5"
+        cut.write_bytes(self.mine[1].read_bytes()[:20000])
+        note = self.data / "note.txt"
+        note.write_text(f"call {WHO} on Monday")
+        similar = self.data / "similar.txt"
+        similar.write_text(f"x{WHO}9 is someone else")
+        said = self.withdraw().out
+        self.assertIn(f"still names it: {note}", said)
+        self.assertNotIn("similar", said)
+        self.assertEqual(sorted(p.name for p in self.data.rglob("*") if p.is_file()), ["c.h5", "note.txt", "similar.txt"])
+
+    def test_killed_at_any_moment_and_run_again(self):
+        draw = program.seeded("withdraw killed")
+        for _ in range(12 if program.HEAVY else 4):
+            work = self.path("work")
+            shutil.copytree(self.data, work / "data")
+            shutil.copyfile(self.cohort, work / "c.db")
+            command = [str(program.PROGRAM), "participant", "withdraw", WHO, "--cohort", str(work / "c.db"), "--scope", "all",
+                       "--recordings", str(work / "data"), "--no-key"]
+            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(draw.uniform(0.0, 0.25))
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            again = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+            if again.returncode == 3:  # the rows had gone: what they left in free pages goes on request
+                self.well("cohort", "scrub", work / "c.db")
+            else:
+                self.assertEqual(again.returncode, 0, again)
+            held = [str(p) for p in work.rglob("*") if p.is_file() and any(w.encode() in p.read_bytes() for w in (WHO, *self.uuids))]
+            self.assertEqual(held, [])
+            self.well("cohort", "check", work / "c.db")
+            shutil.rmtree(work)
+
+
+class Key(program.ProgramTest):
+    def test_names_are_not_in_the_file(self):
+        key = self.path("names.key")
+        add = ("participant", "key", "add", WHO, "--file", key)
+        self.well(*add, "--name", NAME, environment=PASSPHRASE)
+        self.assertEqual(os.stat(key).st_mode & 0o777, 0o600)
+        for word in (WHO, NAME, "Ada"):
+            self.assertNotIn(word.encode(), key.read_bytes())
+        self.assertEqual(self.well("participant", "key", "show", WHO, "--file", key, environment=PASSPHRASE).out, f"{WHO}\t{NAME}\n")
+        self.refused(3, *add, "--name", "Another", names=(key, WHO), environment=PASSPHRASE)
+        self.refused(3, "participant", "key", "show", "--file", key, names=(key, "passphrase"), environment={"CALOT_KEY_PASSPHRASE": "wrong"})
+        self.refused(2, "participant", "key", "show", "--file", key, names=("passphrase",), environment={"CALOT_KEY_PASSPHRASE": ""})
+        self.refused(4, "participant", "key", "show", "--file", self.path("none"), names=("none",), environment=PASSPHRASE)
+        word = self.path("word")
+        word.write_text("correct horse\n")
+        self.refused(2, "participant", "key", "show", "--file", key, "--passphrase-file", word, names=(word, "chmod"))
+        word.chmod(0o600)
+        self.well("participant", "key", "show", "--file", key, "--passphrase-file", word)
+        self.well("participant", "key", "remove", WHO, "--file", key, environment=PASSPHRASE)
+        self.refused(3, "participant", "key", "remove", WHO, "--file", key, environment=PASSPHRASE)
+        key.chmod(0o644)
+        self.refused(2, "participant", "key", "show", "--file", key, names=("chmod",), environment=PASSPHRASE)
+
+    def test_a_changed_file_is_refused(self):
+        key, draw = self.path("names.key"), program.seeded("changed key file")
+        self.well("participant", "key", "add", WHO, "--name", NAME, "--file", key, environment=PASSPHRASE)
+        whole = key.read_bytes()
+        # In the head every byte; beyond, the seal's own check.
+        for at in [0, 15, 16, 17, 23, 24, 31, 32, 48, 72, 90, len(whole) - 1, draw.randrange(len(whole))]:
+            changed = bytearray(whole)
+            changed[at] ^= 1 << draw.randrange(8)
+            key.write_bytes(changed)
+            answer = calot("participant", "key", "show", "--file", key, environment=PASSPHRASE)
+            self.assertIn(answer.code, (3, 4), (at, answer))
+            self.assertOneLine(answer, key)
+        for length in (0, 10, 71, 72, 88, len(whole) - 1):
+            key.write_bytes(whole[:length])
+            self.assertIn(calot("participant", "key", "show", "--file", key, environment=PASSPHRASE).code, (3, 4), length)
+
+
+if __name__ == "__main__":
+    program.main()
