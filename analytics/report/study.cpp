@@ -12,6 +12,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/embedded.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "recorder/errors.h"
 
@@ -53,6 +54,10 @@ std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
   if (!a.parent.empty() && !options.includeBranches) return reason[8];
   if (a.purpose == "golden") return reason[9];
   if (groupOf(a, options.grouping).empty()) return reason[10];
+  if (options.protocol) {
+    if (std::string why = whyOutByProtocol(a, groupOf(a, options.grouping), *options.protocol); !why.empty())
+      return why;
+  }
   if (!options.key.empty() && a.comparabilityKey != options.key) return reason[11];
   return {};
 }
@@ -81,6 +86,7 @@ struct Member {
   std::size_t group = 0;
   std::string participant;
   std::size_t number = 0;  ///< by start
+  bool completed = false;
 };
 
 /// Who is in the study, by attempt; fills the study's counts and the rest of its flow.
@@ -120,7 +126,9 @@ std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow
         list.erase(list.begin() + 1, list.end());
       }
       for (const AttemptRow* a : list) {
-        member.emplace(a->uuid, Member{g, person, static_cast<std::size_t>(a - attempts.data())});
+        member.emplace(a->uuid, Member{g, person, static_cast<std::size_t>(a - attempts.data()),
+                                       a->outcome == recorder::Outcome::completed});
+        study.groupOf[person] = study.groupOf[a->uuid] = study.groups[g];
         ++study.attempts[g];
         ++study.analysed;
         keys.insert(a->comparabilityKey);
@@ -193,11 +201,15 @@ void addPublished(Study& study) {
 }  // namespace
 
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
-  return makeStudy(database.listAttempts(), database.allValues(), options, database.path());
+  if (!options.protocol) return makeStudy(database.listAttempts(), database.allValues(), options, database.path());
+  StudyOptions known = options;
+  for (const Participant& p : database.participants()) known.protocol->experience[p.pseudonym] = p.experience;
+  return makeStudy(database.listAttempts(), database.allValues(), known, database.path());
 }
 
 Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
-                const StudyOptions& options, const std::string& name) {
+                const StudyOptions& asked, const std::string& name) {
+  const StudyOptions options = asked.protocol ? byProtocol(asked) : asked;
   Study study;
   study.heading = "exploratory";
   study.source = "cohort";
@@ -219,10 +231,22 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
       if (why == reason || why.rfind(reason + ": ", 0) == 0) study.flow.push_back({why, count});
     }
   }
+  for (const std::string& reason : protocolReasons()) {
+    if (out.count(reason) > 0) study.flow.push_back({reason, out[reason]});
+  }
   study.groups = chooseGroups(present, options, name, leftOut(study));
   study.better = betterOf(study.groups, options);
   const std::map<std::string, Member> member = members(study, attempts, options, name);
   askForOneKey(study, options, name);
+  if (options.protocol) {
+    std::vector<const AttemptRow*> data;
+    for (const AttemptRow& a : recruited) {
+      const std::string group = groupOf(a, options.grouping);
+      const bool compared = group == study.groups[0] || group == study.groups[1];
+      if (member.count(a.uuid) > 0 || (a.excluded && compared)) data.push_back(&a);
+    }
+    describeProtocol(study, data, options);
+  }
 
   std::map<ColumnKey, Column> columns;
   std::vector<ColumnKey> order;
@@ -238,6 +262,9 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     const double shown = item.value.value.value_or(0.0) * (definition != nullptr ? definition->displayFactor : 1.0);
     if (!item.value.value || !std::isfinite(shown)) {
       column.sample.missing[m.group][m.participant].push_back(item.value.value ? "not finite" : item.value.reason);
+      if (item.value.availability == Availability::notAvailable && !m.completed && options.protocol &&
+          options.protocol->protocol.missing == MissingRule::worstRank)
+        column.sample.unfinished[m.group].insert(m.participant);
       continue;
     }
     column.versions.insert(item.value.version);
@@ -267,6 +294,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
           fmt::format("Values of {} versions of {} are mixed, as asked.", column.versions.size(), key.first));
     }
     StudyRow& row = study.rows.emplace_back(describedRow(key, column));
+    if (options.protocol) declareRow(row, study, options.protocol->protocol);
     fillRow(row, column.sample);
     if (row.checkpoint != "attempt-duration") continue;
     for (std::size_t g = 0; g < 2; ++g) {
@@ -274,9 +302,13 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     }
   }
   for (StudyRow& row : study.rows) compareGroups(row, study, duration);
-  finishRows(study, options);
+  finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   addPublished(study);
   return study;
+}
+
+void addRatings(Study& study, const AssessmentDatabase& database) {
+  study.ratings = reportForms(database, study.groupOf, {study.groups[0], study.groups[1]});
 }
 
 }  // namespace calot::analytics

@@ -4,12 +4,16 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "analytics/assessment/protocol.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/report/ratings.h"
 #include "analytics/statistics/answer.h"
 #include "analytics/statistics/covariance_analysis.h"
 #include "analytics/statistics/hedges.h"
@@ -31,13 +35,48 @@ struct StudyChoices {
   std::vector<std::string> family;         ///< checkpoints or outcomes that are adjusted for each other; empty: all
 };
 
+/// A protocol and what the database knows of it.
+struct ProtocolInUse {
+  Protocol protocol;
+  std::vector<RegisteredProtocol> registered;  ///< all versions of its name
+  /// Participants' recorded experience; makeStudy() of a database fills it in.
+  std::map<std::string, std::map<std::string, std::string>> experience;
+};
+
+/// With a protocol, groups, the better one, attempt rule and family are the protocol's, whatever stands here.
 struct StudyOptions : StudyChoices {
+  std::optional<ProtocolInUse> protocol;
   Grouping grouping = Grouping::group;
   bool includeSynthetic = false;
   bool includePractice = false;
   bool includeBranches = false;
   std::string key;       ///< only attempts of this comparability key; empty: all, which must then have one
   bool mixKeys = false;  ///< compare across comparability keys and checkpoint versions, and say so
+};
+
+/// What a protocol says of a row: a hypothesis of the family, one outside of it, or nothing.
+enum class Role : std::uint8_t { undeclared, primary, secondary, exploratory };
+std::string nameOf(Role role);  ///< "", "primary", "secondary", "exploratory"
+
+/// One registered version of the study's protocol.
+struct ProtocolVersion {
+  std::uint32_t version = 1;
+  std::string sha256, registeredUtc, by;
+  std::vector<std::string> changed;  ///< JSON pointers where it differs from the version before
+};
+
+/// What a report says of its protocol.
+struct StudyProtocol {
+  std::string name, title, question, sha256;
+  std::uint32_t version = 1;
+  double level = 0.05;
+  MissingRule missing = MissingRule::completeCases;
+  std::array<std::string, 2> populations;  ///< definitions
+  std::string registeredUtc;               ///< empty: never
+  std::string firstAttemptUtc;             ///< earliest start among the data; empty: not known
+  std::string whyExploratory;              ///< empty: it was registered before the first attempt
+  std::vector<ProtocolVersion> versions;
+  std::vector<std::string> deviations;  ///< whole sentences
 };
 
 /// One reason for which attempts (or a table's rows) stay out, in the order in which they are asked.
@@ -75,7 +114,11 @@ struct StudyRow {
   std::array<std::vector<std::string>, 2> participants;  ///< whose, ascending; "attempt UUID" for a performer's run
   std::array<std::vector<double>, 2> values;             ///< as many, in the display unit
   Answer<MannWhitney> test = Answer<MannWhitney>::none("not computed");
-  std::optional<double> holm;            ///< p adjusted over the family; none outside of it or without a test
+  std::optional<double> holm;                  ///< p adjusted over the family; none outside of it or without a test
+  Role role = Role::undeclared;                ///< by the protocol, where there is one
+  std::optional<double> benjaminiHochberg;     ///< with a protocol: p adjusted over the rows that are not primary
+  std::array<std::uint64_t, 2> worstRanked{};  ///< participants without a value who rank behind all in test and A
+  std::optional<bool> supported;         ///< a hypothesis of the protocol: adjusted p at most the level, as expected
   std::optional<Hypothesis> hypothesis;  ///< from the direction and the group that is expected to do better
   std::optional<bool> asHypothesised;    ///< A of the hypothesis above one half; none at one half, or without one
   Answer<Superiority> effect = Answer<Superiority>::none("not computed");  ///< of the first group's values being larger
@@ -98,7 +141,8 @@ struct AbsentRow {
 };
 
 struct Study {
-  std::string heading;     ///< "exploratory": there is no protocol
+  std::string heading;  ///< "confirmatory": a protocol was registered before the first attempt; else "exploratory"
+  std::optional<StudyProtocol> protocol;
   std::string source;      ///< "cohort" or "table"
   std::string counted;     ///< what the flow counts: "attempts" or "rows"
   std::string where;       ///< the file's name without its folder
@@ -116,6 +160,9 @@ struct Study {
   std::string family;                ///< which p values are adjusted for each other, a sentence
   std::vector<StudyRow> rows;
   std::string publishedSource;  ///< of the paper's means
+  /// Of a cohort: the group of every participant and attempt (uuid) that is analysed.
+  std::map<std::string, std::string> groupOf;
+  std::vector<FormReport> ratings;  ///< addRatings()
 };
 
 /// Two groups side by side, one value per participant. A participant with several attempts needs
@@ -130,5 +177,8 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
 /// are from, for errors
 Study makeStudy(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
                 const StudyOptions& options, const std::string& name);
+
+/// Adds what the forms say that were filled in by or about those who are analysed.
+void addRatings(Study& study, const AssessmentDatabase& database);
 
 }  // namespace calot::analytics

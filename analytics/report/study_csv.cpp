@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "analytics/report/study_output.h"
 #include "recorder/errors.h"
@@ -61,7 +64,9 @@ std::string summaryTable(const Study& study) {
       "q1_b,median_b,q3_b,shift,shift_lower,shift_upper,shift_level,u,p,p_method,cliffs_delta,a,no_test_because,"
       "published_expert_mean,published_novice_mean,study,watermark,hypothesis,as_expected,area,area_lower,area_upper,"
       "p_holm,g,g_lower,g_upper,rho_duration,rho_p,rho_n,partial_a,partial_b,baseline_difference,baseline_lower,"
-      "baseline_upper,baseline_p,baseline_p_holm,baseline_slope,baseline_slope_p,coverage_warnings\n";
+      "baseline_upper,baseline_p,baseline_p_holm,baseline_slope,baseline_slope_p,coverage_warnings,role,p_benjamini_"
+      "hochberg,supported,"
+      "worst_ranked_a,worst_ranked_b\n";
   for (const StudyRow& row : study.rows) {
     text += fmt::format("{},{},{},{}", cell(row.checkpoint), cell(row.subject), cell(row.unit), nameOf(row.direction));
     for (std::size_t g = 0; g < 2; ++g) {
@@ -82,7 +87,11 @@ std::string summaryTable(const Study& study) {
     text += hypothesisCells(row) + effectCells(row) + baselineCells(row);
     std::string warnings;
     for (const std::string& w : row.coverageWarnings) warnings += (warnings.empty() ? "" : "; ") + w;
-    text += fmt::format(",{}\n", cell(warnings));
+    text += fmt::format(",{},{},{},{},{},{}\n", cell(warnings), nameOf(row.role), number(row.benjaminiHochberg),
+                        !row.supported   ? ""
+                        : *row.supported ? "yes"
+                                         : "no",
+                        row.worstRanked[0], row.worstRanked[1]);
   }
   return text;
 }
@@ -106,6 +115,33 @@ std::string flowFile(const Study& study) {
   return text + fmt::format("analysed,{}\n", study.analysed);
 }
 
+std::string ratingsFile(const Study& study) {
+  std::string text =
+      "form,version,item,group,primary,n,blank,q1,median,q3,mean,published_mean,icc_2_1,icc_2_1_lower,icc_2_1_upper,"
+      "watermark\n";
+  for (const FormReport& report : study.ratings) {
+    for (const ItemReport& item : report.items) {
+      const auto agreed = std::find_if(report.agreement.begin(), report.agreement.end(),
+                                       [&](const Agreement& a) { return a.figure == item.key; });
+      std::string icc = ",,";
+      if (agreed != report.agreement.end() && agreed->single) {
+        const auto& interval = agreed->single->interval;
+        icc = fmt::format("{},{}", agreed->single->value,
+                          interval ? fmt::format("{},{}", interval->lower, interval->upper) : ",");
+      }
+      for (std::size_t g = 0; g < report.groups.size(); ++g) {
+        const ItemSummary& s = item.groups[g];
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cell(report.name), report.version,
+                            cell(item.key), cell(report.groups[g]),
+                            !item.primaryGroup.empty() && item.primaryGroup == report.groups[g] ? "yes" : "", s.n,
+                            s.blank, number(s.lowerQuartile), number(s.median), number(s.upperQuartile), number(s.mean),
+                            number(item.published[g]), icc, watermark(study));
+      }
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 void writeStudyCsv(const Study& study, const std::string& folder, bool force) {
@@ -115,8 +151,9 @@ void writeStudyCsv(const Study& study, const std::string& folder, bool force) {
   if (error || !std::filesystem::is_directory(root, error)) {
     throw Error(ExitCode::failure, fmt::format("{}: the folder can't be made", folder));
   }
-  const std::pair<const char*, std::string> files[] = {
+  std::vector<std::pair<const char*, std::string>> files{
       {"study.csv", summaryTable(study)}, {"values.csv", valuesTable(study)}, {"flow.csv", flowFile(study)}};
+  if (!study.ratings.empty()) files.emplace_back("ratings.csv", ratingsFile(study));
   for (const auto& file : files) recorder::refuseOutput(root / file.first, force);
   for (const auto& file : files) recorder::writeText(root / file.first, file.second, force);
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <nlohmann/json.hpp>
 
+#include "analytics/report/ratings_json.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
 
 namespace calot::analytics {
 namespace {
@@ -69,15 +71,44 @@ Json adjustedJson(const BaselineAdjustment& adjusted) {
   return j;
 }
 
+Json protocolJson(const Study& study) {
+  if (!study.protocol) return nullptr;
+  const StudyProtocol& p = *study.protocol;
+  Json versions = Json::array();
+  for (const ProtocolVersion& v : p.versions) {
+    versions.push_back({{"version", v.version},
+                        {"sha256", v.sha256},
+                        {"registered_utc", v.registeredUtc},
+                        {"by", v.by},
+                        {"changed", v.changed}});
+  }
+  return {{"name", p.name},
+          {"version", p.version},
+          {"title", p.title},
+          {"sha256", p.sha256},
+          {"registered_utc", p.registeredUtc},
+          {"first_attempt_utc", p.firstAttemptUtc},
+          {"why_exploratory", p.whyExploratory},
+          {"level", p.level},
+          {"missing", p.missing == MissingRule::worstRank ? "worst-rank" : "complete-cases"},
+          {"populations", {p.populations[0], p.populations[1]}},
+          {"versions", versions},
+          {"deviations", p.deviations}};
+}
+
 Json rowJson(const Study& study, const StudyRow& row) {
   Json j{{"checkpoint", row.checkpoint},       {"subject", row.subject},   {"title", row.title},    {"unit", row.unit},
          {"direction", nameOf(row.direction)}, {"versions", row.versions}, {"origins", row.origins}};
   j["groups"] = Json::array({groupJson(study.groups[0], row.group[0]), groupJson(study.groups[1], row.group[1])});
+  j["role"] = nameOf(row.role);
+  j["supported"] = row.supported ? Json(*row.supported) : Json(nullptr);
+  j["worst_ranked"] = row.worstRanked;
   j["hypothesis"] = hypothesisJson(study, row);
   j["mann_whitney"] = answerJson(row.test, [&](const MannWhitney& t) {
     return Json{{"u", t.u},
                 {"p", t.p},
                 {"p_holm", numberOrNull(row.holm)},
+                {"p_benjamini_hochberg", numberOrNull(row.benjaminiHochberg)},
                 {"method", t.exact ? "exact" : "asymptotic"},
                 {"ties", t.ties}};
   });
@@ -130,6 +161,8 @@ std::string studyJson(const Study& study) {
          {"comparability_keys", study.keys},
          {"flow", {{"recruited", study.recruited}, {"analysed", study.analysed}}},
          {"remarks", study.remarks},
+         {"protocol", protocolJson(study)},
+         {"methods", studyMethods(study)},
          {"published_source", study.publishedSource}};
   Json excluded = Json::array();
   for (const FlowRow& row : study.flow) excluded.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
@@ -137,6 +170,7 @@ std::string studyJson(const Study& study) {
   j["absent"] = Json::array();
   for (const AbsentRow& a : study.absent)
     j["absent"].push_back({{"participant", a.participant}, {"group", a.group}, {"occasion", a.occasion}});
+  j["ratings"] = ratingsJson(study.ratings);
   j["rows"] = Json::array();
   for (const StudyRow& row : study.rows) j["rows"].push_back(rowJson(study, row));
   return j.dump(2, ' ', false, Json::error_handler_t::replace);

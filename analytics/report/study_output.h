@@ -15,8 +15,9 @@ void printStudy(const Study& study, std::ostream& out);
 /// Everything of the model, in one JSON object; numbers that don't exist are null, with a reason beside them.
 std::string studyJson(const Study& study);
 
-/// Writes study.csv (a row a checkpoint), values.csv (a row a participant and checkpoint) and flow.csv into a folder,
-/// which is made; files that are there are kept unless `force`.
+/// Writes study.csv (a row a checkpoint), values.csv (a row a participant and checkpoint), flow.csv and, where forms
+/// were filled in, ratings.csv (a row an item and group) into a folder, which is made; files that are there are kept
+/// unless `force`.
 /// @throws Error 2 when a file is there already, Error 1 when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
 

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/multiplicity.h"
 #include "analytics/statistics/published_coverage.h"
@@ -74,6 +76,19 @@ Answer<Spearman> correlation(StudyRow& row, const std::array<std::map<std::strin
   return spearman(values, seconds);
 }
 
+/// Both groups' values, with one beyond the worst for each who ranks behind all: ranks do not ask how far.
+std::array<std::vector<double>, 2> withWorst(const StudyRow& row, bool largerIsWorse) {
+  std::array<std::vector<double>, 2> ranked = row.values;
+  std::vector<double> all;
+  for (const auto& values : ranked) all.insert(all.end(), values.begin(), values.end());
+  const double edge = all.empty()     ? 0.0
+                      : largerIsWorse ? *std::max_element(all.begin(), all.end())
+                                      : *std::min_element(all.begin(), all.end());
+  const double beyond = largerIsWorse ? edge + std::max(1.0, std::abs(edge)) : edge - std::max(1.0, std::abs(edge));
+  for (std::size_t g = 0; g < 2; ++g) ranked[g].insert(ranked[g].end(), row.worstRanked[g], beyond);
+  return ranked;
+}
+
 void warnOfCoverage(StudyRow& row) {
   const auto ask = [&](CoveredInterval interval, const char* name) {
     CoverageDoubt doubt;
@@ -104,6 +119,32 @@ std::size_t adjust(std::vector<StudyRow*>& family, Get get, Put put) {
   return p.size();
 }
 
+void adjustFamily(Study& study, const StudyChoices& choices) {
+  std::vector<StudyRow*> family;
+  for (StudyRow& row : study.rows) {
+    const bool named = std::find(choices.family.begin(), choices.family.end(), row.checkpoint) != choices.family.end();
+    if (choices.family.empty() || named) family.push_back(&row);
+  }
+  for (const std::string& name : choices.family) {
+    if (std::none_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return r.checkpoint == name; })) {
+      throw Error(ExitCode::usage, fmt::format("study: --family {}: the study has no such row", name));
+    }
+  }
+  const std::size_t tests = adjust(
+      family, [](const StudyRow& r) { return r.test ? std::optional(r.test->p) : std::nullopt; },
+      [](StudyRow& r, double p) { r.holm = p; });
+  const std::size_t analyses = adjust(
+      family,
+      [](const StudyRow& r) {
+        return r.adjusted && r.adjusted->analysis ? std::optional(r.adjusted->analysis->p) : std::nullopt;
+      },
+      [](StudyRow& r, double p) { r.adjusted->holm = p; });
+  study.family = fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
+                             choices.family.empty() ? "this study" : joined(choices.family));
+  if (analyses > 0) study.family += fmt::format("; the {} with the baseline are a family of their own", analyses);
+  study.family += ".";
+}
+
 }  // namespace
 
 bool groupBefore(const std::string& a, const std::string& b) {
@@ -126,8 +167,8 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
     }
     for (const std::string& name : choices.groups) {
       if (present.count(name) == 0) {
-        throw Error(ExitCode::no, fmt::format("{}: nothing for the study in group \"{}\" (there are: {})", path, name,
-                                              names.empty() ? "none" : joined(names)));
+        throw Error(ExitCode::no, fmt::format("{}: nothing for the study in group \"{}\" (there are: {}){}", path, name,
+                                              names.empty() ? "none" : joined(names), left));
       }
     }
     return {choices.groups[0], choices.groups[1]};
@@ -173,19 +214,26 @@ void fillRow(StudyRow& row, const StudySample& sample) {
     }
     summarise(row.group[g], row.values[g]);
     countMissing(row.group[g], row.participants[g], sample.missing[g]);
+    row.worstRanked[g] = static_cast<std::uint64_t>(
+        std::count_if(sample.unfinished[g].begin(), sample.unfinished[g].end(), [&](const std::string& person) {
+          return !std::binary_search(row.participants[g].begin(), row.participants[g].end(), person);
+        }));
   }
 }
 
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
   const std::vector<double>&x = row.values[0], &y = row.values[1];
-  if (row.direction != Direction::none && !study.better.empty()) {
-    const bool firstBetter = study.better == study.groups[0];
+  const bool firstBetter = study.better == study.groups[0];
+  if (!row.hypothesis && row.direction != Direction::none && !study.better.empty()) {
     row.hypothesis =
         firstBetter == (row.direction == Direction::higher) ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
   }
-  row.test = mannWhitney(x, y);
-  row.effect = superiority(x, y);
-  row.area = estimateSuperiority(x, y, row.hypothesis.value_or(Hypothesis::firstLarger));
+  if (!row.hypothesis) row.worstRanked = {};  // nobody says which end is the worse
+  const std::array<std::vector<double>, 2> ranked =
+      withWorst(row, row.hypothesis && firstBetter == (*row.hypothesis == Hypothesis::firstSmaller));
+  row.test = mannWhitney(ranked[0], ranked[1]);
+  row.effect = superiority(ranked[0], ranked[1]);
+  row.area = estimateSuperiority(ranked[0], ranked[1], row.hypothesis.value_or(Hypothesis::firstLarger));
   if (row.hypothesis && row.area && row.area->value.a != 0.5) row.asHypothesised = row.area->value.a > 0.5;
   row.shift = hodgesLehmann(x, y);
   row.shiftInterval = hodgesLehmannInterval(x, y);
@@ -194,31 +242,12 @@ void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<
   warnOfCoverage(row);
 }
 
-void finishRows(Study& study, const StudyChoices& choices) {
-  std::vector<StudyRow*> family;
-  for (StudyRow& row : study.rows) {
-    const bool named = std::find(choices.family.begin(), choices.family.end(), row.checkpoint) != choices.family.end();
-    if (choices.family.empty() || named) family.push_back(&row);
+void finishRows(Study& study, const StudyChoices& choices, const Protocol* protocol) {
+  if (protocol != nullptr) {
+    adjustByProtocol(study, *protocol);
+  } else {
+    adjustFamily(study, choices);
   }
-  for (const std::string& name : choices.family) {
-    if (std::none_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return r.checkpoint == name; })) {
-      throw Error(ExitCode::usage, fmt::format("study: --family {}: the study has no such row", name));
-    }
-  }
-  const std::size_t tests = adjust(
-      family, [](const StudyRow& r) { return r.test ? std::optional(r.test->p) : std::nullopt; },
-      [](StudyRow& r, double p) { r.holm = p; });
-  const std::size_t analyses = adjust(
-      family,
-      [](const StudyRow& r) {
-        return r.adjusted && r.adjusted->analysis ? std::optional(r.adjusted->analysis->p) : std::nullopt;
-      },
-      [](StudyRow& r, double p) { r.adjusted->holm = p; });
-  study.family = fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
-                             choices.family.empty() ? "this study" : joined(choices.family));
-  if (analyses > 0) study.family += fmt::format("; the {} with the baseline are a family of their own", analyses);
-  study.family += ".";
-
   std::vector<std::pair<std::string, std::size_t>> warnings;
   for (const StudyRow& row : study.rows) {
     for (const std::string& text : row.coverageWarnings) {

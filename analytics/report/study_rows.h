@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,18 +37,22 @@ struct StudySample {
   std::array<std::vector<StudyValue>, 2> values;
   /// Participants to attempts without a value, with the reason.
   std::array<std::map<std::string, std::vector<std::string>>, 2> missing;
+  /// Participants who have no value of an attempt that was not completed, where the protocol ranks them behind all.
+  std::array<std::set<std::string>, 2> unfinished;
 };
 
 /// One value per participant: `row`'s participants, values and summaries. @pre a participant with several values is
 /// meant to have their mean.
 void fillRow(StudyRow& row, const StudySample& sample);
 
-/// Tests, effects and intervals of the values that are there, in the direction of the hypothesis.
+/// Tests, effects and intervals of the values that are there, in the direction of the row's hypothesis, or of its
+/// direction where it has none. Those who rank behind all do so in test, A and delta; shift and g are of the values.
 /// @param duration participants' durations by group, empty where they are not known
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration);
 
-/// Adjusts over the family, says which it is, and turns warnings of rows into remarks.
+/// Adjusts over the family of the protocol, or without one of the choices, says which it is, and turns warnings of rows
+/// into remarks.
 /// @throws Error 2 where a name of `choices.family` is no row.
-void finishRows(Study& study, const StudyChoices& choices);
+void finishRows(Study& study, const StudyChoices& choices, const Protocol* protocol = nullptr);
 
 }  // namespace calot::analytics

@@ -26,6 +26,30 @@ bool any(const Study& study, Test test) {
 
 bool hasCorrelation(const StudyRow& row) { return static_cast<bool>(row.withDuration); }
 
+ReportTable hypothesesTable(const Study& study) {
+  ReportTable table{"Hypotheses",
+                    {{"role", Align::left},
+                     {"checkpoint", Align::left},
+                     {"expected", Align::left},
+                     {"A", Align::right},
+                     {"adjusted p", Align::right},
+                     {"supported", Align::left}},
+                    {}};
+  for (const Role role : {Role::primary, Role::secondary}) {
+    for (const StudyRow& row : study.rows) {
+      if (row.role != role || !row.hypothesis) continue;
+      const std::size_t larger = *row.hypothesis == Hypothesis::firstLarger ? 0 : 1;
+      table.rows.push_back({nameOf(role), rowName(row), study.groups[larger] + " larger",
+                            row.area ? share(row.area->value.a) : "-",
+                            pOrDash(role == Role::primary ? row.holm : row.benjaminiHochberg),
+                            !row.supported   ? "no test"
+                            : *row.supported ? "yes"
+                                             : "no"});
+    }
+  }
+  return table;
+}
+
 ReportTable valuesTable(const Study& study) {
   ReportTable table{"Values",
                     {{"checkpoint", Align::left},
@@ -66,8 +90,10 @@ ReportTable comparisonTable(const Study& study) {
                      {"95 %", Align::right},
                      {"p", Align::right},
                      {"Holm", Align::right},
+                     {"BH", Align::right},
                      {"expected", Align::left}},
                     {}};
+  if (!study.protocol) table.columns.erase(table.columns.end() - 2);
   for (const StudyRow& row : study.rows) {
     if (empty(row)) continue;
     std::string expected;
@@ -77,8 +103,9 @@ ReportTable comparisonTable(const Study& study) {
                           row.shiftInterval ? brackets(row.shiftInterval->lower, row.shiftInterval->upper) : "-",
                           row.area ? share(row.area->value.a) : "-",
                           row.area ? fmt::format("[{}, {}]", share(row.area->a.lower), share(row.area->a.upper)) : "-",
-                          row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-", pOrDash(row.holm),
-                          expected});
+                          row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-", pOrDash(row.holm)});
+    if (study.protocol) table.rows.back().push_back(pOrDash(row.benjaminiHochberg));
+    table.rows.back().push_back(expected);
   }
   return table;
 }
@@ -155,10 +182,10 @@ void explainColumns(const Study& study, std::vector<std::string>& notes) {
                     a));
   } else {
     notes.push_back(fmt::format(
-        "A: probability that one of {} is better than one of the other group, ties half, by the direction that the "
+        "A: probability that one of {} is better than one of the other group, ties half, by {}the direction that the "
         "checkpoint declares (without one: that one of {} is larger); the area under the ROC curve, score interval. "
         "expected: whether A is above one half.",
-        study.better, a));
+        study.better, study.protocol ? "the protocol's hypothesis or else " : "", a));
   }
   const bool correlated = any(study, hasCorrelation);
   notes.push_back(
@@ -189,6 +216,12 @@ void explainMissing(const Study& study, std::vector<std::string>& notes) {
       if (s.missing > 0) {
         notes.push_back(fmt::format("{}: {} of {} {} without a value ({})", name, s.missing, s.missing + s.n,
                                     study.groups[g], s.missingReason));
+      }
+      if (row.worstRanked[g] > 0) {
+        notes.push_back(
+            fmt::format("{}: {} of these {} did not complete the attempt and rank behind all others in p "
+                        "and A; shift and g are of the values alone",
+                        name, row.worstRanked[g], study.groups[g]));
       }
       if (s.partial > 0) {
         notes.push_back(fmt::format("{}: the mean of {} of {} {} lacks some of their {}", name, s.partial, s.n,
@@ -228,8 +261,12 @@ ReportTable flowTable(const Study& study) {
 
 std::vector<ReportTable> studyTables(const Study& study) {
   std::vector<ReportTable> tables;
-  for (ReportTable table : {valuesTable(study), comparisonTable(study), furtherTable(study), baselineTable(study)}) {
+  for (ReportTable table : {hypothesesTable(study), valuesTable(study), comparisonTable(study), furtherTable(study),
+                            baselineTable(study)}) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
+  }
+  for (const FormReport& report : study.ratings) {
+    for (ReportTable& table : ratingTables(report)) tables.push_back(std::move(table));
   }
   return tables;
 }
@@ -243,7 +280,21 @@ std::vector<std::string> studyNotes(const Study& study) {
                     study.publishedSource));
   }
   notes.insert(notes.end(), study.remarks.begin(), study.remarks.end());
+  if (study.protocol) {
+    for (const std::string& deviation : study.protocol->deviations)
+      notes.push_back("Deviation from the protocol: " + deviation);
+  }
   explainMissing(study, notes);
+  for (const FormReport& report : study.ratings) {
+    if (report.filled == 0) continue;
+    notes.push_back(fmt::format("{}: {} forms, {} of people or attempts that are not analysed left out. {}Items: {}.",
+                                report.name, report.filled, report.leftOut,
+                                report.ofAttempts ? fmt::format("Of an attempt the mean of its raters; agreement over "
+                                                                "the attempts that every rater rated ({} were not). ",
+                                                                report.incomplete)
+                                                  : "primary: the group whose judgement counts first. ",
+                                report.source));
+  }
   return notes;
 }
 

@@ -3,29 +3,27 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "analytics/report/report_table.h"
 #include "analytics/report/study.h"
-#include "analytics/report/text_table.h"
 
 namespace calot::analytics {
-
-struct ReportTable {
-  std::string title;
-  std::vector<std::pair<std::string, TextTable::Align>> columns;
-  std::vector<std::vector<std::string>> rows;
-};
 
 /// What stands over everything that performers' figures are in.
 inline constexpr const char* watermarkText = "SYNTHETIC: made by performers, says nothing about people";
 
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"
 std::string rowName(const StudyRow& row);    ///< checkpoint and subject
+/// Under the title: the protocol, when it was registered, why the study is exploratory all the same; or empty.
+std::vector<std::string> protocolLines(const Study& study);
+/// How the figures came about, a paragraph to go by for a paper: only what was done.
+std::string studyMethods(const Study& study);
 
 /// How many came in, stayed out and why, and are analysed.
 ReportTable flowTable(const Study& study);
-/// "Values", "Comparison", "Further": a row without any value is in none of them. Those without rows are left out.
+/// "Hypotheses" (with a protocol), "Values", "Comparison", "Further": a row without any value is in none of them. Those
+/// without rows are left out.
 std::vector<ReportTable> studyTables(const Study& study);
 /// What the columns mean, the family, remarks and warnings, published figures, missing values: whole sentences.
 std::vector<std::string> studyNotes(const Study& study);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "analytics/statistics/answer.h"
+#include "analytics/statistics/contrasting_groups.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
@@ -13,15 +16,31 @@ namespace calot::analytics {
 enum class Adjustment : std::uint8_t { none, holm, benjaminiHochberg };
 
 enum class PowerShape : std::uint8_t {
-  normal,    ///< both groups normal with deviation 1
-  lognormal  ///< exp of such a normal: times; a rank test sees the same, a mean would not
+  normal,    ///< both groups normal
+  lognormal  ///< exp of such a normal: times
+};
+
+/// What both groups' values of one checkpoint are like; of the lognormal their logarithms.
+struct PlannedCheckpoint {
+  NormalCurve x, y;
+  [[nodiscard]] bool effect() const { return x.mean != y.mean; }
+};
+
+/// Checkpoints of deviation 1 in which x is shifted by so many deviations; 0: no effect.
+std::vector<PlannedCheckpoint> shifts(const std::vector<double>& effects);
+
+/// People at hand to draw from, with replacement: each with a value, or none, of every checkpoint, so that checkpoints
+/// keep their correlation and values stay missing as often. What was measured on few people is a guess of the truth.
+struct PowerPopulation {
+  std::array<std::vector<std::vector<std::optional<double>>>, 2> people;
 };
 
 /// A study to be planned: two groups, one value per participant and checkpoint.
 struct PowerPlan {
   std::size_t nx = 10, ny = 10;
-  std::vector<double> effects{
-      0.8};                  ///< a checkpoint each: shift of x in deviations of the (logarithm of the) values; 0: none
+  std::vector<PlannedCheckpoint> checkpoints = shifts({0.8});
+  std::optional<PowerPopulation> population;  ///< draws from it; then every checkpoint counts as an effect, and
+                                              ///< `checkpoints`, `correlation` and `shape` are not used
   double correlation = 0.0;  ///< of a participant's checkpoints with each other, 0 <= r < 1: one common normal factor
   PowerShape shape = PowerShape::normal;
   double step = 0.0;  ///< > 0: values are rounded to multiples of it (counts, scores), which makes ties
@@ -41,7 +60,7 @@ struct Power {
   std::vector<SimulatedShare> ofCheckpoint;  ///< rejected after adjustment; where the effect is 0, an error rate
   SimulatedShare anyEffect;                  ///< at least one checkpoint with an effect is rejected
   SimulatedShare allEffects;                 ///< all checkpoints with an effect are
-  std::size_t untestable = 0;                ///< tests without an answer (all tied): counted as not rejected, p 1
+  std::size_t untestable = 0;                ///< tests without an answer (all tied, a group without a value): p = 1
   std::uint64_t seed = 0;
 };
 

@@ -23,6 +23,12 @@ void addRender(CLI::App& app, Run& run);
 void addImport(CLI::App& app, Run& run);
 void addAssess(CLI::App& app, Run& run);
 void addStudy(CLI::App& app, Run& run);
+void addProtocol(CLI::App& app, Run& run);
+void addPower(CLI::App& app, Run& run);
+void addRate(CLI::App& app, Run& run);
+void addNorm(CLI::App& app, Run& run);
+void addGrade(CLI::App& app, Run& run);
+
 void addParticipant(CLI::App& app, Run& run);
 void addAttempt(CLI::App& app, Run& run);
 void addRegrade(CLI::App& app, Run& run);

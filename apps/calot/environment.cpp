@@ -7,11 +7,13 @@
 #include <charconv>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <system_error>
 
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/formats/text_output.h"
+#include "recorder/formats/text_words.h"
 
 namespace calot::apps {
 
@@ -19,6 +21,36 @@ std::vector<std::filesystem::path> assetFolders() {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   return recorder::assetRoots(program.parent_path(), CALOT_ASSETS);
+}
+
+std::vector<std::filesystem::path> listAssets(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::map<std::string, fs::path> byName;
+  for (const fs::path& root : assetFolders()) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / folder, fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+    }
+  }
+  std::vector<fs::path> files;
+  files.reserve(byName.size());
+  for (const auto& entry : byName) files.push_back(entry.second);
+  return files;
+}
+
+std::filesystem::path findAsset(const std::string& name, const std::string& folder, const std::string& what) {
+  std::error_code ignored;
+  if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
+    if (std::filesystem::is_regular_file(name, ignored)) return name;
+    throw Error(ExitCode::damaged, fmt::format("{}: there is no such file", recorder::shown(name)));
+  }
+  std::string known;
+  for (const std::filesystem::path& file : listAssets(folder)) {
+    if (file.stem() == name) return file;
+    known += (known.empty() ? "" : ", ") + file.stem().string();
+  }
+  throw Error(ExitCode::usage, fmt::format("there is no {} \"{}\"; {}", what, recorder::shown(name),
+                                           known.empty() ? "none was found (set CALOT_ASSETS)" : "there are " + known));
 }
 
 Progress::Progress(std::string what, bool quiet)

@@ -12,6 +12,12 @@ namespace calot::apps {
 /// Folders that may hold scenes, organs and performers (recorder::assetRoots of this program).
 std::vector<std::filesystem::path> assetFolders();
 
+/// A JSON file of the assets by its name ("goals"), or any file by its path ("mine/goals.json").
+/// @param folder of the assets: "forms". @param what messages call it: "form". @throws Error (usage)
+std::filesystem::path findAsset(const std::string& name, const std::string& folder, const std::string& what);
+/// All of them, by name.
+std::vector<std::filesystem::path> listAssets(const std::string& folder);
+
 /// A line that is drawn again and again on a terminal; nothing in a pipe or with --json.
 class Progress {
  public:

@@ -27,7 +27,8 @@ int main(int argc, char** argv) {
   for (const auto add :
        {apps::addRecord,  apps::addReplay,      apps::addBranch,  apps::addInspect, apps::addRecover,
         apps::addExport,  apps::addState,       apps::addDiff,    apps::addImport,  apps::addAssess,
-        apps::addStudy,   apps::addParticipant, apps::addAttempt, apps::addRegrade, apps::addCohort,
+        apps::addStudy,   apps::addProtocol,    apps::addPower,   apps::addRate,    apps::addNorm,
+        apps::addGrade,   apps::addParticipant, apps::addAttempt, apps::addRegrade, apps::addCohort,
         apps::addStation, apps::addRender,      apps::addMesh,    apps::addScenes,  apps::addCheckpoints,
         apps::addDevices, apps::addGolden}) {
     add(app, run);

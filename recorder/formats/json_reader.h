@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/math/linear.h"
@@ -59,8 +61,20 @@ class JsonPlace {
   [[nodiscard]] std::uint32_t integer(const KeyRule& rule) const;
   /// Three numbers.
   [[nodiscard]] Vec3 vector(const KeyRule& rule) const;
+  /// One word of a few, each with what it stands for.
+  template <class T>
+  [[nodiscard]] T word(std::initializer_list<std::pair<const char*, T>> words) const {
+    const std::string given = text(longestWord);
+    std::string known;
+    for (const auto& [name, meaning] : words) {
+      if (given == name) return meaning;
+      known += (known.empty() ? "" : ", ") + std::string(name);
+    }
+    fail("none of " + known);
+  }
 
  private:
+  static constexpr std::size_t longestWord = 200;
   friend class JsonObject;
   const nlohmann::json* value_;
   std::string file_, pointer_;

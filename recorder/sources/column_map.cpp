@@ -35,18 +35,6 @@ const ObjectRule rootRule{"",
 const ObjectRule timeRule{"time", {{"column"}, {"unit"}}};
 const ObjectRule handRule{"hand", {{"position"}, {"quaternion", false}, {"matrix", false}, {"axis", false}}};
 
-/// One word of a few, with what it stands for.
-template <class T>
-T wordOf(const JsonPlace& place, std::initializer_list<std::pair<const char*, T>> words) {
-  const std::string word = place.text(longestName);
-  std::string known;
-  for (const auto& [name, meaning] : words) {
-    if (word == name) return meaning;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
-  }
-  place.fail(fmt::format("none of {}", known));
-}
-
 std::vector<std::string> namesOf(const JsonPlace& place, std::size_t count) {
   std::vector<std::string> names;
   for (const JsonPlace& name : place.list(count, count)) names.push_back(name.text(longestName));
@@ -63,12 +51,12 @@ ColumnMap::HandColumns handOf(const JsonPlace& place) {
   if (o.has("matrix")) hand.orientation = namesOf(o.at("matrix"), 9);
   if (o.has("axis")) {
     if (hand.orientation.empty()) o.at("axis").fail("an axis without an orientation");
-    hand.axis = wordOf<Quat>(o.at("axis"), {{"z", Quat::Identity()},
-                                            {"-z", Quat(0.0, 1.0, 0.0, 0.0)},
-                                            {"x", Quat(root, 0.0, root, 0.0)},
-                                            {"-x", Quat(root, 0.0, -root, 0.0)},
-                                            {"y", Quat(root, -root, 0.0, 0.0)},
-                                            {"-y", Quat(root, root, 0.0, 0.0)}});
+    hand.axis = o.at("axis").word<Quat>({{"z", Quat::Identity()},
+                                         {"-z", Quat(0.0, 1.0, 0.0, 0.0)},
+                                         {"x", Quat(root, 0.0, root, 0.0)},
+                                         {"-x", Quat(root, 0.0, -root, 0.0)},
+                                         {"y", Quat(root, -root, 0.0, 0.0)},
+                                         {"-y", Quat(root, root, 0.0, 0.0)}});
   }
   return hand;
 }
@@ -135,7 +123,7 @@ ColumnMap readColumnMap(const std::filesystem::path& file) {
 ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json json = parseStrictJson(bytes, file);
   const JsonObject o = JsonPlace(json, file).object(rootRule);
-  (void)wordOf<int>(o.at("format"), {{"calot-columns", 0}});
+  (void)o.at("format").word<int>({{"calot-columns", 0}});
   std::uint32_t version = 0;
   o.read("formatVersion", version);
   ColumnMap map;
@@ -147,14 +135,14 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
       if (c <= ' ' || c > '~') o.at(key).fail("a word without blanks is wanted");
     }
   }
-  map.metres = wordOf<double>(o.at("length"), {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}});
-  if (o.has("delimiter")) map.delimiter = wordOf<char>(o.at("delimiter"), {{",", ','}, {";", ';'}, {"tab", '\t'}});
+  map.metres = o.at("length").word<double>({{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}});
+  if (o.has("delimiter")) map.delimiter = o.at("delimiter").word<char>({{",", ','}, {";", ';'}, {"tab", '\t'}});
   if (o.has("rate") == o.has("time")) o.fail("either \"rate\" (rows a second) or \"time\" (a column) is wanted");
   o.read("rate", map.rate);
   if (o.has("time")) {
     const JsonObject time = o.at("time").object(timeRule);
     time.read("column", map.time, longestName);
-    map.seconds = wordOf<double>(time.at("unit"), {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}});
+    map.seconds = time.at("unit").word<double>({{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}});
   }
   for (std::size_t h = 0; h < map.hand.size(); ++h) {
     if (o.has(handNames[h])) map.hand[h] = handOf(o.at(handNames[h]));

@@ -13,15 +13,11 @@ void registerHaptics();        ///< haptics/tick
 void registerCarving();        ///< carving/transform, carving/stroke, carving/growth
 void registerFat();            ///< fat/step, fat/stroke
 void registerCheckpoints();    ///< checkpoints/motion
-<<<<<<< ours
+void registerCohort();         ///< cohort/import, cohort/study, cohort/list
 void registerScenes();         ///< scene/step, scene/operation: whole steps of every scene
 
 void registerPaperCases();  ///< paper: the meshes of the paper's Table 1
 void registerMeshGrowth();  ///< mesh: deformation alone, to 200,000 tetrahedra
-=======
-void registerCohort();         ///< cohort/import, cohort/study, cohort/list
-void registerScenes();         ///< scene/step: whole steps of every scene
->>>>>>> theirs
 
 inline void registerAll() {
   registerContactStep();

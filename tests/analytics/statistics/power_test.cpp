@@ -14,7 +14,7 @@ double chance(double p, std::size_t n) { return 4.0 * std::sqrt(p * (1.0 - p) / 
 TEST(Power, withoutAnEffectItIsTheAttainedLevel) {
   // Ten against ten: U <= 23 or >= 77, .0432570525.
   PowerPlan plan;
-  plan.effects = {0.0};
+  plan.checkpoints = shifts({0.0});
   const auto power = simulatePower(plan);
   ASSERT_TRUE(power) << power.reason();
   EXPECT_NEAR(power->ofCheckpoint[0].value, 0.0432570525, chance(0.0433, plan.simulations));
@@ -26,7 +26,7 @@ TEST(Power, rejectsAtTheLevelItself) {
   // Three against three: only complete separation reaches p = 2 / 20, which is the level.
   PowerPlan plan;
   plan.nx = plan.ny = 3;
-  plan.effects = {0.0};
+  plan.checkpoints = shifts({0.0});
   plan.level = 0.1;
   EXPECT_NEAR(simulatePower(plan)->ofCheckpoint[0].value, 0.1, chance(0.1, plan.simulations));
   plan.level = 0.0999;
@@ -37,7 +37,7 @@ TEST(Power, agreesWithAnIndependentSimulation) {
   // R 4.2.2: set.seed(1); mean(replicate(200000, {u <- sum(outer(rnorm(10, 1.5), rnorm(10), ">")); u <= 23 || u >=
   // 77})) is 0.85184; for normal groups a little below Student's .887 (power.t.test(n = 10, delta = 1.5)).
   PowerPlan plan;
-  plan.effects = {1.5};
+  plan.checkpoints = shifts({1.5});
   plan.simulations = 40000;
   const auto power = simulatePower(plan);
   EXPECT_NEAR(power->ofCheckpoint[0].value, 0.85184, chance(0.85, plan.simulations));
@@ -49,7 +49,7 @@ TEST(Power, agreesWithAnIndependentSimulation) {
 
 TEST(Power, holmHoldsTheFamilyAndCostsPower) {
   PowerPlan plan;
-  plan.effects = {1.2, 0.0, 0.0, 0.0};
+  plan.checkpoints = shifts({1.2, 0.0, 0.0, 0.0});
   plan.adjustment = Adjustment::none;
   const auto plain = simulatePower(plan);
   plan.adjustment = Adjustment::holm;
@@ -66,7 +66,7 @@ TEST(Power, holmHoldsTheFamilyAndCostsPower) {
 
 TEST(Power, correlatedCheckpointsFallTogether) {
   PowerPlan plan;
-  plan.effects = {1.0, 1.0, 1.0};
+  plan.checkpoints = shifts({1.0, 1.0, 1.0});
   plan.simulations = 4000;
   const auto alone = simulatePower(plan);
   plan.correlation = 0.9;
@@ -78,7 +78,7 @@ TEST(Power, correlatedCheckpointsFallTogether) {
 TEST(Power, tiesAndTestsWithoutAnAnswer) {
   PowerPlan plan;
   plan.nx = plan.ny = 4;
-  plan.effects = {0.0};
+  plan.checkpoints = shifts({0.0});
   plan.step = 100.0;  // everything rounds to 0
   plan.simulations = 50;
   const auto power = simulatePower(plan);
@@ -86,9 +86,59 @@ TEST(Power, tiesAndTestsWithoutAnAnswer) {
   EXPECT_DOUBLE_EQ(power->ofCheckpoint[0].value, 0.0);
   plan.step = 1.0;
   plan.nx = plan.ny = 10;
-  plan.effects = {2.0};
+  plan.checkpoints = shifts({2.0});
   plan.simulations = 2000;
   EXPECT_GT(simulatePower(plan)->ofCheckpoint[0].value, 0.9);
+}
+
+TEST(Power, isExactWhereItCanBeCalculated) {
+  // Three against three at .1 are rejected by complete separation alone. x is 0 or 2 with chances 3/4 and 1/4 and y is
+  // always 1: separated where all three x agree.
+  PowerPlan plan;
+  plan.nx = plan.ny = 3;
+  plan.level = 0.1;
+  plan.simulations = 40000;
+  plan.population.emplace();
+  plan.population->people[0] = {{0.0}, {0.0}, {0.0}, {2.0}};
+  plan.population->people[1] = {{1.0}};
+  const double separated = std::pow(0.75, 3) + std::pow(0.25, 3);
+  const auto power = simulatePower(plan);
+  ASSERT_TRUE(power) << power.reason();
+  EXPECT_NEAR(power->ofCheckpoint[0].value, separated, chance(separated, plan.simulations));
+  EXPECT_EQ(power->ofCheckpoint[0].interval.method, "Wilson");
+}
+
+TEST(Power, agreesWithRWhereTheSpreadsDiffer) {
+  // R 4.2.2: set.seed(1); mean(replicate(200000, {u <- sum(outer(rnorm(8, 1.2, 2), rnorm(12), ">")); u <= 22 || u >=
+  // 74})) is 0.343755; qwilcox(.025, 8, 12) is 23, so that 22 is the largest U whose two-sided p is at most 5 %.
+  PowerPlan plan;
+  plan.nx = 8;
+  plan.ny = 12;
+  plan.checkpoints = {{{1.2, 2.0}, {0.0, 1.0}}};
+  plan.simulations = 40000;
+  EXPECT_NEAR(simulatePower(plan)->ofCheckpoint[0].value, 0.343755, chance(0.343755, plan.simulations));
+}
+
+TEST(Power, drawsPeopleWholeAndKeepsWhatIsMissing) {
+  // The second figure is the first one's double: both are rejected together, or neither is.
+  PowerPlan plan;
+  plan.simulations = 2000;
+  plan.adjustment = Adjustment::none;
+  plan.population.emplace();
+  for (int i = 0; i < 6; ++i) {
+    plan.population->people[0].push_back({1.0 * i, 2.0 * i});
+    plan.population->people[1].push_back({1.0 * i + 2.5, 2.0 * i + 5.0});
+  }
+  const auto both = simulatePower(plan);
+  EXPECT_DOUBLE_EQ(both->anyEffect.value, both->allEffects.value);
+  EXPECT_GT(both->anyEffect.value, 0.2);
+  // Nobody of y has the second one: never tested, and under Holm still in the family.
+  for (auto& person : plan.population->people[1]) person[1].reset();
+  plan.adjustment = Adjustment::holm;
+  const auto missing = simulatePower(plan);
+  EXPECT_EQ(missing->untestable, plan.simulations);
+  EXPECT_DOUBLE_EQ(missing->ofCheckpoint[1].value, 0.0);
+  EXPECT_LT(missing->ofCheckpoint[0].value, both->ofCheckpoint[0].value);
 }
 
 TEST(Power, refusals) {
@@ -98,8 +148,16 @@ TEST(Power, refusals) {
     return simulatePower(plan).reason();
   };
   EXPECT_EQ(reason([](PowerPlan& p) { p.nx = 0; }), "a group is empty");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.effects.clear(); }), "no checkpoint");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.effects = {NAN}; }), "an effect is not finite");
+  EXPECT_EQ(reason([](PowerPlan& p) { p.checkpoints.clear(); }), "no checkpoint");
+  EXPECT_EQ(reason([](PowerPlan& p) { p.checkpoints = shifts({NAN}); }), "an effect is not finite");
+  EXPECT_EQ(reason([](PowerPlan& p) { p.checkpoints[0].x.deviation = 0.0; }), "a deviation is not positive");
+  EXPECT_EQ(reason([](PowerPlan& p) { p.population.emplace(); }), "a group has nobody to draw from");
+  EXPECT_EQ(reason([](PowerPlan& p) {
+              p.population.emplace();
+              p.population->people[0] = {{1.0}};
+              p.population->people[1] = {{1.0, 2.0}};
+            }),
+            "people have different numbers of checkpoints");
   EXPECT_EQ(reason([](PowerPlan& p) { p.correlation = 1.0; }), "the correlation is outside of [0, 1)");
   EXPECT_EQ(reason([](PowerPlan& p) { p.level = 0.0; }), "the level is not between 0 and 1");
   EXPECT_EQ(reason([](PowerPlan& p) { p.step = -1.0; }), "the step is negative");

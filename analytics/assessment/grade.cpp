@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/assessment/grade.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "analytics/checkpoints/registry.h"
+#include "recorder/errors.h"
+
+namespace calot::analytics {
+namespace {
+
+constexpr const char* criticalName = "critical-errors";
+
+bool same(const CheckpointValue& v, const NormCheckpoint& mark) {
+  return v.name == mark.checkpoint && v.subject == mark.subject;
+}
+
+void askForComparable(const AttemptRow& a, const Norm& norm, bool mixKeys, const std::string& name) {
+  if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged ||
+      a.verification.verdict == Verdict::notChecked)
+    throw Error(ExitCode::no, fmt::format("{}: attempt {} is {}: it has no figures to grade", name, a.uuid,
+                                          nameOf(a.verification.verdict)));
+  if (!a.complete || a.outcome == recorder::Outcome::running)
+    throw Error(ExitCode::no, fmt::format("{}: attempt {} is incomplete and is not graded", name, a.uuid));
+  if (a.comparabilityKey != norm.comparabilityKey && !mixKeys)
+    throw Error(ExitCode::no,
+                fmt::format("{}: attempt {} ({}) does not compare with norm {} {} ({}); --mix-keys does "
+                            "it all the same",
+                            name, a.uuid, a.comparabilityKey, norm.name, norm.version, norm.comparabilityKey));
+}
+
+void judge(GradedFigure& figure, const CheckpointValue* value, const Norm& norm, std::size_t position) {
+  if (value == nullptr) {
+    figure.missing = "the attempt has no such figure";
+    return;
+  }
+  if (!value->value || !std::isfinite(*value->value)) {
+    figure.missing = value->value ? "not finite" : value->reason;
+    return;
+  }
+  figure.value = value->value;
+  if (value->version != figure.mark.version) {
+    figure.missing = fmt::format("of version {}, the norm's is {}", value->version, figure.mark.version);
+    return;
+  }
+  std::vector<double> competent;
+  for (const NormMember& m : norm.members) {
+    if (m.competent && m.values[position]) competent.push_back(*m.values[position]);
+  }
+  figure.competent = competent.size();
+  figure.rank = percentile(competent, *figure.value, figure.mark.direction);
+  if (!figure.mark.cut) {
+    figure.missing = "the norm has no pass mark: " + figure.mark.reason;
+    return;
+  }
+  figure.passed = passes(figure.mark, *figure.value);
+  figure.open = figure.mark.lower && *figure.value >= *figure.mark.lower && *figure.value <= *figure.mark.upper;
+}
+
+void conclude(Grade& grade) {
+  std::size_t least = 0, most = 0;
+  for (const GradedFigure& f : grade.figures) {
+    if (!f.mark.inRule) continue;
+    ++grade.inRule;
+    const bool passed = f.passed.value_or(false);
+    grade.passedCount += passed ? 1 : 0;
+    least += passed && !f.open ? 1 : 0;
+    most += passed || f.open ? 1 : 0;
+  }
+  grade.needed = neededPasses(grade.norm);
+  if (grade.criticalErrors.value_or(0.0) > 0.0) {
+    grade.passed = false;
+    grade.verdict = fmt::format("Not passed: {:g} critical error{}, of which one fails an attempt.",
+                                *grade.criticalErrors, *grade.criticalErrors == 1.0 ? "" : "s");
+    return;
+  }
+  grade.passed = grade.passedCount >= grade.needed;
+  grade.certain = (least >= grade.needed) == (most >= grade.needed);
+  grade.verdict =
+      fmt::format("{}: {} of {} figures in the rule passed, {} wanted{}.", grade.passed ? "Passed" : "Not passed",
+                  grade.passedCount, grade.inRule, grade.needed,
+                  grade.certain ? "" : "; not certain, as figures lie within the intervals of their pass marks");
+}
+
+/// The participant's attempts of this key up to this one, by start.
+std::vector<const AttemptRow*> pastOf(const AttemptRow& attempt, const std::vector<AttemptRow>& attempts) {
+  std::vector<const AttemptRow*> past;
+  for (const AttemptRow& a : attempts) {
+    if (a.uuid == attempt.uuid) {
+      past.push_back(&a);
+    } else if (!attempt.participant.empty() && a.participant == attempt.participant &&
+               a.comparabilityKey == attempt.comparabilityKey && a.startUtc < attempt.startUtc && !a.excluded &&
+               a.parent.empty()) {
+      past.push_back(&a);
+    }
+  }
+  std::stable_sort(past.begin(), past.end(),
+                   [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
+  return past;
+}
+
+void addHistory(GradedFigure& figure, const std::vector<const AttemptRow*>& past,
+                const std::map<std::string, std::vector<const CheckpointValue*>>& valuesOf) {
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < past.size(); ++i) {
+    const auto at = valuesOf.find(past[i]->uuid);
+    if (at == valuesOf.end()) continue;
+    for (const CheckpointValue* v : at->second) {
+      if (!same(*v, figure.mark) || !v->value || v->version != figure.mark.version) continue;
+      figure.history.push_back({past[i]->uuid, past[i]->startUtc, *v->value * figure.displayFactor});
+      x.push_back(static_cast<double>(i + 1));
+      y.push_back(figure.history.back().value);
+    }
+  }
+  figure.curve = fitLearningCurve(CurveShape::inverse, x, y);
+}
+
+}  // namespace
+
+Answer<double> percentile(const std::vector<double>& members, double value, Direction direction) {
+  const std::size_t n = members.size();
+  if (n < leastForPercentile) return Answer<double>::none(fmt::format("{} members, {} wanted", n, leastForPercentile));
+  std::size_t worse = 0, equal = 0;
+  for (const double m : members) {
+    worse += (direction == Direction::lower ? m > value : m < value) ? 1 : 0;
+    equal += m == value ? 1 : 0;
+  }
+  const double of = static_cast<double>(n + 1);
+  const std::string supported = fmt::format("{} members tell percentiles from {:.0f} to {:.0f}", n, 100.0 / of,
+                                            100.0 * static_cast<double>(n) / of);
+  if (worse == n) return Answer<double>::none(fmt::format("better than all; {}", supported));
+  if (worse == 0 && equal == 0) return Answer<double>::none(fmt::format("worse than all; {}", supported));
+  return 100.0 * (static_cast<double>(worse) + 0.5 * static_cast<double>(equal) + 0.5) / of;
+}
+
+Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& attempts,
+                   const std::vector<AttemptValue>& values, const Norm& norm, bool mixKeys, const std::string& name) {
+  askForComparable(attempt, norm, mixKeys, name);
+  Grade grade;
+  grade.attempt = attempt;
+  grade.norm = norm;
+  std::tie(grade.competentRate, grade.otherRate) = passRates(norm);
+  std::map<std::string, std::vector<const CheckpointValue*>> valuesOf;
+  for (const AttemptValue& v : values) valuesOf[v.attempt].push_back(&v.value);
+  const std::vector<const CheckpointValue*>& own = valuesOf[attempt.uuid];
+  grade.criticalMissing = "not computed for this attempt";
+  for (const CheckpointValue* v : own) {
+    if (v->name != criticalName) continue;
+    grade.criticalErrors = v->value;
+    grade.criticalMissing = v->reason;
+  }
+  const std::vector<const AttemptRow*> past = pastOf(attempt, attempts);
+  for (std::size_t i = 0; i < norm.checkpoints.size(); ++i) {
+    GradedFigure figure;
+    figure.mark = norm.checkpoints[i];
+    figure.title = figure.unit = figure.mark.checkpoint;
+    if (const CheckpointDefinition* d = findCheckpoint(figure.mark.checkpoint)) {
+      figure.title = d->title;
+      figure.unit = d->displayUnit;
+      figure.displayFactor = d->displayFactor;
+    }
+    const auto at =
+        std::find_if(own.begin(), own.end(), [&](const CheckpointValue* v) { return same(*v, figure.mark); });
+    judge(figure, at == own.end() ? nullptr : *at, norm, i);
+    addHistory(figure, past, valuesOf);
+    grade.figures.push_back(std::move(figure));
+  }
+  conclude(grade);
+  if (attempt.comparabilityKey != norm.comparabilityKey)
+    grade.remarks.push_back(
+        fmt::format("The attempt's key ({}) is not the norm's ({}): compared all the same, as asked.",
+                    attempt.comparabilityKey, norm.comparabilityKey));
+  if (std::any_of(norm.members.begin(), norm.members.end(),
+                  [&](const NormMember& m) { return m.attempt == attempt.uuid; }))
+    grade.remarks.emplace_back("The attempt is itself a member of the norm.");
+  if (norm.members.size() < norm.membersMade)
+    grade.remarks.push_back(
+        fmt::format("{} of the {} members of the norm are no longer in the cohort; its pass marks are "
+                    "those of all.",
+                    norm.membersMade - norm.members.size(), norm.membersMade));
+  if (attempt.outcome != recorder::Outcome::completed)
+    grade.remarks.emplace_back("The attempt was not completed: figures of it may be small because it is short.");
+  if (attempt.excluded) grade.remarks.push_back("The attempt is excluded from studies: " + attempt.exclusionReason);
+  return grade;
+}
+
+std::vector<std::pair<std::string, std::string>> weakFigures(const Grade& grade) {
+  std::vector<std::pair<std::string, std::string>> figures;
+  if (grade.criticalErrors.value_or(0.0) > 0.0) figures.emplace_back(criticalName, "");
+  for (const GradedFigure& f : grade.figures) {
+    if (f.weak()) figures.emplace_back(f.mark.checkpoint, f.mark.subject);
+  }
+  return figures;
+}
+
+void addMoments(Grade& grade, const std::vector<FigureMoments>& found) {
+  for (const FigureMoments& m : found) {
+    if (m.checkpoint == criticalName) {
+      for (const Moment& moment : m.moments) grade.criticalTimes.push_back(moment.begin);
+    }
+    for (GradedFigure& f : grade.figures) {
+      if (f.mark.checkpoint == m.checkpoint && f.mark.subject == m.subject) f.moments = m;
+    }
+  }
+}
+
+std::string useOf(const Norm& norm) {
+  if (norm.evidence.empty())
+    return "FORMATIVE: for learning alone. No evidence is attached that judgements by this norm are valid at this "
+           "site.";
+  const NormEvidence& e = norm.evidence.back();
+  return fmt::format("Validity evidence of the site: {} ({}, SHA-256 {}), attached on {} by {}.", e.statement,
+                     e.fileName, e.sha256, e.attachedUtc, e.by);
+}
+
+}  // namespace calot::analytics

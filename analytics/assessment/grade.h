@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One attempt held against a norm.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/assessment/moments.h"
+#include "analytics/assessment/norm.h"
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/statistics/answer.h"
+#include "analytics/statistics/learning_curve.h"
+
+namespace calot::analytics {
+
+/// Where a value stands among the n competent members that have the figure: 100 (k + t / 2 + 1 / 2) / (n + 1), k of
+/// them worse and t equal, beside what n people can tell: from 100 / (n + 1) to 100 n / (n + 1). No answer beyond the
+/// best or the worst of them, and where there are fewer than leastForPercentile.
+inline constexpr std::size_t leastForPercentile = 5;
+Answer<double> percentile(const std::vector<double>& members, double value, Direction direction);
+
+/// One of the participant's attempts in the history of a figure.
+struct HistoryPoint {
+  std::string attempt, startUtc;
+  double value = 0.0;  ///< display unit
+};
+
+struct GradedFigure {
+  NormCheckpoint mark;  ///< SI
+  std::string title, unit;
+  double displayFactor = 1.0;
+  std::optional<double> value;  ///< SI
+  std::string missing;          ///< why it is not judged, or empty
+  std::optional<bool> passed;
+  bool open = false;  ///< the value lies within the interval of the cut: another norm might judge otherwise
+  Answer<double> rank = Answer<double>::none("not judged");                   ///< percentile()
+  std::uint64_t competent = 0;                                                ///< members that rank is among
+  FigureMoments moments;                                                      ///< of a weak figure
+  std::vector<HistoryPoint> history;                                          ///< by start, this attempt the last
+  Answer<LearningCurve> curve = Answer<LearningCurve>::none("not computed");  ///< a - b / x, display unit
+
+  [[nodiscard]] bool weak() const { return passed.has_value() && !*passed; }
+};
+
+struct Grade {
+  AttemptRow attempt;
+  Norm norm;
+  PassRate competentRate, otherRate;  ///< of the norm's own members, by its rule
+  std::optional<double> criticalErrors;
+  std::string criticalMissing;        ///< why they are not known, or empty
+  std::vector<double> criticalTimes;  ///< begin of the moments at which they happened (s)
+  std::vector<GradedFigure> figures;  ///< in the norm's order
+  std::size_t inRule = 0, needed = 0, passedCount = 0;
+  bool passed = false;
+  bool certain = true;  ///< the judgement is the same however the open figures are taken
+  std::string verdict;  ///< one sentence
+  std::vector<std::string> remarks;
+  std::string momentsMissing;  ///< why no recording was looked at, or empty
+};
+
+/// Critical errors first: one fails the attempt. Then the norm's rule. A figure without a value is not passed.
+/// @param history the participant's other attempts of the same key, this one among them, with their values
+/// @throws Error 3 where the attempt did not verify or is not whole, or its comparability key is not the norm's and
+/// `mixKeys` is not set.
+Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& attempts,
+                   const std::vector<AttemptValue>& values, const Norm& norm, bool mixKeys, const std::string& name);
+
+/// Figures whose moments are to be found: weak ones, and critical errors where there are any.
+std::vector<std::pair<std::string, std::string>> weakFigures(const Grade& grade);
+void addMoments(Grade& grade, const std::vector<FigureMoments>& found);
+
+/// "formative" until evidence is attached to the norm, then what it is.
+std::string useOf(const Norm& norm);
+
+}  // namespace calot::analytics

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/assessment/norm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "analytics/checkpoints/registry.h"
+#include "analytics/statistics/contrasting_groups.h"
+#include "recorder/errors.h"
+
+namespace calot::analytics {
+namespace {
+
+constexpr const char* competentGroup = "competent";
+constexpr const char* otherGroup = "not competent";
+
+std::string figureName(const std::string& checkpoint, const std::string& subject) {
+  return subject.empty() ? checkpoint : checkpoint + " " + subject;
+}
+
+/// The attempts with a group by what most of their raters say; of a participant's the first that was judged.
+std::vector<AttemptRow> judged(std::vector<AttemptRow> attempts, const std::vector<Rating>& ratings,
+                               const std::string& form, const std::string& name) {
+  std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> votes;  // raters, of them for competent
+  for (const Rating& r : ratings) {
+    const auto at = r.answers.find(competenceItem);
+    if (r.form != form || at == r.answers.end()) continue;
+    ++votes[r.attempt].first;
+    if (at->second > 0) ++votes[r.attempt].second;
+  }
+  if (votes.empty())
+    throw Error(ExitCode::no, fmt::format("{}: no attempt was rated with form {} and its item \"{}\" (calot rate)",
+                                          name, form, competenceItem));
+  std::set<std::string> seen;
+  for (AttemptRow& a : attempts) {  // by start
+    const auto at = votes.find(a.uuid);
+    a.group.clear();
+    if (at == votes.end() || 2 * at->second.second == at->second.first) continue;  // not rated, or divided
+    if (!a.participant.empty() && !seen.insert(a.participant).second) continue;
+    a.group = 2 * at->second.second > at->second.first ? competentGroup : otherGroup;
+  }
+  return attempts;
+}
+
+NormCheckpoint markOf(const CheckpointDefinition& definition, const std::string& subject, const Norm& norm,
+                      std::size_t position) {
+  NormCheckpoint mark{definition.name, subject, definition.version, definition.direction, false, false, {}, {}, {}, ""};
+  std::vector<double> competent, others;
+  bool positive = true;
+  for (const NormMember& m : norm.members) {
+    if (!m.values[position]) continue;
+    (m.competent ? competent : others).push_back(*m.values[position]);
+    positive = positive && *m.values[position] > 0.0;
+  }
+  mark.logScale = definition.unit == "s" && positive;
+  const ContrastingGroupsOptions options{mark.logScale, 0.95, 9999, norm.seed};
+  const Answer<ContrastingGroups> cut = contrastingGroups(
+      competent, others, definition.direction == Direction::lower ? Better::lower : Better::higher, options);
+  if (!cut) {
+    mark.reason = cut.reason();
+    return mark;
+  }
+  mark.cut = cut->cut;
+  if (cut->interval) {
+    mark.lower = cut->interval->lower;
+    mark.upper = cut->interval->upper;
+  } else {
+    mark.reason = "no interval: " + cut->interval.reason();
+  }
+  return mark;
+}
+
+/// Which figures members have that judge, in the registry's order; their values, once a member.
+std::vector<std::pair<const CheckpointDefinition*, std::string>> collectValues(Norm& norm,
+                                                                               const std::vector<AttemptValue>& values,
+                                                                               const std::string& name) {
+  std::vector<std::pair<const CheckpointDefinition*, std::string>> figures;
+  std::map<std::string, NormMember*> member;
+  for (NormMember& m : norm.members) member[m.attempt] = &m;
+  for (const AttemptValue& item : values) {
+    const auto whose = member.find(item.attempt);
+    const CheckpointDefinition* definition = findCheckpoint(item.value.name);
+    if (whose == member.end() || definition == nullptr || definition->direction == Direction::none) continue;
+    if (!item.value.value || !std::isfinite(*item.value.value) || definition->name == "critical-errors") continue;
+    if (item.value.version != definition->version)
+      throw Error(ExitCode::no,
+                  fmt::format("{}: attempt {} has {} of version {}, this program computes {}; assess its "
+                              "recording again",
+                              name, item.attempt, definition->name, item.value.version, definition->version));
+    const std::pair figure(definition, item.value.subject);
+    std::size_t position =
+        static_cast<std::size_t>(std::find(figures.begin(), figures.end(), figure) - figures.begin());
+    if (position == figures.size()) {
+      figures.push_back(figure);
+      for (NormMember& m : norm.members) m.values.emplace_back();
+    }
+    whose->second->values[position] = item.value.value;
+  }
+  return figures;
+}
+
+void declareRule(Norm& norm, const NormRequest& request, const std::string& name) {
+  for (NormCheckpoint& mark : norm.checkpoints) mark.inRule = request.checkpoints.empty() && mark.cut.has_value();
+  for (const std::string& wanted : request.checkpoints) {
+    bool found = false;
+    for (NormCheckpoint& mark : norm.checkpoints) {
+      const std::string figure = figureName(mark.checkpoint, mark.subject);
+      if (wanted != figure && wanted != mark.checkpoint) continue;
+      found = true;
+      if (!mark.cut) throw Error(ExitCode::no, fmt::format("{}: {} has no pass mark: {}", name, figure, mark.reason));
+      mark.inRule = true;
+    }
+    if (!found)
+      throw Error(ExitCode::usage,
+                  fmt::format("norm: --checkpoints {}: the members have no such figure that judges", wanted));
+  }
+  const auto inRule = static_cast<std::size_t>(
+      std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }));
+  if (inRule == 0) throw Error(ExitCode::no, fmt::format("{}: no figure has a pass mark", name));
+  norm.leastPassed = request.leastPassed;
+  if (norm.leastPassed > inRule)
+    throw Error(ExitCode::no, fmt::format("{}: the rule asks for {} of {} figures", name, norm.leastPassed, inRule));
+}
+
+}  // namespace
+
+Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+              const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name) {
+  const bool plain = !request.name.empty() && request.name.size() <= 64 &&
+                     std::all_of(request.name.begin(), request.name.end(), [](unsigned char c) {
+                       return c < 0x80 && (std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.');
+                     });
+  if (!plain)
+    throw Error(ExitCode::usage,
+                "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
+  if (request.who.attemptRule == AttemptRule::mean)
+    throw Error(ExitCode::usage, "norm: a mean of attempts is no attempt; take --attempt-rule first");
+  StudyOptions who = request.who;
+  std::vector<AttemptRow> candidates = attempts;
+  Norm norm;
+  if (!request.judgedBy.empty()) {
+    candidates = judged(attempts, ratings, request.judgedBy, name);
+    who.groups = {competentGroup, otherGroup};
+    who.better = competentGroup;
+    norm.judgedBy = fmt::format("form {}, majority of raters", request.judgedBy);
+  }
+  const Study study = makeStudy(candidates, values, who, name);
+  if (study.better.empty())
+    throw Error(ExitCode::usage, fmt::format("norm: say with --better which of {} and {} is competent", study.groups[0],
+                                             study.groups[1]));
+  if (norm.judgedBy.empty()) {
+    norm.judgedBy = fmt::format("{} {} against {}", who.grouping == Grouping::group ? "group" : "performers",
+                                study.better, study.better == study.groups[0] ? study.groups[1] : study.groups[0]);
+  }
+  norm.name = request.name;
+  norm.by = request.by;
+  norm.seed = request.seed;
+  norm.synthetic = study.synthetic;
+  if (study.keys.size() != 1)
+    throw Error(ExitCode::no, fmt::format("{}: a norm is of one comparability key; choose it with --key", name));
+  norm.comparabilityKey = study.keys[0];
+  for (const AttemptRow& a : candidates) {
+    const auto group = study.groupOf.find(a.uuid);
+    if (group != study.groupOf.end()) norm.members.push_back({a.uuid, group->second == study.better, {}});
+  }
+  norm.membersMade = norm.members.size();
+  const auto figures = collectValues(norm, values, name);
+  for (std::size_t i = 0; i < figures.size(); ++i)
+    norm.checkpoints.push_back(markOf(*figures[i].first, figures[i].second, norm, i));
+  declareRule(norm, request, name);
+  return norm;
+}
+
+bool passes(const NormCheckpoint& mark, double value) {
+  return mark.direction == Direction::lower ? value <= *mark.cut : value >= *mark.cut;
+}
+
+std::size_t neededPasses(const Norm& norm) {
+  if (norm.leastPassed > 0) return norm.leastPassed;
+  return static_cast<std::size_t>(
+      std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }));
+}
+
+std::pair<PassRate, PassRate> passRates(const Norm& norm) {
+  std::pair<PassRate, PassRate> rates;
+  for (const NormMember& m : norm.members) {
+    std::size_t passed = 0;
+    for (std::size_t c = 0; c < norm.checkpoints.size(); ++c) {
+      if (norm.checkpoints[c].inRule && m.values[c] && passes(norm.checkpoints[c], *m.values[c])) ++passed;
+    }
+    PassRate& rate = m.competent ? rates.first : rates.second;
+    ++rate.members;
+    if (passed >= neededPasses(norm)) ++rate.passed;
+  }
+  return rates;
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Making a norm: who is in it, who of them is competent, and the pass mark of every figure by contrasting groups.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytics/assessment/rating_form.h"
+#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/report/study.h"
+
+namespace calot::analytics {
+
+struct NormRequest {
+  std::string name, by;
+  /// Whose attempts, of which key, synthetic or not: as a study's. Of several attempts of a participant the first
+  /// counts where `who.attemptRule` says so; a mean is no attempt and has less spread than one.
+  StudyOptions who;
+  std::string judgedBy;  ///< form with the one item "competent", 0 or 1, by which raters judge; empty: by group
+  std::vector<std::string> checkpoints;  ///< in the rule, "path-length" or "path-length left"; empty: all with a cut
+  std::uint32_t leastPassed = 0;         ///< of them; 0: all
+  std::uint64_t seed = 1;                ///< of the bootstrap
+};
+
+/// Name of the form and its item by which raters judge competence.
+inline constexpr const char* competenceItem = "competent";
+
+/// A norm from attempts at hand. A pass mark is the cut of contrasting groups with a bootstrap interval, of times on
+/// the log scale where all are positive; figures that judge nothing, and critical errors, which are asked first, have
+/// none.
+/// @param name of where they are from, for errors
+/// @throws Error 3 as makeStudy(), where raters judged nobody or all alike, a figure of the rule has no cut, or the
+/// rule wants more than there are; Error 2 for a name that is none.
+Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+              const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
+
+/// Whether a value is on the passing side of a mark; at the cut one passes. @pre there is a cut.
+bool passes(const NormCheckpoint& mark, double value);
+
+/// How many of the norm's own members would pass by its rule: what the rule asks for, and what it lets through.
+struct PassRate {
+  std::uint64_t passed = 0, members = 0;
+};
+/// First of the competent, then of the others. A member without a value of a figure has not passed it.
+std::pair<PassRate, PassRate> passRates(const Norm& norm);
+
+/// How many of the rule's figures must be passed: leastPassed, or all of them.
+std::size_t neededPasses(const Norm& norm);
+
+}  // namespace calot::analytics

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/assessment/protocol.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "analytics/assessment/names.h"
+#include "analytics/checkpoints/registry.h"
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::analytics {
+namespace {
+
+using recorder::JsonObject;
+using recorder::JsonPlace;
+using recorder::ObjectRule;
+using recorder::Outcome;
+
+constexpr std::size_t mostBytes = 1U << 20U;
+constexpr std::size_t mostHypotheses = 200, mostCriteria = 20, mostReasons = 50;
+constexpr double largestBound = 1e9;
+
+const ObjectRule rootRule{"",
+                          {{"format"},
+                           {"formatVersion", true, 1, 1},
+                           {"name"},
+                           {"version", true, 1, 1000000},
+                           {"title"},
+                           {"question", false},
+                           {"operators", false},
+                           {"populations"},
+                           {"better"},
+                           {"unit"},
+                           {"attemptRule"},
+                           {"scene", false},
+                           {"exclusions"},
+                           {"missing"},
+                           {"level", true, 0.0, 0.5, true},
+                           {"hypotheses"}}};
+const ObjectRule populationRule{"population", {{"group"}, {"definition"}, {"criteria", false}}};
+const ObjectRule criterionRule{"criterion",
+                               {{"criterion"},
+                                {"atLeast", false, -largestBound, largestBound},
+                                {"atMost", false, -largestBound, largestBound},
+                                {"equals", false}}};
+const ObjectRule exclusionsRule{"exclusions", {{"outcomes"}, {"reasons"}}};
+const ObjectRule hypothesisRule{"hypothesis", {{"checkpoint"}, {"subject", false}, {"larger"}, {"primary"}}};
+
+PopulationCriterion criterionAt(const JsonPlace& place) {
+  const JsonObject o = place.object(criterionRule);
+  PopulationCriterion criterion;
+  o.read("criterion", criterion.criterion, longestName);
+  const auto bound = [&](const char* key) {
+    double value = 0.0;
+    o.read(key, value);
+    return o.has(key) ? std::optional(value) : std::nullopt;
+  };
+  criterion.atLeast = bound("atLeast");
+  criterion.atMost = bound("atMost");
+  o.read("equals", criterion.equals, longestName);
+  const bool bounded = criterion.atLeast || criterion.atMost;
+  if (bounded == o.has("equals")) o.fail("either \"equals\", or \"atLeast\" or \"atMost\" or both are wanted");
+  if (criterion.atLeast && criterion.atMost && *criterion.atLeast > *criterion.atMost)
+    o.fail("\"atLeast\" is larger than \"atMost\"");
+  return criterion;
+}
+
+Population populationAt(const JsonPlace& place) {
+  const JsonObject o = place.object(populationRule);
+  Population population;
+  o.read("group", population.group, longestName);
+  o.read("definition", population.definition, longestText);
+  if (o.has("criteria")) {
+    for (const JsonPlace& item : o.at("criteria").list(0, mostCriteria))
+      population.criteria.push_back(criterionAt(item));
+  }
+  return population;
+}
+
+void askForGroup(const Protocol& protocol, const JsonPlace& place, const std::string& group) {
+  if (group != protocol.populations[0].group && group != protocol.populations[1].group)
+    place.fail(fmt::format("none of the populations' groups, {} and {}", protocol.populations[0].group,
+                           protocol.populations[1].group));
+}
+
+DirectedHypothesis hypothesisAt(const Protocol& protocol, const JsonPlace& place) {
+  const JsonObject o = place.object(hypothesisRule);
+  DirectedHypothesis hypothesis;
+  o.read("checkpoint", hypothesis.checkpoint, longestName);
+  if (findCheckpoint(hypothesis.checkpoint) == nullptr)
+    o.at("checkpoint").fail("no checkpoint of this name (calot checkpoints lists them)");
+  o.read("subject", hypothesis.subject, longestName);
+  o.read("larger", hypothesis.larger, longestName);
+  askForGroup(protocol, o.at("larger"), hypothesis.larger);
+  o.read("primary", hypothesis.primary);
+  return hypothesis;
+}
+
+void readExclusions(Protocol& protocol, const JsonObject& o) {
+  for (const JsonPlace& item : o.at("outcomes").list(0, 5)) {
+    protocol.excludedOutcomes.push_back(item.word<Outcome>({{"time limit", Outcome::timeLimit},
+                                                            {"abandoned", Outcome::abandoned},
+                                                            {"stopped", Outcome::stopped},
+                                                            {"technical failure", Outcome::technicalFailure}}));
+  }
+  for (const JsonPlace& item : o.at("reasons").list(0, mostReasons))
+    protocol.exclusionReasons.push_back(item.text(longestText));
+}
+
+}  // namespace
+
+const std::vector<ObjectRule>& protocolRules() {
+  static const std::vector<ObjectRule> rules{rootRule, populationRule, criterionRule, exclusionsRule, hypothesisRule};
+  return rules;
+}
+
+Protocol readProtocol(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return parseProtocol(recorder::readFileBytes(file, name, mostBytes), name);
+}
+
+Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file) {
+  const nlohmann::json json = recorder::parseStrictJson(bytes, file);
+  const JsonObject o = JsonPlace(json, file).object(rootRule);
+  (void)o.at("format").word<int>({{"calot-protocol", 0}});
+  std::uint32_t format = 0;
+  o.read("formatVersion", format);
+  Protocol protocol;
+  protocol.file = file;
+  protocol.text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  protocol.sha256 = recorder::sha256Hex(bytes);
+  protocol.name = plainName(o.at("name"));
+  o.read("version", protocol.version);
+  o.read("title", protocol.title, longestText);
+  o.read("question", protocol.question, longestText);
+  if (o.has("operators")) protocol.performers = o.at("operators").word<bool>({{"people", false}, {"performers", true}});
+  const std::vector<JsonPlace> populations = o.at("populations").list(2, 2);
+  for (std::size_t i = 0; i < 2; ++i) protocol.populations[i] = populationAt(populations[i]);
+  if (protocol.populations[0].group == protocol.populations[1].group)
+    populations[1].fail("has the group of the first population");
+  o.read("better", protocol.better, longestName);
+  askForGroup(protocol, o.at("better"), protocol.better);
+  (void)o.at("unit").word<int>({{"participant", 0}});
+  protocol.attemptRule =
+      o.at("attemptRule")
+          .word<std::optional<AttemptRule>>(
+              {{"single", std::nullopt}, {"first", AttemptRule::first}, {"mean", AttemptRule::mean}});
+  o.read("scene", protocol.scene, longestName);
+  readExclusions(protocol, o.at("exclusions").object(exclusionsRule));
+  protocol.missing = o.at("missing").word<MissingRule>(
+      {{"complete-cases", MissingRule::completeCases}, {"worst-rank", MissingRule::worstRank}});
+  o.read("level", protocol.level);
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const JsonPlace& place : o.at("hypotheses").list(1, mostHypotheses)) {
+    const DirectedHypothesis h = hypothesisAt(protocol, place);
+    if (!seen.emplace(h.checkpoint, h.subject).second) place.fail("a hypothesis on this figure stands above already");
+    protocol.hypotheses.push_back(h);
+  }
+  if (std::none_of(protocol.hypotheses.begin(), protocol.hypotheses.end(), [](const auto& h) { return h.primary; }))
+    o.at("hypotheses").fail("none is primary; at least one is wanted");
+  return protocol;
+}
+
+std::string whyOutside(const Population& population, const std::map<std::string, std::string>& experience) {
+  for (const PopulationCriterion& c : population.criteria) {
+    const auto at = experience.find(c.criterion);
+    if (at == experience.end()) return fmt::format("{} not recorded", c.criterion);
+    if (!c.equals.empty()) {
+      if (at->second != c.equals) return fmt::format("{} {}, {} wanted", c.criterion, at->second, c.equals);
+      continue;
+    }
+    std::string fault;
+    const double value = recorder::readFiniteNumber(at->second, fault);
+    if (!fault.empty()) return fmt::format("{} is no number", c.criterion);
+    if (c.atLeast && value < *c.atLeast)
+      return fmt::format("{} {}, at least {} wanted", c.criterion, value, *c.atLeast);
+    if (c.atMost && value > *c.atMost) return fmt::format("{} {}, at most {} wanted", c.criterion, value, *c.atMost);
+  }
+  return {};
+}
+
+std::vector<std::string> changedPlaces(const std::string& before, const std::string& after) {
+  std::vector<std::string> places;
+  for (const auto& step : nlohmann::json::diff(nlohmann::json::parse(before), nlohmann::json::parse(after))) {
+    const auto path = step.at("path").get<std::string>();
+    if (path != "/version") places.push_back(path);
+  }
+  if (places.empty()) places.emplace_back("layout only");
+  return places;
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A study's protocol: what is declared before the first attempt (schemas/protocol.schema.json, docs/statistics.md).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analytics/statistics/repeated_attempts.h"
+#include "recorder/formats/json_reader.h"
+#include "recorder/observer.h"
+
+namespace calot::analytics {
+
+/// A recorded criterion of experience that a member of a population meets: a number within bounds, or a word.
+struct PopulationCriterion {
+  std::string criterion;  ///< as in `participant --experience CRITERION=VALUE`
+  std::optional<double> atLeast, atMost;
+  std::string equals;  ///< or empty
+};
+
+struct Population {
+  std::string group;       ///< study group, or the performers' profile
+  std::string definition;  ///< in words
+  std::vector<PopulationCriterion> criteria;
+};
+
+/// "Novices take longer": which group's values of one figure are expected to be the larger ones.
+struct DirectedHypothesis {
+  std::string checkpoint, subject;
+  std::string larger;    ///< one of both groups
+  bool primary = false;  ///< in the family that Holm's adjustment holds
+};
+
+enum class MissingRule : std::uint8_t {
+  completeCases,  ///< who has no value is left out of that figure, and counted
+  worstRank       ///< who has none because the attempt was not completed ranks behind all others, tied
+};
+
+struct Protocol {
+  std::string name;
+  std::uint32_t version = 1;
+  std::string title, question;
+  bool performers = false;  ///< compares performers' profiles, to prove the pipeline; else people
+  std::array<Population, 2> populations;
+  std::string better;                      ///< the group that is expected to do better
+  std::optional<AttemptRule> attemptRule;  ///< none: one attempt each, several are refused
+  std::string scene;                       ///< "cholecystectomy/2", or empty: any
+  std::vector<recorder::Outcome> excludedOutcomes;
+  std::vector<std::string> exclusionReasons;  ///< for which an attempt may be excluded by hand
+  MissingRule missing = MissingRule::completeCases;
+  double level = 0.05;
+  std::vector<DirectedHypothesis> hypotheses;
+
+  std::string file;    ///< base name, for messages
+  std::string text;    ///< as it was read
+  std::string sha256;  ///< of the text, hexadecimal
+};
+
+/// The objects of a protocol, for the reader and for the test that holds the published schema against it.
+const std::vector<recorder::ObjectRule>& protocolRules();
+
+/// @throws Error (damaged) naming file and place.
+Protocol readProtocol(const std::filesystem::path& file);
+Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file);
+
+/// Why a participant with this experience is not of the population: "laparoscopies 12, at least 100 wanted",
+/// "laparoscopies not recorded"; empty where all criteria are met.
+std::string whyOutside(const Population& population, const std::map<std::string, std::string>& experience);
+
+/// JSON pointers at which two versions of a protocol differ, in the order of the texts; "layout only" where none does.
+/// @pre both texts were parsed by parseProtocol().
+std::vector<std::string> changedPlaces(const std::string& before, const std::string& after);
+
+}  // namespace calot::analytics

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forms that people fill in: questionnaires of participants, and scales by which raters judge attempts
+// (schemas/form.schema.json).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "recorder/formats/json_reader.h"
+
+namespace calot::analytics {
+
+struct FormItem {
+  std::string key, text;
+  std::string primaryGroup;                 ///< the study group whose judgement of it counts first, or empty
+  std::vector<std::string> anchors;         ///< wording of each score, from the least; empty: the site supplies it
+  std::map<std::string, double> published;  ///< published means by group, for reference
+};
+
+struct FormSection {
+  std::string name;
+  std::vector<FormItem> items;
+};
+
+struct RatingForm {
+  std::string name;
+  std::uint32_t version = 1;
+  std::string title, source;
+  bool ofAttempts = true;  ///< raters judge attempts; else participants judge what they took part in
+  int least = 1, most = 5;
+  std::vector<std::string> words;  ///< of the scores, from the least; or empty
+  std::vector<FormSection> sections;
+
+  std::string file, text, sha256;
+
+  [[nodiscard]] std::vector<FormItem> items() const;  ///< of all sections
+};
+
+/// The objects of a form, for the reader and for the test that holds the published schema against it.
+const std::vector<recorder::ObjectRule>& ratingFormRules();
+
+/// @throws Error (damaged) naming file and place.
+RatingForm readRatingForm(const std::filesystem::path& file);
+RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& file);
+
+/// A score for every item, none where it was left blank. @throws Error (usage) naming the item: unknown, not answered,
+/// no whole number of the scale, given twice, or all blank.
+/// @param given pairs of key and score; the score of one that was left blank is "-"
+std::map<std::string, int> answersOf(const RatingForm& form,
+                                     const std::vector<std::pair<std::string, std::string>>& given);
+
+}  // namespace calot::analytics

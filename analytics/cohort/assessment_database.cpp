@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Protocols and filled forms; norms are in norm_table.cpp.
+#include "analytics/cohort/assessment_database.h"
+
+#include <fmt/format.h>
+
+#include "analytics/cohort/assessment_storage.h"
+#include "analytics/cohort/tables.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::analytics {
+
+using namespace tables;
+
+namespace {
+
+/// Adds the form, or finds it. @throws Error 3 where this version is another text.
+std::int64_t formId(SQLite::Database& db, const std::string& path, const StoredDocument& form) {
+  SQLite::Statement find(db, "SELECT id, sha256 FROM form WHERE name = ? AND version = ?");
+  SQLite::bind(find, form.name, form.version);
+  if (find.executeStep()) {
+    if (text(find.getColumn(1)) != form.sha256) {
+      throw Error(ExitCode::no,
+                  fmt::format("{}: form {} version {} is there with another wording; a changed form has a higher "
+                              "version",
+                              path, form.name, form.version));
+    }
+    return find.getColumn(0).getInt64();
+  }
+  SQLite::Statement put(db, "INSERT INTO form (name, version, sha256, text) VALUES (?, ?, ?, ?)");
+  SQLite::bind(put, form.name, form.version, form.sha256, form.text);
+  put.exec();
+  return db.getLastInsertRowid();
+}
+
+RegisteredProtocol protocolRow(SQLite::Statement& row) {
+  RegisteredProtocol p;
+  p.name = text(row.getColumn(0));
+  p.version = row.getColumn(1).getUInt();
+  p.sha256 = text(row.getColumn(2));
+  p.text = text(row.getColumn(3));
+  p.registeredUtc = text(row.getColumn(4));
+  p.by = text(row.getColumn(5));
+  return p;
+}
+
+}  // namespace
+
+AssessmentDatabase::AssessmentDatabase(const std::string& path, CohortDatabase::Access access,
+                                       std::chrono::milliseconds patience)
+    : storage_(std::make_unique<Storage>()) {
+  storage_->path = path;
+  storage_->db = openCohort(path, access, patience);
+}
+
+AssessmentDatabase::~AssessmentDatabase() = default;
+
+RegisteredProtocol AssessmentDatabase::registerProtocol(const StoredDocument& protocol, const std::string& by,
+                                                        bool& added) {
+  if (by.empty()) throw Error(ExitCode::usage, "protocol: name who registers it");
+  return guarded(storage_->path, [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    for (const RegisteredProtocol& known : protocols(protocol.name)) {
+      if (known.sha256 == protocol.sha256) {
+        added = false;
+        return known;
+      }
+      if (known.version >= protocol.version) {
+        throw Error(ExitCode::no,
+                    fmt::format("{}: protocol {} version {} was registered on {} with another text; a changed "
+                                "protocol has a higher version",
+                                storage_->path, known.name, known.version, known.registeredUtc));
+      }
+    }
+    RegisteredProtocol fresh{protocol, nowUtc(), by};
+    SQLite::Statement put(db,
+                          "INSERT INTO protocol (name, version, sha256, text, registered_utc, registered_by) VALUES "
+                          "(?, ?, ?, ?, ?, ?)");
+    SQLite::bind(put, fresh.name, fresh.version, fresh.sha256, fresh.text, fresh.registeredUtc, fresh.by);
+    put.exec();
+    audit(db, "protocol-register", fmt::format("{} {}", fresh.name, fresh.version),
+          fmt::format("{} (by {})", fresh.sha256, by));
+    transaction.commit();
+    added = true;
+    return fresh;
+  });
+}
+
+std::vector<RegisteredProtocol> AssessmentDatabase::protocols(const std::string& name) const {
+  return guarded(storage_->path, [&] {
+    SQLite::Statement select(*storage_->db,
+                             "SELECT name, version, sha256, text, registered_utc, registered_by FROM protocol WHERE "
+                             "name = ?1 OR ?1 = '' ORDER BY name, version");
+    select.bind(1, name);
+    std::vector<RegisteredProtocol> rows;
+    while (select.executeStep()) rows.push_back(protocolRow(select));
+    return rows;
+  });
+}
+
+void AssessmentDatabase::storeRating(const StoredDocument& form, const Rating& rating, bool replace) {
+  checkPseudonym(rating.attempt.empty() ? rating.participant : rating.rater);
+  guarded(storage_->path, [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::int64_t formRow = formId(db, storage_->path, form);
+    const bool ofAttempt = !rating.attempt.empty();
+    const std::int64_t subject = ofAttempt ? attemptId(db, rating.attempt) : participantId(db, rating.participant);
+    const std::string about = ofAttempt ? "attempt " + recorder::shown(rating.attempt)
+                                        : fmt::format("participant \"{}\"", rating.participant);
+    if (subject < 0) throw Error(ExitCode::no, fmt::format("{}: no {}", storage_->path, about));
+    const char* table = ofAttempt ? "rating" : "questionnaire";
+    const char* whose = ofAttempt ? "form = ?1 AND attempt = ?2 AND rater = ?3" : "form = ?1 AND participant = ?2";
+    const auto bind = [&](SQLite::Statement& statement) {
+      statement.bind(1, formRow);
+      statement.bind(2, subject);
+      if (ofAttempt) statement.bind(3, rating.rater);
+    };
+    SQLite::Statement find(db, fmt::format("SELECT rated_utc FROM {} WHERE {} LIMIT 1", table, whose));
+    bind(find);
+    if (find.executeStep()) {
+      if (!replace) {
+        throw Error(ExitCode::no, fmt::format("{}: {} was rated with {} on {} already{}; --force replaces it",
+                                              storage_->path, about, form.name, text(find.getColumn(0)),
+                                              ofAttempt ? fmt::format(" by \"{}\"", rating.rater) : ""));
+      }
+      find.reset();
+      SQLite::Statement clear(db, fmt::format("DELETE FROM {} WHERE {}", table, whose));
+      bind(clear);
+      clear.exec();
+    }
+    const std::string now = nowUtc();
+    SQLite::Statement put(
+        db, ofAttempt
+                ? "INSERT INTO rating (form, attempt, rater, item, score, rated_utc) VALUES (?1, ?2, ?3, ?4, ?5, ?6)"
+                : "INSERT INTO questionnaire (form, participant, item, score, rated_utc) VALUES (?1, ?2, ?4, ?5, "
+                  "?6)");
+    for (const auto& [item, score] : rating.answers) {
+      put.reset();
+      bind(put);
+      put.bind(4, item);
+      put.bind(5, score);
+      put.bind(6, now);
+      put.exec();
+    }
+    audit(db, "rating", ofAttempt ? rating.attempt : rating.participant,
+          fmt::format("{} {}{}", form.name, form.version, ofAttempt ? " by " + rating.rater : ""));
+    transaction.commit();
+  });
+}
+
+std::vector<Rating> AssessmentDatabase::ratings() const {
+  return guarded(storage_->path, [&] {
+    SQLite::Statement select(
+        *storage_->db,
+        "SELECT f.name AS form, f.version AS version, a.uuid AS attempt, r.rater AS rater, '' AS participant, "
+        "r.rated_utc, r.item, r.score FROM rating r JOIN form f ON f.id = r.form JOIN attempt a ON a.id = r.attempt "
+        "UNION ALL SELECT f.name, f.version, '', '', p.pseudonym, q.rated_utc, q.item, q.score FROM questionnaire q "
+        "JOIN form f ON f.id = q.form JOIN participant p ON p.id = q.participant "
+        "ORDER BY form, version, attempt, rater, participant");
+    std::vector<Rating> ratings;
+    while (select.executeStep()) {
+      Rating r{text(select.getColumn(0)), select.getColumn(1).getUInt(), text(select.getColumn(2)),
+               text(select.getColumn(3)), text(select.getColumn(4)),     {},
+               text(select.getColumn(5))};
+      const bool same = !ratings.empty() && ratings.back().form == r.form &&
+                        ratings.back().formVersion == r.formVersion && ratings.back().attempt == r.attempt &&
+                        ratings.back().rater == r.rater && ratings.back().participant == r.participant;
+      if (!same) ratings.push_back(std::move(r));
+      ratings.back().answers[text(select.getColumn(6))] = select.getColumn(7).getInt();
+    }
+    return ratings;
+  });
+}
+
+std::vector<StoredDocument> AssessmentDatabase::forms() const {
+  return guarded(storage_->path, [&] {
+    SQLite::Statement select(*storage_->db, "SELECT name, version, sha256, text FROM form ORDER BY name, version");
+    std::vector<StoredDocument> forms;
+    while (select.executeStep()) {
+      forms.push_back({text(select.getColumn(0)), select.getColumn(1).getUInt(), text(select.getColumn(2)),
+                       text(select.getColumn(3))});
+    }
+    return forms;
+  });
+}
+
+}  // namespace calot::analytics

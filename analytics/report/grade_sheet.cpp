@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/grade_sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "analytics/report/history_plot.h"
+#include "analytics/report/html_text.h"
+#include "analytics/report/page_html.h"
+#include "recorder/words.h"
+
+namespace calot::analytics {
+namespace {
+
+using Align = TextTable::Align;
+using Json = nlohmann::ordered_json;
+
+std::string nameOf(const GradedFigure& f) {
+  return f.mark.subject.empty() ? f.mark.checkpoint : f.mark.checkpoint + " " + f.mark.subject;
+}
+
+std::string shown(const GradedFigure& f, const std::optional<double>& si) {
+  return si ? significant(*si * f.displayFactor) : "-";
+}
+
+std::string clock(double seconds) {
+  const auto minutes = static_cast<int>(seconds / 60.0);
+  return fmt::format("{}:{:04.1f}", minutes, seconds - 60.0 * minutes);
+}
+
+std::string title(const Grade& g) {
+  return fmt::format("Grade sheet: attempt {} against norm {} {}", g.attempt.uuid.substr(0, 8), g.norm.name,
+                     g.norm.version);
+}
+
+bool synthetic(const Grade& g) { return g.attempt.synthetic || g.norm.synthetic; }
+
+std::vector<std::string> opening(const Grade& g) {
+  std::vector<std::string> lines{useOf(g.norm), g.verdict};
+  lines.push_back(g.criticalErrors ? fmt::format("Critical errors: {:g}.", *g.criticalErrors)
+                                   : fmt::format("Critical errors: not known ({}).", g.criticalMissing));
+  lines.push_back(
+      fmt::format("Attempt {} of {} on {}: {}, {}, {}.", g.attempt.uuid,
+                  g.attempt.participant.empty() ? recorder::wordFor(g.attempt.operatorKind) : g.attempt.participant,
+                  g.attempt.startUtc.empty() ? "an unknown day" : g.attempt.startUtc, g.attempt.comparabilityKey,
+                  recorder::wordFor(g.attempt.outcome), analytics::nameOf(g.attempt.verification.verdict)));
+  lines.push_back(
+      fmt::format("Rule of the norm ({}): no critical error, and {} of {} figures. By it {} of {} competent members "
+                  "pass, and {} of "
+                  "{} others.",
+                  g.norm.judgedBy, g.needed, g.inRule, g.competentRate.passed, g.competentRate.members,
+                  g.otherRate.passed, g.otherRate.members));
+  return lines;
+}
+
+ReportTable figuresTable(const Grade& g) {
+  ReportTable table{"Figures",
+                    {{"checkpoint", Align::left},
+                     {"unit", Align::left},
+                     {"better", Align::left},
+                     {"value", Align::right},
+                     {"pass mark", Align::right},
+                     {"95 %", Align::right},
+                     {"passed", Align::left},
+                     {"rule", Align::left},
+                     {"percentile", Align::right}},
+                    {}};
+  for (const GradedFigure& f : g.figures) {
+    table.rows.push_back({nameOf(f), f.unit == "1" ? "" : f.unit, analytics::nameOf(f.mark.direction),
+                          shown(f, f.value), shown(f, f.mark.cut),
+                          f.mark.lower ? fmt::format("[{}, {}]", shown(f, f.mark.lower), shown(f, f.mark.upper)) : "-",
+                          !f.passed ? "-" : fmt::format("{}{}", *f.passed ? "yes" : "no", f.open ? ", open" : ""),
+                          f.mark.inRule ? "counts" : "", f.rank ? fmt::format("{:.0f}", *f.rank) : "-"});
+  }
+  return table;
+}
+
+std::vector<std::string> notes(const Grade& g) {
+  std::vector<std::string> lines{
+      "pass mark: the cut of contrasting groups, at which one passes, with its bootstrap interval. open: the value "
+      "lies "
+      "within that interval. percentile: among the competent members; higher is better."};
+  for (const GradedFigure& f : g.figures) {
+    if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
+    if (f.value && f.passed && !f.rank)
+      lines.push_back(fmt::format("{}: no percentile, {}", nameOf(f), f.rank.reason()));
+  }
+  lines.insert(lines.end(), g.remarks.begin(), g.remarks.end());
+  return lines;
+}
+
+std::string momentText(const Moment& m) {
+  return fmt::format("{} to {} ({:.0f} % of it)", clock(m.begin), clock(m.end), 100.0 * m.share);
+}
+
+std::vector<std::string> momentLines(const Grade& g) {
+  std::vector<std::string> lines;
+  for (const double t : g.criticalTimes) lines.push_back("critical error at " + clock(t));
+  for (const GradedFigure& f : g.figures) {
+    if (!f.weak()) continue;
+    std::string text = nameOf(f) + ": ";
+    for (const Moment& m : f.moments.moments) text += (text.back() == ' ' ? "" : ", ") + momentText(m);
+    if (f.moments.moments.empty())
+      text += "no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing);
+    lines.push_back(text);
+  }
+  return lines;
+}
+
+ReportTable historyTable(const Grade& g) {
+  ReportTable table{"History",
+                    {{"checkpoint", Align::left},
+                     {"unit", Align::left},
+                     {"attempts", Align::right},
+                     {"first", Align::right},
+                     {"this", Align::right},
+                     {"plateau", Align::right},
+                     {"se", Align::right}},
+                    {}};
+  for (const GradedFigure& f : g.figures) {
+    if (f.history.size() < 2) continue;
+    table.rows.push_back({nameOf(f), f.unit == "1" ? "" : f.unit, fmt::format("{}", f.history.size()),
+                          significant(f.history.front().value), significant(f.history.back().value),
+                          f.curve ? significant(f.curve->plateau) : "-",
+                          f.curve ? significant(f.curve->plateauError) : "-"});
+  }
+  return table;
+}
+
+constexpr const char* curveNote =
+    "History: the participant's attempts of the same comparability key up to this one, by their start. plateau: of the "
+    "curve a - b / x by least squares over the number x of the attempt, with its standard error.";
+
+std::string link(const std::string& recording, const Moment& m) {
+  if (recording.empty()) return escaped(momentText(m));
+  return fmt::format("<a href=\"{}#t={:.2f},{:.2f}\">{}</a>", escaped(recording), m.begin, m.end,
+                     escaped(momentText(m)));
+}
+
+std::string momentsHtml(const Grade& g, const std::string& recording) {
+  std::string html = "<h2>Moments</h2>\n<ul>\n";
+  for (const double t : g.criticalTimes)
+    html += "<li>critical error: " + link(recording, {t, t + 1.0, 1.0 / static_cast<double>(g.criticalTimes.size())}) +
+            "</li>\n";
+  bool any = !g.criticalTimes.empty();
+  for (const GradedFigure& f : g.figures) {
+    if (!f.weak()) continue;
+    any = true;
+    html += "<li>" + escaped(nameOf(f)) + ": ";
+    bool first = true;
+    for (const Moment& m : f.moments.moments) {
+      html += (first ? "" : ", ") + link(recording, m);
+      first = false;
+    }
+    if (first) html += escaped("no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing));
+    html += "</li>\n";
+  }
+  if (!any) return {};
+  html += "</ul>\n";
+  if (!recording.empty())
+    html += paragraphHtml("A link names the recording and the seconds; calot render " + recording +
+                          " --at SECONDS -o F.png draws a moment.");
+  return html;
+}
+
+Json figureJson(const GradedFigure& f) {
+  const auto number = [&](const std::optional<double>& si) { return si ? Json(*si * f.displayFactor) : Json(nullptr); };
+  Json moments = Json::array();
+  for (const Moment& m : f.moments.moments) moments.push_back({{"begin", m.begin}, {"end", m.end}, {"share", m.share}});
+  Json history = Json::array();
+  for (const HistoryPoint& p : f.history)
+    history.push_back({{"attempt", p.attempt}, {"start_utc", p.startUtc}, {"value", p.value}});
+  return {{"checkpoint", f.mark.checkpoint},
+          {"subject", f.mark.subject},
+          {"unit", f.unit},
+          {"direction", analytics::nameOf(f.mark.direction)},
+          {"value", number(f.value)},
+          {"not_judged", f.missing},
+          {"cut", number(f.mark.cut)},
+          {"cut_lower", number(f.mark.lower)},
+          {"cut_upper", number(f.mark.upper)},
+          {"log_scale", f.mark.logScale},
+          {"in_rule", f.mark.inRule},
+          {"passed", f.passed ? Json(*f.passed) : Json(nullptr)},
+          {"open", f.open},
+          {"percentile", f.rank ? Json(*f.rank) : Json(nullptr)},
+          {"no_percentile", f.rank.reason()},
+          {"competent_members", f.competent},
+          {"moments", moments},
+          {"no_moments", f.moments.none},
+          {"history", history},
+          {"plateau", f.curve ? Json(f.curve->plateau) : Json(nullptr)},
+          {"no_curve", f.curve.reason()}};
+}
+
+}  // namespace
+
+void printGrade(const Grade& g, std::ostream& out) {
+  if (synthetic(g)) out << watermarkText << '\n';
+  printWrapped(title(g), out);
+  for (const std::string& line : opening(g)) printWrapped(line, out);
+  out << '\n';
+  for (const ReportTable& table : {figuresTable(g), historyTable(g)}) {
+    if (!table.rows.empty()) printTable(table, out);
+  }
+  const std::vector<std::string> moments = momentLines(g);
+  if (!moments.empty()) out << "Moments\n";
+  for (const std::string& line : moments) printWrapped(line, out);
+  if (!moments.empty()) out << '\n';
+  for (const std::string& line : notes(g)) printWrapped(line, out);
+  if (!historyTable(g).rows.empty()) printWrapped(curveNote, out);
+  if (synthetic(g)) out << watermarkText << '\n';
+}
+
+std::string gradeJson(const Grade& g) {
+  Json j{{"synthetic", synthetic(g)},
+         {"use", g.norm.evidence.empty() ? "formative" : "evidence attached"},
+         {"use_text", useOf(g.norm)},
+         {"attempt", g.attempt.uuid},
+         {"participant", g.attempt.participant},
+         {"norm", {{"name", g.norm.name}, {"version", g.norm.version}, {"judged_by", g.norm.judgedBy}}},
+         {"critical_errors", g.criticalErrors ? Json(*g.criticalErrors) : Json(nullptr)},
+         {"critical_errors_missing", g.criticalMissing},
+         {"critical_times", g.criticalTimes},
+         {"passed", g.passed},
+         {"certain", g.certain},
+         {"verdict", g.verdict},
+         {"rule", {{"figures", g.inRule}, {"needed", g.needed}, {"passed", g.passedCount}}},
+         {"pass_rate",
+          {{"competent", {g.competentRate.passed, g.competentRate.members}},
+           {"others", {g.otherRate.passed, g.otherRate.members}}}},
+         {"remarks", g.remarks},
+         {"moments_missing", g.momentsMissing},
+         {"figures", Json::array()}};
+  for (const GradedFigure& f : g.figures) j["figures"].push_back(figureJson(f));
+  return j.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string gradeHtml(const Grade& g, const std::string& recording) {
+  std::string html = pageBegin(title(g), synthetic(g));
+  for (const std::string& line : opening(g)) html += paragraphHtml(line);
+  html += tableHtml(figuresTable(g)) + momentsHtml(g, recording);
+  const ReportTable history = historyTable(g);
+  if (!history.rows.empty()) {
+    html += tableHtml(history) + paragraphHtml(curveNote) + "<div class=\"figures\">\n";
+    for (const GradedFigure& f : g.figures) {
+      if (f.history.size() < 2) continue;
+      std::vector<double> values;
+      for (const HistoryPoint& p : f.history) values.push_back(p.value);
+      std::optional<double> cut;
+      if (f.mark.cut) cut = *f.mark.cut * f.displayFactor;
+      html += historySvg({nameOf(f), f.unit == "1" ? "" : f.unit, values, cut, synthetic(g)});
+    }
+    html += "</div>\n";
+  }
+  return html + "<h2>Notes</h2>\n" + listHtml(notes(g)) + pageEnd(synthetic(g));
+}
+
+}  // namespace calot::analytics

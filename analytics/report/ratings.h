@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What filled forms say: answers by group, internal consistency, and agreement between raters.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/assessment/rating_form.h"
+#include "analytics/cohort/assessment_database.h"
+#include "analytics/report/report_table.h"
+#include "analytics/statistics/answer.h"
+#include "analytics/statistics/cronbach_alpha.h"
+#include "analytics/statistics/intraclass_correlation.h"
+
+namespace calot::analytics {
+
+/// One group's answers to an item. Of attempts: the mean of an attempt's raters.
+struct ItemSummary {
+  std::uint64_t n = 0, blank = 0;
+  std::map<int, std::uint64_t> counts;  ///< how often each score was given; of a questionnaire
+  std::optional<double> median, lowerQuartile, upperQuartile, mean;
+};
+
+struct ItemReport {
+  std::string key, text;
+  std::string primaryGroup;                      ///< or empty
+  std::vector<ItemSummary> groups;               ///< by FormReport::groups
+  std::vector<std::optional<double>> published;  ///< mean by group
+};
+
+/// Agreement on one figure of the attempts that every rater rated.
+struct Agreement {
+  std::string figure;  ///< an item's key, or "mean of all items"
+  std::uint64_t attempts = 0, raters = 0;
+  Answer<IntraclassCorrelation> single = Answer<IntraclassCorrelation>::none("not computed");   ///< ICC(2,1)
+  Answer<IntraclassCorrelation> average = Answer<IntraclassCorrelation>::none("not computed");  ///< ICC(2,k)
+};
+
+struct SectionConsistency {
+  std::string section;
+  std::uint64_t n = 0;  ///< complete forms
+  Answer<CronbachAlpha> alpha = Answer<CronbachAlpha>::none("not computed");
+};
+
+struct FormReport {
+  std::string name, title, source;
+  std::uint32_t version = 1;
+  bool ofAttempts = true;
+  std::vector<std::string> groups;
+  std::uint64_t filled = 0;      ///< forms
+  std::uint64_t leftOut = 0;     ///< of attempts or participants that are in none of the groups
+  std::uint64_t incomplete = 0;  ///< attempts that not every rater rated whole; out of the agreement
+  std::vector<ItemReport> items;
+  std::vector<SectionConsistency> sections;  ///< of a questionnaire: those of three items or more
+  std::vector<Agreement> agreement;          ///< of attempts
+};
+
+/// @param groupOf group of each attempt's uuid, or of each participant; who is not in it is left out
+/// @param groups in the order of the tables
+FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings,
+                      const std::map<std::string, std::string>& groupOf, const std::vector<std::string>& groups);
+
+/// Reports of every form that a cohort holds, by name and version.
+std::vector<FormReport> reportForms(const AssessmentDatabase& database,
+                                    const std::map<std::string, std::string>& groupOf,
+                                    const std::vector<std::string>& groups);
+
+/// Answers, consistency and agreement of one form, without the tables that have no rows.
+std::vector<ReportTable> ratingTables(const FormReport& report);
+
+}  // namespace calot::analytics

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A table as a terminal and a page show it alike.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytics/report/text_table.h"
+
+namespace calot::analytics {
+
+struct ReportTable {
+  std::string title;
+  std::vector<std::pair<std::string, TextTable::Align>> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// Title, table and an empty line, for a terminal of 120 columns.
+void printTable(const ReportTable& content, std::ostream& out);
+/// A sentence over as many lines as it needs.
+void printWrapped(const std::string& text, std::ostream& out);
+
+}  // namespace calot::analytics

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sentences about the study as a whole: its protocol, and how its figures came about.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "analytics/report/study_tables.h"
+#include "recorder/attempt.h"
+
+namespace calot::analytics {
+namespace {
+
+template <class Test>
+bool any(const Study& study, Test test) {
+  return std::any_of(study.rows.begin(), study.rows.end(), test);
+}
+
+std::string comparisons(const Study& study) {
+  const bool exact = any(study, [](const StudyRow& r) { return r.test && r.test->exact; });
+  const bool normal = any(study, [](const StudyRow& r) { return r.test && !r.test->exact; });
+  if (!exact && !normal) return "No figure could be tested. ";
+  return fmt::format("Groups were compared by the two-sided Mann-Whitney test, {}. ",
+                     exact && normal ? "exact with ties up to 80 values and by normal approximation beyond"
+                     : exact         ? "exact with ties"
+                                     : "by normal approximation with correction for ties and continuity");
+}
+
+std::string effects(const Study& study) {
+  std::string text;
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.area); }))
+    text +=
+        "The effect is the probability of superiority (A, the area under the ROC curve) with Newcombe's score interval "
+        "at 95 %. ";
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.shiftInterval); }))
+    text += "The shift is that of Hodges and Lehmann with a distribution-free interval. ";
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.hedges); }))
+    text += "Hedges' g has an interval from the non-central t distribution. ";
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.withDuration); }))
+    text += "Correlation with the attempt's duration is Spearman's. ";
+  if (any(study, [](const StudyRow& r) { return r.adjusted && r.adjusted->analysis; }))
+    text += "Outcomes were compared at one baseline by analysis of covariance with HC3 errors. ";
+  return text;
+}
+
+std::string missing(const Study& study) {
+  std::uint64_t without = 0, worst = 0;
+  for (const StudyRow& row : study.rows) {
+    without += row.group[0].missing + row.group[1].missing;
+    worst += row.worstRanked[0] + row.worstRanked[1];
+  }
+  if (without == 0) return "No value was missing. ";
+  return fmt::format("{} values were missing over all figures; {}. ", without,
+                     worst == 0
+                         ? "who had none was left out of that figure"
+                         : fmt::format("in {} of these cases, attempts that were not completed, the participant ranked "
+                                       "behind all others, else was left out of that figure",
+                                       worst));
+}
+
+}  // namespace
+
+std::vector<std::string> protocolLines(const Study& study) {
+  if (!study.protocol) return {};
+  const StudyProtocol& p = *study.protocol;
+  std::vector<std::string> lines{fmt::format("Protocol {} version {}: {}", p.name, p.version, p.title)};
+  if (!p.question.empty()) lines.push_back(p.question);
+  lines.push_back(p.registeredUtc.empty()
+                      ? fmt::format("SHA-256 {}, not registered.", p.sha256)
+                      : fmt::format("SHA-256 {}, registered on {}; first attempt {}.", p.sha256, p.registeredUtc,
+                                    p.firstAttemptUtc.empty() ? "at an unknown time" : p.firstAttemptUtc));
+  if (!p.whyExploratory.empty()) lines.push_back(fmt::format("Exploratory: {}.", p.whyExploratory));
+  for (const ProtocolVersion& v : p.versions) {
+    if (v.sha256 == p.sha256 && v.changed.empty()) continue;
+    std::string changed;
+    for (const std::string& place : v.changed) changed += (changed.empty() ? "" : ", ") + place;
+    lines.push_back(fmt::format("Version {} was registered on {} by {}{}.", v.version, v.registeredUtc, v.by,
+                                changed.empty() ? "" : "; changed from the version before: " + changed));
+  }
+  return lines;
+}
+
+std::string studyMethods(const Study& study) {
+  std::string text = "Methods. ";
+  if (study.protocol) {
+    text += fmt::format("The study followed protocol {} version {}{}. ", study.protocol->name, study.protocol->version,
+                        study.heading == "confirmatory" ? ", registered before the first attempt" : "");
+    for (std::size_t g = 0; g < 2; ++g)
+      text += fmt::format("{}: {}. ", study.groups[g], study.protocol->populations[g]);
+  }
+  if (study.synthetic) text += "Attempts were made by performers, which are programs. ";
+  text +=
+      fmt::format("Of {} {} in the {}, {} of {} {} and {} {} were analysed ({}); {} were left out. ", study.recruited,
+                  study.counted, study.source, study.analysed, study.participants[0], study.groups[0],
+                  study.participants[1], study.groups[1], study.attemptRule, study.recruited - study.analysed);
+  text += comparisons(study) + effects(study) + missing(study);
+  text += study.family;
+  return text + fmt::format(" Quartiles are of type 7. Computed by {}.", recorder::softwareName());
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a protocol changes of a study: who is in it, the roles of its rows, the family, and the heading.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analytics/report/study.h"
+
+namespace calot::analytics {
+
+/// The choices that the protocol makes, in place of those that stand there. @pre there is a protocol.
+StudyOptions byProtocol(const StudyOptions& options);
+
+/// Why the protocol leaves an attempt out, one of protocolReasons(): another scene, an outcome that it excludes, a
+/// participant who is not of the population of `group`; or empty.
+std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group, const ProtocolInUse& protocol);
+/// In the order in which they are asked, for the flow.
+const std::vector<std::string>& protocolReasons();
+
+/// Fills `study.protocol` and the heading: confirmatory where the protocol was registered before the first attempt of
+/// the data, else exploratory, with the reason. Lists versions, what changed, and what deviates.
+/// @param data attempts that are analysed, or were excluded by hand
+void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, const StudyOptions& options);
+
+/// The row's role and, of a hypothesis, its direction.
+void declareRow(StudyRow& row, const Study& study, const Protocol& protocol);
+
+/// Holm's adjustment over the primary hypotheses alone, one without a test counting as p = 1; Benjamini-Hochberg over
+/// all other rows. Hypotheses that no row answers to become remarks.
+void adjustByProtocol(Study& study, const Protocol& protocol);
+
+}  // namespace calot::analytics

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot grade: one attempt against a norm, as a sheet.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analytics/assessment/grade.h"
+#include "analytics/cohort/assessment_database.h"
+#include "analytics/report/grade_sheet.h"
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
+#include "recorder/formats/text_words.h"
+#include "recorder/recording/reader.h"
+
+namespace calot::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Access = analytics::CohortDatabase::Access;
+
+struct Options {
+  std::string database, attempt, norm, recording, html;
+  unsigned version = 0;
+  bool mixKeys = false, json = false, force = false;
+};
+
+/// The attempt of this uuid, or the only one whose uuid begins so.
+analytics::AttemptRow attemptOf(const std::vector<analytics::AttemptRow>& attempts, const Options& o) {
+  const analytics::AttemptRow* found = nullptr;
+  for (const analytics::AttemptRow& a : attempts) {
+    if (a.uuid.rfind(o.attempt, 0) != 0) continue;
+    if (found != nullptr)
+      throw Error(ExitCode::usage,
+                  fmt::format("grade: --attempt {}: several attempts begin so", recorder::shown(o.attempt)));
+    found = &a;
+  }
+  if (found == nullptr || o.attempt.empty())
+    throw Error(ExitCode::no, fmt::format("{}: no attempt {}", o.database, recorder::shown(o.attempt)));
+  return *found;
+}
+
+/// The named norm, or the only one that there is.
+analytics::Norm normOf(const analytics::AssessmentDatabase& database, const Options& o) {
+  if (!o.norm.empty()) return database.norm(o.norm, o.version);
+  std::vector<analytics::Norm> norms = database.norms();
+  if (norms.empty())
+    throw Error(ExitCode::no, fmt::format("{}: there is no norm yet; make one with calot norm create", o.database));
+  if (std::any_of(norms.begin(), norms.end(), [&](const auto& n) { return n.name != norms[0].name; }))
+    throw Error(ExitCode::usage, "grade: there are several norms; name one with --norm");
+  return database.norm(norms[0].name, o.version);
+}
+
+/// The recording that was named, or the one beside the database; empty where there is none.
+fs::path recordingOf(const analytics::AttemptRow& attempt, const Options& o) {
+  if (!o.recording.empty()) return o.recording;
+  std::error_code ignored;
+  const fs::path beside = fs::path(o.database).parent_path() / attempt.fileName;
+  return fs::is_regular_file(beside, ignored) && beside.extension() == ".h5" ? beside : fs::path();
+}
+
+void lookAtRecording(analytics::Grade& grade, const fs::path& file, const Options& o) {
+  const auto figures = analytics::weakFigures(grade);
+  if (figures.empty()) return;
+  if (file.empty()) {
+    grade.momentsMissing =
+        fmt::format("the recording {} is not beside the database (--recording)", grade.attempt.fileName);
+    return;
+  }
+  if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact)
+    throw Error(ExitCode::no, fmt::format("{}: its content chain is broken ({})", file.string(), chain.what));
+  recorder::Recording recording(file);
+  if (recording.header().attempt != grade.attempt.uuid)
+    throw Error(ExitCode::no, fmt::format("{}: is of attempt {}, not {}", file.string(), recording.header().attempt,
+                                          grade.attempt.uuid));
+  if (recording.header().purpose == "golden") {
+    grade.momentsMissing = "a golden recording holds no results of its steps";
+    return;
+  }
+  Progress progress("looking for moments, steps", o.json);
+  analytics::addMoments(grade, analytics::findMoments(recording, figures, [&](std::uint64_t done, std::uint64_t of) {
+                          progress.show(done, of);
+                        }));
+}
+
+int grade(const Options& o) {
+  if (!o.html.empty()) recorder::refuseOutput(o.html, o.force);
+  const analytics::CohortDatabase cohort(o.database, Access::read);
+  const std::vector<analytics::AttemptRow> attempts = cohort.listAttempts();
+  const analytics::AttemptRow attempt = attemptOf(attempts, o);
+  const analytics::Norm norm = normOf(analytics::AssessmentDatabase(o.database, Access::read), o);
+  analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
+  const fs::path recording = recordingOf(attempt, o);
+  lookAtRecording(result, recording, o);
+  if (!o.html.empty())
+    recorder::writeText(o.html, analytics::gradeHtml(result, recording.filename().string()), o.force);
+  if (o.json) {
+    std::cout << analytics::gradeJson(result) << '\n';
+  } else {
+    analytics::printGrade(result, std::cout);
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
+}  // namespace
+
+void addGrade(CLI::App& app, Run& run) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("grade", "Hold an attempt against a norm");
+  command->add_option("cohort", o->database, "Cohort database")->required();
+  command->add_option("--attempt", o->attempt, "Its uuid, or how that begins")->required();
+  command->add_option("--norm", o->norm, "The norm; not needed where there is one alone");
+  command->add_option("--norm-version", o->version, "Its version; default: the newest");
+  command->add_option(
+      "--recording", o->recording,
+      "The attempt's recording, for the moments of weak figures; default: the file beside the database");
+  command->add_flag("--mix-keys", o->mixKeys, "Compare across scenes, devices and versions, and say so");
+  command->add_option("--html", o->html, "Write the sheet as one self-contained page");
+  command->add_flag("--json", o->json, "Print JSON");
+  command->add_flag("--force", o->force, "Replace files that are there");
+  command->callback([o, &run] { run = [o] { return grade(*o); }; });
+}
+
+}  // namespace calot::apps

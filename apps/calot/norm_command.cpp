@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot norm: named, versioned cohorts that others are held against.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analytics/assessment/grade.h"
+#include "analytics/assessment/norm.h"
+#include "analytics/checkpoints/registry.h"
+#include "analytics/cohort/assessment_database.h"
+#include "analytics/report/report_table.h"
+#include "analytics/report/study_tables.h"
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::apps {
+namespace {
+
+using Access = analytics::CohortDatabase::Access;
+using Align = analytics::TextTable::Align;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t mostEvidence = std::size_t{1} << 30U;
+
+struct Options {
+  std::string database, name, by, groupBy = "group", attemptRule, rule, seed = "1", statement, file;
+  analytics::NormRequest request;
+  unsigned version = 0;
+  bool json = false;
+};
+
+/// "all" or "at-least:K".
+std::uint32_t leastOf(const std::string& rule) {
+  constexpr std::string_view prefix = "at-least:";
+  if (rule == "all") return 0;
+  std::string fault;
+  const bool counted = rule.rfind(prefix, 0) == 0;
+  const long long least = counted ? recorder::readWholeNumber(rule.substr(prefix.size()), fault) : 0;
+  if (!fault.empty() || least < 1 || least > 1000)
+    throw Error(ExitCode::usage, fmt::format("norm: --rule {}: all, or at-least:K is wanted", recorder::shown(rule)));
+  return static_cast<std::uint32_t>(least);
+}
+
+std::string figureName(const analytics::NormCheckpoint& c) {
+  return c.subject.empty() ? c.checkpoint : c.checkpoint + " " + c.subject;
+}
+
+Json jsonOf(const analytics::Norm& norm) {
+  const auto [competent, others] = analytics::passRates(norm);
+  Json j{{"name", norm.name},
+         {"version", norm.version},
+         {"created_utc", norm.createdUtc},
+         {"by", norm.by},
+         {"synthetic", norm.synthetic},
+         {"judged_by", norm.judgedBy},
+         {"comparability_key", norm.comparabilityKey},
+         {"members", norm.members.size()},
+         {"members_made", norm.membersMade},
+         {"needed", analytics::neededPasses(norm)},
+         {"pass_rate",
+          {{"competent", {competent.passed, competent.members}}, {"others", {others.passed, others.members}}}},
+         {"seed", fmt::format("{}", norm.seed)},
+         {"use", analytics::useOf(norm)},
+         {"checkpoints", Json::array()}};
+  const auto number = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
+  for (const analytics::NormCheckpoint& c : norm.checkpoints) {
+    j["checkpoints"].push_back({{"checkpoint", c.checkpoint},
+                                {"subject", c.subject},
+                                {"version", c.version},
+                                {"direction", analytics::nameOf(c.direction)},
+                                {"log_scale", c.logScale},
+                                {"in_rule", c.inRule},
+                                {"cut_si", number(c.cut)},
+                                {"lower_si", number(c.lower)},
+                                {"upper_si", number(c.upper)},
+                                {"reason", c.reason}});
+  }
+  return j;
+}
+
+void print(const analytics::Norm& norm) {
+  if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
+  const auto [competent, others] = analytics::passRates(norm);
+  analytics::printWrapped(
+      fmt::format("Norm {} version {}, made on {} by {}: {} members, judged by {}; {}", norm.name, norm.version,
+                  norm.createdUtc, norm.by, norm.members.size(), norm.judgedBy, norm.comparabilityKey),
+      std::cout);
+  analytics::printWrapped(
+      fmt::format(
+          "Rule: no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of {} "
+          "others.",
+          analytics::neededPasses(norm),
+          std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }),
+          competent.passed, competent.members, others.passed, others.members),
+      std::cout);
+  analytics::printWrapped(analytics::useOf(norm), std::cout);
+  std::cout << '\n';
+  analytics::ReportTable table{"Pass marks",
+                               {{"checkpoint", Align::left},
+                                {"unit", Align::left},
+                                {"better", Align::left},
+                                {"cut", Align::right},
+                                {"95 %", Align::right},
+                                {"rule", Align::left},
+                                {"", Align::left}},
+                               {}};
+  for (const analytics::NormCheckpoint& c : norm.checkpoints) {
+    const analytics::CheckpointDefinition* d = analytics::findCheckpoint(c.checkpoint);
+    const double factor = d != nullptr ? d->displayFactor : 1.0;
+    const auto number = [&](double v) { return analytics::significant(v * factor); };
+    table.rows.push_back({figureName(c), d == nullptr || d->displayUnit == "1" ? "" : d->displayUnit,
+                          analytics::nameOf(c.direction), c.cut ? number(*c.cut) : "-",
+                          c.lower ? fmt::format("[{}, {}]", number(*c.lower), number(*c.upper)) : "-",
+                          c.inRule ? "counts" : "", c.reason});
+  }
+  analytics::printTable(table, std::cout);
+  if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
+}
+
+int create(Options& o) {
+  o.request.name = o.name;
+  o.request.by = o.by;
+  o.request.leastPassed = leastOf(o.rule);
+  o.request.seed = std::stoull(o.seed);
+  o.request.who.grouping = o.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
+  if (!o.attemptRule.empty()) o.request.who.attemptRule = analytics::AttemptRule::first;
+  analytics::AssessmentDatabase database(o.database, Access::write);
+  const analytics::CohortDatabase cohort(o.database, Access::read);
+  const analytics::Norm norm =
+      analytics::makeNorm(cohort.listAttempts(), cohort.allValues(), database.ratings(), o.request, o.database);
+  const std::uint32_t version = database.storeNorm(norm);
+  print(database.norm(norm.name, version));
+  return static_cast<int>(ExitCode::yes);
+}
+
+int list(Options& o) {
+  Json rows = Json::array();
+  std::string text;
+  for (const analytics::Norm& norm : analytics::AssessmentDatabase(o.database, Access::read).norms()) {
+    rows.push_back(jsonOf(norm));
+    text += fmt::format("{} version {}, {}: {} members, judged by {}{}{}\n", norm.name, norm.version, norm.createdUtc,
+                        norm.members.size(), norm.judgedBy, norm.evidence.empty() ? ", formative" : "",
+                        norm.synthetic ? ", SYNTHETIC" : "");
+  }
+  if (o.json) {
+    std::cout << rows.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << (text.empty() ? "no norms\n" : text);
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
+int show(Options& o) {
+  const analytics::Norm norm = analytics::AssessmentDatabase(o.database, Access::read).norm(o.name, o.version);
+  if (o.json) {
+    std::cout << jsonOf(norm).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    print(norm);
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
+int attach(Options& o) {
+  const std::filesystem::path file(o.file);
+  const std::string name = file.filename().string();
+  const std::string hash = recorder::sha256Hex(recorder::readFileBytes(file, name, mostEvidence));
+  analytics::AssessmentDatabase database(o.database, Access::write);
+  const analytics::Norm norm = database.norm(o.name, o.version);
+  database.attachEvidence(norm, {o.statement, name, hash, o.by, ""});
+  std::cout << analytics::useOf(database.norm(norm.name, norm.version)) << '\n';
+  return static_cast<int>(ExitCode::yes);
+}
+
+void addCreateOptions(CLI::App& command, Options& o) {
+  analytics::StudyOptions& who = o.request.who;
+  command.add_option("--by", o.by, "Who makes it")->required();
+  command.add_option("--rule", o.rule, "How figures combine: all, or at-least:K of them")->required();
+  command
+      .add_option(
+          "--checkpoints", o.request.checkpoints,
+          "Figures in the rule, A,B: a checkpoint, or one of it (\"path-length left\"); default: all with a mark")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--groups", who.groups, "The two groups, A,B")->delimiter(',')->allow_extra_args(false);
+  command.add_option("--better", who.better, "Which of them is competent");
+  command.add_option("--judged-by", o.request.judgedBy,
+                     "Instead of groups: the form by which raters judged the attempts (competence)");
+  command.add_option("--group-by", o.groupBy, "What makes the groups")
+      ->check(CLI::IsMember({"performer", "group"}))
+      ->capture_default_str();
+  command.add_option("--attempt-rule", o.attemptRule, "Of a participant's several attempts the first")
+      ->check(CLI::IsMember({"first"}));
+  command.add_option("--key", who.key, "Only attempts of this comparability key");
+  command.add_flag("--include-synthetic", who.includeSynthetic, "Take in what performers made (watermarked)");
+  command.add_flag("--include-practice", who.includePractice, "Take in attempts in practice mode");
+  command.add_option("--seed", o.seed, "Of the bootstrap")->check(wholeNumber)->capture_default_str();
+}
+
+}  // namespace
+
+void addNorm(CLI::App& app, Run& run) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("norm", "Make and show the norms that attempts are graded against");
+  command->require_subcommand(1);
+  const auto add = [&](const char* name, const char* what, int (*call)(Options&)) {
+    CLI::App* sub = command->add_subcommand(name, what);
+    sub->add_option("cohort", o->database, "Cohort database")->required();
+    sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
+    return sub;
+  };
+  CLI::App* made = add("create", "Make the next version of a norm from attempts of a cohort", create);
+  made->add_option("name", o->name, "Its name")->required();
+  addCreateOptions(*made, *o);
+  add("list", "List the norms of a cohort", list)->add_flag("--json", o->json, "Print JSON");
+  CLI::App* shown = add("show", "Show a norm: members, rule, pass rate, pass marks", show);
+  CLI::App* proven =
+      add("evidence", "Attach the site's validity evidence; without it every sheet is formative", attach);
+  for (CLI::App* sub : {shown, proven}) {
+    sub->add_option("name", o->name, "Its name")->required();
+    sub->add_option("--norm-version", o->version, "Its version; default: the newest");
+  }
+  shown->add_flag("--json", o->json, "Print JSON");
+  proven->add_option("--file", o->file, "The document; its name and hash are stored")->required();
+  proven->add_option("--statement", o->statement, "What it shows, one sentence")->required();
+  proven->add_option("--by", o->by, "Who attaches it")->required();
+}
+
+}  // namespace calot::apps

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot protocol: checks a study's protocol, registers it in a cohort, lists what is registered.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "analytics/assessment/protocol.h"
+#include "analytics/cohort/assessment_database.h"
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+using Access = analytics::CohortDatabase::Access;
+
+struct Options {
+  std::string protocol, database, by;
+  bool json = false;
+};
+
+int check(const Options& o) {
+  const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
+  const auto primary = std::count_if(p.hypotheses.begin(), p.hypotheses.end(), [](const auto& h) { return h.primary; });
+  std::cout << fmt::format("{}: protocol {} version {}, {} hypotheses, {} of them primary, SHA-256 {}\n", p.file,
+                           p.name, p.version, p.hypotheses.size(), primary, p.sha256);
+  return static_cast<int>(ExitCode::yes);
+}
+
+int registerIt(const Options& o) {
+  const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
+  analytics::AssessmentDatabase database(o.database, Access::create);
+  bool added = false;
+  const analytics::RegisteredProtocol stored =
+      database.registerProtocol({p.name, p.version, p.sha256, p.text}, o.by, added);
+  std::cout << fmt::format("{}: protocol {} version {} {} {} by {}, SHA-256 {}\n", o.database, stored.name,
+                           stored.version, added ? "registered on" : "was registered on", stored.registeredUtc,
+                           stored.by, stored.sha256);
+  return static_cast<int>(ExitCode::yes);
+}
+
+int list(const Options& o) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  std::string text;
+  for (const auto& p : analytics::AssessmentDatabase(o.database, Access::read).protocols()) {
+    rows.push_back({{"name", p.name},
+                    {"version", p.version},
+                    {"sha256", p.sha256},
+                    {"registered_utc", p.registeredUtc},
+                    {"by", p.by}});
+    text += fmt::format("{} version {}, registered on {} by {}, SHA-256 {}\n", p.name, p.version, p.registeredUtc, p.by,
+                        p.sha256);
+  }
+  if (o.json) {
+    std::cout << rows.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << (text.empty() ? "no protocols\n" : text);
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
+}  // namespace
+
+void addProtocol(CLI::App& app, Run& run) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("protocol", "Check, register and list the protocols of studies");
+  command->require_subcommand(1);
+  const auto add = [&](const char* name, const char* what, int (*call)(const Options&)) {
+    CLI::App* sub = command->add_subcommand(name, what);
+    sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
+    return sub;
+  };
+  const char* file = "A protocol's file (schemas/protocol.schema.json), or the name of one that comes with the program";
+  CLI::App* checked = add("check", "Read a protocol and say what it holds", check);
+  checked->add_option("protocol", o->protocol, file)->required();
+  CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerIt);
+  registered->add_option("protocol", o->protocol, file)->required();
+  registered->add_option("cohort", o->database, "Cohort database; made where there is none")->required();
+  registered->add_option("--by", o->by, "Who registers it")->required();
+  CLI::App* listed = add("list", "List the protocols that a cohort holds", list);
+  listed->add_option("cohort", o->database, "Cohort database")->required();
+  listed->add_flag("--json", o->json, "Print JSON");
+}
+
+}  // namespace calot::apps

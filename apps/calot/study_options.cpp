@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/calot/study_options.h"
+
+#include "apps/calot/environment.h"
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
+  std::vector<CLI::Option*> added;
+  added.push_back(command.add_option("cohort", options.database, "Cohort database"));
+  added.push_back(command.add_option(
+      "--protocol", options.protocol,
+      "The study's protocol, a file or the name of one that comes with the program; it makes the choices"));
+  CLI::Option* protocol = added.back();
+  added.push_back(command
+                      .add_option("--group-by", options.groupBy,
+                                  "What makes the groups: the participants' group or the performers' profile")
+                      ->check(CLI::IsMember({"performer", "group"}))
+                      ->capture_default_str());
+  added.push_back(command.add_flag("--include-synthetic", options.cohort.includeSynthetic,
+                                   "Take in what performers made (watermarked)"));
+  added.push_back(
+      command.add_flag("--include-practice", options.cohort.includePractice, "Take in attempts in practice mode"));
+  added.push_back(
+      command.add_flag("--include-branches", options.cohort.includeBranches, "Take in branches of other attempts"));
+  added.push_back(command.add_option("--key", options.cohort.key, "Only attempts of this comparability key"));
+  added.push_back(command.add_flag("--mix-keys", options.cohort.mixKeys,
+                                   "Compare across scenes, devices and versions, and say so"));
+  for (CLI::Option* option : added) option->excludes(&table);
+  for (CLI::Option* option : {added[2], added[3], added[4], added[5]}) option->excludes(protocol);
+}
+
+void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
+  analytics::TableStudyOptions& study = options.elsewhere;
+  command.add_option("--participant-column", study.participantColumn, "Column of who it was")->needs(&table);
+  command.add_option("--group-column", study.groupColumn, "Column of the study group")->needs(&table);
+  command.add_option("--outcome", study.outcomes, "Column to compare; NAME:lower or NAME:higher says what is better")
+      ->allow_extra_args(false)
+      ->needs(&table);
+  command.add_option("--occasion-column", study.occasionColumns, "Column of the occasion; several: A,B")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs(&table);
+  command.add_option("--occasion", study.occasion, "The occasion to compare; of several columns: a/b")->needs(&table);
+  command.add_option("--baseline-occasion", study.baselineOccasion, "The occasion whose value is the baseline")
+      ->needs(&table);
+}
+
+}  // namespace
+
+analytics::Study studyOf(StudySource& options) {
+  if (!options.attemptRule.empty()) {
+    options.choices.attemptRule =
+        options.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
+  }
+  if (!options.table.empty()) {
+    static_cast<analytics::StudyChoices&>(options.elsewhere) = options.choices;
+    return analytics::makeTableStudy(analytics::readCsvTable(options.table), options.elsewhere);
+  }
+  if (options.database.empty()) throw Error(ExitCode::usage, "name a cohort database, or a table with --table");
+  static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;
+  options.cohort.grouping =
+      options.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
+  const auto read = analytics::CohortDatabase::Access::read;
+  const analytics::AssessmentDatabase assessment(options.database, read);
+  if (!options.protocol.empty()) {
+    analytics::ProtocolInUse& use = options.cohort.protocol.emplace();
+    use.protocol = analytics::readProtocol(findAsset(options.protocol, "protocols", "protocol"));
+    use.registered = assessment.protocols(use.protocol.name);
+  }
+  analytics::Study study = analytics::makeStudy(analytics::CohortDatabase(options.database, read), options.cohort);
+  analytics::addRatings(study, assessment);
+  return study;
+}
+
+void addStudySource(CLI::App& command, StudySource& source) {
+  CLI::Option* table = command.add_option("--table", source.table, "A CSV file instead of a cohort");
+  addCohortOptions(command, source, *table);
+  addTableOptions(command, source, *table);
+  command.add_option("--groups", source.choices.groups, "The two groups to compare, A,B")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--better", source.choices.better, "The group that is expected to do better (the hypothesis)");
+  command
+      .add_option("--attempt-rule", source.attemptRule,
+                  "One value of a participant's several attempts: the first, or the mean")
+      ->check(CLI::IsMember({"first", "mean"}));
+  command
+      .add_option("--family", source.choices.family, "Rows whose p values are adjusted for each other (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  for (const char* name : {"--groups", "--better", "--attempt-rule", "--family"})
+    command.get_option(name)->excludes(command.get_option("--protocol"));
+}
+
+}  // namespace calot::apps

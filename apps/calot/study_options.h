@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What commands share that begin with two groups' values: of a cohort, or of a table from elsewhere.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "analytics/report/study.h"
+#include "analytics/report/table_study.h"
+
+namespace calot::apps {
+
+struct StudySource {
+  std::string database, groupBy = "group", table, attemptRule, protocol;
+  analytics::StudyChoices choices;
+  analytics::StudyOptions cohort;
+  analytics::TableStudyOptions elsewhere;
+};
+
+/// Adds the cohort or --table, and who and what of it is compared.
+void addStudySource(CLI::App& command, StudySource& source);
+
+/// @throws Error as makeStudy() and makeTableStudy(); (usage) where neither a cohort nor a table is named.
+analytics::Study studyOf(StudySource& source);
+
+}  // namespace calot::apps

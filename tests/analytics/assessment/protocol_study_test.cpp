@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a protocol makes of a study: heading, people, family, missing values.
+#include <gtest/gtest.h>
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
+#include "recorder/formats/file_bytes.h"
+#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/analytics/cohort/support/cohort_support.h"
+#include "tests/analytics/support/refusal.h"
+
+namespace calot::analytics {
+namespace {
+
+using Access = CohortDatabase::Access;
+using nlohmann::json;
+using support::bytesOf;
+using support::expectRefusal;
+using support::Folder;
+using support::humanAttempt;
+using support::uuidOf;
+
+json document() {
+  return json::parse(R"({"format": "calot-protocol", "formatVersion": 1, "name": "times", "version": 1,
+    "title": "Experts are faster", "populations": [
+      {"group": "expert", "definition": "at least 100 operations", "criteria": [{"criterion": "operations", "atLeast": 100}]},
+      {"group": "novice", "definition": "no operation"}],
+    "better": "expert", "unit": "participant", "attemptRule": "single",
+    "exclusions": {"outcomes": ["stopped"], "reasons": ["device failed"]}, "missing": "worst-rank", "level": 0.05,
+    "hypotheses": [{"checkpoint": "elapsed-time", "larger": "novice", "primary": true},
+                   {"checkpoint": "path-length", "subject": "left", "larger": "novice", "primary": true},
+                   {"checkpoint": "path-length", "subject": "right", "larger": "novice", "primary": true},
+                   {"checkpoint": "force-maximum", "subject": "left", "larger": "novice", "primary": false}]})");
+}
+
+Protocol protocolOf(const json& text) { return parseProtocol(bytesOf(text.dump()), "p.json"); }
+
+StoredDocument stored(const Protocol& p) { return {p.name, p.version, p.sha256, p.text}; }
+
+std::vector<CheckpointValue> figures(double seconds, double left, double right, double depth) {
+  return {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, seconds),
+          makeValue(*findCheckpoint("path-length"), "left", Origin::samples, left),
+          makeValue(*findCheckpoint("path-length"), "right", Origin::samples, right),
+          makeValue(*findCheckpoint("depth-path"), "left", Origin::samples, depth)};
+}
+
+/// Five experts and five novices in the year 2999, so that a protocol of now comes before; all separate but one figure.
+class ProtocolStudy : public testing::Test {
+ protected:
+  ProtocolStudy() : path_(folder_.file("c.db")), database_(path_, Access::create) {
+    for (unsigned n = 0; n < 10; ++n) add(n, n < 5 ? "expert" : "novice", "200");
+  }
+
+  void add(unsigned n, const std::string& group, const std::string& operations,
+           recorder::Outcome outcome = recorder::Outcome::completed) {
+    const std::string who = fmt::format("{}{}", group == "expert" ? "E" : "N", n);
+    Participant p;
+    p.pseudonym = who;
+    p.group = group;
+    p.experience = {{"operations", operations}};
+    database_.addParticipant(p);
+    AttemptRecord a = humanAttempt(n, who);
+    a.startUtc = fmt::format("2999-01-01T00:00:{:02}Z", n);
+    a.outcome = outcome;
+    std::vector<CheckpointValue> values = figures(10.0 + n, 1.0 + n, 1.0 + n % 5, 1.0 + n);
+    if (outcome != recorder::Outcome::completed)
+      values[0] = makeMissing(*findCheckpoint("elapsed-time"), "", Origin::resimulated, Availability::notAvailable,
+                              "not completed");
+    database_.storeAttempt(a, values);
+  }
+
+  Study study(const json& text) {
+    StudyOptions options;
+    options.protocol = ProtocolInUse{protocolOf(text), {}, {}};
+    options.protocol->registered = AssessmentDatabase(path_, Access::read).protocols("times");
+    return makeStudy(database_, options);
+  }
+
+  RegisteredProtocol put(const json& text) {
+    bool added = false;
+    return AssessmentDatabase(path_, Access::write).registerProtocol(stored(protocolOf(text)), "me", added);
+  }
+
+  static const StudyRow& row(const Study& study, const std::string& name, const std::string& subject) {
+    for (const StudyRow& r : study.rows) {
+      if (r.checkpoint == name && r.subject == subject) return r;
+    }
+    throw std::out_of_range(name);
+  }
+
+  Folder folder_;
+  std::string path_;
+  CohortDatabase database_;
+};
+
+TEST_F(ProtocolStudy, isExploratoryUnlessRegisteredBeforeTheFirstAttempt) {
+  EXPECT_EQ(study(document()).heading, "exploratory");
+  EXPECT_NE(study(document()).protocol->whyExploratory.find("not registered"), std::string::npos);
+  const RegisteredProtocol now = put(document());
+  const Study confirmed = study(document());
+  EXPECT_EQ(confirmed.heading, "confirmatory");
+  EXPECT_EQ(confirmed.protocol->whyExploratory, "");
+  EXPECT_EQ(confirmed.protocol->firstAttemptUtc, "2999-01-01T00:00:00Z");
+  EXPECT_EQ(confirmed.protocol->registeredUtc, now.registeredUtc);
+  // One attempt from before is enough, even if it was excluded by hand.
+  AttemptRecord early = humanAttempt(40, "E0b");
+  database_.addParticipant({"E0b", "expert", "", "", {{"operations", "300"}}, {}});
+  database_.storeAttempt(early, figures(9, 9, 9, 9));
+  database_.excludeAttempt(early.uuid, "device failed", "me");
+  const Study late = study(document());
+  EXPECT_EQ(late.heading, "exploratory");
+  EXPECT_NE(late.protocol->whyExploratory.find("the first attempt is of 2026-01-01"), std::string::npos);
+  EXPECT_TRUE(late.protocol->deviations.empty()) << "the protocol names this reason";
+  database_.excludeAttempt(early.uuid, "looked odd", "me");
+  ASSERT_EQ(study(document()).protocol->deviations.size(), 1U);
+  EXPECT_NE(study(document()).protocol->deviations[0].find("looked odd"), std::string::npos);
+}
+
+TEST_F(ProtocolStudy, anAttemptWithoutAStartProvesNothing) {
+  put(document());
+  database_.addParticipant({"E41", "expert", "", "", {{"operations", "300"}}, {}});
+  AttemptRecord a = humanAttempt(41, "E41");
+  a.startUtc.clear();
+  database_.storeAttempt(a, figures(9, 9, 9, 9));
+  EXPECT_EQ(study(document()).heading, "exploratory");
+}
+
+TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
+  json changed = document();
+  put(document());
+  const RegisteredProtocol again = put(document());
+  EXPECT_EQ(again.version, 1U);
+  changed["level"] = 0.01;
+  expectRefusal(ExitCode::no, "a changed protocol has a higher version", [&] { put(changed); });
+  changed["version"] = 2;
+  put(changed);
+  expectRefusal(ExitCode::no, "was registered on", [&] {
+    json between = changed;
+    between["title"] = "other";
+    put(between);
+  });
+  const Study second = study(changed);
+  ASSERT_EQ(second.protocol->versions.size(), 2U);
+  EXPECT_EQ(second.protocol->versions[1].changed, std::vector<std::string>{"/level"});
+  std::ostringstream text;
+  printStudy(second, text);
+  EXPECT_NE(text.str().find("Study (confirmatory): expert against novice"), std::string::npos);
+  EXPECT_NE(text.str().find("changed from the version before: /level"), std::string::npos);
+  expectRefusal(ExitCode::usage, "name who registers it", [&] {
+    bool added = false;
+    AssessmentDatabase(path_, Access::write).registerProtocol(stored(protocolOf(document())), "", added);
+  });
+  SQLite::Database raw(path_, SQLite::OPEN_READWRITE);
+  EXPECT_THROW(raw.exec("UPDATE protocol SET registered_utc = '2000-01-01T00:00:00Z'"), SQLite::Exception);
+  EXPECT_THROW(raw.exec("DELETE FROM protocol"), SQLite::Exception);
+}
+
+TEST_F(ProtocolStudy, holmIsOverThePrimaryHypothesesAlone) {
+  const Study s = study(document());
+  // Complete separation of five and five: 2 / 252. The right hands' values are equal in both groups: p = 1.
+  const double p = 2.0 / 252.0;
+  EXPECT_NEAR(row(s, "elapsed-time", "").test->p, p, 1e-15);
+  EXPECT_NEAR(*row(s, "elapsed-time", "").holm, 3.0 * p, 1e-15);
+  EXPECT_NEAR(*row(s, "path-length", "left").holm, 3.0 * p, 1e-15);
+  EXPECT_NEAR(*row(s, "path-length", "right").holm, 1.0, 1e-15);
+  EXPECT_EQ(row(s, "elapsed-time", "").role, Role::primary);
+  EXPECT_EQ(row(s, "elapsed-time", "").supported, true);
+  EXPECT_EQ(row(s, "path-length", "right").supported, false);
+  const StudyRow& other = row(s, "depth-path", "left");
+  EXPECT_EQ(other.role, Role::exploratory);
+  EXPECT_FALSE(other.holm);
+  EXPECT_NEAR(*other.benjaminiHochberg, p, 1e-15) << "alone in its family";
+  EXPECT_FALSE(other.supported) << "nothing was expected";
+  const json said = json::parse(studyJson(s));
+  EXPECT_EQ(said["rows"][0]["role"], "primary");
+  EXPECT_EQ(said["protocol"]["sha256"], protocolOf(document()).sha256);
+  bool absent = false;
+  for (const std::string& remark : s.remarks) absent = absent || remark.find("No attempt has force-maximum left") == 0;
+  EXPECT_TRUE(absent);
+}
+
+TEST_F(ProtocolStudy, theDirectionIsTheProtocolsEvenAgainstTheCheckpoints) {
+  json text = document();
+  text["hypotheses"][0]["larger"] = "expert";
+  const StudyRow row0 = row(study(text), "elapsed-time", "");
+  EXPECT_DOUBLE_EQ(row0.area->value.a, 0.0);
+  EXPECT_EQ(row0.asHypothesised, false);
+  EXPECT_EQ(row0.supported, false) << "significant the other way";
+}
+
+TEST_F(ProtocolStudy, populationsOutcomesAndScenesStayOutAndAreCounted) {
+  add(20, "expert", "12");
+  add(21, "novice", "0", recorder::Outcome::stopped);
+  json text = document();
+  Study s = study(text);
+  EXPECT_EQ(s.analysed, 10U);
+  const auto count = [&](const std::string& reason) {
+    for (const FlowRow& f : s.flow) {
+      if (f.reason == reason) return f.attempts;
+    }
+    return std::uint64_t{0};
+  };
+  EXPECT_EQ(count("outside of the protocol's population"), 1U);
+  EXPECT_EQ(count("ended in a way that the protocol excludes"), 1U);
+  text["scene"] = "cholecystectomy/2";
+  expectRefusal(ExitCode::no, "another scene than the protocol's", [&] { (void)study(text); });
+}
+
+TEST_F(ProtocolStudy, whoDoesNotFinishRanksBehindAll) {
+  add(22, "novice", "0", recorder::Outcome::abandoned);
+  add(23, "expert", "150", recorder::Outcome::timeLimit);
+  const StudyRow ranked = row(study(document()), "elapsed-time", "");
+  EXPECT_EQ(ranked.group[0].n, 5U);
+  EXPECT_EQ(ranked.worstRanked, (std::array<std::uint64_t, 2>{1, 1}));
+  // R's W of c(10:14, 99) and c(15:19, 99): 5 + 1 / 2; of 36 pairs.
+  EXPECT_DOUBLE_EQ(ranked.test->u, 5.5);
+  EXPECT_DOUBLE_EQ(ranked.area->value.a, 1.0 - 5.5 / 36.0);
+  EXPECT_DOUBLE_EQ(*ranked.shift, -5.0) << "of the values that there are";
+  json text = document();
+  text["missing"] = "complete-cases";
+  EXPECT_DOUBLE_EQ(row(study(text), "elapsed-time", "").test->u, 0.0);
+  std::ostringstream out;
+  printStudy(study(document()), out);
+  EXPECT_NE(out.str().find("rank behind all others"), std::string::npos);
+}
+
+TEST_F(ProtocolStudy, methodsSayWhatWasDone) {
+  put(document());
+  const std::string methods = studyMethods(study(document()));
+  EXPECT_NE(methods.find("protocol times version 1, registered before the first attempt"), std::string::npos);
+  EXPECT_NE(methods.find("exact with ties"), std::string::npos);
+  EXPECT_EQ(methods.find("normal approximation"), std::string::npos);
+  EXPECT_EQ(methods.find("analysis of covariance"), std::string::npos) << "not done";
+  EXPECT_NE(methods.find("5 expert and 5 novice were analysed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace calot::analytics

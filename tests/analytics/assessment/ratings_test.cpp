@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forms: the schema, what comes with the program, answers, storing them, and what they say.
+#include "analytics/report/ratings.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/analytics/cohort/support/cohort_support.h"
+#include "tests/analytics/support/refusal.h"
+
+namespace calot::analytics {
+namespace {
+
+using Access = CohortDatabase::Access;
+using nlohmann::json;
+using support::bytesOf;
+using support::expectRefusal;
+using support::Folder;
+using support::humanAttempt;
+using support::uuidOf;
+
+RatingForm shipped(const std::string& name) {
+  return readRatingForm(std::string(CALOT_SOURCE_DIR) + "/assets/forms/" + name + ".json");
+}
+
+StoredDocument stored(const RatingForm& form) { return {form.name, form.version, form.sha256, form.text}; }
+
+TEST(RatingForm, readerAndSchemaAgree) { support::expectAgreement(ratingFormRules(), "schemas/form.schema.json"); }
+
+TEST(RatingForm, theQuestionnaireIsThePapersTable) {
+  const RatingForm form = shipped("questionnaire-2014");
+  const json table = support::jsonOf("assets/reference/cholecystectomy-2014-table3.json");
+  ASSERT_EQ(form.sections.size(), table.at("sections").size());
+  for (std::size_t s = 0; s < form.sections.size(); ++s) {
+    const json& section = table.at("sections")[s];
+    EXPECT_EQ(form.sections[s].name, section.at("name"));
+    ASSERT_EQ(form.sections[s].items.size(), section.at("items").size());
+    for (std::size_t i = 0; i < form.sections[s].items.size(); ++i) {
+      const FormItem& item = form.sections[s].items[i];
+      EXPECT_EQ(item.text, section.at("items")[i].at("item"));
+      EXPECT_EQ(item.published.at("expert"), section.at("items")[i].at("expert"));
+      EXPECT_EQ(item.published.at("novice"), section.at("items")[i].at("novice"));
+      EXPECT_EQ(item.primaryGroup, item.text.find("ealism") == std::string::npos ? "" : "expert");
+    }
+  }
+  EXPECT_EQ(form.words.back(), "very good");
+  EXPECT_EQ(shipped("goals").items().size(), 5U);
+  EXPECT_EQ(shipped("osats").items().size(), 7U);
+  EXPECT_TRUE(shipped("osats").items()[0].anchors.empty()) << "the site supplies the wording";
+  EXPECT_EQ(shipped("competence").items().at(0).key, "competent");
+}
+
+TEST(RatingForm, everyFaultHasItsPlace) {
+  const json good = support::jsonOf("assets/forms/goals.json");
+  const auto fault = [&](const std::string& words, auto change) {
+    json bad = good;
+    change(bad);
+    expectRefusal(ExitCode::damaged, "f.json: " + words, [&] { (void)parseRatingForm(bytesOf(bad.dump()), "f.json"); });
+  };
+  fault("/sections/0/items/1: an item of this key",
+        [](json& f) { f["sections"][0]["items"][1]["key"] = "depth-perception"; });
+  fault("/sections/0/items/0/anchors: 2 entries; from 5 to 5", [](json& f) {
+    f["sections"][0]["items"][0]["anchors"] = {"bad", "good"};
+  });
+  fault("/scale: \"least\" is not below", [](json& f) { f["scale"] = {{"least", 1}, {"most", 1}}; });
+  fault("/about: none of attempt, simulator", [](json& f) { f["about"] = "rater"; });
+  fault("/sections: 0 entries", [](json& f) { f["sections"] = json::array(); });
+}
+
+TEST(RatingForm, answersAreCheckedAgainstTheForm) {
+  const RatingForm form = shipped("competence");
+  EXPECT_EQ(answersOf(form, {{"competent", "1"}}).at("competent"), 1);
+  const auto fault = [&](const std::string& words, const std::vector<std::pair<std::string, std::string>>& given) {
+    expectRefusal(ExitCode::usage, words, [&] { (void)answersOf(form, given); });
+  };
+  fault("no such item; it has competent", {{"able", "1"}});
+  fault("\"2\" is no whole number from 0 to 1", {{"competent", "2"}});
+  fault("is no whole number", {{"competent", "0.5"}});
+  fault("is no whole number", {{"competent", "\n"}});
+  fault("answered twice", {{"competent", "1"}, {"competent", "0"}});
+  fault("not answered", {});
+  fault("every item was left blank", {{"competent", "-"}});
+}
+
+TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase cohort(path, Access::create);
+  cohort.storeAttempt(humanAttempt(1, "P1"), {});
+  AssessmentDatabase database(path, Access::write);
+  RatingForm form = shipped("competence");
+  Rating rating{"", 1, uuidOf(1), "R1", "", {{"competent", 0}}, ""};
+  database.storeRating(stored(form), rating, false);
+  expectRefusal(ExitCode::no, "was rated with competence", [&] { database.storeRating(stored(form), rating, false); });
+  rating.answers["competent"] = 1;
+  database.storeRating(stored(form), rating, true);
+  ASSERT_EQ(database.ratings().size(), 1U);
+  EXPECT_EQ(database.ratings()[0].answers.at("competent"), 1);
+  rating.attempt = uuidOf(2);
+  expectRefusal(ExitCode::no, "no attempt", [&] { database.storeRating(stored(form), rating, false); });
+  rating.attempt = uuidOf(1);
+  rating.rater.clear();
+  expectRefusal(ExitCode::usage, "pseudonym", [&] { database.storeRating(stored(form), rating, false); });
+  rating.rater = "R2";
+  form.sha256[0] = form.sha256[0] == '0' ? '1' : '0';
+  expectRefusal(ExitCode::no, "another wording", [&] { database.storeRating(stored(form), rating, false); });
+}
+
+TEST(Ratings, agreementIsThatOfShroutAndFleiss) {
+  // Six attempts and four raters: Shrout and Fleiss (1979), table 2; ICC(2,1) .2897637795 [.0187865, .7610844].
+  constexpr int scores[6][4] = {{9, 2, 5, 8}, {6, 1, 3, 2}, {8, 4, 6, 8}, {7, 1, 2, 6}, {10, 5, 6, 9}, {6, 2, 4, 7}};
+  json text = support::jsonOf("assets/forms/competence.json");
+  text["scale"] = {{"least", 1}, {"most", 10}};
+  const RatingForm form = parseRatingForm(bytesOf(text.dump()), "f.json");
+  std::vector<Rating> ratings;
+  std::map<std::string, std::string> groupOf;
+  for (unsigned a = 0; a < 6; ++a) {
+    groupOf[uuidOf(a)] = a < 3 ? "expert" : "novice";
+    for (unsigned r = 0; r < 4; ++r)
+      ratings.push_back({form.name, 1, uuidOf(a), fmt::format("R{}", r), "", {{"competent", scores[a][r]}}, ""});
+  }
+  // A seventh attempt that one rater alone saw is no part of the agreement; an eighth is of nobody in the study.
+  groupOf[uuidOf(7)] = "novice";
+  ratings.push_back({form.name, 1, uuidOf(7), "R0", "", {{"competent", 3}}, ""});
+  ratings.push_back({form.name, 1, uuidOf(8), "R0", "", {{"competent", 3}}, ""});
+  const FormReport report = reportForm(form, ratings, groupOf, {"expert", "novice"});
+  EXPECT_EQ(report.filled, 25U);
+  EXPECT_EQ(report.leftOut, 1U);
+  EXPECT_EQ(report.incomplete, 1U);
+  ASSERT_EQ(report.agreement.size(), 1U);
+  const Agreement& a = report.agreement[0];
+  EXPECT_EQ(a.attempts, 6U);
+  EXPECT_NEAR(a.single->value, 0.2897637795, 1e-9);
+  EXPECT_NEAR(a.single->interval->lower, 0.0187865, 1e-6);
+  EXPECT_NEAR(a.single->interval->upper, 0.7610844, 1e-6);
+  // Means over the raters: 6, 3, 6.5.
+  EXPECT_EQ(report.items[0].groups[0].n, 3U);
+  EXPECT_DOUBLE_EQ(*report.items[0].groups[0].median, 6.0);
+  EXPECT_EQ(report.items[0].groups[1].n, 4U);
+}
+
+TEST(Ratings, questionnairesKeepBlanksAndCountAnswers) {
+  const RatingForm form = shipped("questionnaire-2014");
+  std::vector<Rating> ratings;
+  std::map<std::string, std::string> groupOf;
+  for (int p = 0; p < 4; ++p) {
+    Rating r{form.name, 1, "", "", fmt::format("P{}", p), {}, ""};
+    for (const FormItem& item : form.items()) r.answers[item.key] = 2 + (p + static_cast<int>(item.key.size())) % 4;
+    if (p == 0) r.answers.erase("ease-use");
+    groupOf[r.participant] = "expert";
+    ratings.push_back(r);
+  }
+  const FormReport report = reportForm(form, ratings, groupOf, {"expert", "novice"});
+  for (const ItemReport& item : report.items) {
+    const bool blank = item.key == "ease-use";
+    EXPECT_EQ(item.groups[0].n, blank ? 3U : 4U) << item.key;
+    EXPECT_EQ(item.groups[0].blank, blank ? 1U : 0U);
+    EXPECT_EQ(item.groups[1].n, 0U);
+    std::uint64_t counted = 0;
+    for (const auto& [score, count] : item.groups[0].counts) counted += count;
+    EXPECT_EQ(counted, item.groups[0].n);
+  }
+  EXPECT_EQ(report.sections.size(), 2U) << "subscales of three items or more";
+  EXPECT_TRUE(report.agreement.empty());
+}
+
+}  // namespace
+}  // namespace calot::analytics
