@@ -2,14 +2,17 @@
 #include "sim/contact/near_triangles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sim/contact/float_bounds.h"
+#include "sim/contact/triangle_lanes.h"
 
 namespace calot {
 
 namespace {
 
+constexpr std::size_t fewest = 3;  ///< triangles that are worth the lanes
 constexpr double rounding = 1e-8;  // m, far above that of all distances here
 
 }  // namespace
@@ -131,12 +134,33 @@ Near NearTriangles::nearest(const SurfaceSearch& search, std::size_t place, doub
   double farthest =
       limit + displaced_[place] + rounding;  // that an entry can have been, to be no farther than best now
   std::size_t looked = 0;
-  for (std::size_t e = place == 0 ? 0 : list.entryEnd[place - 1]; e < list.entryEnd[place]; ++e) {
-    if (static_cast<double>(list.entry[e].distance) > farthest) break;
-    ++looked;
+  const auto offer = [&](std::uint32_t triangle) {
     const double before = best;
-    search.offer(p, list.entry[e].triangle, near, best);
+    search.offer(p, triangle, near, best);
     if (best < before) farthest = std::sqrt(best) + displaced_[place] + rounding;
+  };
+  const std::size_t end = list.entryEnd[place];
+  for (std::size_t e = place == 0 ? 0 : list.entryEnd[place - 1]; e < end;) {
+    // The nearest two by themselves: most often one of them it is. Lanes tell which of the others can be nearer.
+    const std::size_t most = std::min(end - e, looked < 2 ? std::size_t{1} : std::size_t{laneCount});
+    std::array<std::uint32_t, laneCount> triangle{};
+    std::size_t count = 0;
+    while (count < most && static_cast<double>(list.entry[e + count].distance) <= farthest) {
+      triangle[count] = list.entry[e + count].triangle;
+      ++count;
+    }
+    if (count == 0) break;
+    looked += count;
+    e += count;
+    LaneValues squared{};
+    if (count >= fewest) {
+      TriangleLanes lanes;
+      gatherTriangles(search.b(), search.positionB(), {triangle.data(), count}, lanes);
+      pointTriangleDistances(lanes, p, squared);
+    }
+    for (std::size_t l = 0; l < count; ++l) {
+      if (squared[l] <= best) offer(triangle[l]);
+    }
   }
   counts_.looked += looked;
   counts_.searched += looked > 0 ? 1 : 0;
