@@ -12,6 +12,8 @@ namespace calot {
 
 namespace {
 
+constexpr double ledAway = 1e3;  ///< multiple of the residual of the start beyond which forces are not taken
+
 /// y += a x. Elements are independent: any vector width gives the same bits.
 CALOT_LANE_KERNEL void addScaled(std::size_t n, double a, const double* __restrict x, double* __restrict y) {
   for (std::size_t i = 0; i < n; ++i) y[i] += a * x[i];
@@ -167,7 +169,7 @@ ContactReport ContactSolver::solve(const ContactProblem& problem, std::span<doub
   const ContactReport before = sweepContacts(problem, start_, gap, tolerance, 0);
   ContactReport report = sweepContacts(problem, lambda, gap, tolerance, cap);
   if (!report.converged) newton(problem, lambda, gap, tolerance, report);
-  if (!(report.residual <= before.residual)) {
+  if (!(report.residual <= ledAway * before.residual)) {
     std::copy(start_.begin(), start_.end(), lambda.begin());
     evaluateGaps(problem, lambda, gap);
     report.residual = before.residual;

@@ -51,7 +51,7 @@ ContactReport sweepContacts(const ContactProblem& problem, std::span<double> lam
 /// Sweeps; then, where they do not converge (rows that nearly repeat each other), semi-smooth Newton steps on the
 /// natural map (Alart and Curnier 1991) with a line search, at most `largestNewtonSteps` of them; the best iterate met
 /// is kept. Where W is not positive semidefinite, which rounding may do to rows that repeat each other, both may lead
-/// away: forces that leave a larger residual than those of the start are not taken.
+/// away without bound: forces that leave a thousand times the residual of those of the start are not taken.
 class ContactSolver {
  public:
   static constexpr std::uint32_t largestNewtonSteps = 20;

@@ -14,7 +14,6 @@ namespace calot {
 namespace {
 
 using CubeMap = CarvedContact::CubeMap;
-using SurfaceNode = CarvedContact::SurfaceNode;
 
 constexpr std::uint32_t brickNodes = BrickLattice::brickNodes;
 
@@ -66,7 +65,7 @@ CALOT_LANE_KERNEL void mapCubes(const Index8* cube, std::size_t count, const dou
 }
 
 /// out = the maps at the nodes, four numbers each.
-CALOT_LANE_KERNEL void mapNodes(const SurfaceNode* node, std::size_t count, const CubeMap* map, double* out) {
+CALOT_LANE_KERNEL void mapNodes(const SkinNode* node, std::size_t count, const CubeMap* map, double* out) {
   for (std::size_t n = 0; n < count; ++n) {
     const double x = node[n].x;
     const double y = node[n].y;
@@ -160,6 +159,9 @@ void CarvedContact::rebuild(const CarvedSurface& surface) {
     corner_.reserve(64 * patches);
     surface_.setPatches(patch_, cornerStart_, corner_);
   }
+  listNodes();
+  skinNode_.reserve(2 * skinNode_.size() + 64);
+  placed_.reserve(4 * skinNode_.capacity());
 }
 
 void CarvedContact::update(const CarvedSurface& surface) {
@@ -310,18 +312,18 @@ void CarvedContact::place(std::span<const Vec3> solid, std::vector<Vec3>& out) c
   map_.resize(cubes.size());
   mapCubes(cubes.data(), cubes.size(), padded_.data(), map_.data());
   if (!nodesListed_) listNodes();
-  placed_.resize(4 * surfaceNode_.size());
-  mapNodes(surfaceNode_.data(), surfaceNode_.size(), map_.data(), placed_.data());
-  for (std::size_t n = 0; n < surfaceNode_.size(); ++n) {
+  placed_.resize(4 * skinNode_.size());
+  mapNodes(skinNode_.data(), skinNode_.size(), map_.data(), placed_.data());
+  for (std::size_t n = 0; n < skinNode_.size(); ++n) {
     const double* from = placed_.data() + 4 * n;
-    out[surfaceNode_[n].number] = Vec3(from[0], from[1], from[2]);
+    out[skinNode_[n].number] = Vec3(from[0], from[1], from[2]);
   }
 }
 
 void CarvedContact::listNodes() const {
   const int k = model_.cellsPerCube();
   const double inEdges = 1.0 / static_cast<double>(k);
-  surfaceNode_.clear();
+  skinNode_.clear();
   for (std::size_t word = 0; word < mask_.size(); ++word) {
     const std::size_t axis = word % 3;
     const Index3& origin = origin_[word / 3];
@@ -334,7 +336,7 @@ void CarvedContact::listNodes() const {
                          static_cast<double>(origin[1] + (p >> 2 & 3) - k * h[1]),
                          static_cast<double>(origin[2] + (p >> 4) - k * h[2])};
       cells[axis] += cut_[n];
-      surfaceNode_.push_back(
+      skinNode_.push_back(
           {inEdges * cells[0], inEdges * cells[1], inEdges * cells[2], static_cast<std::uint32_t>(n), cube});
     }
   }

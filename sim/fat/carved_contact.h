@@ -14,6 +14,13 @@
 
 namespace calot {
 
+/// A node of fat's skin: in edges from its cube's corner, a little beyond the cube at most.
+struct SkinNode {
+  double x, y, z;
+  std::uint32_t number;
+  std::int32_t cube;
+};
+
 /// Follows a CarvedSurface as a ContactSurface. Every number that contact sees is a function of the field alone, so
 /// that order, ties and keys are those of a rebuilt one:
 /// - node 192 rank + 64 axis + x + 4 y + 16 z is a lattice edge: rank of its block (FatModel), place of its lower end
@@ -28,12 +35,6 @@ class CarvedContact final : public SurfaceTopology {
  public:
   /// A trilinear map of one cube: of 1, x, y, z, xy, xz, yz, xyz, each three components and one to fill up.
   using CubeMap = std::array<double, 32>;
-  /// A node of the surface: in edges from its cube's corner, a little beyond the cube at most.
-  struct SurfaceNode {
-    double x, y, z;
-    std::uint32_t number;
-    std::int32_t cube;
-  };
 
   static constexpr std::uint32_t nodesOfBlock = 192;
   static constexpr std::uint32_t trianglesOfBlock = 320;
@@ -107,8 +108,8 @@ class CarvedContact final : public SurfaceTopology {
   mutable std::vector<double> padded_;
   mutable std::vector<CubeMap> map_;
   mutable std::vector<double> placed_;
-  mutable std::vector<SurfaceNode> surfaceNode_;  ///< all, once they are asked for
-  mutable bool nodesListed_ = false;              ///< since a stroke changed them
+  mutable std::vector<SkinNode> skinNode_;  ///< all, once they are asked for
+  mutable bool nodesListed_ = false;        ///< since a stroke changed them
   std::size_t growths_ = 0;
 };
 

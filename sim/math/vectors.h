@@ -54,11 +54,6 @@ CALOT_INLINE void transpose(EightFloats (&v)[laneCount]) {
   }
 }
 
-/// False where a number is none.
-CALOT_INLINE bool allBelow(const FourDoubles& v, double limit) {
-  return (int(v[0] < limit) & int(v[1] < limit) & int(v[2] < limit) & int(v[3] < limit)) != 0;
-}
-
 /// v = its root.
 CALOT_INLINE void takeRoot(FourDoubles& v) {
   double number[4];

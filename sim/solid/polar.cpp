@@ -9,9 +9,6 @@ namespace calot {
 
 namespace {
 
-/// Increment (rad) after which another step would turn by less than its square.
-constexpr double settled = 1e-4;
-
 /// turnTowardsPolar() of lanes `from` to `from` + 3.
 CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup& q, std::size_t from) {
   FourDoubles m[3][3];
@@ -91,7 +88,6 @@ CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup&
     qx = nx * inverse;
     qy = ny * inverse;
     qz = nz * inverse;
-    if (allBelow(size, settled)) break;
   }
   writeVector(w, q[0].data() + from);
   writeVector(qx, q[1].data() + from);
