@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the release tests do not see: format, lints, sanitizers on the fast tests (built by clang), clang-tidy with clang's
+# What the release tests do not see: format, lints, a guard of the run time, sanitizers on the fast tests (built by clang), clang-tidy with clang's
 # warnings, and the short determinism matrix over what these built. `checks.sh STAGE...` runs only these stages; `clang`,
 # the optimised programs by clang, is one of them that has to be asked for (heavy.sh builds and tests all by clang).
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-stages=(format lint asan-ubsan tsan tidy matrix)
+stages=(format lint guard asan-ubsan tsan tidy matrix)
 if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
@@ -36,6 +36,11 @@ for stage in "${stages[@]}"; do
       say "lint"
       "$root/scripts/lint-determinism.sh"
       shellcheck --external-sources --source-path="$root/scripts" "$root"/scripts/*.sh "$root/.ci/run"
+      ;;
+    guard)
+      configure release
+      build release calot calot-bench
+      "$python" -B "$root/scripts/guard.py" "$root/build/release/bin/calot" "$root/build/release/bin/calot-bench" --root "$root" --jobs "$jobs"
       ;;
     clang)
       # Recordings of either compiler's program replay in the other's.
@@ -69,7 +74,7 @@ for stage in "${stages[@]}"; do
       "$root/scripts/matrix.sh" --short "${trees[@]}"
       ;;
     *)
-      echo "checks: no stage $stage; there are: format lint clang asan-ubsan tsan tidy matrix" >&2
+      echo "checks: no stage $stage; there are: format lint guard clang asan-ubsan tsan tidy matrix" >&2
       exit 2
       ;;
   esac

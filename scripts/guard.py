@@ -24,11 +24,11 @@ def instructions(calot: str, recording: str) -> int:
         run = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", calot, "replay", recording],
             capture_output=True, text=True, check=False)
-    collected = re.search(r"Collected : (\d+)", run.stderr)
-    if run.returncode != 0 or collected is None:
+    collected = re.findall(r"Collected : (\d+)", run.stderr)  # of each process
+    if run.returncode != 0 or not collected:
         sys.exit(f"guard: {recording}: replay under callgrind failed with exit code {run.returncode}: "
                  f"{(run.stderr or run.stdout).strip().splitlines()[-1:]}")
-    return int(collected.group(1))
+    return max(int(count) for count in collected)
 
 
 def counters(bench: str, names: list[str]) -> dict[str, dict[str, float]]:
