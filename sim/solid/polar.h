@@ -18,8 +18,8 @@ using DeformationLanes = std::array<std::array<std::array<double, laneCount>, 3>
 /// rotation increments. With B = R^T F, the gradient is a = axial(B - B^T) and the Hessian -(tr(B) I - sym(B)); the
 /// increment enters the quaternion as (1, w/2), normalised, so that the result is orthogonal whatever the step. Where
 /// the Hessian is not positive definite (inverted or very flat elements) the step falls back to a / (|tr B| + |a|): a
-/// rotation of bounded angle
-/// in the same direction.
+/// rotation of bounded angle in the same direction.
+///
 /// @param q in: where to begin, unit; out: unit
 void turnTowardsPolar(const DeformationLanes& f, int sweeps, RotationGroup& q);
 
