@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analytics/assessment/names.h"
 #include "analytics/checkpoints/registry.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -127,16 +126,8 @@ Protocol readProtocol(const std::filesystem::path& file) {
 Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json json = recorder::parseStrictJson(bytes, file);
   const JsonObject o = JsonPlace(json, file).object(rootRule);
-  (void)o.at("format").word<int>({{"calot-protocol", 0}});
-  std::uint32_t format = 0;
-  o.read("formatVersion", format);
   Protocol protocol;
-  protocol.file = file;
-  protocol.text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  protocol.sha256 = recorder::sha256Hex(bytes);
-  protocol.name = plainName(o.at("name"));
-  o.read("version", protocol.version);
-  o.read("title", protocol.title, longestText);
+  readHead(o, "calot-protocol", bytes, file, protocol);
   o.read("question", protocol.question, longestText);
   if (o.has("operators")) protocol.performers = o.at("operators").word<bool>({{"people", false}, {"performers", true}});
   const std::vector<JsonPlace> populations = o.at("populations").list(2, 2);

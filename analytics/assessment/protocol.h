@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "analytics/assessment/declared_document.h"
 #include "analytics/statistics/repeated_attempts.h"
 #include "recorder/formats/json_reader.h"
 #include "recorder/observer.h"
@@ -43,10 +44,8 @@ enum class MissingRule : std::uint8_t {
   worstRank       ///< who has none because the attempt was not completed ranks behind all others, tied
 };
 
-struct Protocol {
-  std::string name;
-  std::uint32_t version = 1;
-  std::string title, question;
+struct Protocol : DeclaredDocument {
+  std::string question;
   bool performers = false;  ///< compares performers' profiles, to prove the pipeline; else people
   std::array<Population, 2> populations;
   std::string better;                      ///< the group that is expected to do better
@@ -57,10 +56,6 @@ struct Protocol {
   MissingRule missing = MissingRule::completeCases;
   double level = 0.05;
   std::vector<DirectedHypothesis> hypotheses;
-
-  std::string file;    ///< base name, for messages
-  std::string text;    ///< as it was read
-  std::string sha256;  ///< of the text, hexadecimal
 };
 
 /// The objects of a protocol, for the reader and for the test that holds the published schema against it.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <set>
 
-#include "analytics/assessment/names.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/text_words.h"
@@ -80,16 +79,8 @@ RatingForm readRatingForm(const std::filesystem::path& file) {
 RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json json = recorder::parseStrictJson(bytes, file);
   const JsonObject o = JsonPlace(json, file).object(rootRule);
-  (void)o.at("format").word<int>({{"calot-form", 0}});
-  std::uint32_t format = 0;
-  o.read("formatVersion", format);
   RatingForm form;
-  form.file = file;
-  form.text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  form.sha256 = recorder::sha256Hex(bytes);
-  form.name = plainName(o.at("name"));
-  o.read("version", form.version);
-  o.read("title", form.title, longestText);
+  readHead(o, "calot-form", bytes, file, form);
   o.read("source", form.source, longestText);
   form.ofAttempts = o.at("about").word<bool>({{"attempt", true}, {"simulator", false}});
   const JsonObject scale = o.at("scale").object(scaleRule);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "analytics/assessment/declared_document.h"
 #include "recorder/formats/json_reader.h"
 
 namespace calot::analytics {
@@ -27,16 +28,12 @@ struct FormSection {
   std::vector<FormItem> items;
 };
 
-struct RatingForm {
-  std::string name;
-  std::uint32_t version = 1;
-  std::string title, source;
+struct RatingForm : DeclaredDocument {
+  std::string source;
   bool ofAttempts = true;  ///< raters judge attempts; else participants judge what they took part in
   int least = 1, most = 5;
   std::vector<std::string> words;  ///< of the scores, from the least; or empty
   std::vector<FormSection> sections;
-
-  std::string file, text, sha256;
 
   [[nodiscard]] std::vector<FormItem> items() const;  ///< of all sections
 };

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "sim/math/vectors.h"
+
 namespace calot {
 
 namespace {
-
-#define CALOT_INLINE inline __attribute__((always_inline))
 
 /// One lane's vector. Every function below is the scalar one of closest_point.h without branches, its operations in
 /// the same order (a dot product is x + (y + z)), so that a compiler can run a loop over lanes as vectors.

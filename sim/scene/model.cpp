@@ -84,11 +84,11 @@ Model::Built Model::build(SceneDescription scene) {
     Embedding embedding(organ.surface.vertex, stuffed.mesh);
     ContactSurface contact(organ.surface.vertex, organ.surface.triangle);
     std::vector<Vec3>& nodes = stuffed.mesh.vertex;
-    std::vector<bool> fixed = anchoredNodes(organ, nodes, byName);
+    const std::vector<bool> fixed = anchoredNodes(organ, nodes, byName);
     const MaterialDescription& m = organ.material;
     const SolidModel::Material material{lameConstants(m.youngModulus, m.poissonRatio), m.density, m.massDamping,
                                         m.stiffnessDamping};
-    SolidModel solid(std::move(nodes), std::move(stuffed.mesh.tetrahedron), std::move(fixed), material);
+    SolidModel solid(std::move(nodes), std::move(stuffed.mesh.tetrahedron), fixed, material);
     if (solid.freeNodes().empty()) {
       built.error = "organ '" + organ.name + "': its anchors hold every node";
       return built;

@@ -59,6 +59,10 @@ struct Surroundings {
 /// are no part of the system: such nodes go on as they went. Holds the matrix of the step for contact.
 class SolidSolver {
  public:
+  SolidSolver() = default;
+  SolidSolver(const SolidSolver&) = delete;  // points into itself
+  SolidSolver& operator=(const SolidSolver&) = delete;
+
   struct Settings {
     double step = 0.01;  ///< h (s)
     double tolerance = 1e-4;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What protocols and forms have in common: named, versioned JSON texts that are known again by their hash.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "recorder/formats/json_reader.h"
+
+namespace calot::analytics {
+
+inline constexpr std::size_t longestName = 64, longestText = 2000;
+
+struct DeclaredDocument {
+  std::string name;
+  std::uint32_t version = 1;
+  std::string title;
+  std::string file;    ///< base name, for messages
+  std::string text;    ///< as it was read
+  std::string sha256;  ///< of the text, hexadecimal
+};
+
+/// Letters, digits, points, hyphens and underscores: names are printed, and typed.
+std::string plainName(const recorder::JsonPlace& place);
+
+/// Reads "format" (which must be the word `format`), "formatVersion", name, version and title; keeps the text.
+/// @throws Error (damaged) naming file and place.
+void readHead(const recorder::JsonObject& root, const std::string& format, std::span<const std::byte> bytes,
+              const std::string& file, DeclaredDocument& document);
+
+}  // namespace calot::analytics
