@@ -142,12 +142,10 @@ void Stepper::Workspace::burn(State& state) {
       found.clear();
       for (std::size_t k = 0; k < sweeps.size(); ++k) {
         const HookSweep& sweep = sweeps[k];
-        Box box;
-        box.include(sweep.now[0]);
-        box.include(sweep.now[1]);
-        box.grow(capsuleSearch(sweep.radius, reach_));
-        capsuleContacts(skinOf[s]->surface(), skin[s], patchesNear(s, box), sweep.now[0], sweep.now[1], sweep.radius,
-                        reach_, static_cast<std::uint32_t>(k), found);
+        const std::span<const std::uint32_t> near =
+            patchesNear(s, sweep.now[0], sweep.now[1], capsuleSearch(sweep.radius, reach_));
+        capsuleContacts(skinOf[s]->surface(), skin[s], near, sweep.now[0], sweep.now[1], sweep.radius, reach_,
+                        static_cast<std::uint32_t>(k), found);
       }
       if (found.empty()) continue;
       if (source == noStructure) source = static_cast<std::uint32_t>(s);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/geometry/closest_point.h"
 #include "sim/scene/stepper_workspace.h"
 
 namespace calot {
@@ -35,10 +36,22 @@ void Stepper::Workspace::refreshBounds(const State& state) {
   }
 }
 
-std::span<const std::uint32_t> Stepper::Workspace::patchesNear(std::size_t structure, const Box& box) {
+std::span<const std::uint32_t> Stepper::Workspace::patchesNear(std::size_t structure, const Vec3& p0, const Vec3& p1,
+                                                               double far) {
+  Box box;
+  box.include(p0);
+  box.include(p1);
+  box.grow(far);
   broad[structure]->pairs({&box, 1}, pairs);
   patches.clear();
-  for (const BroadPhase::Pair& p : pairs) patches.push_back(p.leaf);
+  for (const BroadPhase::Pair& p : pairs) {
+    // The box of an oblique shaft holds much that is not near it.
+    const Box& patch = bounds[structure][p.leaf];
+    const Vec3 middle = 0.5 * (patch.lower + patch.upper);
+    const Vec3 onAxis = p0 + closestOnSegment(middle, p0, p1) * (p1 - p0);
+    const double most = far + 0.5 * (patch.upper - patch.lower).norm();
+    if ((middle - onAxis).squaredNorm() <= most * most * (1.0 + 1e-9)) patches.push_back(p.leaf);
+  }
   return patches;
 }
 
@@ -65,11 +78,8 @@ double Stepper::Workspace::gapOf(const State& state, const HandState& hand, doub
   for (std::size_t s = 0; s < skinOf.size(); ++s) {
     for (const Capsule& c : shape) {
       const double allowed = allowance(state, hand, c, s);
-      Box box;
-      box.include(c.p0);
-      box.include(c.p1);
-      box.grow(capsuleSearch(c.radius, std::max(least - allowed, 0.0)));
-      const std::span<const std::uint32_t> near = patchesNear(s, box);
+      const double search = capsuleSearch(c.radius, std::max(least - allowed, 0.0));
+      const std::span<const std::uint32_t> near = patchesNear(s, c.p0, c.p1, search);
       if (near.empty()) continue;
       least = allowed + leastGap(skinOf[s]->surface(), skin[s], near, c.p0, c.p1, c.radius, least - allowed);
     }
@@ -166,12 +176,9 @@ void Stepper::Workspace::detectInstruments(const State& state) {
       found.clear();
       for (const Capsule& c : shape) {
         const double allowed = allowance(state, state.hand[h], c, o);
-        Box box;
-        box.include(c.p0);
-        box.include(c.p1);
-        box.grow(capsuleSearch(c.radius, far));
         const std::size_t before = found.size();
-        capsuleContacts(skinOf[o]->surface(), skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, far, c.piece, found);
+        const std::span<const std::uint32_t> near = patchesNear(o, c.p0, c.p1, capsuleSearch(c.radius, far));
+        capsuleContacts(skinOf[o]->surface(), skin[o], near, c.p0, c.p1, c.radius, far, c.piece, found);
         if (allowed > 0.0) allow(allowed, far, before);
       }
       for (const SurfaceContact& contact : found) addInstrumentBlock(state, h, o, contact);
@@ -185,6 +192,17 @@ const SurfacePair& Stepper::Workspace::restOf(std::size_t pair) {
   std::unique_ptr<const SurfacePair>& mine = selfRest[p.a];
   if (mine == nullptr) mine = std::make_unique<SurfacePair>(model.organs()[p.a].surface, model.organs()[p.a].skin);
   return *mine;
+}
+
+/// Is the tissue that a vertex of an organ's skin is part of turned inside out? Outward is then inward there, and
+/// contact would hold it so.
+bool Stepper::Workspace::isInsideOut(const State& state, std::size_t organ, int vertex) const {
+  const auto& node = model.organs()[organ].embedding.anchors()[static_cast<std::size_t>(vertex)].node;
+  const std::vector<Vec3>& position = state.organ[organ].position;
+  const auto edge = [&](std::size_t k) -> Vec3 {
+    return position[static_cast<std::size_t>(node[k])] - position[static_cast<std::size_t>(node[0])];
+  };
+  return !(edge(1).dot(edge(2).cross(edge(3))) > 0.0);
 }
 
 /// Blocks among organs that are awake; wet tissue on wet tissue slides without friction.
@@ -212,6 +230,10 @@ void Stepper::Workspace::detectTissue(const State& state) {
     foundVertices.clear();
     surfaceContacts(rest_, a, skin[pair.a], b, skin[pair.b], pairs, far, foundVertices, &nearTriangles[i]);
     for (const VertexContact& contact : foundVertices) {
+      if (isInsideOut(state, pair.a, contact.vertex)) continue;
+      if (std::any_of(contact.node.begin(), contact.node.end(), [&](int n) { return isInsideOut(state, pair.b, n); })) {
+        continue;
+      }
       result.contact.tissueDepth = std::max(result.contact.tissueDepth, -contact.gap);
       ContactBlock block;
       block.kind = BlockKind::unilateral;

@@ -109,12 +109,9 @@ double Stepper::Workspace::findInside(const State& state, const HandState& hand,
   for (std::size_t o = 0; o < skinOf.size(); ++o) {
     found.clear();
     for (const Capsule& c : shape) {
-      Box box;
-      box.include(c.p0);
-      box.include(c.p1);
-      box.grow(capsuleSearch(c.radius, 0.0));
+      const std::span<const std::uint32_t> near = patchesNear(o, c.p0, c.p1, capsuleSearch(c.radius, 0.0));
       const std::size_t before = found.size();
-      capsuleContacts(skinOf[o]->surface(), skin[o], patchesNear(o, box), c.p0, c.p1, c.radius, 0.0, c.piece, found);
+      capsuleContacts(skinOf[o]->surface(), skin[o], near, c.p0, c.p1, c.radius, 0.0, c.piece, found);
       if (const double allowed = allowance(state, hand, c, o); allowed > 0.0) allow(allowed, 0.0, before);
     }
     for (const SurfaceContact& contact : found) {

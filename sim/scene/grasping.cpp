@@ -79,10 +79,7 @@ void Stepper::Workspace::closeJaws(State& state, std::size_t hand) {
     PointTriangle best;
     for (std::size_t o = 0; o < skinOf.size(); ++o) {
       if (structure != ContactBlock::nobody && o != structure) continue;
-      Box box;
-      box.include(target);
-      box.grow(searchRadius);
-      for (const std::uint32_t p : patchesNear(o, box)) {
+      for (const std::uint32_t p : patchesNear(o, target, target, searchRadius)) {
         const ContactSurface& surface = skinOf[o]->surface();
         for (std::size_t t = surface.patches()[p].first; t < surface.patches()[p].last; ++t) {
           const Index3& corner = surface.triangles()[t];

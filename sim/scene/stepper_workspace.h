@@ -86,7 +86,8 @@ struct Stepper::Workspace {
 
   // contact_detection.cpp
   void refreshBounds(const State& state);
-  std::span<const std::uint32_t> patchesNear(std::size_t structure, const Box& box);
+  /// Patches with all that a structure has no farther than `far` from a segment, or more. @pre refreshBounds()
+  std::span<const std::uint32_t> patchesNear(std::size_t structure, const Vec3& p0, const Vec3& p1, double far);
   /// Capsules of a hand's instrument at a pose, in W, into `local` and `shape`.
   void shapeAt(const State& state, std::size_t hand, const Pose& pose, double jaw);
   /// How deep this part of the instrument may stand in a structure (m): jaws in what they hold, for a mesh does not
@@ -99,6 +100,7 @@ struct Stepper::Workspace {
   void advanceFreely(State& state, std::size_t hand);
   void detectInstruments(const State& state);
   void detectTissue(const State& state);
+  [[nodiscard]] bool isInsideOut(const State& state, std::size_t organ, int vertex) const;
   void keepDeepest(std::size_t first);
   /// Rest tables of a tissue pair; those of an organ with itself are worked out when first asked for.
   const SurfacePair& restOf(std::size_t pair);

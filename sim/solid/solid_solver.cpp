@@ -84,7 +84,7 @@ bool SolidSolver::addToElement(const Attachment& attachment, double step) {
   const double damper = attachment.damper(0, 0);
   if (system_ == &part_ && place.element >= 0 && present_[static_cast<std::size_t>(place.element)] == 0) return false;
   if (place.element < 0 || attachment.damper != Mat3(damper * Mat3::Identity())) return false;
-  const std::size_t* slot = system_->placesOf(static_cast<std::size_t>(place.element));
+  const std::uint32_t* slot = system_->placesOf(static_cast<std::size_t>(place.element));
   for (std::size_t a = 0; a < place.count; ++a) {
     for (std::size_t b = 0; b < place.count; ++b, ++slot) {
       if (*slot == SolidSystem::noSlot) continue;
@@ -114,7 +114,7 @@ void SolidSolver::addPair(const SolidPlace& p, const SolidPlace& q, const Mat3& 
       const int column = system_->row(static_cast<std::size_t>(q.node[b]));
       if (column < 0) continue;
       const bool mirrored = column > row;  // its transpose comes as well, for the damper is symmetric
-      const std::size_t at = mirrored ? system_->placeOf(column, row) : system_->placeOf(row, column);
+      const std::uint32_t at = mirrored ? system_->placeOf(column, row) : system_->placeOf(row, column);
       if (mirrored && at != SolidSystem::noSlot) continue;
       const double share = step * (p.weight[a] * q.weight[b]);
       if (isotropic && at != SolidSystem::noSlot) {

@@ -2,6 +2,7 @@
 #include "sim/solid/solid_system.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace calot {
@@ -147,6 +148,7 @@ SolidSystem::SolidSystem(const ElementCorners& elements, const std::vector<bool>
   }
   buildMatrix(columns);
   placeElements();
+  if (corners_ == 8) sumColumns();
 }
 
 SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t> present) : corners_(whole.corners_) {
@@ -223,6 +225,7 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
   }
   buildMatrix(columns);
   placeElements();
+  if (corners_ == 8) sumColumns();
 }
 
 void SolidSystem::buildMatrix(const std::vector<std::vector<int>>& columns) {
@@ -240,16 +243,46 @@ void SolidSystem::buildMatrix(const std::vector<std::vector<int>>& columns) {
 void SolidSystem::placeElements() {
   elementPlace_.resize(elementSlot_.size());
   for (std::size_t k = 0; k < elementSlot_.size(); ++k) {
-    elementPlace_[k] = elementSlot_[k] == none ? noSlot : slot_[elementSlot_[k]].place;
+    elementPlace_[k] = elementSlot_[k] == none ? noSlot : static_cast<std::uint32_t>(slot_[elementSlot_[k]].place);
   }
 }
 
-std::size_t SolidSystem::placeOf(int row, int column) const {
-  const auto first = slotColumn_.begin() + static_cast<std::ptrdiff_t>(rowSlot_[static_cast<std::size_t>(row)]);
-  const auto last = slotColumn_.begin() + static_cast<std::ptrdiff_t>(rowSlot_[static_cast<std::size_t>(row) + 1]);
-  const auto found = std::lower_bound(first, last, column);
-  if (found == last || *found != column) return noSlot;
-  return slot_[static_cast<std::size_t>(found - slotColumn_.begin())].place;
+void SolidSystem::sumColumns() {
+  const std::uint32_t noBlock = SolidSystem::noBlock(elementSlot_.size() / (corners_ * corners_));
+  std::array<const Slot*, laneCount> lane{};
+  for (std::size_t s = 0; s < matrix_.slices(); ++s) {
+    const std::size_t width = matrix_.lower(s).width;
+    for (std::size_t k = 0; k <= width; ++k) {
+      CubeColumn column{};
+      column.place = k == width ? matrix_.diagonal(s) : matrix_.lower(s).value() + k * 9 * laneCount;
+      column.first = columnBlock_.size();
+      for (std::size_t l = 0; l < laneCount; ++l) {
+        const std::span<const Slot> row = ofRow(s * laneCount + l);
+        const bool isThere = k == width ? !row.empty() : k + 1 < row.size();
+        lane[l] = isThere ? &row[k == width ? row.size() - 1 : k] : nullptr;
+        if (isThere) column.count = std::max(column.count, lane[l]->last - lane[l]->first);
+      }
+      for (std::size_t c = 0; c < column.count; ++c) {
+        for (const Slot* slot : lane) {
+          const bool isThere = slot != nullptr && slot->first + c < slot->last;
+          const std::size_t at = isThere ? slot->first + c : 0;
+          columnBlock_.push_back(isThere ? 2 * cubeBlock_[at] + (at >= slot->turned ? 1U : 0U) : noBlock);
+        }
+      }
+      cubeColumn_.push_back(column);
+    }
+  }
+}
+
+std::uint32_t SolidSystem::placeOf(int row, int column) const {
+  const std::size_t first = rowSlot_[static_cast<std::size_t>(row)];
+  const std::size_t last = rowSlot_[static_cast<std::size_t>(row) + 1];
+  // Counted rather than searched for: a few vectors, and no branch that goes either way.
+  std::uint32_t below = 0;
+  for (std::size_t k = first; k < last; ++k) below += slotColumn_[k] < column ? 1U : 0U;
+  const std::size_t found = first + below;
+  if (found == last || slotColumn_[found] != column) return noSlot;
+  return static_cast<std::uint32_t>(slot_[found].place);
 }
 
 }  // namespace calot

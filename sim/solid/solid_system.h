@@ -28,7 +28,7 @@ struct ElementCorners {
 
 class SolidSystem {
  public:
-  static constexpr std::size_t noSlot = ~std::size_t{0};
+  static constexpr std::uint32_t noSlot = ~std::uint32_t{0};
 
   /// A block K_ab of one element that is added into a slot of the matrix, or a force that is added to a node.
   struct Contribution {
@@ -40,7 +40,7 @@ class SolidSystem {
   struct Slot {
     std::size_t place;        ///< in the matrix values
     std::int32_t node;        ///< of a diagonal block; else -1
-    std::size_t first, last;  ///< in contributions(); of cubes in cubeBlocks(),
+    std::size_t first, last;  ///< in contributions(); of cubes in cubeBlock_,
     std::size_t turned;       ///< of which those from here on are transposed
   };
 
@@ -61,16 +61,28 @@ class SolidSystem {
   /// Nodes with a row, ascending.
   [[nodiscard]] const std::vector<int>& nodes() const { return node_; }
   /// Where block (row, column) stands in the matrix values, or noSlot. @pre column <= row
-  [[nodiscard]] std::size_t placeOf(int row, int column) const;
+  [[nodiscard]] std::uint32_t placeOf(int row, int column) const;
   /// Blocks of a row by columns, the diagonal last; none where it only fills a slice up.
   [[nodiscard]] std::span<const Slot> ofRow(std::size_t row) const {
     return {slot_.data() + rowSlot_[row], rowSlot_[row + 1] - rowSlot_[row]};
   }
   [[nodiscard]] const std::vector<Contribution>& contributions() const { return contribution_; }
-  /// 36 block of a cube + HexahedralElements::pairOf().
-  [[nodiscard]] const std::vector<std::uint32_t>& cubeBlocks() const { return cubeBlock_; }
+  /// A block column of a slice, of cubes: block l is the sum of cubeBlocks()[first + 8 c + l], c < count.
+  struct CubeColumn {
+    std::size_t place;  ///< in the matrix values
+    std::size_t first, count;
+  };
+  /// Of the whole matrix, the diagonals too.
+  [[nodiscard]] const std::vector<CubeColumn>& cubeColumns() const { return cubeColumn_; }
+  /// 2 (36 block of a cube + HexahedralElements::pairOf()), and 1 more where it is transposed; noBlock() where a lane
+  /// has fewer than another: lanes that all sum as many leave nothing to guess to the processor.
+  [[nodiscard]] const std::vector<std::uint32_t>& cubeBlocks() const { return columnBlock_; }
+  /// Which of cubeBlocks() is none: the first behind those of all lanes.
+  [[nodiscard]] static std::uint32_t noBlock(std::size_t cubes) {
+    return static_cast<std::uint32_t>(2 * 36 * laneCount * laneGroups(cubes));
+  }
   /// Where the blocks of an element's corners stand, row by row; noSlot where there is none or right of the diagonal.
-  [[nodiscard]] const std::size_t* placesOf(std::size_t element) const {
+  [[nodiscard]] const std::uint32_t* placesOf(std::size_t element) const {
     return elementPlace_.data() + element * corners_ * corners_;
   }
   /// Corners of elements at a node.
@@ -83,6 +95,7 @@ class SolidSystem {
 
   void buildMatrix(const std::vector<std::vector<int>>& columns);
   void placeElements();
+  void sumColumns();
 
   std::size_t corners_ = 0;  ///< of an element
   std::vector<int> row_;     ///< per node
@@ -94,9 +107,11 @@ class SolidSystem {
   std::vector<std::size_t> rowSlot_;  ///< per row: its first slot; and the end
   std::vector<int> slotColumn_;       ///< per slot
   std::vector<Contribution> contribution_;
-  std::vector<std::uint32_t> cubeBlock_;
+  std::vector<std::uint32_t> cubeBlock_;  ///< of the slots: 36 block of a cube + pair
+  std::vector<CubeColumn> cubeColumn_;
+  std::vector<std::uint32_t> columnBlock_;
   std::vector<std::uint32_t> elementSlot_;  ///< numbers of slots, as elementPlace_; none
-  std::vector<std::size_t> elementPlace_;
+  std::vector<std::uint32_t> elementPlace_;
   std::vector<std::size_t> incidentStart_;
   std::vector<Contribution> incident_;
 };

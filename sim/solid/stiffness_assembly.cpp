@@ -2,7 +2,6 @@
 #include "sim/solid/stiffness_assembly.h"
 
 #include <algorithm>
-#include <array>
 
 #include "sim/math/floating_point.h"
 #include "sim/math/vectors.h"
@@ -13,38 +12,28 @@ namespace {
 
 constexpr std::size_t groupsPerTask = 16;
 constexpr std::size_t slicesPerTask = 16;
+constexpr std::size_t columnsPerTask = 192;
 
 using Block = std::array<float, 9>;
 
-/// Adds the blocks of some cubes, entries 0 to 7 and entry 8.
-CALOT_INLINE void addBlocks(const Block* block, const std::uint32_t* which, std::size_t count, EightFloats& first,
-                            float& last) {
-  for (std::size_t c = 0; c < count; ++c) {
-    const float* from = block[which[c]].data();
-    EightFloats own;
-    readVector(from, own);
-    first += own;
-    last += from[8];
-  }
-}
-
-/// One block column of a slice. @param slot of each lane, or null
-CALOT_LANE_KERNEL void cubeColumn(const Block* block, const std::uint32_t* which, const SolidSystem::Slot* const* slot,
-                                  float scale, float* out) {
+/// One block column of a slice. @param which as SolidSystem::cubeBlocks(), of the column
+CALOT_LANE_KERNEL void cubeColumn(const Block* block, const std::uint32_t* which, std::size_t count, float scale,
+                                  float* out) {
   EightFloats lane[laneCount];
   float last[laneCount];
   for (std::size_t l = 0; l < laneCount; ++l) {
-    EightFloats sum{};
-    EightFloats turned{};
-    float sumLast = 0.0F;
-    float turnedLast = 0.0F;
-    if (slot[l] != nullptr) {
-      const SolidSystem::Slot& s = *slot[l];
-      addBlocks(block, which + s.first, s.turned - s.first, sum, sumLast);
-      addBlocks(block, which + s.turned, s.last - s.turned, turned, turnedLast);
+    EightFloats sum[2] = {};  // of the blocks as they are, and of those that are transposed
+    float sumLast[2] = {};
+    for (std::size_t c = 0; c < count; ++c) {
+      const std::uint32_t w = which[c * laneCount + l];
+      const float* from = block[w >> 1U].data();
+      EightFloats own;
+      readVector(from, own);
+      sum[w & 1U] += own;
+      sumLast[w & 1U] += from[8];
     }
-    lane[l] = scale * (sum + __builtin_shufflevector(turned, turned, 0, 3, 6, 1, 4, 7, 2, 5));
-    last[l] = scale * (sumLast + turnedLast);
+    lane[l] = scale * (sum[0] + __builtin_shufflevector(sum[1], sum[1], 0, 3, 6, 1, 4, 7, 2, 5));
+    last[l] = scale * (sumLast[0] + sumLast[1]);
   }
   transpose(lane);
   for (std::size_t k = 0; k < laneCount; ++k) writeVector(lane[k], out + k * laneCount);
@@ -88,7 +77,8 @@ void StiffnessAssembly::assemble(const SolidModel& model, const SolidSystem& sys
 void StiffnessAssembly::assembleCubes(const SolidModel& model, const SolidSystem& system,
                                       std::span<const RotationGroup> rotation, std::span<const double> fill,
                                       float scale, Executor& executor, std::vector<float>& values) {
-  cube_.resize(model.groups() * laneCount);
+  cube_.resize(model.groups() * laneCount + 1);
+  cube_.back() = HexahedronBlocks{};  // SolidSystem::noBlock()
   executor.run((model.groups() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
     const std::size_t last = std::min(model.groups(), (task + 1) * groupsPerTask);
@@ -100,23 +90,14 @@ void StiffnessAssembly::assembleCubes(const SolidModel& model, const SolidSystem
     }
   });
   static_assert(sizeof(HexahedronBlocks) == 36 * sizeof(Block));
-  const BlockMatrix& matrix = system.matrix();
-  executor.run((matrix.slices() + slicesPerTask - 1) / slicesPerTask, [&](std::size_t task) {
+  const std::vector<SolidSystem::CubeColumn>& columns = system.cubeColumns();
+  executor.run((columns.size() + columnsPerTask - 1) / columnsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
     const Block* block = cube_.front().data();  // of all cubes, one after the other
-    const std::size_t last = std::min(matrix.slices(), (task + 1) * slicesPerTask);
-    std::array<const SolidSystem::Slot*, laneCount> slot{};
-    for (std::size_t s = task * slicesPerTask; s < last; ++s) {
-      const std::size_t width = matrix.lower(s).width;
-      for (std::size_t k = 0; k <= width; ++k) {
-        for (std::size_t l = 0; l < laneCount; ++l) {
-          const std::span<const SolidSystem::Slot> row = system.ofRow(s * laneCount + l);
-          const bool isThere = k == width ? !row.empty() : k + 1 < row.size();
-          slot[l] = isThere ? &row[k == width ? row.size() - 1 : k] : nullptr;
-        }
-        const std::size_t place = k == width ? matrix.diagonal(s) : matrix.lower(s).value() + k * 9 * laneCount;
-        cubeColumn(block, system.cubeBlocks().data(), slot.data(), scale, values.data() + place);
-      }
+    const std::size_t last = std::min(columns.size(), (task + 1) * columnsPerTask);
+    for (std::size_t c = task * columnsPerTask; c < last; ++c) {
+      const SolidSystem::CubeColumn& column = columns[c];
+      cubeColumn(block, system.cubeBlocks().data() + column.first, column.count, scale, values.data() + column.place);
     }
   });
 }

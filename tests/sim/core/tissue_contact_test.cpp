@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "sim/math/random.h"
 #include "tests/sim/core/support/scenes.h"
 
 namespace calot {
@@ -141,6 +142,56 @@ TEST(TissueContact, APushGoesThroughToTheOrganBelow) {
   std::printf("push: %.4f N in, %.4f N through\n", above, below);
   EXPECT_GT(above, 0.05);
   EXPECT_NEAR(below, above, 0.03 * above);
+}
+
+std::size_t insideOut(const SolidModel& solid, const SolidState& state) {
+  return static_cast<std::size_t>(
+      std::count_if(solid.tetrahedra().begin(), solid.tetrahedra().end(), [&](const Index4& t) {
+        const auto at = [&](std::size_t k) -> const Vec3& { return state.position[static_cast<std::size_t>(t[k])]; };
+        return !((at(1) - at(0)).dot((at(2) - at(0)).cross(at(3) - at(0))) > 0.0);
+      }));
+}
+
+/// A soft bag that is crumpled until much of it is inside out finds back, though it meets itself all over: where a
+/// skin's outward is inward, contact would hold it so.
+TEST(TissueContact, WhatIsInsideOutTurnsBack) {
+  SceneDescription scene = slabAndCube();
+  OrganDescription& bag = scene.organs[1];
+  bag.surface = test::boxSurface(Vec3(-0.05, -0.012, 0.001), Vec3(0.02, 0.012, 0.025), {20, 8, 8});
+  bag.tetrahedra = 300;
+  bag.material.youngModulus = 3e3;
+  bag.material.massDamping = 5.0;
+  bag.anchors.push_back({Vec3(-100.0 - 0.045, 0.0, 0.0), 100.0, "", 0.0});
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  const SolidModel& solid = model->organs()[1].solid;
+  for (const std::uint64_t seed : {81, 82, 83}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    test::Rig rig(*model);
+    SolidState& organ = rig.state.organ[1];
+    for (const int node : solid.freeNodes()) {
+      Vec3& p = organ.position[static_cast<std::size_t>(node)];
+      for (int a = 0; a < 3; ++a) p[a] += 0.008 * random.normal();
+    }
+    organ.quietSteps = 0;
+    rig.stepper.invalidate();
+    const std::size_t before = insideOut(solid, organ);
+    double fastest = 0.0;
+    std::uint32_t rows = 0;
+    for (int step = 0; step < 400; ++step) {
+      const StepResult& result = rig.step(scene.hands[0].home);
+      ASSERT_TRUE(test::allFinite(rig.state)) << "step " << step;
+      if (step > 50) fastest = std::max(fastest, result.organ[1].largestSpeed);
+      rows = std::max(rows, result.contact.rows);
+    }
+    std::printf("bag, seed %d: inside out %zu of %zu, then %zu; displaced by %.2f mm; %.2f m/s, %u rows at most\n",
+                static_cast<int>(seed), before, solid.tetrahedra().size(), insideOut(solid, rig.state.organ[1]),
+                1e3 * rig.state.organ[1].largestDisplacement, fastest, rows);
+    EXPECT_GT(before, solid.tetrahedra().size() / 10);
+    EXPECT_EQ(insideOut(solid, rig.state.organ[1]), 0U);
+    EXPECT_LT(rig.state.organ[1].largestDisplacement, 2e-3);
+  }
 }
 
 /// Organs at rest that touch or overlap at rest do nothing to one another.
