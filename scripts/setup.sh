@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what Calot is built and checked with on Debian 12 (docs/dependencies.md says what for). Does nothing when all
-# is there. As root, or with sudo.
+# is there. As root, or with sudo. More packages may be named.
 set -euo pipefail
 
 packages=(
@@ -17,6 +17,7 @@ packages=(
   libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy hdf5-tools
   clang clang-format clang-tidy libclang-rt-14-dev shellcheck valgrind
   g++-aarch64-linux-gnu qemu-user
+  "$@"
 )
 
 installed=$(dpkg-query --show --showformat '${Package} ${Status}\n' "${packages[@]}" 2>/dev/null || true)

@@ -18,6 +18,8 @@ void registerScenes();         ///< scene/step, scene/operation: whole steps of 
 
 void registerPaperCases();  ///< paper: the meshes of the paper's Table 1
 void registerMeshGrowth();  ///< mesh: deformation alone, to 200,000 tetrahedra
+void registerBoxes();       ///< boxes, precision: deformation alone against Bullet's, time against error
+void registerRecordings();  ///< recording: what it costs the loop; replay and seek
 
 inline void registerAll() {
   registerContactStep();
@@ -32,6 +34,8 @@ inline void registerAll() {
   registerScenes();
   registerPaperCases();
   registerMeshGrowth();
+  registerBoxes();
+  registerRecordings();
 }
 
 }  // namespace calot::bench

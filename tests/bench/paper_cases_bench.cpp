@@ -83,7 +83,9 @@ void paperCase(benchmark::State& bench, const PaperCase& which, const std::strin
   counters["rows"] = rows / steps;
   const std::string name = std::string("paper.") + which.name + (scene == "dissect-bed" ? "" : ".fat");
   figures().add(name + ".hz", steps / sum);
+  if (name == "paper.E") figures().add("step.E.hz", steps / sum);
   figures().add(name + ".deformation_hz", steps / deformation);
+  if (name == "paper.E") figures().add("deformation.E.steps_per_s", steps / deformation);
 }
 
 }  // namespace

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What recording costs the thread of the loop; how fast a recording is verified; how long a seek takes. Peers: the same
+// steps without a writer; the time that the attempt took; a step.
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "recorder/attempt.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/recording/reader.h"
+#include "recorder/recording/writer.h"
+#include "recorder/replay.h"
+#include "sim/math/random.h"
+#include "tests/bench/benchmarks.h"
+#include "tests/bench/figures.h"
+#include "tests/bench/numbers.h"
+#include "tests/bench/performed.h"
+#include "tests/bench/repeated.h"
+#include "tests/bench/thread_clock.h"
+
+namespace calot::bench {
+
+namespace {
+
+constexpr std::uint64_t seed = 1;
+const std::string assets = CALOT_ASSETS;
+
+/// A folder of its own under the system's one for temporary files, gone with the object.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("calot-bench-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+double processSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Work {
+  recorder::LoadedScene scene;
+  std::unique_ptr<const Model> model;
+  Motion motion;
+};
+
+Work workIn(const std::string& scene, double seconds) {
+  Work work;
+  work.scene = recorder::loadScene(assets + "/scenes/" + scene + ".json");
+  work.model = built(work.scene.description);
+  work.motion = performed(scene, seconds);
+  return work;
+}
+
+/// CPU time of the loop's thread for all steps (s). @param to where they are recorded, or empty
+double run(const Work& work, const std::filesystem::path& to) {
+  SerialExecutor executor;
+  recorder::Session session(*work.model, seed, executor);
+  std::unique_ptr<recorder::RecordingWriter> writer;
+  if (!to.empty()) {
+    recorder::AttemptSettings settings;
+    settings.seed = seed;
+    recorder::Provenance by;
+    by.profile = "skilled";
+    writer = std::make_unique<recorder::RecordingWriter>(
+        to, recorder::makeHeader(*work.model, work.scene.assets, by, settings), recorder::WriterOptions{true});
+    session.join(*writer);
+  }
+  std::vector<recorder::TickOutcome> ticks(work.model->scene().ticksPerStep);
+  const double begin = threadSeconds();
+  for (const std::vector<TickSamples>& samples : work.motion.step) {
+    for (std::size_t i = 0; i < samples.size(); ++i) ticks[i] = session.tick(samples[i]);
+    session.step(samples, ticks, 0.0F);
+  }
+  const double spent = threadSeconds() - begin;
+  session.end(recorder::Outcome::completed);
+  if (writer) writer->finish();
+  return spent;
+}
+
+void overhead(benchmark::State& bench, const std::string& scene) {
+  static const Folder folder;
+  const Work work = workIn(scene, 20.0);
+  const auto steps = static_cast<double>(work.motion.step.size());
+  double without = 0.0;
+  double with = 0.0;
+  for (auto _ : bench) {
+    // In turn, so that neither has the machine to itself; the least of each is what it costs.
+    without = with = 1e9;
+    for (int i = 0; i < 4; ++i) {
+      without = std::min(without, run(work, {}));
+      with = std::min(with, run(work, folder / "overhead.h5"));
+    }
+    bench.SetIterationTime((with - without) / steps);
+  }
+  auto& counters = bench.counters;
+  counters["step_ms"] = 1e3 * without / steps;
+  counters["percent_of_loop"] = 100.0 * (with - without) / without;
+  counters["percent_of_period"] = 100.0 * (with - without) / steps / work.model->stepSeconds();
+  if (scene != "touch-liver") return;  // the shortest step, of which recording is the largest share
+  figures().add("record.overhead_percent", 100.0 * (with - without) / without);
+  figures().add("record.period_percent", 100.0 * (with - without) / steps / work.model->stepSeconds());
+}
+
+void replay(benchmark::State& bench) {
+  const std::filesystem::path golden = assets + "/golden/cholecystectomy.h5";
+  recorder::ReplayReport report;
+  double spent = 0.0;
+  for (auto _ : bench) {
+    const double begin = processSeconds();
+    report = recorder::replayRecording(golden, {});
+    spent = processSeconds() - begin;
+    bench.SetIterationTime(spent);
+  }
+  if (report.verdict != recorder::ReplayVerdict::exact) throw std::runtime_error(report.message);
+  auto& counters = bench.counters;
+  counters["attempt_s"] = report.seconds;
+  counters["x_realtime"] = report.seconds / spent;
+  counters["ms_a_step"] = 1e3 * spent / static_cast<double>(report.steps);
+  figures().add("replay.cholecystectomy.x_realtime", report.seconds / spent);
+}
+
+void seek(benchmark::State& bench) {
+  static const Folder folder;
+  const Work work = workIn("cholecystectomy", 40.0);
+  const std::filesystem::path file = folder / "seek.h5";
+  const double step = run(work, file) / static_cast<double>(work.motion.step.size());
+  recorder::Recording recording(file);
+  SerialExecutor executor;
+  recorder::Seeker seeker(recording, executor);
+  std::vector<double> seconds;
+  for (auto _ : bench) {
+    Random random(11);
+    seconds.clear();
+    for (int i = 0; i < 40; ++i) {
+      const auto to = static_cast<std::uint64_t>(random.uniform() * static_cast<double>(recording.stepCount()));
+      const double begin = threadSeconds();
+      seeker.seek(to);
+      seconds.push_back(threadSeconds() - begin);
+    }
+    bench.SetIterationTime(quantile(seconds, 0.5));
+  }
+  const double longest = *std::max_element(seconds.begin(), seconds.end());
+  bench.counters["max_ms"] = 1e3 * longest;
+  bench.counters["over_a_step"] = quantile(seconds, 0.5) / step;
+  figures().addLargest("seek.max_ms", 1e3 * longest);
+}
+
+}  // namespace
+
+void registerRecordings() {
+  for (const std::string scene : {"touch-liver", "cholecystectomy"}) {
+    repeated(benchmark::RegisterBenchmark(("recording/overhead/" + scene).c_str(), overhead, scene), 2);
+  }
+  repeated(benchmark::RegisterBenchmark("recording/replay", replay), 2);
+  repeated(benchmark::RegisterBenchmark("recording/seek", seek), 2);
+}
+
+}  // namespace calot::bench
