@@ -100,7 +100,7 @@ def diagram(run, out):
     axes.set_xlabel("CPU time of a step (ms)")
     axes.set_ylabel("error of the solver (relative)")
     axes.grid(True, which="major", alpha=0.3)
-    axes.legend(loc=(0.36, 0.03), fontsize="small")
+    figure.legend(loc="outside upper center", ncols=2)
     figure.savefig(out, metadata={"Date": None})
     return True
 
