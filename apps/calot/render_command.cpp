@@ -1,49 +1,87 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "analytics/cohort/withdraw.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "gui/render/picture.h"
+#include "apps/calot/stop_request.h"
+#include "gui/film/film.h"
 #include "recorder/errors.h"
-#include "recorder/live/worker_pool.h"
-#include "recorder/replay.h"
+#include "recorder/recording/reader.h"
 
 namespace calot::apps {
 
 namespace {
 
 struct Options {
-  std::string recording, output, cohort, at = "0", size = "1280x720";
+  std::string recording, output, cohort, size = "1280x720", quality, align;
+  std::optional<std::string> at, from, to, overlay, beside;
+  double speed = 1.0;
+  int fps = 25;
   bool force = false;
 };
 
+gui::Quality qualityOf(const std::string& word, bool film) {
+  if (word.empty()) return film ? gui::Quality::interactive : gui::Quality::film;
+  return word == "film" ? gui::Quality::film : gui::Quality::interactive;
+}
+
+/// A picture has one moment, a film two. @throws Error (usage)
+void refuseMixed(const Options& o, bool film) {
+  if (film && o.at) throw Error(ExitCode::usage, "--at is for pictures; a film has --from and --to");
+  if (!film && (o.from || o.to))
+    throw Error(ExitCode::usage, "--from and --to are for films (.mp4, .mkv); a picture has --at");
+  if (!o.beside && !o.align.empty()) throw Error(ExitCode::usage, "--align needs --beside");
+}
+
 int render(const Options& o) {
   const std::filesystem::path output(o.output);
-  if (output.extension() != ".png") {
-    throw Error(ExitCode::usage, fmt::format("{}: pictures are written as .png", o.output));
+  const bool film = output.extension() == ".mp4" || output.extension() == ".mkv";
+  if (!film && output.extension() != ".png") {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: pictures are written as .png, films as .mp4 or .mkv", output.string()));
   }
   refuseExisting(output, o.force);
-  const gui::PictureSize size = gui::parsePictureSize(o.size);
-  const double time = parseTime(o.at);
-  recorder::probe(o.recording);
-  recorder::Recording recording(o.recording);
-  if (recording.stepCount() == 0) throw Error(ExitCode::damaged, fmt::format("{}: holds no step to draw", o.recording));
-  const double seconds = recording.seconds();
-  if (time > seconds) {
-    throw Error(ExitCode::usage,
-                fmt::format("{}: is {:.2f} s long, there is nothing at {:.2f} s", o.recording, seconds, time));
+  refuseMixed(o, film);
+  gui::FilmSettings settings;
+  settings.size = gui::parsePictureSize(o.size);
+  settings.quality = qualityOf(o.quality, film);
+  if (o.overlay) settings.overlays = gui::parseOverlays(*o.overlay);
+  if (const std::optional<std::string>& from = film ? o.from : o.at; from) settings.from = parseTime(*from);
+  if (o.to) settings.to = parseTime(*o.to);
+  settings.speed = o.speed;
+  settings.fps = o.fps;
+  settings.alignment = o.align == "phase" ? gui::Alignment::phase : gui::Alignment::start;
+  if (o.beside) settings.beside = *o.beside;
+
+  std::vector<std::string> attempts;
+  std::vector<std::string> files{o.recording};
+  if (o.beside) files.push_back(*o.beside);
+  for (const std::string& file : files) {
+    recorder::probe(file);
+    if (!o.cohort.empty()) attempts.push_back(recorder::Recording(file).header().attempt);
   }
-  const double step = seconds / static_cast<double>(recording.stepCount());
-  const auto n = std::min(static_cast<std::uint64_t>(std::floor(time / step)), recording.stepCount() - 1);
-  if (!o.cohort.empty()) analytics::recordExport(o.cohort, "picture", o.output, {recording.header().attempt});
-  recorder::WorkerPool pool(1);
-  recorder::Seeker seeker(recording, pool);
-  seeker.seek(n);
-  gui::writePicture(seeker.session().view(), size, output);
-  fmt::print("{}: step {}, {:.2f} s\n", o.output, n, static_cast<double>(n + 1) * step);
+  if (film)
+    gui::checkFilm(o.recording, output, settings);
+  else
+    gui::checkMoment(o.recording, settings);
+  if (!o.cohort.empty()) analytics::recordExport(o.cohort, film ? "film" : "picture", o.output, attempts);
+  if (!film) {
+    const gui::ShownMoment shown = gui::writeMoment(o.recording, output, settings);
+    fmt::print("{}: step {}, {:.2f} s\n", o.output, shown.step, shown.seconds);
+    return 0;
+  }
+  stopOnSignals();
+  Progress bar("frames");
+  const std::int64_t frames = gui::writeFilm(o.recording, output, settings, [&](std::uint64_t done, std::uint64_t of) {
+    if (stopRequested()) throw Error(ExitCode::failure, o.output + ": stopped before its end; nothing is left of it");
+    bar.show(done, of);
+  });
+  fmt::print("{}: {} frames, {:.2f} s\n", o.output, frames, static_cast<double>(frames) / settings.fps);
   return 0;
 }
 
@@ -51,11 +89,21 @@ int render(const Options& o) {
 
 void addRender(CLI::App& app, Run& run) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("render", "Draws a moment of a recording.");
+  CLI::App* command = app.add_subcommand("render", "Draws a moment of a recording, or makes a film of it.");
   command->add_option("recording", o->recording, "recording")->required();
-  command->add_option("-o,--output", o->output, "picture (.png)")->required();
-  command->add_option("--at", o->at, "time: seconds, or minutes:seconds")->capture_default_str();
+  command->add_option("-o,--output", o->output, "picture (.png) or film (.mp4, .mkv)")->required();
+  command->add_option("--at", o->at, "of a picture: seconds, or minutes:seconds (default: the start)");
+  command->add_option("--from", o->from, "of a film: its first moment (default: the start)");
+  command->add_option("--to", o->to, "of a film: its last moment (default: the end)");
+  command->add_option("--fps", o->fps, "of a film: frames a second")->capture_default_str();
+  command->add_option("--speed", o->speed, "of a film: recorded seconds in one of its seconds")->capture_default_str();
   command->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command->add_option("--quality", o->quality, "film: all effects; interactive: fast (default: film for pictures)")
+      ->check(CLI::IsMember({"film", "interactive"}));
+  command->add_option("--overlay", o->overlay, "any of time,phase,checkpoints,events,tools");
+  command->add_option("--beside", o->beside, "another recording, in the right half");
+  command->add_option("--align", o->align, "with --beside: both from the start, or phase by phase")
+      ->check(CLI::IsMember({"start", "phase"}));
   command->add_option("--cohort", o->cohort, "cohort database that notes the picture, for withdrawals");
   command->add_flag("--force", o->force, "replace the output if it is there");
   command->callback([o, &run] { run = [o] { return render(*o); }; });

@@ -20,7 +20,7 @@ double unevenness(const Vec3& d) {
 
 }  // namespace
 
-Mesh makeCavity(const SceneView& view) {
+CavityShape cavityShape(const SceneView& view) {
   Box box;
   for (const SurfaceView& surface : view.surface)
     for (const Vec3& p : surface.rest) box.include(p);
@@ -33,15 +33,17 @@ Mesh makeCavity(const SceneView& view) {
   for (const InstrumentView& instrument : view.instrument)
     if (instrument.kind != InstrumentKind::none)
       radius = std::max(radius, std::min(0.25, (instrument.port - centre).norm()));
-  radius *= 1.15;
+  return {centre, 1.15 * radius};
+}
 
+Mesh makeCavity(const CavityShape& shape) {
   Mesh mesh;
   for (int i = 0; i <= rings; ++i) {
     const double polar = std::numbers::pi * i / rings;
     for (int j = 0; j < segments; ++j) {
       const double around = 2.0 * std::numbers::pi * j / segments;
       const Vec3 d(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar));
-      mesh.position.push_back(centre + radius * (1.0 + unevenness(d)) * d);
+      mesh.position.push_back(shape.centre + shape.radius * (1.0 + unevenness(d)) * d);
     }
   }
   const auto at = [](int ring, int segment) { return ring * segments + segment % segments; };

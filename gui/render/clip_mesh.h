@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "gui/render/draw_list.h"
+#include "gui/render/mesh.h"
+#include "sim/scene/scene_view.h"
 
 namespace calot::gui {
 

@@ -2,10 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "gui/render/cavity_mesh.h"
+#include "gui/render/mesh.h"
 #include "gui/render/sheet_list.h"
+#include "gui/render/smoke.h"
+#include "gui/render/surface_form.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -28,17 +33,6 @@ enum class Appearance : int {
 /// From SurfaceView::appearance; a word that is not known here is drawn as plain tissue.
 [[nodiscard]] Appearance appearanceOf(const std::string& word);
 
-/// A triangle mesh in a frame of its own (m), with unit normals.
-struct Mesh {
-  std::vector<Vec3> position;
-  std::vector<Vec3> normal;
-  std::vector<Index3> triangle;  ///< counter-clockwise from outside
-};
-
-/// Unit normals of vertices: sums of the triangles' area vectors, in the triangles' order. A vertex without area gets
-/// z.
-[[nodiscard]] std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::vector<Index3>& triangle);
-
 /// A vertex as the graphics side sees it, in the camera's frame C (x right, y down, z forward).
 struct DrawVertex {
   float position[3];
@@ -51,7 +45,8 @@ struct DrawVertex {
 
 struct DrawPart {
   Appearance appearance = Appearance::tissue;
-  bool harmed = false;  ///< charred or parted somewhere
+  bool harmed = false;    ///< charred or parted somewhere
+  bool oneSided = false;  ///< a closed body, seen from outside alone, or the cavity, seen from inside alone
   std::uint32_t firstIndex = 0;
   std::uint32_t indexCount = 0;
 };
@@ -60,12 +55,41 @@ struct DrawPart {
 struct DrawList {
   std::vector<DrawVertex> vertex;
   std::vector<std::uint32_t> index;
-  std::vector<DrawPart> part;      ///< the cavity, if any, last
+  std::vector<DrawPart> part;      ///< none empty; in the order to draw them: what is likely in front first
   SheetList sheets;                ///< connective tissue, blended over the parts
+  SmokeList smoke;                 ///< blended over all
   float referenceDistance = 0.1F;  ///< distance at which the endoscope's exposure is right (m)
 };
 
-/// @pre checkView(view) has passed
-[[nodiscard]] DrawList makeDrawList(const SceneView& view, bool cavity);
+/// Makes draw lists, one after the other, and keeps what stays the same between them: rest normals, the cavity, memory.
+/// A list depends on its view alone.
+class DrawListMaker {
+ public:
+  /// The list is good until the next call. @pre checkView(view) has passed
+  /// @param aspect width over height of the picture
+  [[nodiscard]] const DrawList& make(const SceneView& view, double aspect, bool cavity,
+                                     std::span<const Puff> smoke = {});
+
+ private:
+  void addSurface(const SurfaceView& surface, SurfaceForm& form);
+  void addMesh(const Mesh& mesh, Appearance appearance, const Pose& pose, bool lengthwise);
+  void addCavity(const SceneView& view, double aspect);
+
+  void begin() { base_ = static_cast<std::uint32_t>(list_.vertex.size()); }
+  [[nodiscard]] Vec3 point(const Vec3& p_W) const { return toCamera_ * (p_W - origin_); }
+  [[nodiscard]] Vec3 direction(const Vec3& d_W) const { return toCamera_ * d_W; }
+  void addVertex(const Vec3& p_C, const Vec3& n_C, const Vec3& rest, const Vec3& restNormal, float charred = 0.0F,
+                 float face = 0.0F);
+  void addPart(DrawPart part, const std::vector<Index3>& triangles);
+
+  DrawList list_;
+  std::vector<SurfaceForm> form_;  ///< per surface of the view
+  CavityShape cavityShape_;
+  Mesh cavity_;
+  std::vector<Index3> seen_;  ///< triangles of the cavity in the field of view
+  Vec3 origin_ = Vec3::Zero();
+  Mat3 toCamera_ = Mat3::Identity();
+  std::uint32_t base_ = 0;  ///< of the vertices that are being added
+};
 
 }  // namespace calot::gui

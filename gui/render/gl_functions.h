@@ -23,11 +23,13 @@
   ENTRY(decltype(&glDrawArrays), DrawArrays)                       \
   ENTRY(decltype(&glDrawElements), DrawElements)                   \
   ENTRY(decltype(&glEnable), Enable)                               \
+  ENTRY(decltype(&glFrontFace), FrontFace)                         \
   ENTRY(decltype(&glGenTextures), GenTextures)                     \
   ENTRY(decltype(&glGetError), GetError)                           \
   ENTRY(decltype(&glGetString), GetString)                         \
   ENTRY(decltype(&glPixelStorei), PixelStorei)                     \
   ENTRY(decltype(&glReadPixels), ReadPixels)                       \
+  ENTRY(decltype(&glScissor), Scissor)                             \
   ENTRY(decltype(&glTexImage2D), TexImage2D)                       \
   ENTRY(decltype(&glTexParameteri), TexParameteri)                 \
   ENTRY(decltype(&glViewport), Viewport)                           \
@@ -46,6 +48,7 @@
   ENTRY(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
   ENTRY(PFNGLDELETESHADERPROC, DeleteShader)                       \
   ENTRY(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
+  ENTRY(PFNGLDRAWBUFFERSPROC, DrawBuffers)                         \
   ENTRY(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
   ENTRY(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
   ENTRY(PFNGLGENBUFFERSPROC, GenBuffers)                           \

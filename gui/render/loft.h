@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "gui/render/draw_list.h"
+#include <vector>
+
+#include "gui/render/mesh.h"
 
 namespace calot::gui {
 

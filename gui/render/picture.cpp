@@ -3,7 +3,6 @@
 
 #include <charconv>
 
-#include "gui/render/png_file.h"
 #include "gui/render/view_check.h"
 #include "recorder/errors.h"
 
@@ -20,12 +19,6 @@ PictureSize parsePictureSize(const std::string& text) {
     throw Error(ExitCode::usage, "picture size '" + text + "': write WIDTHxHEIGHT, as in 1280x720");
   checkPictureSize(size.width, size.height);
   return size;
-}
-
-void writePicture(const SceneView& view, PictureSize size, const std::filesystem::path& file,
-                  const RenderSettings& settings) {
-  Renderer renderer;
-  writePng(renderer.render(view, size.width, size.height, settings), file);
 }
 
 }  // namespace calot::gui

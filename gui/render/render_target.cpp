@@ -28,7 +28,16 @@ RenderTarget::RenderTarget(const GlFunctions& gl, int width, int height, const L
   };
   for (std::size_t c = 0; c < layout.colour.size(); ++c)
     attach(layout.colour[c], static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + c), layout.linear);
-  if (layout.depth) attach(GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, false);
+  if (layout.colour.size() > 1) {
+    std::vector<GLenum> attachments;
+    for (std::size_t c = 0; c < layout.colour.size(); ++c)
+      attachments.push_back(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + c));
+    gl_.DrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
+  }
+  if (layout.depth) attach(GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, layout.compared);
+  if (layout.compared) gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  if (layout.depthOf != nullptr)
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, layout.depthOf->textures_.back(), 0);
   const bool complete = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   if (complete && gl_.GetError() == GL_NO_ERROR) return;
   gl_.DeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());

@@ -14,6 +14,8 @@ class RenderTarget {
     std::vector<GLenum> colour;  ///< internal formats of the attachments, in order
     bool depth = false;          ///< 32-bit float depth texture
     bool linear = false;         ///< filter colours linearly
+    bool compared = false;       ///< a look into the depth compares (sampler2DShadow), over the four nearest texels
+    const RenderTarget* depthOf = nullptr;  ///< shares the depth of another of the same size, which outlives this
   };
   /// @throws calot::Error (failure) if there is no memory for it.
   RenderTarget(const GlFunctions& gl, int width, int height, const Layout& layout);
@@ -34,7 +36,7 @@ class RenderTarget {
   const GlFunctions& gl_;
   int width_, height_;
   GLuint framebuffer_ = 0;
-  std::vector<GLuint> textures_;
+  std::vector<GLuint> textures_;  ///< colours, then the depth, if it is its own
 };
 
 }  // namespace calot::gui

@@ -38,9 +38,12 @@ class Renderer::Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  Image render(const SceneView& view, int width, int height, const RenderSettings& settings) {
+  Image render(const SceneView& view, int width, int height, const RenderSettings& settings,
+               std::span<const Puff> smoke) {
     std::packaged_task<Image(ScenePainter&)> task([&](ScenePainter& painter) {
-      return painter.paint(makeDrawList(view, settings.cavity), view.verticalFieldOfView, width, height, settings);
+      const double aspect = static_cast<double>(width) / height;
+      return painter.paint(drawLists_.make(view, aspect, settings.cavity, smoke), view.verticalFieldOfView, width,
+                           height, settings);
     });
     std::future<Image> image = task.get_future();
     {
@@ -80,6 +83,7 @@ class Renderer::Worker {
     }
   }
 
+  DrawListMaker drawLists_;  ///< on the thread
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<std::packaged_task<Image(ScenePainter&)>> tasks_;
@@ -91,10 +95,12 @@ class Renderer::Worker {
 Renderer::Renderer() : worker_(std::make_unique<Worker>()) {}
 Renderer::~Renderer() = default;
 
-Image Renderer::render(const SceneView& view, int width, int height, const RenderSettings& settings) {
+Image Renderer::render(const SceneView& view, int width, int height, const RenderSettings& settings,
+                       std::span<const Puff> smoke) {
   checkPictureSize(width, height);
   checkView(view);
-  return worker_->render(view, width, height, settings);
+  checkSmoke(smoke);
+  return worker_->render(view, width, height, settings, smoke);
 }
 
 std::string Renderer::description() const { return worker_->description(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -8,8 +9,9 @@
 #include "gui/render/gl_functions.h"
 #include "gui/render/render_target.h"
 #include "gui/render/renderer.h"
-#include "gui/render/shader_program.h"
+#include "gui/render/scene_programs.h"
 #include "gui/render/sheet_painter.h"
+#include "gui/render/smoke_painter.h"
 
 namespace calot::gui {
 
@@ -28,21 +30,38 @@ class ScenePainter {
   [[nodiscard]] std::string description() const;
 
  private:
-  struct Programs;
   struct Targets;
+  struct Frame;
 
   void upload(const DrawList& list);
+  void prepareTargets(int width, int height, Quality quality);
+  void clear(const RenderTarget& target, GLbitfield what, float alpha = 0.0F) const;
+  /// Binds the target and confines drawing to the endoscope's field.
+  void begin(const RenderTarget& target, const Frame& frame) const;
+  void setCamera(const ShaderProgram& program, float focalX, float focalY, float x, float y) const;
+  void setLighting(const ShaderProgram& program, const Frame& frame, const RenderTarget& target) const;
+
   void drawPart(const DrawPart& part) const;
   void drawParts(const DrawList& list, bool withCavity) const;
-  void drawPicture();
-  void drawSheets(const SheetList& sheets);
-  void prepareTargets(int width, int height, Quality quality);
+  void drawLit(const DrawPart& part, const Frame& frame, const RenderTarget& target) const;
+  /// One triangle over all that begin() left to draw on.
+  void drawPicture() const;
+  void hideSurround(const Frame& frame) const;
+
+  void drawOcclusion(const DrawList& list, const Frame& frame) const;
+  void drawSurfaces(const DrawList& list, const Frame& frame) const;
+  void drawSheets(const SheetList& sheets, const Frame& frame);
+  void drawSmoke(const SmokeList& smoke, const Frame& frame);
+  void compose(const Frame& frame) const;
+  [[nodiscard]] Image read() const;
 
   GlFunctions gl_;
-  std::unique_ptr<Programs> film_, interactive_;
+  std::unique_ptr<ScenePrograms> film_, interactive_;
   std::unique_ptr<Targets> targets_;
   std::unique_ptr<SheetPainter> sheets_;  ///< from the first picture with connective tissue on
-  GLuint vertexArray_ = 0, emptyArray_ = 0, vertexBuffer_ = 0, indexBuffer_ = 0, noise_ = 0;
+  std::unique_ptr<SmokePainter> smoke_;   ///< from the first picture with smoke on
+  GLuint vertexArray_ = 0, emptyArray_ = 0, vertexBuffer_ = 0, indexBuffer_ = 0;
+  std::array<GLuint, 2> noise_{};  ///< in half floats, for film; in bytes, for interactive quality
 };
 
 }  // namespace calot::gui

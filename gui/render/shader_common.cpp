@@ -11,7 +11,11 @@ uniform vec2 depthRange;   // near, far (m)
 
 // Noise at p (in cells): derivatives in xyz, value in w.
 uniform sampler3D noiseVolume;
+#if NOISE_BYTES
+vec4 noise(vec3 p) { return texture(noiseVolume, p / 8.0) * vec4(vec3(4.0), 2.0) - vec4(vec3(2.0), 1.0); }
+#else
 vec4 noise(vec3 p) { return texture(noiseVolume, p / 8.0); }
+#endif
 
 // pcg2d of Jarzynski and Olano, JCGT 9(3), 2020.
 vec2 hash(uvec2 v) {
@@ -23,10 +27,18 @@ vec2 hash(uvec2 v) {
   return vec2(v >> 8u) / 16777216.0;
 }
 
+// Places of samples on a disk: sunflower seeds, turned as a whole by a share of a turn.
+vec2 spiral(int i) { return vec2(cos(2.39996 * float(i)), sin(2.39996 * float(i))); }
+mat2 rotation(float turn) {
+  float c = cos(2.0 * pi * turn), s = sin(2.0 * pi * turn);
+  return mat2(c, s, -s, c);
+}
+
 // What the endoscope's light gives a surface that faces it, in direction l at squared distance d2: inverse square, in a
 // cone that fades, right at the reference distance.
 float lightAt(vec3 l, float d2, float referenceDistance) {
-  float cone = pow(clamp(-l.z, 0.0, 1.0), 2.5);
+  float ahead = clamp(-l.z, 0.0, 1.0);
+  float cone = ahead * ahead * sqrt(ahead);
   float light = cone * referenceDistance * referenceDistance / max(d2, 0.0004);
   return 1.25 * light / (1.0 + 0.35 * light);  // a camera's knee for what comes too close
 }
@@ -43,41 +55,70 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
 layout(location = 3) in vec3 restNormal;
 layout(location = 4) in vec2 harm;  // charred, face
+invariant gl_Position;
 uniform vec3 eye;          // origin of the projection in C: lens, or light
 out vec3 vPosition;
 out vec3 vNormal;
 out vec3 vRest;
 out vec3 vRestNormal;
 out vec2 vHarm;
+#if BROAD_PER_VERTEX && defined(LOOK)
+out vec4 vBroadA, vBroadB, vBroadC, vBroadD;
+#endif
 void main() {
   vPosition = position;
   vNormal = normal;
   vRest = rest;
   vRestNormal = restNormal;
   vHarm = harm;
+#if BROAD_PER_VERTEX && defined(LOOK)
+  Broad broad = broadOf(rest);
+  vBroadA = broad.a;
+  vBroadB = broad.b;
+  vBroadC = broad.c;
+  vBroadD = broad.d;
+#endif
   gl_Position = project(position - eye, focal);
 }
-)";
-
-const char* const shadowFragment = R"(
-void main() {}
 )";
 
 const char* const prepassFragment = R"(
 in vec3 vPosition;
 in vec3 vNormal;
-layout(location = 0) out vec4 normalAndDepth;
+layout(location = 0) out float depth;  // z in C
+layout(location = 1) out vec3 halved;  // normal, as a colour
 void main() {
   vec3 n = normalize(vNormal);
-  normalAndDepth = vec4(gl_FrontFacing ? n : -n, vPosition.z);
+  depth = vPosition.z;
+  halved = 0.5 + (gl_FrontFacing ? 0.5 : -0.5) * n;
 }
 )";
 
 const char* const pictureVertex = R"(
 void main() {
-  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  gl_Position = vec4(corner, 0.0, 1.0);
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }
+)";
+
+const char* const surroundVertex = R"(
+uniform vec2 field;  // half axes of the endoscope's round field in clip coordinates
+
+// A ring of quads, each of two triangles, from the field to far outside, at the near plane: what comes later is hidden.
+const ivec2 corner[6] = ivec2[](ivec2(0, 0), ivec2(0, 1), ivec2(1, 0), ivec2(1, 0), ivec2(0, 1), ivec2(1, 1));
+void main() {
+  ivec2 at = corner[gl_VertexID % 6];
+  float angle = float(gl_VertexID / 6 + at.x) * (2.0 * pi / float(FIELD_SIDES));
+  gl_Position = vec4((at.y == 0 ? 1.0 : 4.0) * field * vec2(cos(angle), sin(angle)), -1.0, 1.0);
+}
+)";
+
+const char* const emptyFragment = R"(
+void main() {}
+)";
+
+const char* const surroundFragment = R"(
+layout(location = 0) out vec4 black;
+void main() { black = vec4(0.0, 0.0, 0.0, 1.0); }
 )";
 
 }  // namespace calot::gui::glsl

@@ -1,9 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wet tissue and brushed metal. The looks are functions of the rest position, so that they stick to the tissue however
-// it deforms.
+// it deforms. What changes slowly along the tissue (Broad) stands apart from the rest: film quality works it out for
+// every pixel, interactive quality for every vertex.
 #include "gui/render/shader_sources.h"
 
 namespace calot::gui::glsl {
+
+const char* const surfaceBroad = R"(
+// Slow noises of a look; what each one is stands at broadOf().
+struct Broad { vec4 a, b, c, d; };
+
+// Of a net of vessels: how its lines are bent (xyz), and where it is strong (w).
+vec4 netOf(vec3 p) { return vec4(noise(p * 1.3 + 3.1).xyz, smoothstep(-0.15, 0.40, noise(p * 0.55 + 7.7).w)); }
+
+// In the coordinates of a net, lines run farther along some axes than along others.
+vec3 largeNet(vec3 mm) { return mm * vec3(1.0, 0.4, 0.7) / 10.0; }
+vec3 smallNet(vec3 mm) { return mm * vec3(1.0, 0.55, 0.8) / 5.0 + 4.0; }
+vec3 wallNet(vec3 mm) { return mm * vec3(1.0, 0.6, 0.8) / 21.0; }
+vec3 ductNet(vec3 mm) { return mm / 3.0 + 2.0; }
+vec3 fatNet(vec3 mm) { return mm / 7.0 + 5.0; }
+
+Broad broadOf(vec3 rest) {
+  vec3 mm = rest * 1000.0;
+  Broad f = Broad(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+#if LOOK == 1    // liver: wide, middle
+  f.a = noise(mm / 43.0);
+  f.b = noise(mm / 13.0 + 0.4 * f.a.xyz);
+#elif LOOK == 2  // gallbladder: middle, two nets; wide and pale
+  f.a = noise(mm / 7.0);
+  f.b = netOf(largeNet(mm));
+  f.c = netOf(smallNet(mm));
+  f.d = vec4(noise(mm / 24.0 + 2.0).w, noise(mm / 17.0 + 9.0).w, 0.0, 0.0);
+#elif LOOK == 3  // cavity: middle, net; wide
+  vec4 wide = noise(mm / 61.0 + 1.0);
+  f.a = noise(mm / 27.0 + 0.5 * wide.xyz);
+  f.b = netOf(wallNet(mm));
+  f.c = vec4(wide.w, 0.0, 0.0, 0.0);
+#elif LOOK == 4  // duct: middle, net; wide
+  f.a = noise(mm / 3.4);
+  f.b = netOf(ductNet(mm));
+  f.c = vec4(noise(mm / 11.0 + 6.0).w, 0.0, 0.0, 0.0);
+#elif LOOK == 5  // artery: wide
+  f.a = noise(mm / 6.0 + 4.0);
+#elif LOOK == 6  // fat: bend, net; wide
+  f.a = noise(mm / 6.5 + 3.0);
+  f.b = netOf(fatNet(mm));
+  f.c = vec4(noise(mm / 15.0 + 8.0).w, 0.0, 0.0, 0.0);
+#elif LOOK == 0  // plain tissue: middle
+  f.a = noise(mm / 9.0);
+#endif
+  return f;
+}
+)";
 
 const char* const surfaceMaterial = R"(
 struct Material {
@@ -15,22 +63,28 @@ struct Material {
   float film;      // share of a thin wet film's sharp gloss
 };
 
-// A net of vessels: the zero lines of a bent, stretched noise. Dividing by the slope gives every line the same width (in
-// cells); fading by a slower noise opens the loops into branches that thin out.
-float vessels(vec3 p, float width) {
-  vec4 bend = noise(p * 1.3 + 3.1);
-  vec4 n = noise(p + 0.11 * bend.xyz);
-  float away = abs(n.w) / max(length(n.xyz), 0.6);
-  float strength = smoothstep(-0.15, 0.40, noise(p * 0.55 + 7.7).w);
-  float w = width * (0.25 + 0.75 * strength);
-  return strength * (1.0 - smoothstep(0.35 * w, w, away));
+// The finest grain is left to film quality.
+vec4 fineNoise(vec3 p) {
+#if FINE
+  return noise(p);
+#else
+  return vec4(0.0);
+#endif
 }
 
-Material liver(vec3 mm) {
-  vec4 wide = noise(mm / 43.0);
-  vec4 middle = noise(mm / 13.0 + 0.4 * wide.xyz);
+// A net of vessels: the zero lines of a bent, stretched noise. Dividing by the slope gives every line the same width (in
+// cells); fading by a slower noise opens the loops into branches that thin out.
+float vessels(vec3 p, vec4 net, float width) {
+  vec4 n = noise(p + 0.11 * net.xyz);
+  float away = abs(n.w) / max(length(n.xyz), 0.6);
+  float w = width * (0.25 + 0.75 * net.w);
+  return net.w * (1.0 - smoothstep(0.35 * w, w, away));
+}
+
+Material liver(vec3 mm, Broad broad) {
+  vec4 wide = broad.a, middle = broad.b;
   vec4 lobules = noise(mm / 1.9);
-  vec4 grain = noise(mm / 0.83 + 5.0);
+  vec4 grain = fineNoise(mm / 0.83 + 5.0);
   Material m;
   float tone = 0.5 + 0.55 * wide.w + 0.35 * middle.w;
   m.albedo = mix(vec3(0.082, 0.023, 0.017), vec3(0.165, 0.056, 0.038), clamp(tone, 0.0, 1.0));
@@ -44,18 +98,17 @@ Material liver(vec3 mm) {
   return m;
 }
 
-Material gallbladder(vec3 mm) {
-  vec4 wide = noise(mm / 24.0 + 2.0);
-  vec4 middle = noise(mm / 7.0);
-  vec4 fine = noise(mm / 1.3);
+Material gallbladder(vec3 mm, Broad broad) {
+  vec4 middle = broad.a;
+  vec4 fine = fineNoise(mm / 1.3);
   Material m;
-  float tone = clamp(0.5 + 0.7 * wide.w + 0.35 * middle.w, 0.0, 1.0);
+  float tone = clamp(0.5 + 0.7 * broad.d.x + 0.35 * middle.w, 0.0, 1.0);
   m.albedo = mix(vec3(0.026, 0.055, 0.047), vec3(0.086, 0.108, 0.066), tone);
   // Serosa: pale where the wall is thicker, with a little fat under it.
-  float pale = smoothstep(0.10, 0.60, noise(mm / 17.0 + 9.0).w + 0.25 * middle.w);
+  float pale = smoothstep(0.10, 0.60, broad.d.y + 0.25 * middle.w);
   m.albedo = mix(m.albedo, vec3(0.200, 0.160, 0.080), 0.45 * pale);
-  float large = vessels(mm * vec3(1.0, 0.4, 0.7) / 10.0, 0.026);
-  float small = vessels(mm * vec3(1.0, 0.55, 0.8) / 5.0 + 4.0, 0.034);
+  float large = vessels(largeNet(mm), broad.b, 0.026);
+  float small = vessels(smallNet(mm), broad.c, 0.034);
   m.albedo = mix(m.albedo, vec3(0.075, 0.012, 0.016), 0.50 * large);
   m.albedo = mix(m.albedo, vec3(0.110, 0.024, 0.022), 0.38 * small);
   m.albedo *= 1.0 + 0.10 * fine.w;
@@ -68,13 +121,12 @@ Material gallbladder(vec3 mm) {
 }
 
 // Wall of a bile duct: pale, yellow-green, bile shining through, a net of fine vessels on it.
-Material duct(vec3 mm) {
-  vec4 wide = noise(mm / 11.0 + 6.0);
-  vec4 middle = noise(mm / 3.4);
-  vec4 fine = noise(mm / 0.7);
+Material duct(vec3 mm, Broad broad) {
+  vec4 middle = broad.a;
+  vec4 fine = fineNoise(mm / 0.7);
   Material m;
-  m.albedo = mix(vec3(0.255, 0.235, 0.095), vec3(0.420, 0.370, 0.185), clamp(0.5 + 0.5 * wide.w + 0.5 * middle.w, 0.0, 1.0));
-  float net = vessels(mm / 3.0 + 2.0, 0.040);
+  m.albedo = mix(vec3(0.255, 0.235, 0.095), vec3(0.420, 0.370, 0.185), clamp(0.5 + 0.5 * broad.c.x + 0.5 * middle.w, 0.0, 1.0));
+  float net = vessels(ductNet(mm), broad.b, 0.040);
   m.albedo = mix(m.albedo, vec3(0.300, 0.060, 0.045), 0.45 * net);
   m.albedo *= 1.0 + 0.08 * fine.w;
   m.scatter = vec3(0.30, 0.28, 0.18);
@@ -86,11 +138,10 @@ Material duct(vec3 mm) {
 }
 
 // Wall of an artery: red, with a paler sheath in streaks, smooth and wet.
-Material artery(vec3 mm) {
-  vec4 wide = noise(mm / 6.0 + 4.0);
+Material artery(vec3 mm, Broad broad) {
   vec4 fine = noise(mm / 1.1);
   Material m;
-  m.albedo = mix(vec3(0.300, 0.030, 0.026), vec3(0.420, 0.075, 0.058), clamp(0.5 + 0.7 * wide.w, 0.0, 1.0));
+  m.albedo = mix(vec3(0.300, 0.030, 0.026), vec3(0.420, 0.075, 0.058), clamp(0.5 + 0.7 * broad.a.w, 0.0, 1.0));
   m.albedo = mix(m.albedo, vec3(0.520, 0.240, 0.180), 0.35 * smoothstep(0.25, 0.65, fine.w));
   m.scatter = vec3(0.30, 0.08, 0.06);
   m.slope = 0.08 / 1.1 * fine.xyz;
@@ -101,18 +152,17 @@ Material artery(vec3 mm) {
 }
 
 // Lobules: a noise folded at its zero lines, bulging between furrows, in two sizes.
-Material fat(vec3 mm) {
-  vec4 wide = noise(mm / 15.0 + 8.0);
-  vec4 bend = noise(mm / 6.5 + 3.0);
+Material fat(vec3 mm, Broad broad) {
+  vec4 bend = broad.a;
   vec4 large = noise(mm / 4.4 + 0.25 * bend.xyz);
   vec4 small = noise(mm / 1.7 + 0.20 * bend.zxy);
-  vec4 fine = noise(mm / 0.6);
+  vec4 fine = fineNoise(mm / 0.6);
   float largeUp = min(abs(large.w) * 1.6, 1.0), smallUp = min(abs(small.w) * 1.6, 1.0);
   float up = clamp(0.62 * sqrt(largeUp) + 0.38 * sqrt(smallUp), 0.0, 1.0);
   Material m;
   m.albedo = mix(vec3(0.400, 0.170, 0.040), vec3(0.640, 0.395, 0.105), smoothstep(0.12, 0.62, up));
-  m.albedo = mix(m.albedo, vec3(0.700, 0.490, 0.200), 0.45 * smoothstep(0.0, 0.6, wide.w));
-  float net = vessels(mm / 7.0 + 5.0, 0.026);
+  m.albedo = mix(m.albedo, vec3(0.700, 0.490, 0.200), 0.45 * smoothstep(0.0, 0.6, broad.c.x));
+  float net = vessels(fatNet(mm), broad.b, 0.026);
   m.albedo = mix(m.albedo, vec3(0.330, 0.045, 0.030), 0.50 * net);
   m.albedo *= 1.0 + 0.07 * fine.w;
   m.scatter = vec3(0.42, 0.28, 0.10);
@@ -158,17 +208,16 @@ Material parted(Material m, float face) {
   return m;
 }
 
-Material cavityWall(vec3 mm) {
-  vec4 wide = noise(mm / 61.0 + 1.0);
-  vec4 middle = noise(mm / 27.0 + 0.5 * wide.xyz);
+Material cavityWall(vec3 mm, Broad broad) {
+  vec4 middle = broad.a;
   vec4 lobes = noise(mm / 8.0 + 0.3 * middle.xyz);
-  vec4 small = noise(mm / 3.1);
+  vec4 small = fineNoise(mm / 3.1);
   Material m;
-  m.albedo = mix(vec3(0.200, 0.058, 0.046), vec3(0.330, 0.125, 0.095), clamp(0.5 + 0.7 * wide.w, 0.0, 1.0));
+  m.albedo = mix(vec3(0.200, 0.058, 0.046), vec3(0.330, 0.125, 0.095), clamp(0.5 + 0.7 * broad.c.x, 0.0, 1.0));
   float fat = smoothstep(-0.15, 0.55, middle.w + 0.30 * lobes.w + 0.10 * small.w);
   m.albedo = mix(m.albedo, vec3(0.400, 0.235, 0.105), 0.55 * fat);
   m.albedo *= 1.0 + 0.20 * lobes.w + 0.10 * small.w;
-  m.albedo = mix(m.albedo, vec3(0.150, 0.022, 0.024), 0.40 * vessels(mm * vec3(1.0, 0.6, 0.8) / 21.0, 0.035));
+  m.albedo = mix(m.albedo, vec3(0.150, 0.022, 0.024), 0.40 * vessels(wallNet(mm), broad.b, 0.035));
   m.scatter = vec3(0.35, 0.15, 0.10);
   m.slope = 2.2 / 27.0 * middle.xyz + (0.5 + 0.6 * fat) / 8.0 * lobes.xyz + 0.12 / 3.1 * small.xyz;
   m.mirror = vec3(0.026);
@@ -177,8 +226,8 @@ Material cavityWall(vec3 mm) {
   return m;
 }
 
-Material tissue(vec3 mm) {
-  vec4 middle = noise(mm / 9.0);
+Material tissue(vec3 mm, Broad broad) {
+  vec4 middle = broad.a;
   vec4 fine = noise(mm / 1.7);
   Material m;
   m.albedo = mix(vec3(0.34, 0.12, 0.09), vec3(0.45, 0.20, 0.15), clamp(0.5 + 0.8 * middle.w, 0.0, 1.0)) * (1.0 + 0.1 * fine.w);
@@ -204,10 +253,10 @@ Material brushed(vec3 mm, vec3 mirror, float roughness) {
 }
 
 // One look a program (LOOK, HARMED): a software rasterizer works out every branch for every pixel.
-Material materialOf(int appearance, vec3 rest, vec2 harm) {
+Material materialOf(int appearance, vec3 rest, vec2 harm, Broad broad) {
   vec3 mm = rest * 1000.0;
 #if LOOK == 3
-  return cavityWall(mm);
+  return cavityWall(mm, broad);
 #elif LOOK == 10
   if (appearance == 10) return solid(vec3(0.010, 0.010, 0.011), vec3(0.042), 0.33);
   if (appearance == 11) return brushed(mm, vec3(0.60, 0.585, 0.57), 0.27);
@@ -215,17 +264,17 @@ Material materialOf(int appearance, vec3 rest, vec2 harm) {
   return brushed(mm, vec3(0.56, 0.54, 0.60), 0.30);
 #else
 #if LOOK == 1
-  Material m = liver(mm);
+  Material m = liver(mm, broad);
 #elif LOOK == 2
-  Material m = gallbladder(mm);
+  Material m = gallbladder(mm, broad);
 #elif LOOK == 4
-  Material m = duct(mm);
+  Material m = duct(mm, broad);
 #elif LOOK == 5
-  Material m = artery(mm);
+  Material m = artery(mm, broad);
 #elif LOOK == 6
-  Material m = fat(mm);
+  Material m = fat(mm, broad);
 #else
-  Material m = tissue(mm);
+  Material m = tissue(mm, broad);
 #endif
 #if HARMED
   m = charredBy(parted(m, harm.y), harm.x, mm);

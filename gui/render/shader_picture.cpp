@@ -5,7 +5,8 @@
 namespace calot::gui::glsl {
 
 const char* const occlusionFragment = R"(
-uniform sampler2D normalAndDepth;
+uniform sampler2D normalMap;     // halved, around 0.5
+uniform sampler2D depthMap;      // z in C (m), 0: nothing
 uniform float reach;             // how far a surface darkens another (m)
 layout(location = 0) out float open;
 
@@ -17,22 +18,22 @@ vec3 pointAt(vec2 pixel, float z, vec2 size) {
 // Share of the half-space above the surface that near surfaces leave open, by samples on a disk of fixed reach
 // (in the spirit of Bavoil and Sainz, "Image-space horizon-based ambient occlusion", 2008).
 void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  ivec2 size = textureSize(normalAndDepth, 0);
-  vec4 here = texelFetch(normalAndDepth, pixel, 0);
+  ivec2 pixel = ivec2(gl_FragCoord.xy) * STRIDE;  // of the prepass
+  ivec2 size = textureSize(depthMap, 0);
+  float here = texelFetch(depthMap, pixel, 0).x;
   open = 1.0;
-  if (here.w <= 0.0) return;
-  vec3 p = pointAt(vec2(pixel), here.w, vec2(size));
-  vec3 n = here.xyz;
-  float disk = clamp(reach * focal.y * 0.5 * float(size.y) / here.w, 3.0, 0.35 * float(size.y));
-  vec2 turn = hash(uvec2(pixel) & 3u);
+  if (here <= 0.0) return;
+  vec3 p = pointAt(vec2(pixel), here, vec2(size));
+  vec3 n = normalize(texelFetch(normalMap, pixel, 0).xyz - 0.5);
+  float disk = clamp(reach * abs(focal.y) * 0.5 * float(size.y) / here, 3.0, 0.35 * float(size.y));
+  vec2 turn = hash(uvec2(gl_FragCoord.xy) & uint(PATTERN - 1));
+  mat2 turned = rotation(turn.x);
   float closed = 0.0;
   for (int i = 0; i < OCCLUSION_SAMPLES; ++i) {
     float r = (float(i) + 0.3 + 0.7 * turn.y) / float(OCCLUSION_SAMPLES);
-    float a = turn.x * 2.0 * pi + 2.39996 * float(i);
-    ivec2 there = pixel + ivec2(disk * r * vec2(cos(a), sin(a)));
+    ivec2 there = pixel + ivec2(turned * (disk * r * spiral(i)));
     there = clamp(there, ivec2(0), size - 1);
-    float z = texelFetch(normalAndDepth, there, 0).w;
+    float z = texelFetch(depthMap, there, 0).x;
     if (z <= 0.0) continue;
     vec3 v = pointAt(vec2(there), z, vec2(size)) - p;
     float distance2 = dot(v, v);
@@ -45,19 +46,22 @@ void main() {
 
 const char* const blurFragment = R"(
 uniform sampler2D openMap;
-uniform sampler2D normalAndDepth;
+uniform sampler2D normalMap;
+uniform sampler2D depthMap;
 layout(location = 0) out float open;
-// The sampling pattern repeats every four pixels: a mean over four by four takes it away.
+// The sampling pattern repeats every PATTERN pixels: a mean over as many each way takes it away.
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   ivec2 size = textureSize(openMap, 0);
-  vec4 here = texelFetch(normalAndDepth, pixel, 0);
+  float here = texelFetch(depthMap, pixel * STRIDE, 0).x;
+  vec3 n = texelFetch(normalMap, pixel * STRIDE, 0).xyz - 0.5;
   float sum = 0.0, weights = 0.0;
-  for (int y = -2; y < 2; ++y)
-    for (int x = -2; x < 2; ++x) {
+  for (int y = -PATTERN / 2; y < PATTERN / 2; ++y)
+    for (int x = -PATTERN / 2; x < PATTERN / 2; ++x) {
       ivec2 there = clamp(pixel + ivec2(x, y), ivec2(0), size - 1);
-      vec4 other = texelFetch(normalAndDepth, there, 0);
-      float weight = 1e-4 + clamp(1.0 - abs(other.w - here.w) / (0.02 * here.w + 1e-5), 0.0, 1.0) * clamp(dot(other.xyz, here.xyz), 0.0, 1.0);
+      float away = abs(texelFetch(depthMap, there * STRIDE, 0).x - here) / (0.02 * here + 1e-5);
+      float alike = 4.0 * dot(texelFetch(normalMap, there * STRIDE, 0).xyz - 0.5, n);
+      float weight = 1e-4 + clamp(1.0 - away, 0.0, 1.0) * clamp(alike, 0.0, 1.0);
       sum += weight * texelFetch(openMap, there, 0).x;
       weights += weight;
     }
@@ -65,15 +69,38 @@ void main() {
 }
 )";
 
-const char* const composeFragment = R"(
-uniform sampler2D radianceMap;
-uniform int samples;             // a side
-uniform int mask;
-layout(location = 0) out vec4 colour;
+const char* const display = R"(
+uniform vec2 fieldRim;           // radius of the endoscope's round field and how far it fades (pixels); 0: no field
 
 // Filmic curve (fit by Narkowicz, "ACES filmic tone mapping curve", 2015), then sRGB.
 vec3 tone(vec3 x) { return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
+#if ROOTS
+// The curve of sRGB by square roots, within 0.3 levels of 255 (where it is not linear).
+vec3 encode(vec3 x) {
+  vec3 a = sqrt(x), b = sqrt(a), c = sqrt(b);
+  return clamp(0.662002687 * a + 0.684122060 * b - 0.323583601 * c - 0.0225411470 * x, 0.0, 1.0);
+}
+#else
 vec3 encode(vec3 x) { return mix(12.92 * x, 1.055 * pow(max(x, vec3(1e-5)), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, x)); }
+#endif
+
+// How bright the endoscope's field is at a pixel, and how far that lies outside of it.
+vec2 fieldAt(vec2 pixel, vec2 size) {
+  if (fieldRim.x == 0.0) return vec2(1.0, 0.0);
+  float radius = length(pixel - 0.5 * size);
+  float outside = smoothstep(fieldRim.x - fieldRim.y, fieldRim.x + fieldRim.y, radius);
+  return vec2(mix(1.0, 0.38, smoothstep(0.45, 1.0, radius / fieldRim.x)) * (1.0 - outside), outside);
+}
+
+// Radiance as it is shown: without passes of its own where there is one sample a pixel.
+vec3 shown(vec3 radiance, vec2 pixel, vec2 size) { return encode(tone(0.85 * radiance) * fieldAt(pixel, size).x); }
+)";
+
+const char* const composeFragment = R"(
+uniform sampler2D radianceMap;
+layout(location = 0) out vec4 colour;
+
+const int samples = SAMPLES_ASIDE;
 
 void main() {
   ivec2 size = textureSize(radianceMap, 0) / samples;
@@ -88,16 +115,8 @@ void main() {
     }
   float covered = sum.a / float(samples * samples);
   vec3 linear = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
-  if (mask != 0) {
-    float side = float(min(size.x, size.y));
-    float radius = length(vec2(pixel) + 0.5 - 0.5 * vec2(size)) / (0.5 * side);
-    float rim = size.x == size.y ? 0.985 : 1.12;     // wide pictures cut the circle above and below
-    linear *= mix(1.0, 0.38, smoothstep(0.45, 1.0, radius / rim));
-    float edge = 3.0 / side;
-    linear *= 1.0 - smoothstep(rim - edge, rim + edge, radius);
-    covered = max(covered, smoothstep(rim - edge, rim + edge, radius));
-  }
-  colour = vec4(encode(linear), covered);
+  vec2 field = fieldAt(vec2(pixel) + 0.5, vec2(size));
+  colour = vec4(encode(linear * field.x), max(covered, field.y));
 }
 )";
 

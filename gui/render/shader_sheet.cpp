@@ -33,29 +33,23 @@ in vec4 vLook;
 in float vErosion;
 layout(location = 0) out vec4 radiance;  // multiplied by the opacity
 
-uniform vec3 light;              // position in C (m)
 uniform float referenceDistance; // where the exposure is right (m)
 uniform vec2 pixels;             // size of this target
 uniform sampler2D fibreMap;
 uniform sampler2D occlusionMap;
-uniform sampler2D shadowMap;
-uniform vec2 shadowFocal;
 
 vec3 unit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-12)); }
 
 // Hard where one tap is taken, soft at the edge where there are four.
 float shadow(vec3 p) {
   vec3 q = p - light;
-  vec4 clip = project(q, shadowFocal);
-  vec2 uv = clip.xy / clip.w * 0.5 + 0.5;
+  vec3 place = shadowPlace(q);
   // What stands less than 2 mm in front is the organ that the tissue hangs on.
-  vec4 nearer = project(q * (1.0 - 0.002 / max(q.z, 0.004)), shadowFocal);
-  float depth = nearer.z / nearer.w * 0.5 + 0.5;
+  place.z = shadowPlace(q * (1.0 - 0.002 / max(q.z, 0.004))).z;
   float lit = 0.0;
   for (int i = 0; i < SHEET_SHADOW_SAMPLES; ++i) {
-    float a = 2.39996 * float(i);
-    vec2 offset = SHEET_SHADOW_SAMPLES == 1 ? vec2(0.0) : 0.5 * shadowFocal * 0.0008 / q.z * vec2(cos(a), sin(a));
-    lit += texture(shadowMap, uv + offset).x < depth ? 0.0 : 1.0;
+    vec2 offset = SHEET_SHADOW_SAMPLES == 1 ? vec2(0.0) : 0.5 * shadowFocal * 0.0008 / q.z * spiral(i);
+    lit += litAt(place + vec3(offset, 0.0));
   }
   return lit / float(SHEET_SHADOW_SAMPLES);
 }
@@ -101,7 +95,11 @@ void main() {
   float nh = abs(dot(n, h));
   float wet = pow(nh, 60.0);
   float gloss = (0.07 * silk + 0.5 * wet) * min(lit, 1.6) * occlusion * (1.0 - smoothstep(0.0, 0.6, burnt));
-  radiance = vec4(diffuse * opacity + vec3(gloss * min(1.0, 1.6 * opacity)), opacity);
+  vec3 whole = diffuse * opacity + vec3(gloss * min(1.0, 1.6 * opacity));
+#if DIRECT
+  whole = shown(whole / opacity, gl_FragCoord.xy, pixels) * opacity;
+#endif
+  radiance = vec4(whole, opacity);
 }
 )";
 

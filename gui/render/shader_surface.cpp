@@ -4,46 +4,38 @@
 
 namespace calot::gui::glsl {
 
-const char* const surfaceFragment = R"(
-in vec3 vPosition;
-in vec3 vNormal;
-in vec3 vRest;
-in vec3 vRestNormal;
-in vec2 vHarm;
-layout(location = 0) out vec4 radiance;
-
-uniform int appearance;
+const char* const shadowLookup = R"(
 uniform vec3 light;              // position in C (m)
-uniform float referenceDistance; // where the exposure is right (m)
-uniform vec2 pixels;             // size of this target
-uniform sampler2D occlusionMap;
-uniform sampler2D shadowMap;
 uniform vec2 shadowFocal;
-uniform vec2 focalOfEye;
+#if SOFT_SHADOWS
+uniform sampler2D shadowMap;
+float litAt(vec3 place) { return texture(shadowMap, place.xy).x < place.z ? 0.0 : 1.0; }
+#else
+uniform sampler2DShadow shadowMap;
+float litAt(vec3 place) { return texture(shadowMap, place); }
+#endif
 
-// The least rotation from the rest normal to the present one carries slopes from rest to now.
-vec3 carried(vec3 v, vec3 from, vec3 to) {
-  vec3 axis = cross(from, to);
-  float c = dot(from, to);
-  if (c < -0.99) return -v;
-  return v * c + cross(axis, v) + axis * (dot(axis, v) / (1.0 + c));
-}
-
-float shadow(vec3 p, vec3 n) {
-  vec3 q = p + n * 0.0006 - light;
+// Where in the shadow map q, seen from the light, is: texture coordinates and depth.
+vec3 shadowPlace(vec3 q) {
   vec4 clip = project(q, shadowFocal);
-  vec2 uv = clip.xy / clip.w * 0.5 + 0.5;
-  float depth = clip.z / clip.w * 0.5 + 0.5;
-  float bias = 0.00004;
+  return clip.xyz / clip.w * 0.5 + 0.5;
+}
+)";
+
+const char* const softShadow = R"(
+// How much of the light reaches p, with normal n.
+float shadow(vec3 p, vec3 n) {
+  vec3 q = p + n * SHADOW_OFFSET - light;
+  vec3 place = shadowPlace(q) - vec3(0.0, 0.0, 0.00004);
+#if SOFT_SHADOWS
   // Penumbra of a light 3 mm wide: wider the farther the blocker stands before the receiver.
-  vec2 turn = hash(uvec2(gl_FragCoord.xy) & 3u);
-  float a0 = turn.x * 2.0 * pi;
+  mat2 turned = rotation(hash(uvec2(gl_FragCoord.xy) & 3u).x);
   vec2 wide = 0.5 * shadowFocal * 0.0030;
   float blockers = 0.0, blockerZ = 0.0;
   for (int i = 0; i < BLOCKERS; ++i) {
-    float r = sqrt((float(i) + 0.5) / float(BLOCKERS)), a = a0 + 2.39996 * float(i);
-    float d = texture(shadowMap, uv + wide / q.z * r * vec2(cos(a), sin(a))).x;
-    if (d < depth - bias) {
+    vec2 at = sqrt((float(i) + 0.5) / float(BLOCKERS)) * spiral(i);
+    float d = texture(shadowMap, place.xy + wide / q.z * (turned * at)).x;
+    if (d < place.z) {
       float ndc = d * 2.0 - 1.0;
       blockerZ += 2.0 * depthRange.x * depthRange.y / (depthRange.y + depthRange.x - ndc * (depthRange.y - depthRange.x));
       blockers += 1.0;
@@ -54,12 +46,52 @@ float shadow(vec3 p, vec3 n) {
   float penumbra = clamp((q.z - blockerZ) / blockerZ, 0.03, 1.2);
   float lit = 0.0;
   for (int i = 0; i < SHADOW_SAMPLES; ++i) {
-    float r = sqrt((float(i) + 0.5) / float(SHADOW_SAMPLES)), a = a0 + 2.39996 * float(i);
-    float d = texture(shadowMap, uv + wide / q.z * penumbra * r * vec2(cos(a), sin(a))).x;
-    lit += d < depth - bias ? 0.0 : 1.0;
+    vec2 at = sqrt((float(i) + 0.5) / float(SHADOW_SAMPLES)) * spiral(i);
+    lit += litAt(place + vec3(wide / q.z * penumbra * (turned * at), 0.0));
   }
   return lit / float(SHADOW_SAMPLES);
+#else
+  return litAt(place);
+#endif
 }
+)";
+
+const char* const backdropFragment = R"(
+uniform vec2 pixels;             // size of this target
+uniform sampler2D backdropMap;   // of half the size; alpha 0 where it was hidden
+layout(location = 0) out vec4 radiance;
+void main() {
+  vec4 s = texture(backdropMap, gl_FragCoord.xy / pixels);
+  // A gap that is too narrow for half the size is as dark as gaps are.
+  radiance = vec4(s.a > 0.02 ? s.rgb / s.a : vec3(0.070, 0.020, 0.016), 1.0);
+}
+)";
+
+const char* const surfaceFragment = R"(
+in vec3 vPosition;
+in vec3 vNormal;
+in vec3 vRest;
+in vec3 vRestNormal;
+in vec2 vHarm;
+#if BROAD_PER_VERTEX
+in vec4 vBroadA, vBroadB, vBroadC, vBroadD;
+#endif
+layout(location = 0) out vec4 radiance;
+
+uniform int appearance;
+uniform float referenceDistance; // where the exposure is right (m)
+uniform vec2 pixels;             // size of this target
+uniform sampler2D occlusionMap;
+
+// The least rotation from the rest normal to the present one carries slopes from rest to now.
+vec3 carried(vec3 v, vec3 from, vec3 to) {
+  vec3 axis = cross(from, to);
+  float c = dot(from, to);
+  if (c < -0.99) return -v;
+  return v * c + cross(axis, v) + axis * (dot(axis, v) / (1.0 + c));
+}
+
+float fifth(float x) { return x * x * (x * x) * x; }
 
 // Microfacet reflection (GGX; Walter et al., EGSR 2007) with Schlick's Fresnel and a compact visibility term.
 vec3 gloss(float nl, float nv, float nh, float vh, float roughness, vec3 mirror) {
@@ -67,7 +99,7 @@ vec3 gloss(float nl, float nv, float nh, float vh, float roughness, vec3 mirror)
   float d = nh * nh * (a2 - 1.0) + 1.0;
   float k = 0.5 * roughness * roughness;
   float visibility = 0.25 / ((nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
-  vec3 fresnel = mirror + (1.0 - mirror) * pow(1.0 - vh, 5.0);
+  vec3 fresnel = mirror + (1.0 - mirror) * fifth(1.0 - vh);
   return fresnel * (a2 / (pi * d * d) * visibility * nl);
 }
 
@@ -79,7 +111,12 @@ vec3 surroundings(vec3 d) {
 }
 
 void main() {
-  Material m = materialOf(appearance, vRest, vHarm);
+#if BROAD_PER_VERTEX
+  Broad broad = Broad(vBroadA, vBroadB, vBroadC, vBroadD);
+#else
+  Broad broad = broadOf(vRest);
+#endif
+  Material m = materialOf(appearance, vRest, vHarm, broad);
   vec3 n0 = normalize(vNormal);
   if (!gl_FrontFacing) n0 = -n0;
   vec3 nr = normalize(vRestNormal);
@@ -118,13 +155,17 @@ void main() {
   }
 
   vec3 r = reflect(-v, n);
-  vec3 fresnel = m.mirror + (max(vec3(0.55 - 0.5 * m.roughness), m.mirror) - m.mirror) * pow(1.0 - nv, 5.0);
+  vec3 fresnel = m.mirror + (max(vec3(0.55 - 0.5 * m.roughness), m.mirror) - m.mirror) * fifth(1.0 - nv);
   vec3 around = surroundings(r) * (0.2 + 0.8 * min(received, 1.0)) * occlusion;
   // Polished metal mirrors instruments and drapes too: a greyer room, brightest straight ahead of the lens.
-  if (m.mirror.x > 0.3) around = 1.5 * mix(around, vec3(dot(around, vec3(0.4, 0.4, 0.2))), 0.72) + 0.10 * received * pow(clamp(dot(n, v), 0.0, 1.0), 6.0);
+  if (m.mirror.x > 0.3) around = 1.5 * mix(around, vec3(dot(around, vec3(0.4, 0.4, 0.2))), 0.72) + 0.10 * received * nv * nv * nv * (nv * nv * nv);
   vec3 rim = fresnel * around;
 
-  radiance = vec4(diffuse + specular * mix(0.4, 1.0, occlusion) + rim, 1.0);
+  vec3 whole = diffuse + specular * mix(0.4, 1.0, occlusion) + rim;
+#if DIRECT
+  whole = shown(whole, gl_FragCoord.xy, pixels);
+#endif
+  radiance = vec4(whole, 1.0);
 }
 )";
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "gui/render/renderer.h"
 #include "recorder/errors.h"
 
@@ -104,6 +106,13 @@ void checkPictureSize(long long width, long long height) {
       width * height > mostPixels)
     throw Error(ExitCode::usage, fmt::format("picture size {}x{}: give {} to {} pixels a side and at most {} in all",
                                              width, height, smallestSide, largestSide, mostPixels));
+}
+
+void checkSmoke(std::span<const Puff> smoke) {
+  for (std::size_t p = 0; p < smoke.size(); ++p)
+    if (!drawable(smoke[p].p_W) || !std::isfinite(smoke[p].age) ||
+        !(smoke[p].strength >= 0.0 && smoke[p].strength <= 1.0))
+      refuse(fmt::format("smoke, puff {}: place or age is not finite, or its strength not from 0 to 1", p));
 }
 
 }  // namespace calot::gui

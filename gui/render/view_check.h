@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
+
+#include "gui/render/smoke.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -9,5 +12,7 @@ namespace calot::gui {
 void checkView(const SceneView& view);
 /// @throws calot::Error (usage)
 void checkPictureSize(long long width, long long height);
+/// @throws calot::Error (damaged) where a puff has a number that is not finite
+void checkSmoke(std::span<const Puff> smoke);
 
 }  // namespace calot::gui

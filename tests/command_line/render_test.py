@@ -83,5 +83,44 @@ class Pictures(program.ProgramTest):
                 self.assertEqual(list(self.folder.iterdir()), [])
 
 
+class Films(program.ProgramTest):
+    def film(self, name, *more, recording=None):
+        return self.well("render", recording or short(), "-o", self.path(name), "--size", "64x48", *more)
+
+    def test_frames(self):
+        # 0.5 s at 25 frames a second: 12.5 frames' time, so the thirteenth begins before the end.
+        self.assertIn("13 frames, 0.52 s", self.film("a.mp4").out)
+        self.assertEqual(self.path("a.mp4").read_bytes()[4:8], b"ftyp")
+        self.assertIn("3 frames", self.film("c.mkv", "--from", "0.1", "--to", "0.4", "--speed", "2", "--fps", "20").out)
+        self.assertEqual(self.path("c.mkv").read_bytes()[:4], b"\x1a\x45\xdf\xa3")
+        self.assertEqual(len(list(self.folder.iterdir())), 2)
+
+    def test_overlays_and_two_side_by_side(self):
+        self.film("plain.mp4", "--to", "0.2")
+        for name, more in (("told.mp4", ["--overlay", "time,phase,checkpoints,events,tools"]), ("two.mp4", ["--beside", short()])):
+            self.film(name, "--to", "0.2", *more)
+            self.assertNotEqual(self.path(name).read_bytes(), self.path("plain.mp4").read_bytes())
+
+    def test_a_performer_is_marked_synthetic(self):
+        self.well("render", short(), "-o", self.path("a.png"), "--size", "640x360")
+        corner = pixels(self.path("a.png"))[-40:, -240:].astype(int)
+        letters = (np.ptp(corner, axis=2) < 12) & (corner.mean(axis=2) > 120)
+        self.assertGreater(letters.sum(), 150)
+
+    def test_refused(self):
+        film, picture = self.path("o.mp4"), self.path("o.png")
+        for output, arguments in ((film, ["--at", "0.1"]), (picture, ["--from", "0.1"]), (picture, ["--to", "0.1"]), (film, ["--size", "65x48"]),
+                                  (film, ["--fps", "0"]), (film, ["--fps", "121"]), (film, ["--speed", "0"]), (film, ["--speed", "nan"]),
+                                  (film, ["--from", "0.3", "--to", "0.3"]), (film, ["--to", "0.51"]), (film, ["--overlay", "clock"]),
+                                  (film, ["--overlay", ""]), (film, ["--align", "phase"]), (film, ["--quality", "best"]),
+                                  (film, ["--beside", short(), "--size", "66x48"])):
+            with self.subTest(" ".join(map(str, arguments))):
+                self.refused(2, "render", short(), "-o", output, *arguments)
+                self.assertEqual(list(self.folder.iterdir()), [])
+        film.write_bytes(b"mine")
+        self.refused(2, "render", short(), "-o", film)
+        self.assertEqual(film.read_bytes(), b"mine")
+
+
 if __name__ == "__main__":
     program.main()

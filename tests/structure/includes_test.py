@@ -37,12 +37,13 @@ MAY_SEE = {
     "analytics/cohort": ("sim", "recorder", "analytics"),
     "analytics/report": ("sim", "recorder", "analytics"),
     "gui/render": ("sim", "recorder contracts"),
+    "gui/film": ("sim", "recorder", "analytics", "gui/render"),
     "gui/dashboard": ("sim", "recorder", "analytics", "gui/render"),
     "gui/trainer": ("sim", "recorder", "analytics", "gui/render"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui"),
     "apps/calot-bench": ("recorder", "tests/bench"),
-    "tests/bench": ("sim", "recorder", "analytics"),
+    "tests/bench": ("sim", "recorder", "analytics", "gui/render"),
     "assets": ("sim", "recorder"),
 }
 # What lies at the top of recorder/ and belongs to all of its folders.
@@ -63,6 +64,9 @@ ONLY = {
     "SQLiteCpp/": ("analytics/cohort",),
     "sqlite3.h": ("analytics/cohort",),
     "GL/": ("gui/render",),
+    "libav": ("gui/film",),
+    "libsw": ("gui/film",),
+    "ft2build.h": ("gui/film",),
     "CLI/": ("apps", "assets"),
     "thread": ("recorder", "analytics/cohort", "gui", "apps"),
 }

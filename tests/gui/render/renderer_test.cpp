@@ -111,6 +111,47 @@ TEST(Renderer, SameViewGivesSameBytes) {
   }
 }
 
+/// Interactive quality is the same picture with less finish: light, colour and place agree.
+TEST(Renderer, InteractiveQualityLooksLikeFilm) {
+  const SceneView view = organsAndInstruments();
+  const Image film = renderer().render(view, width, height, Quality::film);
+  const Image interactive = renderer().render(view, width, height, Quality::interactive);
+  double difference = 0.0, mean = 0.0, other = 0.0;
+  int far = 0, inside = 0;
+  for (int i = 0; i < width * height; ++i) {
+    const std::uint8_t* const a = film.pixel(i % width, i / width);
+    const std::uint8_t* const b = interactive.pixel(i % width, i / width);
+    const bool field = std::hypot(i % width + 0.5 - 0.5 * width, i / width + 0.5 - 0.5 * height) < 0.54 * height;
+    if (!field) continue;
+    ++inside;
+    int largest = 0;
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
+    for (int c = 0; c < 3; ++c) mean += a[c] / 3.0, other += b[c] / 3.0;
+    difference += largest;
+    far += largest > 60 ? 1 : 0;
+  }
+  EXPECT_NEAR(other, mean, 0.06 * mean) << "brightness";
+  EXPECT_LT(difference / inside, 12.0) << "levels, the worst channel of each pixel";
+  EXPECT_LT(far, 0.04 * inside) << "edges and glints alone may differ much";
+}
+
+TEST(Renderer, OutsideOfTheRoundFieldIsBlackInBothQualities) {
+  for (const Quality quality : {Quality::interactive, Quality::film}) {
+    const Image image = renderer().render(organsAndInstruments(), width, height, quality);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const double radius = std::hypot(x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height);
+        const std::uint8_t* const p = image.pixel(x, y);
+        ASSERT_EQ(p[3], 255);
+        if (radius > 0.56 * height + 4.0) {  // soft by 1.5 pixels, and where the cavity has half the size by 2 more
+          ASSERT_EQ(p[0] + p[1] + p[2], 0) << x << ", " << y;
+        } else if (radius < 0.5 * height) {
+          ASSERT_GT(p[0] + p[1] + p[2], 0) << x << ", " << y;
+        }
+      }
+  }
+}
+
 TEST(Renderer, TriangleFacingTheCameraCoversItsProjectedArea) {
   SceneView view = emptyView();
   SurfaceView plate = triangleAt(0.1, 0.03);
@@ -289,7 +330,7 @@ class PngFile : public ::testing::Test {
 };
 
 TEST_F(PngFile, WritesAWholePngOfTheRightSize) {
-  writePicture(organsAndInstruments(), {200, 120}, folder_ / "a.png", {Quality::interactive, true, true});
+  writePng(renderer().render(organsAndInstruments(), 200, 120, Quality::interactive), folder_ / "a.png");
   const std::string png = bytes(folder_ / "a.png");
   ASSERT_GT(png.size(), 1000U);
   EXPECT_EQ(png.substr(0, 8), std::string("\x89PNG\r\n\x1a\n"));

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/film/attempt_track.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "analytics/checkpoints/phases.h"
+#include "analytics/checkpoints/registry.h"
+#include "gui/film/event_words.h"
+#include "recorder/errors.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/recording/layout.h"
+
+namespace calot::gui {
+namespace {
+
+/// Checkpoints for a film: those that a viewer can follow.
+constexpr std::array<std::string_view, 8> shownCheckpoints{
+    "path-length",  "fat-remaining", "connective-remaining", "connective-torn",
+    "organ-burned", "clip-errors",   "critical-errors",      "organ-perforations"};
+constexpr double refreshSeconds = 1.0;  // they cost time, and nobody reads faster
+
+/// Every step's result is needed.
+void refuseLean(const recorder::Recording& recording) {
+  if (!hasResults(recording))
+    throw Error(ExitCode::usage,
+                fmt::format("{}: is a golden recording, which holds no results of its steps: overlays other than "
+                            "time, and alignment by phase, need one of `calot record`",
+                            recording.path().string()));
+}
+
+}  // namespace
+
+bool hasResults(const recorder::Recording& recording) { return !recorder::isLean(recording.header()); }
+
+AttemptTrack::AttemptTrack(const std::filesystem::path& recording, bool checkpoints) : recording_(recording) {
+  refuseLean(recording_);
+  const recorder::AttemptHeader& header = recording_.header();
+  stepSeconds_ = header.tickSeconds * header.ticksPerStep;
+  structures_ = header.structures();
+  if (checkpoints)
+    collector_ = std::make_unique<analytics::CheckpointCollector>(
+        header, recorder::sceneFromAssets(header.assets).description, analytics::Origin::observables);
+}
+
+AttemptTrack::~AttemptTrack() = default;
+
+void AttemptTrack::add(const recorder::RecordedStep& step) {
+  const double time = static_cast<double>(step.step + 1) * stepSeconds_;
+  phase_ = step.result.procedure.phase;
+  for (const Event& event : step.result.events) {
+    std::string text = wordsFor(event, structures_);
+    if (!text.empty()) told_.push_back({time, std::move(text), isFault(event.kind)});
+  }
+  smoke_.add(time, step.result.events);
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const HandResult& hand = step.result.hand[h];
+    if (hand.instrument == InstrumentKind::none)
+      passed_[h].clear();
+    else
+      passed_[h].push_back({time, hand.tipSimulated});
+  }
+  if (collector_)
+    collector_->onStep({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}});
+}
+
+void AttemptTrack::refreshCheckpoints(double time) {
+  if (!collector_ || (checkpointsAt_ >= 0.0 && time < checkpointsAt_ + refreshSeconds)) return;
+  checkpointsAt_ = time;
+  checkpoints_.clear();
+  const std::vector<analytics::CheckpointValue> values = collector_->values();
+  for (const std::string_view name : shownCheckpoints) {
+    const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(name);
+    if (definition == nullptr) continue;
+    for (const analytics::CheckpointValue& value : values) {
+      if (value.name != name || !value.value) continue;
+      const double shown = *value.value * definition->displayFactor;
+      const std::string unit = definition->displayUnit == "1" ? "" : " " + definition->displayUnit;
+      checkpoints_.push_back(
+          fmt::format("{}{}{}  {:.3g}{}", name, value.subject.empty() ? "" : " ", value.subject, shown, unit));
+    }
+  }
+}
+
+Moment AttemptTrack::at(std::uint64_t n) {
+  constexpr double lasting = std::max({eventSeconds, pathSeconds, smokeSeconds});
+  const auto before = static_cast<std::uint64_t>(lasting / stepSeconds_) + 1;
+  if (!collector_ && next_ + before < n) next_ = n - before;
+  while (next_ <= n) add(recording_.step(next_++));
+  Moment moment;
+  moment.time = static_cast<double>(next_) * stepSeconds_;
+  if (phase_ != Phase::none) moment.phase = phase_ == Phase::done ? "done" : analytics::nameOf(phase_);
+  while (!told_.empty() && told_.front().time < moment.time - eventSeconds) told_.pop_front();
+  for (const Told& told : told_) moment.events.push_back({told.text, told.fault, moment.time - told.time});
+  for (std::size_t h = 0; h < handCount; ++h) {
+    std::deque<Passed>& passed = passed_[h];
+    while (!passed.empty() && passed.front().time < moment.time - pathSeconds) passed.pop_front();
+    for (const Passed& place : passed) moment.path[h].push_back({place.p_W, moment.time - place.time});
+  }
+  moment.smoke = smoke_.at(moment.time);
+  refreshCheckpoints(moment.time);
+  moment.checkpoints = checkpoints_;
+  return moment;
+}
+
+std::array<double, 4> phaseStarts(const std::filesystem::path& path) {
+  recorder::Recording recording(path);
+  refuseLean(recording);
+  const double stepSeconds = recording.header().tickSeconds * recording.header().ticksPerStep;
+  std::array<double, 4> starts{-1.0, -1.0, -1.0, -1.0};
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    const Phase phase = recording.step(n).result.procedure.phase;
+    for (std::size_t p = 0; p < starts.size(); ++p)
+      if (analytics::windowPhases[p] == phase && starts[p] < 0.0) starts[p] = static_cast<double>(n) * stepSeconds;
+  }
+  return starts;
+}
+
+}  // namespace calot::gui

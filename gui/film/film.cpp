@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/film/film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gui/film/film_source.h"
+#include "gui/film/film_writer.h"
+#include "gui/film/look_ahead.h"
+#include "gui/render/png_file.h"
+#include "gui/render/renderer.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+/// Where each phase begins, with the end behind them: rising, those that never began left out of both.
+struct Course {
+  std::vector<double> own, other;
+};
+
+Course alignedCourse(const std::filesystem::path& own, double ownEnd, const std::filesystem::path& other,
+                     double otherEnd) {
+  Course course{{0.0}, {0.0}};
+  const std::array<double, 4> a = phaseStarts(own), b = phaseStarts(other);
+  for (std::size_t p = 0; p < a.size(); ++p)
+    if (a[p] > course.own.back() && b[p] > course.other.back()) {
+      course.own.push_back(a[p]);
+      course.other.push_back(b[p]);
+    }
+  course.own.push_back(std::max(ownEnd, course.own.back()));
+  course.other.push_back(std::max(otherEnd, course.other.back()));
+  return course;
+}
+
+/// The other recording's time at one of the first one's.
+double timeBeside(const Course& course, double time) {
+  const auto after = std::upper_bound(course.own.begin() + 1, course.own.end() - 1, time);
+  const auto i = static_cast<std::size_t>(after - course.own.begin());
+  const double length = course.own[i] - course.own[i - 1];
+  const double share = length > 0.0 ? std::clamp((time - course.own[i - 1]) / length, 0.0, 1.0) : 1.0;
+  return course.other[i - 1] + share * (course.other[i] - course.other[i - 1]);
+}
+
+void paste(const Image& from, int x, Image& to) {
+  for (int y = 0; y < from.height; ++y)
+    std::copy_n(from.pixel(0, y), 4 * static_cast<std::size_t>(from.width),
+                to.rgba.begin() + 4 * (static_cast<std::ptrdiff_t>(y) * to.width + x));
+}
+
+/// One or two recordings, picture after picture. One thread may call at() while another calls draw().
+class Cutter {
+ public:
+  using Scenes = std::vector<FilmSource::Scene>;
+
+  Cutter(const std::filesystem::path& recording, const FilmSettings& settings) : settings_(settings) {
+    add(recording);
+    if (settings.beside) add(*settings.beside);
+    if (settings.beside && settings.alignment == Alignment::phase)
+      course_ = alignedCourse(recording, sources_[0]->seconds(), *settings.beside, sources_[1]->seconds());
+  }
+
+  [[nodiscard]] double seconds() const { return sources_[0]->seconds(); }
+
+  [[nodiscard]] Scenes at(double time) {
+    Scenes scenes;
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      const double own = s == 0 || course_.own.empty() ? time : timeBeside(course_, time);
+      scenes.push_back(sources_[s]->at(sources_[s]->stepAt(own)));
+    }
+    return scenes;
+  }
+
+  [[nodiscard]] Image draw(const Scenes& scenes) {
+    const int width = settings_.size.width / static_cast<int>(scenes.size()), height = settings_.size.height;
+    RenderSettings quality;
+    quality.quality = settings_.quality;
+    Image whole;
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
+      Image image = renderer_.render(scenes[s].view, width, height, quality, scenes[s].moment.smoke);
+      letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view);
+      if (!marks_[s].empty()) letters_.mark(image, marks_[s]);
+      if (scenes.size() == 1) return image;
+      letters_.title(image, titles_[s]);
+      if (s == 0) {
+        whole.width = settings_.size.width;
+        whole.height = height;
+        whole.rgba.resize(4 * static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(height));
+      }
+      paste(image, static_cast<int>(s) * width, whole);
+    }
+    return whole;
+  }
+
+ private:
+  void add(const std::filesystem::path& recording) {
+    sources_.push_back(std::make_unique<FilmSource>(recording, settings_.overlays));
+    marks_.push_back(sources_.back()->mark());
+    titles_.push_back(sources_.back()->title());
+  }
+
+  FilmSettings settings_;
+  std::vector<std::unique_ptr<FilmSource>> sources_;  ///< of at()'s thread
+  std::vector<std::string> marks_, titles_;           ///< FilmSource's, for draw()'s thread
+  Course course_;                                     ///< empty: both from their starts
+  Renderer renderer_;
+  OverlayPainter letters_{settings_.size.height};
+};
+
+/// Length of a recording that has something to draw (s).
+double secondsOf(const std::filesystem::path& recording) {
+  const recorder::Recording opened(recording);
+  if (opened.stepCount() == 0)
+    throw Error(ExitCode::damaged, fmt::format("{}: holds no step to draw", recording.string()));
+  return opened.seconds();
+}
+
+void checkTime(const std::filesystem::path& recording, double time, double seconds) {
+  if (time > seconds)
+    throw Error(ExitCode::usage,
+                fmt::format("{}: is {:.2f} s long, there is nothing at {:.2f} s", recording.string(), seconds, time));
+}
+
+void checkBeside(const FilmSettings& settings) {
+  if (!settings.beside) return;
+  static_cast<void>(secondsOf(*settings.beside));
+  if (settings.size.width % 4 != 0)
+    throw Error(ExitCode::usage,
+                fmt::format("{} pixels wide: two recordings side by side need a multiple of 4", settings.size.width));
+}
+
+}  // namespace
+
+void checkFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
+               const FilmSettings& settings) {
+  FilmWriter::check(output, settings.size.width, settings.size.height, settings.fps);
+  if (!(settings.speed >= 0.01 && settings.speed <= 100.0))
+    throw Error(ExitCode::usage, fmt::format("{} times as fast: a film goes 0.01 to 100 times", settings.speed));
+  checkBeside(settings);
+  const double seconds = secondsOf(recording);
+  const double to = settings.to.value_or(seconds);
+  checkTime(recording, to, seconds);
+  if (settings.from >= to)
+    throw Error(ExitCode::usage,
+                fmt::format("{}: from {:.2f} s to {:.2f} s there is nothing", recording.string(), settings.from, to));
+}
+
+void checkMoment(const std::filesystem::path& recording, const FilmSettings& settings) {
+  checkBeside(settings);
+  checkTime(recording, settings.from, secondsOf(recording));
+}
+
+std::int64_t writeFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
+                       const FilmSettings& settings,
+                       const std::function<void(std::uint64_t done, std::uint64_t of)>& progress) {
+  checkFilm(recording, output, settings);
+  Cutter cutter(recording, settings);
+  const double to = settings.to.value_or(cutter.seconds());
+  const double each = settings.speed / settings.fps;
+  const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil((to - settings.from) / each - 1e-6)));
+  FilmWriter writer(output, settings.size.width, settings.size.height, settings.fps);
+  LookAhead<Cutter::Scenes> scenes(
+      count, [&](std::uint64_t k) { return cutter.at(settings.from + static_cast<double>(k) * each); });
+  LookAhead<Image> pictures(count, [&](std::uint64_t) { return cutter.draw(scenes.next()); });
+  for (std::uint64_t k = 0; k < count; ++k) {
+    writer.add(pictures.next());
+    if (progress) progress(k + 1, count);
+  }
+  writer.finish();
+  return writer.pictures();
+}
+
+ShownMoment writeMoment(const std::filesystem::path& recording, const std::filesystem::path& output,
+                        const FilmSettings& settings) {
+  checkMoment(recording, settings);
+  Cutter cutter(recording, settings);
+  const Cutter::Scenes scenes = cutter.at(settings.from);
+  writePng(cutter.draw(scenes), output);
+  return {scenes[0].view.step - 1, scenes[0].view.time};
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A recording as a film, or a moment of it as a picture.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "gui/film/overlay.h"
+#include "gui/render/picture.h"
+#include "gui/render/renderer.h"
+
+namespace calot::gui {
+
+/// How the recording beside the first one goes along: both from their starts, or each phase of the procedure stretched
+/// to the first one's.
+enum class Alignment { start, phase };
+
+struct FilmSettings {
+  double from = 0.0;                       ///< s
+  std::optional<double> to;                ///< s; none: the end
+  double speed = 1.0;                      ///< recorded seconds a film's second, 0.01 to 100
+  int fps = 25;                            ///< pictures a second
+  PictureSize size;                        ///< of the whole film
+  Quality quality = Quality::interactive;  ///< of its pictures
+  Overlays overlays;
+  std::optional<std::filesystem::path> beside;  ///< a second recording, in the right half
+  Alignment alignment = Alignment::start;
+};
+
+/// What the functions below would refuse of their arguments, before anything is done.
+/// @throws calot::Error: usage for settings out of range; damaged where a recording cannot be read or holds no step
+void checkFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
+               const FilmSettings& settings);
+void checkMoment(const std::filesystem::path& recording, const FilmSettings& settings);
+
+/// Writes a film. Picture k shows the recording at from + k speed / fps, after the step that begins then. One thread
+/// simulates ahead, another draws ahead, the calling one encodes. Films of what no person did are marked so.
+/// @param output .mp4 or .mkv; replaced if it is there
+/// @param progress is told after every picture; what it throws stops the film
+/// @return the number of pictures
+/// @throws calot::Error: usage for settings out of range; damaged where a recording cannot be read; failure where the
+/// film cannot be written. Nothing is left behind then.
+std::int64_t writeFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
+                       const FilmSettings& settings,
+                       const std::function<void(std::uint64_t done, std::uint64_t of)>& progress = {});
+
+/// What a picture shows.
+struct ShownMoment {
+  std::uint64_t step = 0;
+  double seconds = 0.0;  ///< at the step's end
+};
+
+/// Writes the moment `from` of a recording as a PNG, with the same overlays and marks.
+/// @throws calot::Error as writeFilm()
+ShownMoment writeMoment(const std::filesystem::path& recording, const std::filesystem::path& output,
+                        const FilmSettings& settings);
+
+}  // namespace calot::gui

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "gui/film/attempt_track.h"
+#include "gui/film/overlay.h"
+#include "recorder/live/worker_pool.h"
+#include "recorder/replay.h"
+#include "sim/scene/scene_viewer.h"
+
+namespace calot::gui {
+
+/// Views of one recording, moment after moment: re-simulated from the nearest keyframe, or from the moment before.
+class FilmSource {
+ public:
+  struct Scene {
+    SceneView view;
+    Moment moment;
+  };
+
+  /// @pre the recording holds a step
+  /// @throws calot::Error: damaged where the file cannot be read, or its scene cannot be built; usage where an overlay
+  /// needs what a golden recording has not
+  FilmSource(const std::filesystem::path& recording, const Overlays& overlays);
+
+  [[nodiscard]] double seconds() const { return recording_.seconds(); }
+  [[nodiscard]] double stepSeconds() const;
+  /// The step that shows a time: the one that begins there, the last one at the end. @pre 0 <= time <= seconds()
+  [[nodiscard]] std::uint64_t stepAt(double time) const;
+  /// After a step. @pre step < stepCount, and not before that of the last call @throws calot::Error (damaged)
+  [[nodiscard]] Scene at(std::uint64_t step);
+
+  /// "synthetic: performer skilled", "kinematics", or empty for a person.
+  [[nodiscard]] std::string mark() const;
+  /// Who acted, for a title: pseudonym, or what it was.
+  [[nodiscard]] std::string title() const;
+
+ private:
+  recorder::Recording recording_;
+  recorder::WorkerPool pool_{1};
+  recorder::Seeker seeker_;
+  SceneViewer viewer_;
+  std::unique_ptr<AttemptTrack> track_;
+};
+
+}  // namespace calot::gui

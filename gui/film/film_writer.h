@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures to a film file, by libav.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "gui/render/image.h"
+
+namespace calot::gui {
+
+/// Encodes pictures of one size at a fixed rate: H.264 (libx264) in MP4 or Matroska, or VP9 where this libav has no
+/// H.264. Picture k is shown at exactly k / fps seconds. No date is
+/// written; the bytes of the same pictures may all the same differ from run to run, as libx264's do.
+///
+/// The file appears under its name when it is whole: until finish() it is written beside it under a temporary name, and
+/// is removed if finish() is never reached.
+class FilmWriter {
+ public:
+  /// @param file ends with .mp4 or .mkv
+  /// @param fps pictures a second, 1 to 120
+  /// @throws calot::Error: usage for another ending, an odd width or height (colour is stored for two by two pixels) or
+  /// a rate out of range; failure where libav has no encoder or the file cannot be written
+  FilmWriter(const std::filesystem::path& file, int width, int height, int fps);
+  ~FilmWriter();
+  FilmWriter(const FilmWriter&) = delete;
+  FilmWriter& operator=(const FilmWriter&) = delete;
+
+  /// What the constructor would say of its arguments, before long work. @throws calot::Error (usage)
+  static void check(const std::filesystem::path& file, int width, int height, int fps);
+
+  /// The next picture; its alpha is ignored. @pre of the film's size @throws calot::Error (failure)
+  void add(const Image& image);
+  /// Writes what is left and gives the file its name. @throws calot::Error (failure)
+  void finish();
+
+  [[nodiscard]] std::int64_t pictures() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words in pictures, by FreeType.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "gui/render/image.h"
+
+namespace calot::gui {
+
+using Colour = std::array<std::uint8_t, 3>;
+
+/// Where a line of words is held.
+enum class Anchor { left, middle, right };
+
+/// Writes lines of words (UTF-8) in one font and size, with a dark edge that keeps them readable on tissue.
+class Lettering {
+ public:
+  /// @param pixels height of a line, at least 6
+  /// @throws calot::Error (failure) where the font (DejaVu Sans, package fonts-dejavu-core) is not there
+  explicit Lettering(int pixels);
+  ~Lettering();
+  Lettering(const Lettering&) = delete;
+  Lettering& operator=(const Lettering&) = delete;
+
+  [[nodiscard]] int lineHeight() const;
+  [[nodiscard]] int widthOf(const std::string& text) const;
+  /// @param x, y the anchor (pixels): of the line's left, middle or right end, and of its top. What leaves the picture
+  /// is cut off. @param opacity 0 to 1
+  void write(Image& image, const std::string& text, int x, int y, Anchor anchor, const Colour& colour,
+             double opacity = 1.0) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/film/overlay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "gui/film/blend.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+constexpr Colour white{245, 245, 245}, amber{255, 190, 70}, grey{190, 190, 190};
+constexpr std::array<Colour, handCount> handColour{Colour{90, 200, 255}, Colour{255, 170, 60}};  // blue and orange
+
+std::string clockText(double seconds) {
+  const auto tenths = static_cast<long long>(std::floor(10.0 * seconds + 1e-6));
+  return fmt::format("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
+}
+
+/// A dot with a soft edge.
+void dot(Image& image, double x, double y, double radius, const Colour& colour, double opacity) {
+  for (int py = static_cast<int>(std::floor(y - radius)); py <= static_cast<int>(std::ceil(y + radius)); ++py)
+    for (int px = static_cast<int>(std::floor(x - radius)); px <= static_cast<int>(std::ceil(x + radius)); ++px)
+      blend(image, px, py, colour,
+            opacity * std::clamp(radius + 0.5 - std::hypot(px + 0.5 - x, py + 0.5 - y), 0.0, 1.0));
+}
+
+void drawPaths(Image& image, const Moment& moment, const SceneView& view) {
+  const Mat3 toCamera = view.camera.orientation.normalized().conjugate().toRotationMatrix();
+  const double focal = 0.5 * image.height / std::tan(0.5 * view.verticalFieldOfView);
+  const double radius = std::max(1.0, image.height / 480.0);
+  for (std::size_t h = 0; h < handCount; ++h) {
+    bool drawn = false;
+    double lastX = 0.0, lastY = 0.0;
+    for (const Moment::Place& place : moment.path[h]) {
+      const Vec3 p = toCamera * (place.p_W - view.camera.position);
+      if (p.z() < 1e-3) {
+        drawn = false;
+        continue;
+      }
+      const double x = 0.5 * image.width + focal * p.x() / p.z(), y = 0.5 * image.height + focal * p.y() / p.z();
+      const double away = drawn ? std::hypot(x - lastX, y - lastY) : 1e9;
+      if (away < 1.0) continue;                                                         // at rest, dots would pile up
+      const int steps = away < 200.0 ? static_cast<int>(std::ceil(away / radius)) : 1;  // else it jumped: one dot
+      const double opacity = 0.55 * (1.0 - place.age / AttemptTrack::pathSeconds);
+      for (int i = 1; i <= steps; ++i) {
+        const double share = static_cast<double>(i) / steps;
+        const double fromX = steps > 1 ? lastX : x, fromY = steps > 1 ? lastY : y;
+        dot(image, fromX + share * (x - fromX), fromY + share * (y - fromY), radius, handColour[h], opacity);
+      }
+      drawn = true;
+      lastX = x;
+      lastY = y;
+    }
+  }
+}
+
+}  // namespace
+
+Overlays parseOverlays(const std::string& text) {
+  Overlays overlays;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view word = std::string_view(text).substr(begin, end - begin);
+    if (word == "time")
+      overlays.time = true;
+    else if (word == "phase")
+      overlays.phase = true;
+    else if (word == "checkpoints")
+      overlays.checkpoints = true;
+    else if (word == "events")
+      overlays.events = true;
+    else if (word == "tools")
+      overlays.tools = true;
+    else
+      throw Error(ExitCode::usage,
+                  fmt::format("--overlay: there is no '{}'; there are time, phase, checkpoints, events, tools", word));
+    begin = end + 1;
+  }
+  return overlays;
+}
+
+OverlayPainter::OverlayPainter(int pictureHeight) : letters_(pictureHeight / 36), margin_(pictureHeight / 45) {}
+
+void OverlayPainter::paint(Image& image, const Overlays& overlays, const Moment& moment, const SceneView& view) const {
+  if (overlays.tools) drawPaths(image, moment, view);
+  int y = margin_;
+  if (overlays.time) {
+    letters_.write(image, clockText(moment.time), margin_, y, Anchor::left, white);
+    y += letters_.lineHeight();
+  }
+  if (overlays.phase && !moment.phase.empty()) letters_.write(image, moment.phase, margin_, y, Anchor::left, white);
+  if (overlays.checkpoints) {
+    y = margin_;
+    for (const std::string& line : moment.checkpoints) {
+      letters_.write(image, line, image.width - margin_, y, Anchor::right, grey);
+      y += letters_.lineHeight();
+    }
+  }
+  if (overlays.events) {
+    y = image.height - margin_;
+    for (auto line = moment.events.rbegin(); line != moment.events.rend(); ++line) {
+      y -= letters_.lineHeight();
+      if (y < image.height / 2) break;
+      const double fading = std::clamp(AttemptTrack::eventSeconds - line->age, 0.0, 1.0);
+      letters_.write(image, line->text, margin_, y, Anchor::left, line->fault ? amber : white, fading);
+    }
+  }
+}
+
+void OverlayPainter::mark(Image& image, const std::string& text) const {
+  letters_.write(image, text, image.width - margin_, image.height - margin_ - letters_.lineHeight(), Anchor::right,
+                 grey, 0.85);
+}
+
+void OverlayPainter::title(Image& image, const std::string& text) const {
+  letters_.write(image, text, image.width / 2, margin_, Anchor::middle, white);
+}
+
+}  // namespace calot::gui

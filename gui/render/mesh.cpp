@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/render/mesh.h"
+
+#include <cstddef>
+
+namespace calot::gui {
+
+std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::vector<Index3>& triangle) {
+  std::vector<Vec3> normal(position.size(), Vec3::Zero());
+  const auto at = [](auto& list, int i) -> auto& { return list[static_cast<std::size_t>(i)]; };
+  for (const Index3& t : triangle) {
+    const Vec3 area = (at(position, t[1]) - at(position, t[0])).cross(at(position, t[2]) - at(position, t[0]));
+    for (int a = 0; a < 3; ++a) at(normal, t[a]) += area;
+  }
+  for (Vec3& n : normal) {
+    const double length = n.norm();
+    n = length > 1e-30 ? Vec3(n / length) : Vec3::UnitZ();
+  }
+  return normal;
+}
+
+}  // namespace calot::gui
