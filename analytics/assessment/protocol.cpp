@@ -48,7 +48,8 @@ const ObjectRule criterionRule{"criterion",
                                 {"atMost", false, -largestBound, largestBound},
                                 {"equals", false}}};
 const ObjectRule exclusionsRule{"exclusions", {{"outcomes"}, {"reasons"}}};
-const ObjectRule hypothesisRule{"hypothesis", {{"checkpoint"}, {"subject", false}, {"larger"}, {"primary"}}};
+const ObjectRule hypothesisRule{
+    "hypothesis", {{"checkpoint", false}, {"outcome", false}, {"subject", false}, {"larger"}, {"primary"}}};
 
 PopulationCriterion criterionAt(const JsonPlace& place) {
   const JsonObject o = place.object(criterionRule);
@@ -90,9 +91,16 @@ void askForGroup(const Protocol& protocol, const JsonPlace& place, const std::st
 DirectedHypothesis hypothesisAt(const Protocol& protocol, const JsonPlace& place) {
   const JsonObject o = place.object(hypothesisRule);
   DirectedHypothesis hypothesis;
-  o.read("checkpoint", hypothesis.checkpoint, longestName);
-  if (findCheckpoint(hypothesis.checkpoint) == nullptr)
-    o.at("checkpoint").fail("no checkpoint of this name (calot checkpoints lists them)");
+  if (o.has("checkpoint") == o.has("outcome"))
+    o.fail("either \"checkpoint\" or, for a table from elsewhere, \"outcome\" is wanted");
+  if (o.has("outcome")) {
+    o.read("outcome", hypothesis.checkpoint, longestName);
+    if (o.has("subject")) o.at("subject").fail("an outcome has none: it is a column of a table");
+  } else {
+    o.read("checkpoint", hypothesis.checkpoint, longestName);
+    if (findCheckpoint(hypothesis.checkpoint) == nullptr)
+      o.at("checkpoint").fail("no checkpoint of this name (calot checkpoints lists them)");
+  }
   o.read("subject", hypothesis.subject, longestName);
   o.read("larger", hypothesis.larger, longestName);
   askForGroup(protocol, o.at("larger"), hypothesis.larger);
@@ -146,10 +154,12 @@ Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file
   protocol.missing = o.at("missing").word<MissingRule>(
       {{"complete-cases", MissingRule::completeCases}, {"worst-rank", MissingRule::worstRank}});
   o.read("level", protocol.level);
-  std::set<std::pair<std::string, std::string>> seen;
+  std::set<std::string> seen;
   for (const JsonPlace& place : o.at("hypotheses").list(1, mostHypotheses)) {
     const DirectedHypothesis h = hypothesisAt(protocol, place);
-    if (!seen.emplace(h.checkpoint, h.subject).second) place.fail("a hypothesis on this figure stands above already");
+    // As tables name it: the column "path-length left" is the left hand's path length.
+    if (!seen.insert(h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject).second)
+      place.fail("a hypothesis on this figure stands above already");
     protocol.hypotheses.push_back(h);
   }
   if (std::none_of(protocol.hypotheses.begin(), protocol.hypotheses.end(), [](const auto& h) { return h.primary; }))

@@ -34,9 +34,9 @@ struct Population {
 
 /// "Novices take longer": which group's values of one figure are expected to be the larger ones.
 struct DirectedHypothesis {
-  std::string checkpoint, subject;
-  std::string larger;    ///< one of both groups
-  bool primary = false;  ///< in the family that Holm's adjustment holds
+  std::string checkpoint, subject;  ///< of an outcome: the table's column, and nothing
+  std::string larger;               ///< one of both groups
+  bool primary = false;             ///< in the family that Holm's adjustment holds
 };
 
 enum class MissingRule : std::uint8_t {

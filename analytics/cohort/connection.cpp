@@ -80,7 +80,9 @@ void setWriteAheadLog(SQLite::Database& db, std::chrono::milliseconds patience) 
   }
 }
 
-/// Which schema the file has; 0 for a new one. @throws Error for what is not ours or is newer.
+/// Which schema the file has; 0 for a new one. @pre within a transaction: another process may be making the database,
+/// and half of before and half of after would look like another program's file. @throws Error for what is not ours or
+/// is newer.
 int schemaOf(SQLite::Database& db, const std::string& path) {
   const int application = pragma(db, "application_id");
   const int version = pragma(db, "user_version");
@@ -153,7 +155,10 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
     auto db = connect(path, access, static_cast<int>(patience.count()));
     db->exec("PRAGMA foreign_keys = ON");
     db->exec("PRAGMA trusted_schema = OFF");
-    const int version = schemaOf(*db, path);
+    const int version = [&] {
+      const SQLite::Transaction reading(*db);
+      return schemaOf(*db, path);
+    }();
     const int known = static_cast<int>(cohortMigrations().size());
     if (access == Access::read) {
       if (version == 0) throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (no tables)", path));

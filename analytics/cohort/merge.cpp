@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <variant>
 
 #include "analytics/cohort/connection.h"
+#include "analytics/cohort/row_cells.h"
 #include "analytics/cohort/schema_facts.h"
 #include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
@@ -18,10 +18,6 @@ namespace calot::analytics {
 namespace {
 
 using namespace tables;
-
-using Blob = std::vector<unsigned char>;
-using Cell = std::variant<std::monostate, std::int64_t, double, std::string, Blob>;
-using Row = std::map<std::string, Cell>;
 
 /// Tables that are merged as attempts, not row by row.
 bool ofAttempts(const std::string& table) {
@@ -39,64 +35,6 @@ bool mayBeFilled(const std::string& table) {
 /// When a row was written says nothing of what it says, unless the row has no other name.
 bool isTime(const std::string& column) {
   return column.size() > 4 && column.compare(column.size() - 4, 4, "_utc") == 0;
-}
-
-Cell cellOf(const SQLite::Column& column) {
-  if (column.isInteger()) return column.getInt64();
-  if (column.isFloat()) return column.getDouble();
-  if (column.isText()) return column.getString();
-  if (column.isBlob()) {
-    const auto* bytes = static_cast<const unsigned char*>(column.getBlob());
-    return Blob(bytes, bytes + column.getBytes());
-  }
-  return std::monostate{};
-}
-
-void bindCell(SQLite::Statement& statement, int at, const Cell& cell) {
-  if (const auto* i = std::get_if<std::int64_t>(&cell)) {
-    statement.bind(at, *i);
-  } else if (const auto* d = std::get_if<double>(&cell)) {
-    statement.bind(at, *d);
-  } else if (const auto* s = std::get_if<std::string>(&cell)) {
-    statement.bind(at, *s);
-  } else if (const auto* b = std::get_if<Blob>(&cell)) {
-    statement.bind(at, b->data(), static_cast<int>(b->size()));
-  } else {
-    statement.bind(at);
-  }
-}
-
-bool isEmpty(const Cell& cell) {
-  const auto* s = std::get_if<std::string>(&cell);
-  return std::holds_alternative<std::monostate>(cell) || (s != nullptr && s->empty());
-}
-
-std::string shown(const Cell& cell) {
-  if (const auto* i = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *i);
-  if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
-  if (const auto* s = std::get_if<std::string>(&cell)) return fmt::format("\"{}\"", *s);
-  if (const auto* b = std::get_if<Blob>(&cell)) {
-    std::string hex;
-    for (const unsigned char byte : *b) hex += fmt::format("{:02x}", byte);
-    return hex.size() > 16 ? hex.substr(0, 16) + "..." : hex;
-  }
-  return "nothing";
-}
-
-std::string textOf(const Cell& cell) {
-  const auto* s = std::get_if<std::string>(&cell);
-  return s == nullptr ? std::string() : *s;
-}
-
-std::int64_t numberOf(const Cell& cell) {
-  const auto* i = std::get_if<std::int64_t>(&cell);
-  return i == nullptr ? 0 : *i;
-}
-
-std::string joined(const std::vector<std::string>& parts, const char* between) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
-  return text;
 }
 
 class Merge {
@@ -210,18 +148,7 @@ class Merge {
 
   void mergeTable(const TableFacts& table) {
     if (!table.number.empty()) numbers_[table.name];
-    std::vector<std::string> columns;
-    for (const ColumnFacts& c : table.columns) columns.push_back(quotedName(c.name));
-    const std::vector<Row> rows = guarded(fromPath_, [&] {
-      SQLite::Statement read(from_, fmt::format("SELECT {} FROM {}", joined(columns, ", "), quotedName(table.name)));
-      std::vector<Row> all;
-      while (read.executeStep()) {
-        Row& row = all.emplace_back();
-        for (std::size_t c = 0; c < table.columns.size(); ++c)
-          row[table.columns[c].name] = cellOf(read.getColumn(static_cast<int>(c)));
-      }
-      return all;
-    });
+    const std::vector<Row> rows = guarded(fromPath_, [&] { return readRows(from_, table); });
     for (Row row : rows) {
       if (!skipped(table, row) && translate(table, row)) mergeRow(table, row);
     }
@@ -248,7 +175,7 @@ class Merge {
       std::vector<std::string> name;
       for (const std::string& k : table.key) name.push_back(named(table, k, row.at(k)));
       result_.conflicts.push_back(fmt::format("{} {}: {} is {} in {} and {} in {}", table.name, joined(name, ", "),
-                                              c.name, shown(mine), intoPath_, shown(theirs), fromPath_));
+                                              c.name, shownCell(mine), intoPath_, shownCell(theirs), fromPath_));
     }
   }
 
@@ -262,7 +189,7 @@ class Merge {
       bindCell(find, 1, cell);
       if (find.executeStep()) return find.getColumn(0).getString();
     }
-    return shown(cell);
+    return shownCell(cell);
   }
 
   std::string whereKey(const TableFacts& table) const {

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "analytics/report/drawing.h"
 
 namespace calot::analytics {
 
@@ -15,10 +18,10 @@ struct BoxPlot {
   bool synthetic = false;  ///< watermarked
 };
 
-/// An <svg> element: for each group a box from quartile to quartile (type 7) with the median, whiskers to the outermost
+/// For each group a box from quartile to quartile (type 7) with the median, whiskers to the outermost
 /// values within 1.5 times the box's height (Tukey 1977), and every value as a point beside it. Values too large or too
-/// close for a scale are answered with an empty string, as are two empty groups.
-std::string boxPlotSvg(const BoxPlot& plot);
+/// close for a scale are answered with none, as are two empty groups.
+std::optional<Drawing> drawBoxPlot(const BoxPlot& plot);
 
 /// Four to nine round numbers (1, 2 or 5 times a power of ten apart) that lie within [low, high]. @pre low < high,
 /// finite.

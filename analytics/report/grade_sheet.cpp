@@ -7,8 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/report/history_plot.h"
-#include "analytics/report/html_text.h"
-#include "analytics/report/page_html.h"
 #include "recorder/words.h"
 
 namespace calot::analytics {
@@ -133,36 +131,34 @@ constexpr const char* curveNote =
     "History: the participant's attempts of the same comparability key up to this one, by their start. plateau: of the "
     "curve a - b / x by least squares over the number x of the attempt, with its standard error.";
 
-std::string link(const std::string& recording, const Moment& m) {
-  if (recording.empty()) return escaped(momentText(m));
-  return fmt::format("<a href=\"{}#t={:.2f},{:.2f}\">{}</a>", escaped(recording), m.begin, m.end,
-                     escaped(momentText(m)));
+TextSpan span(const std::string& recording, const Moment& m) {
+  if (recording.empty()) return {momentText(m), {}};
+  return {momentText(m), fmt::format("{}#t={:.2f},{:.2f}", recording, m.begin, m.end)};
 }
 
-std::string momentsHtml(const Grade& g, const std::string& recording) {
-  std::string html = "<h2>Moments</h2>\n<ul>\n";
-  for (const double t : g.criticalTimes)
-    html += "<li>critical error: " + link(recording, {t, t + 1.0, 1.0 / static_cast<double>(g.criticalTimes.size())}) +
-            "</li>\n";
-  bool any = !g.criticalTimes.empty();
+void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& recording) {
+  BulletList list;
+  for (const double t : g.criticalTimes) {
+    list.items.push_back(
+        {{"critical error: ", {}}, span(recording, {t, t + 1.0, 1.0 / static_cast<double>(g.criticalTimes.size())})});
+  }
   for (const GradedFigure& f : g.figures) {
     if (!f.weak()) continue;
-    any = true;
-    html += "<li>" + escaped(nameOf(f)) + ": ";
-    bool first = true;
+    Paragraph item{{nameOf(f) + ": ", {}}};
     for (const Moment& m : f.moments.moments) {
-      html += (first ? "" : ", ") + link(recording, m);
-      first = false;
+      if (item.size() > 1) item.push_back({", ", {}});
+      item.push_back(span(recording, m));
     }
-    if (first) html += escaped("no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing));
-    html += "</li>\n";
+    if (item.size() == 1)
+      item.push_back({"no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing), {}});
+    list.items.push_back(std::move(item));
   }
-  if (!any) return {};
-  html += "</ul>\n";
+  if (list.items.empty()) return;
+  document.parts.emplace_back(Heading{"Moments"});
+  document.parts.emplace_back(std::move(list));
   if (!recording.empty())
-    html += paragraphHtml("A link names the recording and the seconds; calot render " + recording +
-                          " --at SECONDS -o F.png draws a moment.");
-  return html;
+    document.add("A link names the recording and the seconds; calot render " + recording +
+                 " --at SECONDS -o F.png draws a moment.");
 }
 
 Json figureJson(const GradedFigure& f) {
@@ -238,24 +234,28 @@ std::string gradeJson(const Grade& g) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string gradeHtml(const Grade& g, const std::string& recording) {
-  std::string html = pageBegin(title(g), synthetic(g));
-  for (const std::string& line : opening(g)) html += paragraphHtml(line);
-  html += tableHtml(figuresTable(g)) + momentsHtml(g, recording);
-  const ReportTable history = historyTable(g);
-  if (!history.rows.empty()) {
-    html += tableHtml(history) + paragraphHtml(curveNote) + "<div class=\"figures\">\n";
+ReportDocument gradeDocument(const Grade& g, const std::string& recording) {
+  ReportDocument document{title(g), synthetic(g), {}};
+  for (const std::string& line : opening(g)) document.add(line);
+  document.parts.emplace_back(figuresTable(g));
+  addMomentsTo(document, g, recording);
+  if (ReportTable history = historyTable(g); !history.rows.empty()) {
+    document.parts.emplace_back(std::move(history));
+    document.add(curveNote);
+    Figures figures;
     for (const GradedFigure& f : g.figures) {
-      if (f.history.size() < 2) continue;
       std::vector<double> values;
       for (const HistoryPoint& p : f.history) values.push_back(p.value);
       std::optional<double> cut;
       if (f.mark.cut) cut = *f.mark.cut * f.displayFactor;
-      html += historySvg({nameOf(f), f.unit == "1" ? "" : f.unit, values, cut, synthetic(g)});
+      if (auto plot = drawHistory({nameOf(f), f.unit == "1" ? "" : f.unit, values, cut, synthetic(g)}))
+        figures.drawings.push_back(std::move(*plot));
     }
-    html += "</div>\n";
+    if (!figures.drawings.empty()) document.parts.emplace_back(std::move(figures));
   }
-  return html + "<h2>Notes</h2>\n" + listHtml(notes(g)) + pageEnd(synthetic(g));
+  document.parts.emplace_back(Heading{"Notes"});
+  document.addList(notes(g));
+  return document;
 }
 
 }  // namespace calot::analytics

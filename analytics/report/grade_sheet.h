@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A grade as text, JSON and a page of its own.
+// A grade as text, JSON and a document of its own.
 #pragma once
 
 #include <ostream>
 #include <string>
 
 #include "analytics/assessment/grade.h"
+#include "analytics/report/report_document.h"
 
 namespace calot::analytics {
 
 void printGrade(const Grade& grade, std::ostream& out);
 std::string gradeJson(const Grade& grade);
-/// @param recording how the page names the recording, for links to its moments ("a.h5#t=12,13", a media fragment);
+/// @param recording how the sheet names the recording, for links to its moments ("a.h5#t=12,13", a media fragment);
 /// empty: none
-std::string gradeHtml(const Grade& grade, const std::string& recording);
+ReportDocument gradeDocument(const Grade& grade, const std::string& recording);
 
 }  // namespace calot::analytics

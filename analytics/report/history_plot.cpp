@@ -7,25 +7,25 @@
 
 namespace calot::analytics {
 
-std::string historySvg(const HistoryPlot& plot) {
-  if (plot.values.size() < 2) return {};
+std::optional<Drawing> drawHistory(const HistoryPlot& plot) {
+  if (plot.values.size() < 2) return std::nullopt;
   std::vector<double> all = plot.values;
   if (plot.mark) all.push_back(*plot.mark);
   const std::optional<PlotScale> scale = plotScale(all);
-  if (!scale) return {};
-  std::string svg = plotBegin(plot.title, plot.axis, *scale);
-  if (plot.mark) svg += plotLine(plotLeft, scale->y(*plot.mark), plotRight, scale->y(*plot.mark), "cut");
+  if (!scale) return std::nullopt;
+  Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
+  if (plot.mark) drawing.line(Ink::cut, plotLeft, scale->y(*plot.mark), plotRight, scale->y(*plot.mark));
   const double apart = (plotRight - plotLeft) / static_cast<double>(plot.values.size());
-  std::string points;
+  const auto x = [&](std::size_t i) { return plotLeft + apart * (static_cast<double>(i) + 0.5); };
+  for (std::size_t i = 1; i < plot.values.size(); ++i)
+    drawing.line(Ink::whisker, x(i - 1), scale->y(plot.values[i - 1]), x(i), scale->y(plot.values[i]));
   for (std::size_t i = 0; i < plot.values.size(); ++i) {
-    const double x = plotLeft + apart * (static_cast<double>(i) + 0.5), y = scale->y(plot.values[i]);
-    if (i > 0) svg += plotLine(x - apart, scale->y(plot.values[i - 1]), x, y, "whisker");
-    points += fmt::format("<circle class=\"point\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\"/>\n", x, y);
-    if (plot.values.size() <= 12) points += plotLabel(x, plotBottom + 17.0, "group", fmt::format("{}", i + 1));
+    drawing.point(Ink::firstPoint, x(i), scale->y(plot.values[i]), 3.0);
+    if (plot.values.size() <= 12) drawing.text(Ink::group, x(i), plotBottom + 17.0, fmt::format("{}", i + 1));
   }
-  svg += "<g class=\"first\">\n" + points + "</g>\n";
-  svg += plotLabel((plotLeft + plotRight) / 2.0, plotBottom + 32.0, "group", "attempt");
-  return svg + plotEnd(plot.synthetic);
+  drawing.text(Ink::group, (plotLeft + plotRight) / 2.0, plotBottom + 32.0, "attempt");
+  endPlot(drawing, plot.synthetic);
+  return drawing;
 }
 
 }  // namespace calot::analytics

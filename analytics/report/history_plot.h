@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "analytics/report/drawing.h"
+
 namespace calot::analytics {
 
 struct HistoryPlot {
@@ -14,8 +16,8 @@ struct HistoryPlot {
   bool synthetic = false;
 };
 
-/// An <svg> element: values over the number of the attempt, joined. Fewer than two values, and values too large or too
-/// close for a scale, are answered with an empty string.
-std::string historySvg(const HistoryPlot& plot);
+/// Values over the number of the attempt, joined. Fewer than two values, and values too large or too
+/// close for a scale, are answered with none.
+std::optional<Drawing> drawHistory(const HistoryPlot& plot);
 
 }  // namespace calot::analytics

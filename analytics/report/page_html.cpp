@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "analytics/report/html_text.h"
 
 namespace calot::analytics {
@@ -23,18 +25,10 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2em .7em; border-bottom: 1px solid #d8dde3; text-align: left; white-space: nowrap; }
 th { border-bottom: 2px solid #57606a; } .right { text-align: right; }
 .figures { display: flex; flex-wrap: wrap; gap: 1em; } svg { max-width: 100%; height: auto; }
-.heading { font: bold 12px sans-serif; } .tick { font: 10px sans-serif; text-anchor: end; }
-.axis, .group { font: 11px sans-serif; text-anchor: middle; }
-.grid { stroke: #e3e7eb; } .whisker { stroke: #57606a; } .median { stroke: #1b1f24; stroke-width: 2.5; }
-.cut { stroke: #b00020; stroke-dasharray: 5 3; }
-.box { stroke: #57606a; } .first .box { fill: #b8d8ec; } .second .box { fill: #f6d3a8; }
-.point { fill-opacity: .75; } .first .point { fill: #0b5a8a; } .second .point { fill: #a3530b; }
-.mark { font: bold 44px sans-serif; text-anchor: middle; fill: #b00020; fill-opacity: .16; }
 .watermark { background: #b00020; color: #fff; font-weight: bold; padding: .5em 1em; }
 .behind { position: fixed; inset: 0; display: flex; align-items: center; justify-content: center; pointer-events: none;
   font: bold 14vw sans-serif; color: #b00020; opacity: .07; transform: rotate(-30deg); }
 @media print { body { max-width: none; } figure, svg { break-inside: avoid; } }
-</style>
 )";
 
 std::string cells(const std::vector<std::string>& row, const ReportTable& table, const char* tag) {
@@ -47,36 +41,50 @@ std::string cells(const std::vector<std::string>& row, const ReportTable& table,
   return html + "</tr>\n";
 }
 
+std::string spans(const Paragraph& paragraph) {
+  std::string html;
+  for (const TextSpan& span : paragraph) {
+    html += span.link.empty() ? escaped(span.text)
+                              : fmt::format("<a href=\"{}\">{}</a>", escaped(span.link), escaped(span.text));
+  }
+  return html;
+}
+
+struct Part {
+  std::string operator()(const Heading& heading) const { return fmt::format("<h2>{}</h2>\n", escaped(heading.text)); }
+  std::string operator()(const Paragraph& paragraph) const { return fmt::format("<p>{}</p>\n", spans(paragraph)); }
+  std::string operator()(const BulletList& list) const {
+    std::string html = "<ul>\n";
+    for (const Paragraph& item : list.items) html += fmt::format("<li>{}</li>\n", spans(item));
+    return html + "</ul>\n";
+  }
+  std::string operator()(const ReportTable& table) const {
+    std::vector<std::string> names;
+    for (const auto& column : table.columns) names.push_back(column.first);
+    std::string html = fmt::format("<h2>{}</h2>\n<div class=\"wide\"><table>\n<thead>", escaped(table.title));
+    html += cells(names, table, "th") + "</thead>\n<tbody>\n";
+    for (const auto& row : table.rows) html += cells(row, table, "td");
+    return html + "</tbody>\n</table></div>\n";
+  }
+  std::string operator()(const Figures& figures) const {
+    std::string html = "<div class=\"figures\">\n";
+    for (const Drawing& drawing : figures.drawings) html += svgOf(drawing);
+    return html + "</div>\n";
+  }
+};
+
 }  // namespace
 
-std::string pageBegin(const std::string& title, bool synthetic) {
-  std::string html = head;
-  html += fmt::format("<title>{}{}</title>\n</head>\n<body>\n", synthetic ? "SYNTHETIC: " : "", escaped(title));
-  if (synthetic) html += "<div class=\"behind\" aria-hidden=\"true\">SYNTHETIC</div>\n";
-  return html + watermarkHtml(synthetic) + fmt::format("<h1>{}</h1>\n", escaped(title));
-}
-
-std::string pageEnd(bool synthetic) { return watermarkHtml(synthetic) + "</body>\n</html>\n"; }
-
-std::string watermarkHtml(bool synthetic) {
-  return synthetic ? fmt::format("<p class=\"watermark\">{}</p>\n", escaped(watermarkText)) : std::string();
-}
-
-std::string paragraphHtml(const std::string& text) { return fmt::format("<p>{}</p>\n", escaped(text)); }
-
-std::string listHtml(const std::vector<std::string>& items) {
-  std::string html = "<ul>\n";
-  for (const std::string& item : items) html += fmt::format("<li>{}</li>\n", escaped(item));
-  return html + "</ul>\n";
-}
-
-std::string tableHtml(const ReportTable& table) {
-  std::vector<std::string> names;
-  for (const auto& column : table.columns) names.push_back(column.first);
-  std::string html = fmt::format("<h2>{}</h2>\n<div class=\"wide\"><table>\n<thead>", escaped(table.title));
-  html += cells(names, table, "th") + "</thead>\n<tbody>\n";
-  for (const auto& row : table.rows) html += cells(row, table, "td");
-  return html + "</tbody>\n</table></div>\n";
+std::string pageHtml(const ReportDocument& document) {
+  const std::string title = escaped(document.title);
+  const std::string mark =
+      document.synthetic ? fmt::format("<p class=\"watermark\">{}</p>\n", escaped(watermarkText)) : std::string();
+  std::string html = head + drawingCss() + "</style>\n";
+  html += fmt::format("<title>{}{}</title>\n</head>\n<body>\n", document.synthetic ? "SYNTHETIC: " : "", title);
+  if (document.synthetic) html += "<div class=\"behind\" aria-hidden=\"true\">SYNTHETIC</div>\n";
+  html += mark + fmt::format("<h1>{}</h1>\n", title);
+  for (const auto& part : document.parts) html += std::visit(Part{}, part);
+  return html + mark + "</body>\n</html>\n";
 }
 
 }  // namespace calot::analytics

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "analytics/report/box_plot.h"
-#include "analytics/report/html_text.h"
 #include "analytics/report/text_table.h"
 
 namespace calot::analytics {
@@ -32,38 +33,20 @@ std::optional<PlotScale> plotScale(std::span<const double> values) {
   return PlotScale{low - margin, high + margin};
 }
 
-std::string plotLine(double x1, double y1, double x2, double y2, const char* kind) {
-  return fmt::format("<line class=\"{}\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\"/>\n", kind, x1, y1, x2,
-                     y2);
-}
-
-std::string plotLabel(double x, double y, const char* kind, const std::string& text) {
-  return fmt::format("<text class=\"{}\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n", kind, x, y, escaped(text));
-}
-
-std::string plotBegin(const std::string& title, const std::string& axis, const PlotScale& scale) {
-  std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" role=\"img\">\n", plotWidth,
-                                plotHeight, plotWidth, plotHeight);
-  svg += fmt::format("<title>{}</title>\n", escaped(title));
-  svg += plotLabel(12.0, 18.0, "heading", cutTo(title, longestTitle));
+Drawing beginPlot(const std::string& title, const std::string& axis, const PlotScale& scale) {
+  Drawing drawing{title, plotWidth, plotHeight, {}};
+  drawing.text(Ink::heading, 12.0, 18.0, cutTo(title, longestTitle));
   for (const double tick : roundTicks(scale.low, scale.high)) {
-    svg += plotLine(plotLeft, scale.y(tick), plotRight, scale.y(tick), "grid");
-    svg += plotLabel(plotLeft - 6.0, scale.y(tick) + 4.0, "tick", fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
+    drawing.line(Ink::grid, plotLeft, scale.y(tick), plotRight, scale.y(tick));
+    drawing.text(Ink::tick, plotLeft - 6.0, scale.y(tick) + 4.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
   }
-  if (!axis.empty()) {
-    svg += fmt::format("<text class=\"axis\" transform=\"translate(12 {:.2f}) rotate(-90)\">{}</text>\n",
-                       (plotTop + plotBottom) / 2.0, escaped(axis));
-  }
-  return svg;
+  if (!axis.empty()) drawing.text(Ink::axis, 12.0, (plotTop + plotBottom) / 2.0, axis, -90.0);
+  return drawing;
 }
 
-std::string plotEnd(bool synthetic) {
-  std::string svg;
-  if (synthetic) {
-    svg += fmt::format("<text class=\"mark\" transform=\"translate({:.2f} {:.2f}) rotate(-30)\">SYNTHETIC</text>\n",
-                       (plotLeft + plotRight) / 2.0, (plotTop + plotBottom) / 2.0 + 14.0);
-  }
-  return svg + "</svg>\n";
+void endPlot(Drawing& drawing, bool synthetic) {
+  if (!synthetic) return;
+  drawing.text(Ink::watermark, drawing.width / 2.0, drawing.height / 2.0 + 14.0, "SYNTHETIC", -30.0);
 }
 
 }  // namespace calot::analytics

@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 
+#include "analytics/report/drawing.h"
+
 namespace calot::analytics {
 
 // In the drawing's own units, as many as pixels where the page is not scaled.
@@ -24,11 +26,9 @@ struct PlotScale {
 /// Holds all values with a margin; none where they are too large or too close, or there are none.
 std::optional<PlotScale> plotScale(std::span<const double> values);
 
-std::string plotLine(double x1, double y1, double x2, double y2, const char* kind);
-std::string plotLabel(double x, double y, const char* kind, const std::string& text);
-/// From <svg> on: title, grid with its ticks, the unit beside them.
-std::string plotBegin(const std::string& title, const std::string& axis, const PlotScale& scale);
-/// The watermark where it is synthetic, and the end.
-std::string plotEnd(bool synthetic);
+/// A drawing with its title, a grid with its ticks, and the unit beside them.
+Drawing beginPlot(const std::string& title, const std::string& axis, const PlotScale& scale);
+/// The watermark over all of it where it is synthetic.
+void endPlot(Drawing& drawing, bool synthetic);
 
 }  // namespace calot::analytics

@@ -195,6 +195,8 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
   report.title = form.title;
   report.source = form.source;
   report.ofAttempts = form.ofAttempts;
+  report.least = form.least;
+  report.most = form.most;
   report.groups = groups;
   std::vector<const Rating*> taken;
   for (const Rating& r : ratings) {

@@ -21,7 +21,7 @@ namespace calot::analytics {
 /// One group's answers to an item. Of attempts: the mean of an attempt's raters.
 struct ItemSummary {
   std::uint64_t n = 0, blank = 0;
-  std::map<int, std::uint64_t> counts;  ///< how often each score was given; of a questionnaire
+  std::map<int, std::uint64_t> counts;  ///< how often each score was given
   std::optional<double> median, lowerQuartile, upperQuartile, mean;
 };
 
@@ -50,6 +50,7 @@ struct FormReport {
   std::string name, title, source;
   std::uint32_t version = 1;
   bool ofAttempts = true;
+  int least = 1, most = 5;  ///< of the scale
   std::vector<std::string> groups;
   std::uint64_t filled = 0;      ///< forms
   std::uint64_t leftOut = 0;     ///< of attempts or participants that are in none of the groups

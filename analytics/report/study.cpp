@@ -12,58 +12,15 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/embedded.h"
+#include "analytics/cohort/registers.h"
+#include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "recorder/errors.h"
+#include "recorder/formats/text_words.h"
 
 namespace calot::analytics {
 namespace {
-
-/// Why an attempt stays out, or empty. The order is the flow table's.
-const std::vector<std::string>& exclusionReasons() {
-  static const std::vector<std::string> reasons{"withdrawn from research",
-                                                "excluded by hand",
-                                                "recording diverged or damaged",
-                                                "not verified yet",
-                                                "recording incomplete",
-                                                "technical failure",
-                                                "synthetic (performer)",
-                                                "practice",
-                                                "branch of another attempt",
-                                                "golden recording",
-                                                "no group",
-                                                "not comparable (another key)"};
-  return reasons;
-}
-
-std::string groupOf(const AttemptRow& a, Grouping grouping) {
-  if (grouping == Grouping::group) return a.group;
-  return a.operatorKind == recorder::OperatorKind::performer ? a.profile : "";
-}
-
-std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
-  const std::vector<std::string>& reason = exclusionReasons();
-  if (a.withdrawn) return reason[0];
-  if (a.excluded) return reason[1] + ": " + a.exclusionReason;
-  if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged) return reason[2];
-  if (a.verification.verdict == Verdict::notChecked) return reason[3];
-  if (!a.complete || a.outcome == recorder::Outcome::running) return reason[4];
-  if (a.outcome == recorder::Outcome::technicalFailure) return reason[5];
-  if (a.synthetic && !options.includeSynthetic) return reason[6];
-  if (a.mode == recorder::Mode::practice && !options.includePractice) return reason[7];
-  if (!a.parent.empty() && !options.includeBranches) return reason[8];
-  if (a.purpose == "golden") return reason[9];
-  if (groupOf(a, options.grouping).empty()) return reason[10];
-  if (options.protocol) {
-    if (std::string why = whyOutByProtocol(a, groupOf(a, options.grouping), *options.protocol); !why.empty())
-      return why;
-  }
-  if (!options.key.empty() && a.comparabilityKey != options.key) return reason[11];
-  return {};
-}
-
-/// Whose value it is: a person, or one performer's run.
-std::string unitOf(const AttemptRow& a) { return a.participant.empty() ? "attempt " + a.uuid : a.participant; }
 
 std::string leftOut(const Study& study) {
   std::string left;
@@ -198,12 +155,25 @@ void addPublished(Study& study) {
   }
 }
 
+/// @throws Error 2 where there is no such cohort.
+std::set<std::string> participantsOf(const std::string& path, const std::string& cohort) {
+  std::string list;
+  for (const NamedCohort& c : readRegisters(path).cohorts) {
+    if (c.name == cohort) return {c.participants.begin(), c.participants.end()};
+    list += (list.empty() ? "" : ", ") + c.name;
+  }
+  throw Error(ExitCode::usage, fmt::format("{}: there is no cohort \"{}\" (there are: {}); calot cohort name makes one",
+                                           path, recorder::shown(cohort), list.empty() ? "none" : list));
+}
+
 }  // namespace
 
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
-  if (!options.protocol) return makeStudy(database.listAttempts(), database.allValues(), options, database.path());
   StudyOptions known = options;
-  for (const Participant& p : database.participants()) known.protocol->experience[p.pseudonym] = p.experience;
+  if (known.cohort) known.cohort->participants = participantsOf(database.path(), known.cohort->name);
+  if (known.protocol) {
+    for (const Participant& p : database.participants()) known.protocol->experience[p.pseudonym] = p.experience;
+  }
   return makeStudy(database.listAttempts(), database.allValues(), known, database.path());
 }
 
@@ -215,6 +185,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   study.source = "cohort";
   study.where = std::filesystem::path(name).filename().string();
   study.counted = "attempts";
+  if (options.cohort) study.cohort = options.cohort->name;
   std::map<std::string, std::uint64_t> out, present;
   std::vector<AttemptRow> attempts;
   for (const AttemptRow& a : recruited) {
@@ -226,14 +197,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     ++present[groupOf(a, options.grouping)];
     attempts.push_back(a);
   }
-  for (const std::string& reason : exclusionReasons()) {
-    for (const auto& [why, count] : out) {
-      if (why == reason || why.rfind(reason + ": ", 0) == 0) study.flow.push_back({why, count});
-    }
-  }
-  for (const std::string& reason : protocolReasons()) {
-    if (out.count(reason) > 0) study.flow.push_back({reason, out[reason]});
-  }
+  study.flow = flowOf(out);
   study.groups = chooseGroups(present, options, name, leftOut(study));
   study.better = betterOf(study.groups, options);
   const std::map<std::string, Member> member = members(study, attempts, options, name);

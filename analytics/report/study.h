@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,9 +44,16 @@ struct ProtocolInUse {
   std::map<std::string, std::map<std::string, std::string>> experience;
 };
 
+/// Participants whom the database knows under a name (calot cohort name).
+struct CohortInUse {
+  std::string name;
+  std::set<std::string> participants;  ///< pseudonyms; makeStudy() of a database fills them in
+};
+
 /// With a protocol, groups, the better one, attempt rule and family are the protocol's, whatever stands here.
 struct StudyOptions : StudyChoices {
   std::optional<ProtocolInUse> protocol;
+  std::optional<CohortInUse> cohort;  ///< only attempts of its participants
   Grouping grouping = Grouping::group;
   bool includeSynthetic = false;
   bool includePractice = false;
@@ -146,6 +154,7 @@ struct Study {
   std::string source;      ///< "cohort" or "table"
   std::string counted;     ///< what the flow counts: "attempts" or "rows"
   std::string where;       ///< the file's name without its folder
+  std::string cohort;      ///< the named cohort whose attempts alone were taken, or empty: all
   bool synthetic = false;  ///< contains what performers made: watermarked everywhere
   std::array<std::string, 2> groups;
   std::string better;  ///< the group that is expected to do better, or empty: no hypothesis
@@ -170,7 +179,7 @@ struct Study {
 /// Practice, branches, goldens, excluded attempts, unfinished recordings, technical failures and recordings that did
 /// not verify stay out, counted in the flow.
 /// @throws Error 3 when there are not two groups, a participant has several attempts and there is no rule, or
-/// comparability keys or checkpoint versions would mix; Error 2 for a name that is none.
+/// comparability keys or checkpoint versions would mix; Error 2 for a name that is none, of a cohort too.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
 
 /// The same of attempts and values at hand: CohortDatabase::listAttempts() and allValues(). @param name of where they

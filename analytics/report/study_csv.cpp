@@ -7,22 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/report/csv_cells.h"
 #include "analytics/report/study_output.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 
 namespace calot::analytics {
 namespace {
-
-/// A cell by RFC 4180. One that a spreadsheet would take for a formula gets an apostrophe before it.
-std::string cell(const std::string& text) {
-  std::string safe = text;
-  if (!safe.empty() && std::string("=+-@\t\r").find(safe.front()) != std::string::npos) safe.insert(safe.begin(), '\'');
-  if (safe.find_first_of(",\"\r\n") == std::string::npos) return safe;
-  std::string quoted = "\"";
-  for (const char c : safe) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string number(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
 
@@ -68,11 +59,12 @@ std::string summaryTable(const Study& study) {
       "hochberg,supported,"
       "worst_ranked_a,worst_ranked_b\n";
   for (const StudyRow& row : study.rows) {
-    text += fmt::format("{},{},{},{}", cell(row.checkpoint), cell(row.subject), cell(row.unit), nameOf(row.direction));
+    text += fmt::format("{},{},{},{}", csvCell(row.checkpoint), csvCell(row.subject), csvCell(row.unit),
+                        nameOf(row.direction));
     for (std::size_t g = 0; g < 2; ++g) {
       const GroupSummary& s = row.group[g];
       text +=
-          fmt::format(",{},{},{},{},{},{},{},{}", cell(study.groups[g]), s.n, s.missing, number(s.mean),
+          fmt::format(",{},{},{},{},{},{},{},{}", csvCell(study.groups[g]), s.n, s.missing, number(s.mean),
                       number(s.standardDeviation), number(s.lowerQuartile), number(s.median), number(s.upperQuartile));
     }
     text += row.shift ? fmt::format(",{}", *row.shift) : ",";
@@ -82,12 +74,12 @@ std::string summaryTable(const Study& study) {
     text +=
         row.test ? fmt::format(",{},{},{}", row.test->u, row.test->p, row.test->exact ? "exact" : "asymptotic") : ",,,";
     text += row.effect ? fmt::format(",{},{}", row.effect->delta, row.effect->a) : ",,";
-    text += fmt::format(",{},{},{},{},{}", cell(row.test.reason()), number(row.publishedExpert),
+    text += fmt::format(",{},{},{},{},{}", csvCell(row.test.reason()), number(row.publishedExpert),
                         number(row.publishedNovice), study.heading, watermark(study));
     text += hypothesisCells(row) + effectCells(row) + baselineCells(row);
     std::string warnings;
     for (const std::string& w : row.coverageWarnings) warnings += (warnings.empty() ? "" : "; ") + w;
-    text += fmt::format(",{},{},{},{},{},{}\n", cell(warnings), nameOf(row.role), number(row.benjaminiHochberg),
+    text += fmt::format(",{},{},{},{},{},{}\n", csvCell(warnings), nameOf(row.role), number(row.benjaminiHochberg),
                         !row.supported   ? ""
                         : *row.supported ? "yes"
                                          : "no",
@@ -101,8 +93,9 @@ std::string valuesTable(const Study& study) {
   for (const StudyRow& row : study.rows) {
     for (std::size_t g = 0; g < 2; ++g) {
       for (std::size_t i = 0; i < row.values[g].size(); ++i) {
-        text += fmt::format("{},{},{},{},{},{},{}\n", cell(row.checkpoint), cell(row.subject), cell(row.unit),
-                            cell(study.groups[g]), cell(row.participants[g][i]), row.values[g][i], watermark(study));
+        text +=
+            fmt::format("{},{},{},{},{},{},{}\n", csvCell(row.checkpoint), csvCell(row.subject), csvCell(row.unit),
+                        csvCell(study.groups[g]), csvCell(row.participants[g][i]), row.values[g][i], watermark(study));
       }
     }
   }
@@ -111,7 +104,8 @@ std::string valuesTable(const Study& study) {
 
 std::string flowFile(const Study& study) {
   std::string text = fmt::format("stage,{}\nin the {},{}\n", study.counted, study.source, study.recruited);
-  for (const FlowRow& row : study.flow) text += fmt::format("{},{}\n", cell("left out: " + row.reason), row.attempts);
+  for (const FlowRow& row : study.flow)
+    text += fmt::format("{},{}\n", csvCell("left out: " + row.reason), row.attempts);
   return text + fmt::format("analysed,{}\n", study.analysed);
 }
 
@@ -131,8 +125,8 @@ std::string ratingsFile(const Study& study) {
       }
       for (std::size_t g = 0; g < report.groups.size(); ++g) {
         const ItemSummary& s = item.groups[g];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cell(report.name), report.version,
-                            cell(item.key), cell(report.groups[g]),
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csvCell(report.name), report.version,
+                            csvCell(item.key), csvCell(report.groups[g]),
                             !item.primaryGroup.empty() && item.primaryGroup == report.groups[g] ? "yes" : "", s.n,
                             s.blank, number(s.lowerQuartile), number(s.median), number(s.upperQuartile), number(s.mean),
                             number(item.published[g]), icc, watermark(study));

@@ -159,6 +159,7 @@ std::string studyJson(const Study& study) {
          {"family", study.family},
          {"quantile_type", 7},
          {"comparability_keys", study.keys},
+         {"cohort_name", study.cohort},
          {"flow", {{"recruited", study.recruited}, {"analysed", study.analysed}}},
          {"remarks", study.remarks},
          {"protocol", protocolJson(study)},

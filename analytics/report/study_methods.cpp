@@ -90,6 +90,8 @@ std::string studyMethods(const Study& study) {
       text += fmt::format("{}: {}. ", study.groups[g], study.protocol->populations[g]);
   }
   if (study.synthetic) text += "Attempts were made by performers, which are programs. ";
+  if (!study.cohort.empty())
+    text += fmt::format("Of the cohort, participants of \"{}\" alone were taken. ", study.cohort);
   text +=
       fmt::format("Of {} {} in the {}, {} of {} {} and {} {} were analysed ({}); {} were left out. ", study.recruited,
                   study.counted, study.source, study.analysed, study.participants[0], study.groups[0],

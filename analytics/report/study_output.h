@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A study as text, JSON, CSV and a page. Numbers are written with a point, whatever the locale.
+// A study as text, JSON, CSV and a document. Numbers are written with a point, whatever the locale.
 #pragma once
 
 #include <ostream>
 #include <string>
 
+#include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 
 namespace calot::analytics {
@@ -21,8 +22,8 @@ std::string studyJson(const Study& study);
 /// @throws Error 2 when a file is there already, Error 1 when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
 
-/// One page that needs nothing else: no scripts, figures inline, every text escaped. The same content as the text, and
-/// a box plot with all points for each row.
-std::string studyHtml(const Study& study);
+/// The same content as the text, a box plot with all points for each row, and of each form that was filled in how its
+/// scores are spread.
+ReportDocument studyDocument(const Study& study);
 
 }  // namespace calot::analytics

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
+#include "analytics/report/study_tables.h"
 #include "analytics/statistics/multiplicity.h"
 
 namespace calot::analytics {
@@ -14,9 +16,7 @@ namespace {
 /// "2026-01-01T00:00:00": seconds are what both times have, and text orders them.
 std::string instant(const std::string& utc) { return utc.substr(0, 19); }
 
-bool matches(const DirectedHypothesis& h, const StudyRow& row) {
-  return h.checkpoint == row.checkpoint && h.subject == row.subject;
-}
+bool matches(const DirectedHypothesis& h, const StudyRow& row) { return figureOf(h) == rowName(row); }
 
 std::string whyExploratory(const StudyProtocol& protocol, bool unknownStart) {
   if (protocol.registeredUtc.empty()) return "the protocol is not registered in this cohort (calot protocol register)";
@@ -35,6 +35,19 @@ void listVersions(StudyProtocol& report, const std::vector<RegisteredProtocol>& 
   }
 }
 
+StudyProtocol headOf(const Protocol& protocol) {
+  StudyProtocol report;
+  report.name = protocol.name;
+  report.title = protocol.title;
+  report.question = protocol.question;
+  report.version = protocol.version;
+  report.sha256 = protocol.sha256;
+  report.level = protocol.level;
+  report.missing = protocol.missing;
+  report.populations = {protocol.populations[0].definition, protocol.populations[1].definition};
+  return report;
+}
+
 /// Exclusions by hand for reasons that the protocol does not name; keys chosen or mixed.
 void listDeviations(StudyProtocol& report, const std::vector<const AttemptRow*>& data, const StudyOptions& options) {
   const std::vector<std::string>& allowed = options.protocol->protocol.exclusionReasons;
@@ -49,6 +62,9 @@ void listDeviations(StudyProtocol& report, const std::vector<const AttemptRow*>&
                       a->uuid, a->exclusionReason));
     }
   }
+  if (options.cohort)
+    report.deviations.push_back(
+        fmt::format("Only participants of the named cohort \"{}\" were taken.", options.cohort->name));
   if (!options.key.empty())
     report.deviations.push_back(fmt::format("Only attempts of the key \"{}\" were taken.", options.key));
   if (options.mixKeys) report.deviations.emplace_back("Comparability keys or checkpoint versions were allowed to mix.");
@@ -76,13 +92,21 @@ std::string nameOf(Role role) {
   return "";
 }
 
+void chooseByProtocol(StudyChoices& choices, const Protocol& protocol) {
+  choices.groups = {protocol.populations[0].group, protocol.populations[1].group};
+  choices.better = protocol.better;
+  choices.attemptRule = protocol.attemptRule;
+  choices.family.clear();
+}
+
+std::string figureOf(const DirectedHypothesis& h) {
+  return h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject;
+}
+
 StudyOptions byProtocol(const StudyOptions& options) {
   StudyOptions chosen = options;
   const Protocol& protocol = options.protocol->protocol;
-  chosen.groups = {protocol.populations[0].group, protocol.populations[1].group};
-  chosen.better = protocol.better;
-  chosen.attemptRule = protocol.attemptRule;
-  chosen.family.clear();
+  chooseByProtocol(chosen, protocol);
   chosen.grouping = protocol.performers ? Grouping::performer : Grouping::group;
   chosen.includeSynthetic = protocol.performers;
   chosen.includePractice = chosen.includeBranches = false;
@@ -113,15 +137,7 @@ std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group
 
 void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, const StudyOptions& options) {
   const Protocol& protocol = options.protocol->protocol;
-  StudyProtocol report;
-  report.name = protocol.name;
-  report.title = protocol.title;
-  report.question = protocol.question;
-  report.version = protocol.version;
-  report.sha256 = protocol.sha256;
-  report.level = protocol.level;
-  report.missing = protocol.missing;
-  report.populations = {protocol.populations[0].definition, protocol.populations[1].definition};
+  StudyProtocol report = headOf(protocol);
   for (const RegisteredProtocol& r : options.protocol->registered) {
     if (r.sha256 == protocol.sha256) report.registeredUtc = r.registeredUtc;
   }
@@ -135,6 +151,22 @@ void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, 
   listDeviations(report, data, options);
   report.whyExploratory = whyExploratory(report, unknownStart);
   study.heading = report.whyExploratory.empty() ? "confirmatory" : "exploratory";
+  study.protocol = std::move(report);
+}
+
+void describeProtocolOfTable(Study& study, const Protocol& protocol) {
+  StudyProtocol report = headOf(protocol);
+  report.whyExploratory =
+      "a table does not say when its figures came about, so nothing shows that the protocol came first";
+  const auto notApplied = [&](bool declared, const char* what) {
+    if (declared) report.deviations.push_back(fmt::format("{} could not be applied: a table does not tell.", what));
+  };
+  notApplied(!protocol.scene.empty(), "The scene that the protocol asks for");
+  notApplied(!protocol.excludedOutcomes.empty(), "The exclusion of attempts by how they ended");
+  notApplied(!protocol.populations[0].criteria.empty() || !protocol.populations[1].criteria.empty(),
+             "The populations' criteria of experience");
+  notApplied(protocol.missing == MissingRule::worstRank, "Ranking those who did not complete behind all others");
+  study.heading = "exploratory";
   study.protocol = std::move(report);
 }
 
@@ -174,8 +206,8 @@ void adjustByProtocol(Study& study, const Protocol& protocol) {
     const bool there =
         std::any_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return matches(h, r); });
     if (there) continue;
-    study.remarks.push_back(fmt::format("No attempt has {}{}{}, of which the protocol has a {} hypothesis.",
-                                        h.checkpoint, h.subject.empty() ? "" : " ", h.subject,
+    study.remarks.push_back(fmt::format("{} {}, of which the protocol has a {} hypothesis.",
+                                        study.source == "table" ? "No outcome is" : "No attempt has", figureOf(h),
                                         h.primary ? "primary" : "secondary"));
   }
   study.family = fmt::format(

@@ -18,6 +18,16 @@ std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group
 /// In the order in which they are asked, for the flow.
 const std::vector<std::string>& protocolReasons();
 
+/// The choices that the protocol makes of any study.
+void chooseByProtocol(StudyChoices& choices, const Protocol& protocol);
+
+/// The figure of a hypothesis as rowName() has it: "path-length left".
+std::string figureOf(const DirectedHypothesis& hypothesis);
+
+/// Of a table: `study.protocol`, the reason why it is exploratory, and what of the protocol a table cannot answer, as
+/// deviations.
+void describeProtocolOfTable(Study& study, const Protocol& protocol);
+
 /// Fills `study.protocol` and the heading: confirmatory where the protocol was registered before the first attempt of
 /// the data, else exploratory, with the reason. Lists versions, what changed, and what deviates.
 /// @param data attempts that are analysed, or were excluded by hand

@@ -5,13 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "analytics/report/report_table.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 
 namespace calot::analytics {
-
-/// What stands over everything that performers' figures are in.
-inline constexpr const char* watermarkText = "SYNTHETIC: made by performers, says nothing about people";
 
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"
 std::string rowName(const StudyRow& row);    ///< checkpoint and subject

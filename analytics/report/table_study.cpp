@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
 
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
+#include "analytics/report/table_records.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_words.h"
 
@@ -16,110 +17,6 @@ namespace calot::analytics {
 namespace {
 
 using recorder::shown;
-
-/// Squares of what is larger, and their sums, might not be finite.
-constexpr double largest = 1e100;
-
-struct Outcome {
-  std::string name;
-  Direction direction = Direction::none;
-  std::size_t column = 0;
-};
-
-/// What the study needs of one row.
-struct Record {
-  std::size_t line = 0;
-  std::string participant, group, occasion;
-  std::vector<std::optional<double>> values;  ///< by outcome
-};
-
-[[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
-  throw Error(ExitCode::damaged, fmt::format("{}: line {}: column \"{}\": {}", table.path, line, shown(column), what));
-}
-
-/// Names are printed: a line break or another control character in one would forge what is read there.
-void askForPlainName(const CsvTable& table, std::size_t line, const std::string& column, const std::string& name) {
-  const auto control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
-  if (std::any_of(name.begin(), name.end(), control))
-    failAt(table, line, column, fmt::format("\"{}\" holds a line break or a control character", shown(name)));
-}
-
-std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options) {
-  std::vector<Outcome> outcomes;
-  for (const std::string& text : options.outcomes) {
-    Outcome outcome{text, Direction::none, 0};
-    // A column may itself be called "a:lower".
-    if (const std::size_t colon = text.rfind(':'); !table.has(text) && colon != std::string::npos) {
-      const std::string word = text.substr(colon + 1);
-      if (word != "lower" && word != "higher") {
-        throw Error(ExitCode::usage, fmt::format("study: --outcome {}: behind the colon stands what is better, lower "
-                                                 "or higher",
-                                                 shown(text)));
-      }
-      outcome = {text.substr(0, colon), word == "lower" ? Direction::lower : Direction::higher, 0};
-    }
-    outcome.column = table.column(outcome.name);
-    askForPlainName(table, 1, outcome.name, outcome.name);
-    for (const Outcome& other : outcomes) {
-      if (other.column == outcome.column)
-        throw Error(ExitCode::usage, fmt::format("study: --outcome {}: is named twice", shown(outcome.name)));
-    }
-    outcomes.push_back(outcome);
-  }
-  return outcomes;
-}
-
-std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
-                              const std::vector<Outcome>& outcomes) {
-  const std::size_t participant = table.column(options.participantColumn), group = table.column(options.groupColumn);
-  std::vector<std::size_t> occasion;
-  for (const std::string& name : options.occasionColumns) occasion.push_back(table.column(name));
-  std::vector<Record> records;
-  records.reserve(table.rows.size());
-  for (const CsvRow& row : table.rows) {
-    Record record{row.line, row.cells[participant], row.cells[group], "", {}};
-    if (record.participant.empty())
-      failAt(table, row.line, options.participantColumn, "is empty; every row needs its participant");
-    askForPlainName(table, row.line, options.participantColumn, record.participant);
-    askForPlainName(table, row.line, options.groupColumn, record.group);
-    for (std::size_t i = 0; i < occasion.size(); ++i) {
-      if (row.cells[occasion[i]].empty())
-        failAt(table, row.line, options.occasionColumns[i], "is empty; every row needs its occasion");
-      askForPlainName(table, row.line, options.occasionColumns[i], row.cells[occasion[i]]);
-      record.occasion += (i == 0 ? "" : "/") + row.cells[occasion[i]];
-    }
-    for (const Outcome& outcome : outcomes) {
-      const std::string& cell = row.cells[outcome.column];
-      std::optional<double> value;
-      if (!cell.empty()) {
-        std::string fault;
-        value = recorder::readFiniteNumber(cell, fault);
-        if (fault.empty() && std::abs(*value) > largest)
-          failAt(table, row.line, outcome.name, fmt::format("\"{}\" is larger than {}", shown(cell), largest));
-        if (!fault.empty())
-          failAt(table, row.line, outcome.name, fault + "; leave the cell empty where a value is missing");
-      }
-      record.values.push_back(value);
-    }
-    records.push_back(std::move(record));
-  }
-  return records;
-}
-
-std::set<std::string> occasionsOf(const std::vector<Record>& records) {
-  std::set<std::string> occasions;
-  for (const Record& r : records) occasions.insert(r.occasion);
-  return occasions;
-}
-
-void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion) {
-  const std::set<std::string> known = occasionsOf(records);
-  if (occasion.empty() || known.count(occasion) > 0) return;
-  std::string list;
-  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + shown(name);
-  throw Error(ExitCode::usage,
-              fmt::format("{}: there is no occasion \"{}\" (there are: {})", table.path, shown(occasion), list));
-}
 
 using Rows = std::map<std::string, std::vector<const Record*>>;  ///< by participant
 
@@ -213,7 +110,10 @@ void checkOptions(const TableStudyOptions& options) {
   const auto fail = [](const char* what) { throw Error(ExitCode::usage, fmt::format("study: {}", what)); };
   if (options.participantColumn.empty()) fail("--table needs --participant-column");
   if (options.groupColumn.empty()) fail("--table needs --group-column");
-  if (options.outcomes.empty()) fail("--table needs at least one --outcome");
+  if (options.outcomes.empty()) {
+    fail(options.protocol ? "--table has no column for any hypothesis of the protocol; name one with --outcome"
+                          : "--table needs at least one --outcome");
+  }
   if (options.occasionColumns.empty() && !(options.occasion + options.baselineOccasion).empty())
     fail("--occasion and --baseline-occasion need --occasion-column");
   if (options.baselineOccasion.empty()) return;
@@ -221,9 +121,21 @@ void checkOptions(const TableStudyOptions& options) {
   if (options.occasion == options.baselineOccasion) fail("the baseline's occasion is the outcome's");
 }
 
+/// What the protocol makes of the options.
+TableStudyOptions chosen(const CsvTable& table, TableStudyOptions options) {
+  if (!options.protocol) return options;
+  chooseByProtocol(options, *options.protocol);
+  if (!options.outcomes.empty()) return options;
+  for (const DirectedHypothesis& h : options.protocol->hypotheses) {
+    if (table.has(figureOf(h))) options.outcomes.push_back(figureOf(h));
+  }
+  return options;
+}
+
 }  // namespace
 
-Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options) {
+Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
+  const TableStudyOptions options = chosen(table, asked);
   checkOptions(options);
   const std::vector<Outcome> outcomes = outcomesOf(table, options);
   const std::vector<Record> records = recordsOf(table, options, outcomes);
@@ -248,6 +160,10 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options) {
   study.groups =
       chooseGroups(present, options, table.path, ungrouped == 0 ? "" : fmt::format(" ({} rows have none)", ungrouped));
   study.better = betterOf(study.groups, options);
+  if (options.protocol) {
+    study.synthetic = options.protocol->performers;
+    describeProtocolOfTable(study, *options.protocol);
+  }
 
   std::map<std::string, std::string> groupOf;
   std::array<Rows, 2> rows, baseline;
@@ -299,6 +215,7 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options) {
     StudyRow row;
     row.checkpoint = row.title = outcomes[o].name;
     row.direction = outcomes[o].direction;
+    if (options.protocol) declareRow(row, study, *options.protocol);
     StudySample sample = sampleOf(rows, o);
     for (const auto& [person, group] : groupOf) {
       const std::size_t g = group == study.groups[0] ? 0 : 1;
@@ -313,7 +230,7 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options) {
     }
     study.rows.push_back(std::move(row));
   }
-  finishRows(study, options);
+  finishRows(study, options, options.protocol ? &*options.protocol : nullptr);
   return study;
 }
 

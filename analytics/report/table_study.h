@@ -2,6 +2,7 @@
 // A study of a table from elsewhere: one row per participant, or per participant and occasion.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,17 +11,22 @@
 
 namespace calot::analytics {
 
+/// With a protocol, groups, the better one, attempt rule and family are the protocol's, whatever stands here.
 struct TableStudyOptions : StudyChoices {
+  std::optional<Protocol> protocol;
   std::string participantColumn, groupColumn;
   std::vector<std::string> occasionColumns;  ///< an occasion is these cells, joined with "/"
   std::string occasion;                      ///< the one that is compared; empty: all rows
   std::string baselineOccasion;              ///< where the outcome's baseline stands, or empty
-  std::vector<std::string> outcomes;         ///< columns, each with ":lower" or ":higher" behind it where it judges
+  /// Columns, each with ":lower" or ":higher" behind it where it judges; empty, with a protocol: those of its
+  /// hypotheses that are there.
+  std::vector<std::string> outcomes;
 };
 
 /// Two groups side by side, one value per participant. An empty outcome cell is a missing value, and whoever has no row
 /// at an occasion where others have one is named. With a baseline the outcome is also compared by analysis of
-/// covariance.
+/// covariance. A protocol's hypothesis is about the column of its outcome's name, or of its checkpoint's and subject's
+/// ("path-length left"); the study stays exploratory, for a table does not say when its figures came about.
 /// @throws Error 2 for a column or occasion that is not there, Error 4 for a cell that is no finite number, Error 3
 /// when there are not two independent groups or a participant has several rows and there is no rule: rows of one person
 /// are not independent.

@@ -13,6 +13,7 @@
 #include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
+#include "apps/calot/cohort_exports.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
 #include "recorder/errors.h"
@@ -213,13 +214,14 @@ void addList(CLI::App& parent, Run& run) {
 }  // namespace
 
 void addCohort(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("cohort", "Merge, check and name what is in a cohort database");
+  CLI::App* command = app.add_subcommand("cohort", "Merge, check, name and hand out what is in a cohort database");
   command->require_subcommand(1);
   addMerge(*command, run);
   addCheck(*command, run);
   addScrub(*command, run);
   addList(*command, run);
   addNames(*command, run);
+  addCohortExports(*command, run);
 }
 
 }  // namespace calot::apps

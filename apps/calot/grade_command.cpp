@@ -14,6 +14,7 @@
 #include "analytics/report/grade_sheet.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/report_files.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/text_words.h"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 using Access = analytics::CohortDatabase::Access;
 
 struct Options {
-  std::string database, attempt, norm, recording, html;
+  std::string database, attempt, norm, recording, html, pdf;
   unsigned version = 0;
   bool mixKeys = false, json = false, force = false;
 };
@@ -90,7 +91,9 @@ void lookAtRecording(analytics::Grade& grade, const fs::path& file, const Option
 }
 
 int grade(const Options& o) {
-  if (!o.html.empty()) recorder::refuseOutput(o.html, o.force);
+  for (const std::string& file : {o.html, o.pdf}) {
+    if (!file.empty()) recorder::refuseOutput(file, o.force);
+  }
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const std::vector<analytics::AttemptRow> attempts = cohort.listAttempts();
   const analytics::AttemptRow attempt = attemptOf(attempts, o);
@@ -98,8 +101,7 @@ int grade(const Options& o) {
   analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
   const fs::path recording = recordingOf(attempt, o);
   lookAtRecording(result, recording, o);
-  if (!o.html.empty())
-    recorder::writeText(o.html, analytics::gradeHtml(result, recording.filename().string()), o.force);
+  writeReport(analytics::gradeDocument(result, recording.filename().string()), o.html, o.pdf, o.force);
   if (o.json) {
     std::cout << analytics::gradeJson(result) << '\n';
   } else {
@@ -122,6 +124,7 @@ void addGrade(CLI::App& app, Run& run) {
       "The attempt's recording, for the moments of weak figures; default: the file beside the database");
   command->add_flag("--mix-keys", o->mixKeys, "Compare across scenes, devices and versions, and say so");
   command->add_option("--html", o->html, "Write the sheet as one self-contained page");
+  command->add_option("--pdf", o->pdf, "Write the sheet on A4 pages");
   command->add_flag("--json", o->json, "Print JSON");
   command->add_flag("--force", o->force, "Replace files that are there");
   command->callback([o, &run] { run = [o] { return grade(*o); }; });

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot study: two groups side by side, of a cohort or of a table from elsewhere.
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "analytics/cohort/withdraw.h"
 #include "analytics/report/study_output.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/report_files.h"
 #include "apps/calot/study_options.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
@@ -17,13 +21,16 @@ namespace {
 
 struct Options {
   StudySource source;
-  std::string csv, html;
+  std::string csv, html, pdf;
   bool json = false, force = false;
 };
 
 /// Notes in the cohort whose attempts went into files: a withdrawal lists them.
 void noteExports(const Options& options, const analytics::Study& study) {
-  if (options.source.database.empty() || (options.csv.empty() && options.html.empty())) return;
+  const std::vector<std::pair<std::string, std::string>> written{
+      {"study-csv", options.csv}, {"study-html", options.html}, {"study-pdf", options.pdf}};
+  const auto named = [](const auto& file) { return !file.second.empty(); };
+  if (options.source.database.empty() || std::none_of(written.begin(), written.end(), named)) return;
   std::set<std::string> units;
   for (const analytics::StudyRow& row : study.rows) {
     for (const auto& group : row.participants) units.insert(group.begin(), group.end());
@@ -34,8 +41,9 @@ void noteExports(const Options& options, const analytics::Study& study) {
     if (units.count(a.participant.empty() ? "attempt " + a.uuid : a.participant) > 0) attempts.push_back(a.uuid);
   }
   try {
-    if (!options.csv.empty()) analytics::recordExport(options.source.database, "study-csv", options.csv, attempts);
-    if (!options.html.empty()) analytics::recordExport(options.source.database, "study-html", options.html, attempts);
+    for (const auto& [kind, file] : written) {
+      if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
+    }
   } catch (const Error& e) {
     std::cerr << "calot: warning: what was written is not noted for withdrawals: " << e.what() << '\n';
   }
@@ -50,13 +58,16 @@ void addStudy(CLI::App& app, Run& run) {
   command->add_flag("--json", options->json, "Print JSON");
   command->add_option("--csv", options->csv, "Write study.csv, values.csv and flow.csv into this folder");
   command->add_option("--html", options->html, "Write one self-contained page with figures");
+  command->add_option("--pdf", options->pdf, "Write the same on A4 pages");
   command->add_flag("--force", options->force, "Replace files that are there");
   command->callback([options, &run] {
     run = [options] {
-      if (!options->html.empty()) recorder::refuseOutput(options->html, options->force);
+      for (const std::string& file : {options->html, options->pdf}) {
+        if (!file.empty()) recorder::refuseOutput(file, options->force);
+      }
       const analytics::Study study = studyOf(options->source);
       if (!options->csv.empty()) analytics::writeStudyCsv(study, options->csv, options->force);
-      if (!options->html.empty()) recorder::writeText(options->html, analytics::studyHtml(study), options->force);
+      writeReport(analytics::studyDocument(study), options->html, options->pdf, options->force);
       noteExports(*options, study);
       if (options->json) {
         std::cout << analytics::studyJson(study) << '\n';

@@ -10,10 +10,11 @@ namespace {
 void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
   std::vector<CLI::Option*> added;
   added.push_back(command.add_option("cohort", options.database, "Cohort database"));
-  added.push_back(command.add_option(
+  CLI::Option* protocol = command.add_option(
       "--protocol", options.protocol,
-      "The study's protocol, a file or the name of one that comes with the program; it makes the choices"));
-  CLI::Option* protocol = added.back();
+      "The study's protocol, a file or the name of one that comes with the program; it makes the choices");
+  added.push_back(command.add_option("--cohort-name", options.cohortName,
+                                     "Only attempts of the participants of this cohort (calot cohort name)"));
   added.push_back(command
                       .add_option("--group-by", options.groupBy,
                                   "What makes the groups: the participants' group or the performers' profile")
@@ -57,12 +58,15 @@ analytics::Study studyOf(StudySource& options) {
   }
   if (!options.table.empty()) {
     static_cast<analytics::StudyChoices&>(options.elsewhere) = options.choices;
+    if (!options.protocol.empty())
+      options.elsewhere.protocol = analytics::readProtocol(findAsset(options.protocol, "protocols", "protocol"));
     return analytics::makeTableStudy(analytics::readCsvTable(options.table), options.elsewhere);
   }
   if (options.database.empty()) throw Error(ExitCode::usage, "name a cohort database, or a table with --table");
   static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;
   options.cohort.grouping =
       options.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
+  if (!options.cohortName.empty()) options.cohort.cohort = analytics::CohortInUse{options.cohortName, {}};
   const auto read = analytics::CohortDatabase::Access::read;
   const analytics::AssessmentDatabase assessment(options.database, read);
   if (!options.protocol.empty()) {

@@ -11,7 +11,7 @@
 namespace calot::apps {
 
 struct StudySource {
-  std::string database, groupBy = "group", table, attemptRule, protocol;
+  std::string database, groupBy = "group", table, attemptRule, protocol, cohortName;
   analytics::StudyChoices choices;
   analytics::StudyOptions cohort;
   analytics::TableStudyOptions elsewhere;

@@ -35,6 +35,7 @@ MAY_SEE = {
     "analytics/statistics": (),
     "analytics/checkpoints": ("sim", "recorder", "analytics/statistics"),
     "analytics/cohort": ("sim", "recorder", "analytics"),
+    "analytics/interchange": ("sim", "recorder", "analytics"),
     "analytics/report": ("sim", "recorder", "analytics"),
     "gui/render": ("sim", "recorder contracts"),
     "gui/film": ("sim", "recorder", "analytics", "gui/render"),

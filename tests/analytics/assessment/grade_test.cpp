@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "analytics/report/grade_sheet.h"
+#include "analytics/report/page_html.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 
@@ -283,7 +284,7 @@ TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
   database.attachEvidence(database.norm("clinic"), {"Agrees with raters", "v.pdf", std::string(64, 'a'), "me", ""});
   grade = graded(20, database.norm("clinic"));
   addMoments(grade, {{"path-length", "left", {{12.0, 13.0, 0.5}}, ""}});
-  const std::string html = gradeHtml(grade, "a&b.h5");
+  const std::string html = pageHtml(gradeDocument(grade, "a&b.h5"));
   EXPECT_EQ(html.find("FORMATIVE"), std::string::npos);
   EXPECT_NE(html.find("Agrees with raters"), std::string::npos);
   EXPECT_NE(html.find("<a href=\"a&amp;b.h5#t=12.00,13.00\">0:12.0 to 0:13.0 (50 % of it)</a>"), std::string::npos);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analytics/report/score_plot.h"
 #include "tests/analytics/assessment/support/schema_agreement.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
@@ -162,6 +163,48 @@ TEST(Ratings, questionnairesKeepBlanksAndCountAnswers) {
   }
   EXPECT_EQ(report.sections.size(), 2U) << "subscales of three items or more";
   EXPECT_TRUE(report.agreement.empty());
+}
+
+TEST(Ratings, barsAreAsWideAsTheSharesOfTheScores) {
+  FormReport report;
+  report.title = "A <form>";
+  report.filled = 7;
+  report.least = 1;
+  report.most = 5;
+  report.groups = {"expert", "novice"};
+  ItemReport item{"ease", "Easy to use", "", {}, {}};
+  item.groups.resize(2);
+  item.groups[0].counts = {{1, 1}, {3, 1}, {5, 2}};
+  report.items.assign(14, item);
+  const std::vector<Drawing> drawings = drawScores(report, true);
+  ASSERT_EQ(drawings.size(), 2U) << "thirteen items a page";
+  EXPECT_EQ(drawings[0].title, "A <form> ( 1), 1 of 2");
+  std::vector<std::pair<Ink, DrawnBox>> boxes;
+  std::size_t none = 0;
+  for (const Shape& shape : drawings[1].shapes) {
+    if (const auto* box = std::get_if<DrawnBox>(&shape.form)) boxes.emplace_back(shape.ink, *box);
+    if (const auto* text = std::get_if<DrawnText>(&shape.form)) none += text->text == "no answers" ? 1 : 0;
+    EXPECT_EQ(shape.ink == Ink::watermark, &shape == &drawings[1].shapes.back());
+  }
+  EXPECT_EQ(none, 1U) << "nobody of the novices answered";
+  ASSERT_EQ(boxes.size(), 3U + 5U) << "the scores given, and the legend of all";
+  const double whole = boxes[0].second.width + boxes[1].second.width + boxes[2].second.width;
+  EXPECT_DOUBLE_EQ(boxes[0].second.width, whole / 4);
+  EXPECT_DOUBLE_EQ(boxes[2].second.width, whole / 2);
+  EXPECT_DOUBLE_EQ(boxes[1].second.x, boxes[0].second.x + whole / 4);
+  EXPECT_EQ(boxes[0].first, Ink::low3);
+  EXPECT_EQ(boxes[1].first, Ink::middle);
+  EXPECT_EQ(boxes[2].first, Ink::high3);
+  EXPECT_EQ(boxes[4].first, Ink::low2) << "half way below the middle";
+  for (const Shape& shape : drawings[0].shapes) {
+    if (const auto* box = std::get_if<DrawnBox>(&shape.form)) {
+      EXPECT_GE(box->y, 0.0);
+      EXPECT_LE(box->y + box->height, drawings[0].height);
+      EXPECT_LE(box->x + box->width, drawings[0].width);
+    }
+  }
+  report.filled = 0;
+  EXPECT_TRUE(drawScores(report, false).empty());
 }
 
 }  // namespace

@@ -7,9 +7,11 @@
 #include <sqlite3.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <array>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -382,6 +384,42 @@ TEST(CohortDatabase, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   EXPECT_THROW(raw.exec("UPDATE audit SET subject = ''"), SQLite::Exception);
 }
 
+TEST(CohortDatabase, manyMayMakeItAtOnce) {
+  const Folder folder;
+  constexpr int rounds = 40, makers = 6;
+  int failed = 0;
+  for (int round = 0; round < rounds; ++round) {
+    const std::string path = folder.file(fmt::format("{}.db", round));
+    std::array<int, 2> gate{};
+    ASSERT_EQ(::pipe(gate.data()), 0);
+    std::vector<pid_t> children;
+    for (int maker = 0; maker < makers; ++maker) {
+      const pid_t child = ::fork();
+      if (child == 0) {
+        ::close(gate[1]);
+        char byte = 0;
+        (void)::read(gate[0], &byte, 1);  // until all are there
+        try {
+          const CohortDatabase database(path, Access::create);
+        } catch (const std::exception& error) {
+          std::cerr << error.what() << '\n';
+          ::_exit(1);
+        }
+        ::_exit(0);
+      }
+      children.push_back(child);
+    }
+    ::close(gate[0]);
+    ::close(gate[1]);
+    for (const pid_t child : children) {
+      int status = 0;
+      ASSERT_EQ(::waitpid(child, &status, 0), child);
+      if (status != 0) ++failed;
+    }
+  }
+  EXPECT_EQ(failed, 0);
+}
+
 TEST(CohortDatabase, twoWritersBothGetThrough) {
   const Folder folder;
   const std::string path = folder.file("c.db");
@@ -434,15 +472,27 @@ TEST(CohortDatabase, killedAtAnyMomentItHoldsWholeAttemptsOnly) {
   std::mt19937 random(seed);
   unsigned before = 0;
   for (int round = 0; round < 25; ++round) {
+    std::array<int, 2> begun{};
+    ASSERT_EQ(::pipe(begun.data()), 0);
     const pid_t child = ::fork();
     if (child == 0) {
       try {
         CohortDatabase database(path, Access::create);
-        for (unsigned n = 0;; ++n) database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
+        for (unsigned n = 0;; ++n) {
+          database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
+          if (n == before) (void)::write(begun[1], "x", 1);
+        }
       } catch (...) {
       }
       ::_exit(1);
     }
+    ::close(begun[1]);
+    // Every other time from a new attempt on, however busy the machine; else at any moment, of opening too.
+    char byte = 0;
+    if (round % 2 == 1) {
+      EXPECT_EQ(::read(begun[0], &byte, 1), 1);
+    }
+    ::close(begun[0]);
     std::this_thread::sleep_for(std::chrono::microseconds(1000 + random() % 30000));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);

@@ -11,6 +11,8 @@
 #include <sstream>
 
 #include "analytics/cohort/embedded.h"
+#include "analytics/cohort/registers.h"
+#include "analytics/report/page_html.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/text_table.h"
 #include "recorder/errors.h"
@@ -262,11 +264,41 @@ TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
   expectRefusal(ExitCode::usage, "--family elapsed", [&] { (void)makeStudy(database, one); });
 }
 
+TEST(Study, takesTheParticipantsOfANamedCohortAlone) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create);
+  for (unsigned n = 0; n < 8; ++n) {
+    const std::string person = fmt::format("P{}", n);
+    database.addParticipant({person, n % 2 == 0 ? "expert" : "novice", "", "", {}, {}});
+    database.storeAttempt(humanAttempt(n, person), valuesOf(5.0 + n, 1.0));
+  }
+  database.storeAttempt(humanAttempt(9, ""), valuesOf(1.0, 1.0));
+  setCohort(path, "pilot", {}, {"P0", "P1", "P2", "P3"}, {});
+  setCohort(path, "main", {}, {"P7"}, {});
+  StudyOptions options;
+  options.cohort = CohortInUse{"pilot", {}};
+  const Study study = makeStudy(database, options);
+  EXPECT_EQ(study.cohort, "pilot");
+  EXPECT_EQ(study.recruited, 9U);
+  EXPECT_EQ(study.analysed, 4U);
+  ASSERT_EQ(study.flow.size(), 1U);
+  EXPECT_EQ(study.flow[0].reason, "not in the named cohort: pilot");
+  EXPECT_EQ(study.flow[0].attempts, 5U);
+  EXPECT_EQ(rowOf(study, "elapsed-time", "").participants[0], (std::vector<std::string>{"P0", "P2"}));
+  EXPECT_NE(textOf(study).find("participants of \"pilot\" alone"), std::string::npos);
+  options.cohort = CohortInUse{"main", {}};
+  expectRefusal(ExitCode::no, "8 not in the named cohort: main", [&] { (void)makeStudy(database, options); });
+  options.cohort = CohortInUse{"Pilot", {}};
+  expectRefusal(ExitCode::usage, "no cohort \"Pilot\" (there are: main, pilot)",
+                [&] { (void)makeStudy(database, options); });
+}
+
 TEST(Study, pageIsWatermarkedWhereItIsSynthetic) {
   const Folder folder;
   CohortDatabase database(folder.file("c.db"), Access::create);
   addPerformers(database);
-  const std::string page = studyHtml(makeStudy(database, performers));
+  const std::string page = pageHtml(studyDocument(makeStudy(database, performers)));
   EXPECT_NE(page.find("<title>SYNTHETIC"), std::string::npos);
   EXPECT_NE(page.find("class=\"behind\""), std::string::npos);
   std::size_t figures = 0, marks = 0;

@@ -10,6 +10,7 @@
 
 #include "analytics/report/box_plot.h"
 #include "analytics/report/html_text.h"
+#include "analytics/report/page_html.h"
 #include "analytics/report/text_table.h"
 
 namespace calot::analytics {
@@ -36,11 +37,11 @@ TEST(Html, escapesWhatWouldBeMarkup) {
 TEST(BoxPlot, hasTheQuartilesTheWhiskersAndEveryPoint) {
   // 1..9 and an outlier: type 7 quartiles 3.25, 5.5, 7.75; the whisker ends at 9, not at 30.
   const std::vector<double> a{1, 2, 3, 4, 5, 6, 7, 8, 9, 30}, b{4, 4};
-  const std::string svg = boxPlotSvg({.title = "a <b>", .axis = "mm", .groups = {"x", "y"}, .values = {a, b}});
+  const std::string svg = svgOf(*drawBoxPlot({.title = "a <b>", .axis = "mm", .groups = {"x", "y"}, .values = {a, b}}));
   EXPECT_NE(svg.find("a &lt;b&gt;"), std::string::npos);
   EXPECT_EQ(svg.find("<b>"), std::string::npos);
   EXPECT_EQ(svg.find("SYNTHETIC"), std::string::npos);
-  const std::vector<double> y = attributes(svg, R"re(<circle class="point" cx="[^"]*" cy="([^"]*)")re");
+  const std::vector<double> y = attributes(svg, R"re(<circle class="point [a-z]+" cx="[^"]*" cy="([^"]*)")re");
   ASSERT_EQ(y.size(), 12U);
   // The scale is linear: from the points 1 and 30 every other follows. Two decimals are printed.
   const double perUnit = (y[9] - y[0]) / 29.0;
@@ -48,8 +49,8 @@ TEST(BoxPlot, hasTheQuartilesTheWhiskersAndEveryPoint) {
   const auto expected = [&](double value) { return y[0] + (value - 1.0) * perUnit; };
   EXPECT_NEAR(y[4], expected(5.0), 0.02);
   EXPECT_NEAR(y[10], expected(4.0), 0.02);
-  const auto boxes = attributes(svg, R"re(<rect class="box" x="[^"]*" y="([^"]*)")re");
-  const auto heights = attributes(svg, R"re(<rect class="box" [^>]*height="([^"]*)")re");
+  const auto boxes = attributes(svg, R"re(<rect class="box [a-z]+" x="[^"]*" y="([^"]*)")re");
+  const auto heights = attributes(svg, R"re(<rect class="box [a-z]+" [^>]*height="([^"]*)")re");
   ASSERT_EQ(boxes.size(), 2U);
   EXPECT_NEAR(boxes[0], expected(7.75), 0.02);
   EXPECT_NEAR(heights[0], -4.5 * perUnit, 0.02);
@@ -67,9 +68,10 @@ TEST(BoxPlot, staysInsideItsFrameForAnyValues) {
     for (const double centre : {0.0, 5.0}) {
       std::vector<double> values(1 + random() % 30);
       for (double& v : values) v = (normal(random) + centre) * scale;
-      const std::string svg =
-          boxPlotSvg({.title = "t", .axis = "", .groups = {"x", "y"}, .values = {values, {}}, .synthetic = true});
-      ASSERT_FALSE(svg.empty());
+      const auto plot =
+          drawBoxPlot({.title = "t", .axis = "", .groups = {"x", "y"}, .values = {values, {}}, .synthetic = true});
+      ASSERT_TRUE(plot);
+      const std::string svg = svgOf(*plot);
       EXPECT_NE(svg.find(">SYNTHETIC<"), std::string::npos);
       EXPECT_EQ(svg.find("nan"), std::string::npos);
       EXPECT_EQ(svg.find("inf"), std::string::npos);
@@ -80,11 +82,41 @@ TEST(BoxPlot, staysInsideItsFrameForAnyValues) {
     }
   }
   const std::vector<double> none, huge{-1.7e308, 1.7e308}, same{3, 3, 3}, zero{0, 0};
-  EXPECT_EQ(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {none, none}}), "");
-  EXPECT_EQ(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {huge, none}}), "");
-  EXPECT_NE(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {same, zero}}), "");
-  EXPECT_NE(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {same, same}}), "");
-  EXPECT_NE(boxPlotSvg({.title = "", .axis = "", .groups = {}, .values = {zero, none}}), "");
+  EXPECT_FALSE(drawBoxPlot({.title = "", .axis = "", .groups = {}, .values = {none, none}}));
+  EXPECT_FALSE(drawBoxPlot({.title = "", .axis = "", .groups = {}, .values = {huge, none}}));
+  EXPECT_TRUE(drawBoxPlot({.title = "", .axis = "", .groups = {}, .values = {same, zero}}));
+  EXPECT_TRUE(drawBoxPlot({.title = "", .axis = "", .groups = {}, .values = {same, same}}));
+  EXPECT_TRUE(drawBoxPlot({.title = "", .axis = "", .groups = {}, .values = {zero, none}}));
+}
+
+TEST(Drawing, everyInkHasItsRuleInThePage) {
+  const std::string css = drawingCss();
+  for (std::uint8_t i = 0; i <= static_cast<std::uint8_t>(Ink::watermark); ++i) {
+    std::string selector = std::string(".") + styleOf(static_cast<Ink>(i)).name;
+    std::replace(selector.begin(), selector.end(), ' ', '.');
+    EXPECT_NE(css.find(selector + " {"), std::string::npos) << selector;
+  }
+  EXPECT_NE(css.find("stroke-dasharray"), std::string::npos) << "a pass mark is dashed";
+}
+
+TEST(Page, showsEveryPartEscaped) {
+  ReportDocument document{"a <title>", false, {}};
+  document.add("a & b");
+  document.addList({"<i>"});
+  document.parts.emplace_back(Paragraph{{"see ", {}}, {"there", "x\"y.h5#t=1,2"}});
+  document.parts.emplace_back(ReportTable{"T", {{"n", TextTable::Align::right}}, {{"<1>"}}});
+  const std::string page = pageHtml(document);
+  EXPECT_NE(page.find("<h1>a &lt;title&gt;</h1>"), std::string::npos);
+  EXPECT_NE(page.find("<p>a &amp; b</p>"), std::string::npos);
+  EXPECT_NE(page.find("<li>&lt;i&gt;</li>"), std::string::npos);
+  EXPECT_NE(page.find("see <a href=\"x&quot;y.h5#t=1,2\">there</a>"), std::string::npos);
+  EXPECT_NE(page.find("<td class=\"right\">&lt;1&gt;</td>"), std::string::npos);
+  EXPECT_EQ(page.find("SYNTHETIC"), std::string::npos);
+  document.synthetic = true;
+  const std::string marked = pageHtml(document);
+  std::size_t marks = 0;
+  for (std::size_t at = 0; (at = marked.find(watermarkText, at)) != std::string::npos; ++at) ++marks;
+  EXPECT_EQ(marks, 2U) << "at its beginning and at its end";
 }
 
 TEST(BoxPlot, ticksAreRoundAndWithin) {

@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
+#include <span>
 #include <sstream>
 
+#include "analytics/report/page_html.h"
 #include "analytics/report/study_output.h"
 #include "analytics/statistics/published_coverage.h"
 #include "recorder/errors.h"
@@ -163,13 +166,84 @@ TEST(TableStudy, fitsATerminalAndEscapesAPage) {
     EXPECT_LE(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; }), 120) << line;
   }
   EXPECT_NE(out.str().find("zero: no test, all values are equal"), std::string::npos);
-  const std::string page = studyHtml(study);
+  const std::string page = pageHtml(studyDocument(study));
   EXPECT_EQ(page.find("<img"), std::string::npos);
   EXPECT_EQ(page.find("<b>"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_NE(page.find("&lt;b&gt;first&lt;/b&gt; &amp; a long"), std::string::npos);
   EXPECT_NE(page.find("exploratory"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+/// What R's `sleep` would have been declared as.
+Protocol protocolOf(const std::string& change = "", const std::string& by = "") {
+  std::string text = R"({"format": "calot-protocol", "formatVersion": 1, "name": "sleep", "version": 1,
+    "title": "The second drug gives more sleep", "populations": [
+      {"group": "two", "definition": "who got the second drug"}, {"group": "one", "definition": "who got the first"}],
+    "better": "two", "unit": "participant", "attemptRule": "single", "exclusions": {"outcomes": [], "reasons": []},
+    "missing": "complete-cases", "level": 0.05, "hypotheses": [
+      {"outcome": "extra", "larger": "two", "primary": true},
+      {"checkpoint": "path-length", "subject": "left", "larger": "one", "primary": true}]})";
+  if (const std::size_t at = text.find(change); !change.empty() && at != std::string::npos)
+    text.replace(at, change.size(), by);
+  return parseProtocol(std::as_bytes(std::span(text)), "p.json");
+}
+
+TEST(TableStudy, aProtocolMakesTheChoices) {
+  TableStudyOptions options = optionsFor("extra");
+  options.outcomes.clear();
+  options.protocol = protocolOf();
+  const Study study = studyOf(sleep, options);
+  EXPECT_EQ(study.heading, "exploratory");
+  ASSERT_TRUE(study.protocol);
+  EXPECT_NE(study.protocol->whyExploratory.find("does not say when"), std::string::npos);
+  EXPECT_EQ(study.groups, (std::array<std::string, 2>{"two", "one"})) << "in the protocol's order";
+  ASSERT_EQ(study.rows.size(), 1U) << "the hypothesis that has a column";
+  const StudyRow& row = study.rows[0];
+  EXPECT_EQ(row.role, Role::primary);
+  EXPECT_EQ(row.hypothesis, Hypothesis::firstLarger);
+  EXPECT_NEAR(row.area->value.a, 0.745, 1e-12);
+  // Two primary hypotheses were declared; the one without a column counts as p = 1.
+  EXPECT_NEAR(*row.holm, 2 * 0.0658165364, 1e-9);
+  EXPECT_EQ(row.supported, false);
+  EXPECT_TRUE(std::any_of(study.remarks.begin(), study.remarks.end(), [](const std::string& r) {
+    return r.find("No outcome is path-length left") != std::string::npos;
+  }));
+  EXPECT_TRUE(study.protocol->deviations.empty());
+}
+
+TEST(TableStudy, aProtocolsFiguresAreColumnsByTheirName) {
+  std::string text = "id,drug,path-length left,extra\n";
+  for (int i = 0; i < 12; ++i) text += fmt::format("{},{},{},{}\n", i, i % 2 == 0 ? "one" : "two", 100 - i, i * i % 7);
+  TableStudyOptions options = optionsFor("extra");
+  options.protocol = protocolOf();
+  options.outcomes = {"path-length left:lower", "extra"};
+  const Study study = studyOf(text, options);
+  ASSERT_EQ(study.rows.size(), 2U);
+  EXPECT_EQ(study.rows[0].role, Role::primary);
+  EXPECT_EQ(study.rows[0].hypothesis, Hypothesis::firstSmaller) << "\"larger\": \"one\", which is second";
+  EXPECT_EQ(study.rows[1].role, Role::primary);
+  options.outcomes = {"path-length left"};
+  options.protocol = protocolOf("\"complete-cases\"", "\"worst-rank\"");
+  const Study other = studyOf(text, options);
+  ASSERT_EQ(other.protocol->deviations.size(), 1U);
+  EXPECT_NE(other.protocol->deviations[0].find("could not be applied"), std::string::npos);
+}
+
+TEST(TableStudy, whatAProtocolOfATableIsRefusedFor) {
+  TableStudyOptions options = optionsFor("extra");
+  options.outcomes.clear();
+  options.protocol = protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"other\"");
+  expectRefusal(ExitCode::usage, "no column for any hypothesis", [&] { (void)studyOf(sleep, options); });
+  expectRefusal(ExitCode::damaged, "none of the populations' groups",
+                [] { (void)protocolOf("\"group\": \"one\"", "\"group\": \"three\""); });
+  expectRefusal(ExitCode::damaged, "either \"checkpoint\" or",
+                [] { (void)protocolOf("\"outcome\": \"extra\", ", ""); });
+  expectRefusal(ExitCode::damaged, "either \"checkpoint\" or", [] {
+    (void)protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"extra\", \"checkpoint\": \"elapsed-time\"");
+  });
+  expectRefusal(ExitCode::damaged, "an outcome has none",
+                [] { (void)protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"extra\", \"subject\": \"left\""); });
 }
 
 }  // namespace

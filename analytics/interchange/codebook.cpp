@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/interchange/codebook.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analytics/checkpoints/registry.h"
+#include "analytics/interchange/column_notes.h"
+#include "analytics/report/csv_cells.h"
+#include "recorder/attempt.h"
+
+namespace calot::analytics {
+namespace {
+
+std::string typeWord(const std::string& type) {
+  if (type == "INTEGER") return "whole number";
+  if (type == "REAL") return "number";
+  return type == "BLOB" ? "bytes in hexadecimal" : "text";
+}
+
+}  // namespace
+
+std::vector<CodebookEntry> checkpointEntries() {
+  std::vector<CodebookEntry> entries;
+  for (const CheckpointEntry& known : checkpointRegistry()) {
+    const CheckpointDefinition& d = known.definition;
+    CodebookEntry e;
+    e.table = "checkpoint";
+    e.name = d.name;
+    e.title = d.title;
+    e.type = "number";
+    e.unit = d.unit;
+    e.allowed = "finite";
+    e.missing =
+        "availability 1: the question has no answer for this attempt; 2: what is recorded does not give it; "
+        "the value is empty and a reason stands beside it";
+    e.direction = nameOf(d.direction);
+    e.window = d.window;
+    e.subjects = fmt::format("each {}{}{}", nameOf(d.aggregation), d.instruments.empty() ? "" : "; ", d.instruments);
+    e.formula = d.definition;
+    e.filter = d.filter;
+    for (const Origin origin : d.origins) e.origins += (e.origins.empty() ? "" : ", ") + nameOf(origin);
+    e.version = d.version;
+    entries.push_back(std::move(e));
+  }
+  return entries;
+}
+
+std::vector<CodebookEntry> columnEntries(const std::vector<TableColumns>& tables) {
+  std::vector<CodebookEntry> entries;
+  for (const TableColumns& table : tables) {
+    for (const auto& [name, type] : table.columns) {
+      CodebookEntry e;
+      e.table = table.table;
+      e.name = name;
+      e.type = typeWord(type);
+      if (const ColumnNote* note = noteOn(table.table, name)) {
+        e.title = note->title;
+        e.unit = note->unit;
+        e.allowed = note->allowed;
+        e.missing = note->missing;
+      }
+      entries.push_back(std::move(e));
+    }
+  }
+  return entries;
+}
+
+std::string codebookCsv(const std::vector<CodebookEntry>& entries) {
+  std::string text = csvLine({"table", "name", "title", "type", "unit", "allowed", "missing", "direction", "window",
+                              "subjects", "formula", "filter", "origins", "version"});
+  for (const CodebookEntry& e : entries) {
+    text += csvLine({e.table, e.name, e.title, e.type, e.unit, e.allowed, e.missing, e.direction, e.window, e.subjects,
+                     e.formula, e.filter, e.origins, e.version == 0 ? "" : fmt::format("{}", e.version)});
+  }
+  return text;
+}
+
+std::string codebookJson(const std::vector<CodebookEntry>& entries) {
+  using Json = nlohmann::ordered_json;
+  Json variables = Json::array();
+  for (const CodebookEntry& e : entries) {
+    Json variable{{"table", e.table}, {"name", e.name},       {"title", e.title},    {"type", e.type},
+                  {"unit", e.unit},   {"allowed", e.allowed}, {"missing", e.missing}};
+    if (e.version > 0) {
+      variable.update(Json{{"direction", e.direction},
+                           {"window", e.window},
+                           {"subjects", e.subjects},
+                           {"formula", e.formula},
+                           {"filter", e.filter},
+                           {"origins", e.origins},
+                           {"version", e.version}});
+    }
+    variables.push_back(std::move(variable));
+  }
+  return Json{{"format", "calot-codebook"},
+              {"formatVersion", 1},
+              {"made_by", recorder::softwareName()},
+              {"variables", variables}}
+             .dump(1, ' ', false, Json::error_handler_t::replace) +
+         "\n";
+}
+
+}  // namespace calot::analytics

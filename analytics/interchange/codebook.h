@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What each variable of an export means, for who reads it without this program.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace calot::analytics {
+
+/// A variable: a checkpoint (a row of `checkpoint_value`, or of a bundle's values.csv), or a column of a table.
+struct CodebookEntry {
+  std::string table;      ///< file without ending; of a checkpoint "checkpoint"
+  std::string name;       ///< of the column or the checkpoint
+  std::string title;      ///< what it is, a clause
+  std::string type;       ///< "number", "whole number", "text", "bytes in hexadecimal"
+  std::string unit;       ///< SI, or empty
+  std::string allowed;    ///< values that it may have, or empty: any of its type
+  std::string missing;    ///< how it is written that there is none, or empty: there always is one
+  std::string direction;  ///< of a checkpoint: which way is better
+  std::string window;     ///< of a checkpoint: the part of the attempt that it covers
+  std::string subjects;   ///< of a checkpoint: what it is given for, and how instruments are joined
+  std::string formula;    ///< of a checkpoint
+  std::string filter;     ///< of a checkpoint: resampling and filter with their constants
+  std::string origins;    ///< of a checkpoint: what it may be computed from
+  std::uint32_t version = 0;
+};
+
+/// Every checkpoint of the registry, in its order.
+std::vector<CodebookEntry> checkpointEntries();
+
+/// Columns of a table as they stand in the file. What nothing is known of has an empty title.
+struct TableColumns {
+  std::string table;
+  std::vector<std::pair<std::string, std::string>> columns;  ///< name and SQLite's type
+};
+std::vector<CodebookEntry> columnEntries(const std::vector<TableColumns>& tables);
+
+std::string codebookCsv(const std::vector<CodebookEntry>& entries);
+std::string codebookJson(const std::vector<CodebookEntry>& entries);
+
+}  // namespace calot::analytics

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/interchange/cohort_bundle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
+
+#include "analytics/cohort/withdraw.h"
+#include "analytics/interchange/bundle_source.h"
+#include "analytics/interchange/codebook.h"
+#include "analytics/interchange/date_shift.h"
+#include "analytics/interchange/new_names.h"
+#include "analytics/report/csv_cells.h"
+#include "recorder/attempt.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_words.h"
+#include "recorder/words.h"
+
+namespace calot::analytics {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t fewest = 3;  ///< participants who must share a word of experience
+
+/// An attempt that is handed out, under its new names.
+struct Handed {
+  const AttemptRow* attempt;
+  std::string name, participant, start;
+};
+
+std::string uintText(std::uint64_t n) { return fmt::format("{}", n); }
+
+class Writer {
+ public:
+  Writer(const BundleSource& source, const BundleOptions& options, std::vector<const AttemptRow*> taken)
+      : source_(source),
+        options_(options),
+        originals_(originalsOf(source)),
+        vocabulary_(vocabularyOf(source)),
+        names_(originals_) {
+    std::map<std::string, std::int64_t> shift;
+    for (const AttemptRow* a : taken) {
+      const std::string& whose = a->participant.empty() ? a->uuid : a->participant;
+      if (shift.count(whose) == 0) shift[whose] = drawShift();
+      handed_.push_back(
+          {a, names_.random("A", a->uuid), names_.random("P", a->participant), shiftedUtc(a->startUtc, shift[whose])});
+      nameOfAttempt_[a->uuid] = handed_.back().name;
+      if (!a->participant.empty())
+        people_[names_.random("P", a->participant)] = &source.participants.at(a->participant);
+    }
+    std::sort(handed_.begin(), handed_.end(), [](const Handed& a, const Handed& b) {
+      return std::tie(a.participant, a.start, a.name) < std::tie(b.participant, b.start, b.name);
+    });
+  }
+
+  void write(FolderOutput& output, Bundle& bundle) {
+    put(output, "participants.csv", participants(bundle));
+    put(output, "experience.csv", experience());
+    put(output, "attempts.csv", attempts());
+    put(output, "values.csv", values(bundle));
+    put(output, "ratings.csv", ratings());
+    put(output, "questionnaires.csv", questionnaires());
+    std::vector<CodebookEntry> entries = columnEntries(columns_);
+    for (CodebookEntry& e : checkpointEntries()) entries.push_back(std::move(e));
+    output.add("codebook.csv", codebookCsv(entries));
+    output.add("codebook.json", codebookJson(entries));
+    bundle.participants = people_.size();
+    bundle.attempts = handed_.size();
+    bundle.files = output.files();
+    put(output, "manifest.json", manifest(bundle));
+  }
+
+ private:
+  using Columns = std::vector<std::pair<std::string, std::string>>;
+
+  /// The head of a table, whose columns the codebook then explains.
+  std::string head(const char* table, Columns columns) {
+    std::vector<std::string> names;
+    for (const auto& column : columns) names.push_back(column.first);
+    columns_.push_back({table, std::move(columns)});
+    return csvLine(names);
+  }
+
+  void put(FolderOutput& output, const std::string& name, const std::string& text) {
+    if (const std::string kind = originals_.firstIn(text, vocabulary_); !kind.empty()) {
+      throw Error(ExitCode::no,
+                  fmt::format("{} would hold {} as it is in the database; nothing is handed out. Look for "
+                              "it among groups, arms, criteria of experience and reasons",
+                              name, kind));
+    }
+    output.add(name, text);
+  }
+
+  std::string participants(Bundle& bundle) {
+    std::string text =
+        head("participants", {{"participant", "TEXT"}, {"group", "TEXT"}, {"arm", "TEXT"}, {"site", "TEXT"}});
+    std::map<std::tuple<std::string, std::string, std::string>, std::uint64_t> alike;
+    for (const auto& [name, p] : people_) {
+      text += csvLine({name, p->group, p->arm, names_.numbered("site ", p->site)});
+      ++alike[{p->group, p->arm, p->site}];
+    }
+    for (const auto& [what, count] : alike)
+      bundle.smallest = bundle.smallest == 0 ? count : std::min(bundle.smallest, count);
+    return text;
+  }
+
+  std::string experience() {
+    std::string text = head("experience", {{"participant", "TEXT"}, {"criterion", "TEXT"}, {"value", "TEXT"}});
+    std::map<std::pair<std::string, std::string>, std::uint64_t> shared;
+    for (const auto& [name, p] : people_) {
+      for (const auto& item : p->experience) ++shared[item];
+    }
+    for (const auto& [name, p] : people_) {
+      for (const auto& item : p->experience) {
+        std::string fault;
+        (void)recorder::readFiniteNumber(item.second, fault);
+        const bool known = fault.empty() || shared[item] >= fewest;
+        text += csvLine({name, item.first, known ? item.second : "(withheld)"});
+      }
+    }
+    return text;
+  }
+
+  std::string attempts() {
+    std::string text = head("attempts", {{"attempt", "TEXT"},
+                                         {"participant", "TEXT"},
+                                         {"parent", "TEXT"},
+                                         {"start_shifted", "TEXT"},
+                                         {"scene", "TEXT"},
+                                         {"scene_version", "INTEGER"},
+                                         {"operator", "TEXT"},
+                                         {"profile", "TEXT"},
+                                         {"mode", "TEXT"},
+                                         {"outcome", "TEXT"},
+                                         {"device", "TEXT"},
+                                         {"calibration", "TEXT"},
+                                         {"simulation_version", "INTEGER"},
+                                         {"comparability_key", "TEXT"},
+                                         {"steps", "INTEGER"},
+                                         {"step_seconds", "REAL"},
+                                         {"verdict", "TEXT"},
+                                         {"synthetic", "INTEGER"}});
+    for (const Handed& h : handed_) {
+      const AttemptRow& a = *h.attempt;
+      const auto parent = nameOfAttempt_.find(a.parent);
+      text += csvLine({h.name, h.participant, parent == nameOfAttempt_.end() ? "" : parent->second, h.start, a.scene,
+                       uintText(a.sceneMajor), recorder::wordFor(a.operatorKind), a.profile, recorder::wordFor(a.mode),
+                       recorder::wordFor(a.outcome), a.device, names_.numbered("calibration ", a.calibration),
+                       uintText(a.simulationVersion), names_.numbered("key ", a.comparabilityKey), uintText(a.steps),
+                       fmt::format("{}", a.stepSeconds), nameOf(a.verification.verdict), a.synthetic ? "1" : "0"});
+    }
+    return text;
+  }
+
+  std::string values(Bundle& bundle) {
+    std::string text = head("values", {{"attempt", "TEXT"},
+                                       {"checkpoint", "TEXT"},
+                                       {"subject", "TEXT"},
+                                       {"version", "INTEGER"},
+                                       {"availability", "INTEGER"},
+                                       {"value", "REAL"},
+                                       {"reason", "TEXT"},
+                                       {"unit", "TEXT"},
+                                       {"origin", "TEXT"},
+                                       {"filter", "TEXT"}});
+    for (const Handed& h : handed_) {
+      const auto list = source_.values.find(h.attempt->uuid);
+      if (list == source_.values.end()) continue;
+      for (const CheckpointValue& v : list->second) {
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", h.name, csvCell(v.name), csvCell(v.subject), v.version,
+                            static_cast<int>(v.availability), v.value ? fmt::format("{}", *v.value) : "",
+                            csvCell(v.reason), csvCell(v.unit), csvCell(nameOf(v.origin)), csvCell(v.filter));
+        ++bundle.values;
+      }
+    }
+    return text;
+  }
+
+  std::string ratings() {
+    std::string text = head(
+        "ratings", {{"form", "TEXT"}, {"attempt", "TEXT"}, {"rater", "TEXT"}, {"item", "TEXT"}, {"score", "INTEGER"}});
+    std::vector<std::vector<std::string>> lines;
+    for (const Rating& r : source_.ratings) {
+      const auto at = nameOfAttempt_.find(r.attempt);
+      if (at == nameOfAttempt_.end()) continue;
+      for (const auto& [item, score] : r.answers)
+        lines.push_back({formOf(r), at->second, names_.random("R", r.rater), item, fmt::format("{}", score)});
+    }
+    return text + sorted(std::move(lines));
+  }
+
+  std::string questionnaires() {
+    std::string text =
+        head("questionnaires", {{"form", "TEXT"}, {"participant", "TEXT"}, {"item", "TEXT"}, {"score", "INTEGER"}});
+    std::map<std::string, std::string> nameOfPerson;
+    for (const auto& [name, p] : people_) nameOfPerson[p->pseudonym] = name;
+    std::vector<std::vector<std::string>> lines;
+    for (const Rating& r : source_.ratings) {
+      const auto at = nameOfPerson.find(r.participant);
+      if (!r.attempt.empty() || at == nameOfPerson.end()) continue;
+      for (const auto& [item, score] : r.answers)
+        lines.push_back({formOf(r), at->second, item, fmt::format("{}", score)});
+    }
+    return text + sorted(std::move(lines));
+  }
+
+  static std::string formOf(const Rating& r) { return fmt::format("{} {}", r.form, r.formVersion); }
+
+  /// In the order of the new names, for the old ones' would tell.
+  static std::string sorted(std::vector<std::vector<std::string>> lines) {
+    std::sort(lines.begin(), lines.end());
+    std::string text;
+    for (const auto& line : lines) text += csvLine(line);
+    return text;
+  }
+
+  std::string manifest(const Bundle& bundle) const {
+    Json leftOut = Json::array(), files = Json::array();
+    for (const FlowRow& row : bundle.leftOut) leftOut.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
+    for (const WrittenFile& f : bundle.files)
+      files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+    const bool synthetic =
+        std::any_of(handed_.begin(), handed_.end(), [](const Handed& h) { return h.attempt->synthetic; });
+    return Json{{"format", "calot-bundle"},
+                {"formatVersion", 1},
+                {"made_by", recorder::softwareName()},
+                {"scope", options_.scope},
+                {"watermark", synthetic ? "SYNTHETIC" : ""},
+                {"participants", bundle.participants},
+                {"attempts", bundle.attempts},
+                {"values", bundle.values},
+                {"recruited", bundle.recruited},
+                {"left_out", leftOut},
+                {"smallest_group", bundle.smallest},
+                {"names",
+                 "pseudonyms, attempts and raters have random names that were drawn for this bundle and are "
+                 "kept nowhere; sites, calibrations and comparability keys are numbered"},
+                {"dates",
+                 "starts are moved by one random length of time a participant, 30 to 365 days earlier or "
+                 "later, kept nowhere; what lies between a participant's attempts is true"},
+                {"withheld",
+                 "stations, keys, seeds, chain heads, file names, notes, reasons of exclusion, audit, "
+                 "protocols, norms; words of experience that fewer than three participants share"},
+                {"recordings",
+                 "none: they hold pseudonym, start and station under a content chain that a rewritten "
+                 "copy would no longer have, and motion by which a person may be known again"},
+                {"files", files}}
+               .dump(2, ' ', false, Json::error_handler_t::replace) +
+           "\n";
+  }
+
+  const BundleSource& source_;
+  const BundleOptions& options_;
+  OriginalNames originals_;
+  std::set<std::string> vocabulary_;
+  NewNames names_;
+  std::vector<Handed> handed_;                        ///< by new names
+  std::map<std::string, std::string> nameOfAttempt_;  ///< by uuid
+  std::map<std::string, const Participant*> people_;  ///< by new name
+  std::vector<TableColumns> columns_;
+};
+
+}  // namespace
+
+Bundle writeBundle(const std::string& database, const std::string& folder, const BundleOptions& options) {
+  FolderOutput output(folder);
+  const BundleSource source = readBundleSource(database);
+  Bundle bundle;
+  bundle.recruited = source.attempts.size();
+  std::vector<std::uint64_t> left(bundleReasons().size());
+  std::vector<const AttemptRow*> taken;
+  for (const AttemptRow& a : source.attempts) {
+    const std::size_t why = whyLeftOut(a, source, options);
+    if (why < left.size()) {
+      ++left[why];
+    } else {
+      taken.push_back(&a);
+    }
+  }
+  std::string list;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (left[i] == 0) continue;
+    bundle.leftOut.push_back({bundleReasons()[i], left[i]});
+    list += fmt::format("{}{} {}", list.empty() ? ": " : ", ", left[i], bundleReasons()[i]);
+  }
+  if (taken.empty())
+    throw Error(ExitCode::no,
+                fmt::format("{}: none of {} attempts can be handed out{}", database, bundle.recruited, list));
+  Writer(source, options, taken).write(output, bundle);
+  std::vector<std::string> uuids;
+  for (const AttemptRow* a : taken) uuids.push_back(a->uuid);
+  // An attempt that was withdrawn since it was read is not there any more: then nothing is handed out.
+  recordExport(database, "bundle", folder, uuids);
+  output.finish();
+  bundle.files = output.files();
+  return bundle;
+}
+
+}  // namespace calot::analytics

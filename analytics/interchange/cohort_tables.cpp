@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/interchange/cohort_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "analytics/cohort/connection.h"
+#include "analytics/cohort/row_cells.h"
+#include "analytics/cohort/withdraw.h"
+#include "analytics/interchange/codebook.h"
+#include "analytics/interchange/folder_output.h"
+#include "analytics/report/csv_cells.h"
+
+namespace calot::analytics {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string csvOf(const Cell& cell) {
+  if (const auto* s = std::get_if<std::string>(&cell)) return csvCell(*s);
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *i);
+  if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
+  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
+  return {};
+}
+
+Json jsonOf(const Cell& cell) {
+  if (const auto* s = std::get_if<std::string>(&cell)) return *s;
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) return *i;
+  if (const auto* d = std::get_if<double>(&cell)) return *d;
+  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
+  return nullptr;
+}
+
+std::string csvOf(const TableFacts& table, const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const ColumnFacts& c : table.columns) names.push_back(c.name);
+  std::string text = csvLine(names);
+  for (const Row& row : rows) {
+    for (const ColumnFacts& c : table.columns) {
+      text += csvOf(row.at(c.name));
+      text += ',';
+    }
+    text.back() = '\n';
+  }
+  return text;
+}
+
+/// A row a line, so that large tables can be looked through.
+std::string jsonOf(const TableFacts& table, const std::vector<Row>& rows) {
+  std::string text = "[";
+  for (const Row& row : rows) {
+    Json object = Json::object();
+    for (const ColumnFacts& c : table.columns) object[c.name] = jsonOf(row.at(c.name));
+    text += text.size() == 1 ? "\n" : ",\n";
+    text += object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  return text + "\n]\n";
+}
+
+}  // namespace
+
+std::vector<ExportedTable> exportCohort(const std::string& database, const std::string& folder) {
+  FolderOutput output(folder);
+  std::vector<ExportedTable> written;
+  std::vector<std::string> attempts;
+  guarded(database, [&] {
+    const auto db = openCohort(database, CohortDatabase::Access::read, std::chrono::seconds(10));
+    SQLite::Transaction reading(*db);
+    std::vector<TableColumns> columns;
+    for (const TableFacts& table : readTables(*db)) {
+      const std::vector<Row> rows = readRows(*db, table);
+      output.add(table.name + ".csv", csvOf(table, rows));
+      output.add(table.name + ".json", jsonOf(table, rows));
+      TableColumns& c = columns.emplace_back();
+      c.table = table.name;
+      for (const ColumnFacts& column : table.columns) c.columns.emplace_back(column.name, column.type);
+      written.push_back({table.name, rows.size()});
+      if (table.name != "attempt") continue;
+      for (const Row& row : rows) attempts.push_back(textOf(row.at("uuid")));
+    }
+    std::vector<CodebookEntry> entries = columnEntries(columns);
+    for (CodebookEntry& e : checkpointEntries()) entries.push_back(std::move(e));
+    output.add("codebook.csv", codebookCsv(entries));
+    output.add("codebook.json", codebookJson(entries));
+  });
+  recordExport(database, "cohort-export", folder, attempts);
+  output.finish();
+  return written;
+}
+
+}  // namespace calot::analytics

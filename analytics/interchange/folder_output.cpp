@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/interchange/folder_output.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX
+
+#include <cerrno>
+#include <cstring>
+#include <span>
+#include <system_error>
+
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/text_output.h"
+
+namespace calot::analytics {
+namespace fs = std::filesystem;
+
+FolderOutput::FolderOutput(const fs::path& path) : path_(path) {
+  if (path_.filename().empty()) path_ = path_.parent_path();  // "out/"
+  std::error_code ignored;
+  if (path_.empty() || fs::exists(fs::symlink_status(path_, ignored)))
+    throw Error(ExitCode::usage, fmt::format("{}: already exists; name a folder that does not", path.string()));
+  const fs::path above = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
+  if (!fs::is_directory(above, ignored))
+    throw Error(ExitCode::usage, fmt::format("{}: folder {} does not exist", path.string(), above.string()));
+  std::string pattern = path_.string() + ".part-XXXXXX";
+  if (::mkdtemp(pattern.data()) == nullptr)
+    throw Error(ExitCode::failure, fmt::format("{}: cannot be made: {}", path_.string(), std::strerror(errno)));
+  temporary_ = pattern;
+}
+
+FolderOutput::~FolderOutput() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+}
+
+void FolderOutput::add(const std::string& name, std::string_view text) {
+  recorder::writeText(temporary_ / name, text, false);
+  files_.push_back({name, text.size(), recorder::sha256Hex(std::as_bytes(std::span(text)))});
+}
+
+void FolderOutput::finish() {
+  std::error_code error;
+  fs::rename(temporary_, path_, error);
+  if (error) throw Error(ExitCode::failure, fmt::format("{}: cannot be named: {}", path_.string(), error.message()));
+  temporary_.clear();
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A report as its parts in order: a page (page_html.h) and paper (gui/report) show the same.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "analytics/report/drawing.h"
+#include "analytics/report/report_table.h"
+
+namespace calot::analytics {
+
+struct TextSpan {
+  std::string text;
+  std::string link;  ///< where it leads, or empty
+};
+using Paragraph = std::vector<TextSpan>;
+
+struct Heading {
+  std::string text;
+};
+struct BulletList {
+  std::vector<Paragraph> items;
+};
+struct Figures {
+  std::vector<Drawing> drawings;
+};
+
+struct ReportDocument {
+  std::string title;
+  bool synthetic = false;  ///< watermarked: performers' figures are in it
+  std::vector<std::variant<Heading, Paragraph, BulletList, ReportTable, Figures>> parts;
+
+  void add(std::string paragraph) { parts.emplace_back(Paragraph{{std::move(paragraph), {}}}); }
+  void addList(const std::vector<std::string>& items) {
+    BulletList list;
+    for (const std::string& item : items) list.items.push_back({{item, {}}});
+    parts.emplace_back(std::move(list));
+  }
+};
+
+/// What stands over everything that performers' figures are in.
+inline constexpr const char* watermarkText = "SYNTHETIC: made by performers, says nothing about people";
+
+}  // namespace calot::analytics

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "analytics/report/box_plot.h"
+#include "analytics/report/score_plot.h"
+#include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
+
+namespace calot::analytics {
+namespace {
+
+Figures boxPlots(const Study& study) {
+  Figures figures;
+  for (const StudyRow& row : study.rows) {
+    if (auto plot = drawBoxPlot({.title = rowName(row),
+                                 .axis = row.unit == "1" ? "" : row.unit,
+                                 .groups = study.groups,
+                                 .values = {row.values[0], row.values[1]},
+                                 .synthetic = study.synthetic}))
+      figures.drawings.push_back(std::move(*plot));
+  }
+  return figures;
+}
+
+Figures scorePlots(const Study& study) {
+  Figures figures;
+  for (const FormReport& form : study.ratings) {
+    for (Drawing& drawing : drawScores(form, study.synthetic)) figures.drawings.push_back(std::move(drawing));
+  }
+  return figures;
+}
+
+}  // namespace
+
+ReportDocument studyDocument(const Study& study) {
+  ReportDocument document{studyTitle(study), study.synthetic, {}};
+  document.add(study.where);
+  for (const std::string& line : protocolLines(study)) document.add(line);
+  document.parts.emplace_back(flowTable(study));
+  for (ReportTable& table : studyTables(study)) document.parts.emplace_back(std::move(table));
+  document.parts.emplace_back(Heading{"Notes"});
+  document.addList(studyNotes(study));
+  document.add(studyMethods(study));
+  if (Figures figures = boxPlots(study); !figures.drawings.empty()) {
+    document.parts.emplace_back(Heading{"Figures"});
+    document.add(
+        "Box: quartiles and median; whiskers: the outermost values within 1.5 times the box's height; a point for each "
+        "participant.");
+    document.parts.emplace_back(std::move(figures));
+  }
+  if (Figures figures = scorePlots(study); !figures.drawings.empty()) {
+    document.parts.emplace_back(Heading{"Scores"});
+    document.add("Of each item and group the share of each score among those given, and in it how often it was given.");
+    document.parts.emplace_back(std::move(figures));
+  }
+  return document;
+}
+
+}  // namespace calot::analytics

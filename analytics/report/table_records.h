@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a study needs of a table's cells, checked.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/report/csv_table.h"
+#include "analytics/report/table_study.h"
+
+namespace calot::analytics {
+
+/// A column that is compared.
+struct Outcome {
+  std::string name;
+  Direction direction = Direction::none;
+  std::size_t column = 0;
+};
+
+/// What the study needs of one row.
+struct Record {
+  std::size_t line = 0;
+  std::string participant, group, occasion;
+  std::vector<std::optional<double>> values;  ///< by outcome
+};
+
+/// @throws Error 2 for a column that is not there or is named twice, or a word behind the colon that is none.
+std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options);
+
+/// @throws Error 2 for a column that is not there; Error 4, naming line and column, for a row without participant or
+/// occasion, a name with control characters, a cell that is no finite number.
+std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
+                              const std::vector<Outcome>& outcomes);
+
+/// @throws Error 2 where an occasion is named that no row has.
+void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion);
+
+}  // namespace calot::analytics

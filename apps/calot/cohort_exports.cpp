@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/calot/cohort_exports.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "analytics/interchange/cohort_bundle.h"
+#include "analytics/interchange/cohort_tables.h"
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string cohort, folder;
+  analytics::BundleOptions bundle;
+  bool json = false;
+};
+
+int exportTables(const Options& o) {
+  const std::vector<analytics::ExportedTable> tables = analytics::exportCohort(o.cohort, o.folder);
+  Json list = Json::array();
+  for (const analytics::ExportedTable& t : tables) {
+    if (o.json) {
+      list.push_back({{"table", t.name}, {"rows", t.rows}});
+    } else {
+      std::cout << fmt::format("{:<24}{} rows\n", t.name, t.rows);
+    }
+  }
+  if (o.json) std::cout << list.dump(2) << '\n';
+  return static_cast<int>(ExitCode::yes);
+}
+
+int handOut(const Options& o) {
+  const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle);
+  if (o.json) {
+    Json left = Json::array(), files = Json::array();
+    for (const auto& row : b.leftOut) left.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
+    for (const auto& f : b.files) files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+    const Json all{{"participants", b.participants},
+                   {"attempts", b.attempts},
+                   {"values", b.values},
+                   {"recruited", b.recruited},
+                   {"left_out", left},
+                   {"smallest_group", b.smallest},
+                   {"files", files}};
+    std::cout << all.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    return static_cast<int>(ExitCode::yes);
+  }
+  std::cout << fmt::format("{}: {} of {} attempts, of {} participants, {} values\n", o.folder, b.attempts, b.recruited,
+                           b.participants, b.values);
+  for (const auto& row : b.leftOut) std::cout << fmt::format("{} attempts left out: {}\n", row.attempts, row.reason);
+  if (b.participants > 0)
+    std::cout << fmt::format(
+        "The smallest group that shares group, arm and site is of {}: look whether its members "
+        "can be known by that and their experience.\n",
+        b.smallest);
+  return static_cast<int>(ExitCode::yes);
+}
+
+CLI::App* addOne(CLI::App& parent, Run& run, const char* name, const char* help, const std::shared_ptr<Options>& o,
+                 int (*work)(const Options&)) {
+  CLI::App* command = parent.add_subcommand(name, help);
+  command->add_option("cohort", o->cohort, "Cohort database")->required();
+  command->add_option("-o,--output", o->folder, "Folder to make; it must not be there yet")->required();
+  command->add_flag("--json", o->json, "Print JSON");
+  command->callback([o, work, &run] { run = [o, work] { return work(*o); }; });
+  return command;
+}
+
+}  // namespace
+
+void addCohortExports(CLI::App& parent, Run& run) {
+  addOne(parent, run, "export", "Write every table as CSV and JSON, with a codebook; names and dates as they are",
+         std::make_shared<Options>(), exportTables);
+  const auto o = std::make_shared<Options>();
+  CLI::App* bundle =
+      addOne(parent, run, "bundle", "Write what was measured for others, de-identified, with a manifest", o, handOut);
+  bundle->add_option("--scope", o->bundle.scope, "Purpose to which participants have consented; others stay out")
+      ->capture_default_str();
+  bundle->add_flag("--include-synthetic", o->bundle.includeSynthetic, "Take in what performers made");
+}
+
+}  // namespace calot::apps

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the words of `calot power` to the study that is simulated.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "analytics/statistics/power.h"
+#include "apps/calot/study_options.h"
+
+namespace calot::apps {
+
+inline constexpr std::size_t mostPeople = 500;  ///< in a group
+
+/// What the command line says.
+struct PowerOptions {
+  StudySource source;
+  std::vector<std::string> checkpoints;
+  std::vector<double> effects;
+  std::string sizes = "5:30:5", shape = "normal", adjustment = "holm", seed = "1";
+  double allocation = 1.0, correlation = 0.0, step = 0.0, level = 0.05, target = 0.8;
+  std::uint64_t simulations = 0;
+  bool json = false;
+};
+
+/// A study to be planned, without its sizes.
+struct PlannedStudy {
+  analytics::PowerPlan plan;
+  std::vector<std::string> names;  ///< of its checkpoints
+  std::array<std::string, 2> groups{"first group", "second group"};
+  std::string origin;  ///< where the distributions are from, a sentence
+  bool synthetic = false;
+};
+
+/// @throws Error (usage) "power: WHAT".
+[[noreturn]] void failPower(const std::string& what);
+
+/// "5:30:5", "12" or "8,10,15": people in the first group. @throws Error (usage)
+std::vector<std::size_t> sizesOf(const std::string& text);
+
+/// @throws Error (usage) for words that say nothing or too much, and as studyOf().
+PlannedStudy planOf(PowerOptions& options);
+
+}  // namespace calot::apps

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/report/text_document.h"
+
+#include <algorithm>
+#include <QAbstractTextDocumentLayout>
+#include <QFontMetricsF>
+#include <QGuiApplication>
+#include <QTextBlock>
+#include <QTextCursor>
+#include <QTextFrame>
+#include <QTextList>
+#include <QTextTable>
+
+#include "gui/report/drawing_painter.h"
+
+namespace calot::gui {
+namespace {
+
+using analytics::Paragraph;
+
+constexpr int figureObject = QTextFormat::UserObject + 1, figureNumber = QTextFormat::UserProperty + 1;
+constexpr double textPoints = 8.5, tablePoints = 7.5, headingPoints = 11.0, titlePoints = 15.0;
+constexpr double figureMillimetres = 84.0;  // of a figure as wide as a box plot: two stand side by side
+constexpr double usualWidth = 320.0;        // in the drawing's units
+// In millimetres: between text and border; what a line needs beyond its letters; the narrowest column of words.
+constexpr double cellPadding = 0.6, aroundText = 1.0, leastWidth = 12.0;
+
+/// Margins, borders and columns are given for a screen of 96 dots an inch, from which Qt turns them into the device's.
+double length(double millimetres) { return millimetres * 96.0 / 25.4; }
+
+QTextCharFormat letters(double points, bool bold = false) {
+  QTextCharFormat format;
+  format.setFontPointSize(points);
+  if (bold) format.setFontWeight(QFont::Bold);
+  return format;
+}
+
+}  // namespace
+
+struct ReportTextDocument::Writer {
+  ReportTextDocument& document;
+  QTextCursor cursor{&document};
+
+  QTextBlockFormat block(double above, double below) const {
+    QTextBlockFormat format;
+    format.setTopMargin(length(above));
+    format.setBottomMargin(length(below));
+    return format;
+  }
+
+  /// The first block is there already, as is the one behind a table.
+  void begin(const QTextBlockFormat& format, const QTextCharFormat& ink) {
+    const bool fresh = cursor.block().length() == 1;
+    if (fresh) {
+      cursor.setBlockFormat(format);
+      cursor.setBlockCharFormat(ink);
+    } else {
+      cursor.insertBlock(format, ink);
+    }
+  }
+
+  void spans(const Paragraph& paragraph, const QTextCharFormat& ink) {
+    for (const analytics::TextSpan& span : paragraph) {
+      QTextCharFormat format = ink;
+      if (!span.link.empty()) {
+        format.setAnchor(true);
+        format.setAnchorHref(QString::fromStdString(span.link));
+        format.setForeground(QColor("#0b5a8a"));
+      }
+      cursor.insertText(QString::fromStdString(span.text), format);
+    }
+  }
+
+  void banner() {
+    QTextBlockFormat format = block(1.0, 3.0);
+    format.setBackground(QColor("#b00020"));
+    QTextCharFormat ink = letters(textPoints, true);
+    ink.setForeground(Qt::white);
+    begin(format, ink);
+    cursor.insertText(QString(" ") + analytics::watermarkText, ink);
+  }
+
+  void title(const std::string& text) {
+    begin(block(0.0, 3.0), letters(titlePoints, true));
+    cursor.insertText(QString::fromStdString(text), letters(titlePoints, true));
+  }
+
+  void operator()(const analytics::Heading& heading) {
+    begin(block(5.0, 1.5), letters(headingPoints, true));
+    cursor.insertText(QString::fromStdString(heading.text), letters(headingPoints, true));
+  }
+
+  void operator()(const Paragraph& paragraph) {
+    begin(block(0.5, 1.5), letters(textPoints));
+    spans(paragraph, letters(textPoints));
+  }
+
+  void operator()(const analytics::BulletList& list) {
+    QTextList* bullets = nullptr;
+    for (const Paragraph& item : list.items) {
+      begin(block(0.0, 0.7), letters(textPoints));
+      if (bullets == nullptr) {
+        QTextListFormat format;
+        format.setStyle(QTextListFormat::ListDisc);
+        format.setIndent(1);
+        bullets = cursor.createList(format);
+      } else {
+        bullets->add(cursor.block());
+      }
+      spans(item, letters(textPoints));
+    }
+  }
+
+  void operator()(const analytics::ReportTable& table) {
+    (*this)(analytics::Heading{table.title});
+    const int columns = static_cast<int>(table.columns.size());
+    QTextTableFormat format;
+    format.setHeaderRowCount(1);
+    format.setBorder(length(0.3));
+    format.setBorderBrush(QColor("#d8dde3"));
+    format.setBorderStyle(QTextFrameFormat::BorderStyle_Solid);
+    format.setBorderCollapse(true);
+    format.setCellPadding(length(cellPadding));
+    format.setCellSpacing(0.0);
+    format.setBottomMargin(length(4.0));
+    format.setColumnWidthConstraints(columnsOf(table));
+    QTextTable* grid = cursor.insertTable(static_cast<int>(table.rows.size()) + 1, columns, format);
+    for (int c = 0; c < columns; ++c) {
+      const auto& [name, align] = table.columns[static_cast<std::size_t>(c)];
+      cell(*grid, 0, c, name, align, true);
+      for (int r = 0; r < static_cast<int>(table.rows.size()); ++r)
+        cell(*grid, r + 1, c, table.rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)], align, false);
+    }
+    cursor.movePosition(QTextCursor::End);
+  }
+
+  /// As wide as their texts; where that is more than the page, the widest columns of words are cut down to one width.
+  QVector<QTextLength> columnsOf(const analytics::ReportTable& table) const {
+    QFont font = QGuiApplication::font();
+    font.setPointSizeF(tablePoints);
+    font.setBold(true);
+    const QFontMetricsF metrics(font, document.device_);
+    const double dotsPerMillimetre = document.device_->logicalDpiX() / 25.4;
+    const auto isWords = [&](std::size_t c) { return table.columns[c].second == analytics::TextTable::Align::left; };
+    std::vector<double> width, words;
+    double room = document.page_.width() / dotsPerMillimetre - 1.0;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      double widest = metrics.horizontalAdvance(QString::fromStdString(table.columns[c].first));
+      for (const auto& row : table.rows)
+        widest = std::max(widest, metrics.horizontalAdvance(QString::fromStdString(row[c])));
+      width.push_back(widest / dotsPerMillimetre + 2.0 * cellPadding + aroundText);
+      if (isWords(c)) {
+        words.push_back(width.back());
+      } else {
+        room -= width.back();
+      }
+    }
+    std::sort(words.begin(), words.end());
+    double widestWords = words.empty() ? 0.0 : words.back();
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const double each = std::max(leastWidth, room / static_cast<double>(words.size() - i));
+      if (words[i] > each) {
+        widestWords = each;
+        break;
+      }
+      room -= words[i];
+    }
+    QVector<QTextLength> lengths;
+    for (std::size_t c = 0; c < width.size(); ++c)
+      lengths.push_back(
+          QTextLength(QTextLength::FixedLength, length(isWords(c) ? std::min(width[c], widestWords) : width[c])));
+    return lengths;
+  }
+
+  static void cell(QTextTable& grid, int row, int column, const std::string& text, analytics::TextTable::Align align,
+                   bool bold) {
+    QTextCursor inside = grid.cellAt(row, column).firstCursorPosition();
+    QTextBlockFormat format;
+    format.setAlignment(align == analytics::TextTable::Align::right ? Qt::AlignRight : Qt::AlignLeft);
+    inside.setBlockFormat(format);
+    inside.setBlockCharFormat(letters(tablePoints, bold));  // an empty cell is no higher
+    inside.insertText(QString::fromStdString(text), letters(tablePoints, bold));
+  }
+
+  void operator()(const analytics::Figures& figures) {
+    begin(block(1.0, 1.0), letters(textPoints));
+    for (const analytics::Drawing& drawing : figures.drawings) {
+      QTextCharFormat format;
+      format.setObjectType(figureObject);
+      format.setProperty(figureNumber, static_cast<int>(document.drawings_.size()));
+      document.drawings_.push_back(&drawing);
+      cursor.insertText(QString(QChar::ObjectReplacementCharacter), format);
+      cursor.insertText(" ", letters(textPoints));
+    }
+  }
+};
+
+ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, QPagedPaintDevice* device,
+                                       const QSizeF& page)
+    : device_(device), page_(page) {
+  setUndoRedoEnabled(false);
+  setDocumentMargin(0.0);
+  documentLayout()->setPaintDevice(device);
+  documentLayout()->registerHandler(figureObject, this);
+  Writer writer{*this};
+  writer.cursor.beginEditBlock();
+  if (report.synthetic) writer.banner();
+  writer.title(report.title);
+  for (const auto& part : report.parts) std::visit(writer, part);
+  if (report.synthetic) writer.banner();
+  writer.cursor.endEditBlock();
+  setPageSize(page);
+}
+
+QSizeF ReportTextDocument::intrinsicSize(QTextDocument*, int, const QTextFormat& format) {
+  const analytics::Drawing& drawing = *drawings_.at(static_cast<std::size_t>(format.intProperty(figureNumber)));
+  const double dotsPerMillimetre = device_->logicalDpiX() / 25.4;
+  const double width = std::min(figureMillimetres * dotsPerMillimetre * drawing.width / usualWidth, page_.width());
+  return {width, width * drawing.height / drawing.width};
+}
+
+void ReportTextDocument::drawObject(QPainter* painter, const QRectF& rect, QTextDocument*, int,
+                                    const QTextFormat& format) {
+  paintDrawing(*painter, *drawings_.at(static_cast<std::size_t>(format.intProperty(figureNumber))), rect);
+}
+
+}  // namespace calot::gui
