@@ -23,6 +23,7 @@ class BlendedSource final : public SampleSource {
   [[nodiscard]] const Provenance& provenance() const override { return source_.provenance(); }
   bool next(std::uint64_t tick, TickSamples& out) override;
   SourceStatus status() override { return source_.status(); }
+  void rest() override { source_.rest(); }
   [[nodiscard]] Observer* watcher() override { return source_.watcher(); }
   [[nodiscard]] Outcome ending() const override { return source_.ending(); }
   [[nodiscard]] std::string statusText() const override { return source_.statusText(); }

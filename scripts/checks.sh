@@ -47,7 +47,7 @@ for stage in "${stages[@]}"; do
       configure release
       build release calot
       configure clang "-DCALOT_OTHER=$root/build/release/bin/calot"
-      build clang calot calot-dashboard calot-matrix
+      build clang calot calot-dashboard calot-trainer calot-matrix
       ctest --test-dir "$root/build/clang" --tests-regex '^command_line\.builds$' --output-on-failure --no-tests=error
       ;;
     asan-ubsan)

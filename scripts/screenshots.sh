@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Pictures of the dashboard's pages from a cohort database, under a virtual X server.
+# Pictures of the dashboard's pages from a cohort database, under a virtual X server. Recordings beside the database are
+# replayed in them.
 #   scripts/screenshots.sh COHORT.db [FOLDER]        FOLDER defaults to docs/pictures
 # The program is taken from build/release/bin, or from CALOT_BIN.
 set -euo pipefail
@@ -16,13 +17,17 @@ if [ ! -x "$program" ]; then
   echo "screenshots.sh: $program is not built; build it or set CALOT_BIN" >&2
   exit 1
 fi
+if ! command -v xvfb-run > /dev/null || ! command -v xauth > /dev/null; then
+  echo "screenshots.sh: no virtual X server; install the packages xvfb and xauth" >&2
+  exit 1
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$folder" "$work/runtime"
 chmod 700 "$work/runtime"
-XDG_RUNTIME_DIR=$work/runtime QT_QPA_PLATFORM=xcb LC_ALL=C.UTF-8 \
+XDG_RUNTIME_DIR=$work/runtime XDG_CONFIG_HOME=$work/config QT_QPA_PLATFORM=xcb LC_ALL=C.UTF-8 \
   xvfb-run --auto-servernum --server-args="-screen 0 1600x1000x24" "$program" "$database" --pictures "$work"
-for page in attempts compare greeting; do
+for page in attempts attempt compare study trainee pair ratings settings greeting; do
   if [ -f "$work/$page.png" ]; then
     mv "$work/$page.png" "$folder/dashboard-$page.png"
     echo "$folder/dashboard-$page.png"

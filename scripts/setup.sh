@@ -15,7 +15,7 @@ packages=(
   # run
   fonts-dejavu-core
   # tests and checks
-  libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy hdf5-tools
+  xvfb xauth libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy hdf5-tools
   clang clang-format clang-tidy libclang-rt-14-dev shellcheck valgrind
   g++-aarch64-linux-gnu qemu-user
   "$@"

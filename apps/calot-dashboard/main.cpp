@@ -5,12 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <QApplication>
 #include <string>
 
 #include "gui/dashboard/dashboard_window.h"
 #include "recorder/errors.h"
+#include "recorder/formats/scene_file.h"
 
 namespace {
 
@@ -34,7 +36,8 @@ int run(int argc, char** argv) {
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
-  calot::gui::DashboardWindow window;
+  const std::filesystem::path program = QCoreApplication::applicationDirPath().toStdString();
+  calot::gui::DashboardWindow window(calot::recorder::assetRoots(program, CALOT_ASSETS));
   if (document) window.setDocument(document);
   window.show();
   if (!pictures.empty()) {

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/attempts_page.h"
 
+#include <algorithm>
 #include <array>
 #include <QBoxLayout>
 #include <QComboBox>
-#include <QHeaderView>
 #include <QItemSelectionModel>
 #include <QLabel>
 #include <QLineEdit>
+#include <QSignalBlocker>
 #include <QSplitter>
 #include <QTableView>
 
+#include "gui/dashboard/attempt_banner.h"
+#include "gui/dashboard/table_view.h"
 #include "gui/dashboard/words.h"
 #include "recorder/errors.h"
 
@@ -20,29 +23,6 @@ namespace {
 using analytics::Verdict;
 constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::damaged, Verdict::notCheckableHere,
                               Verdict::notChecked};
-
-QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* spokenName) {
-  auto* table = new QTableView;
-  table->setObjectName(name);
-  table->setAccessibleName(spokenName);
-  table->setModel(&model);
-  table->setSelectionBehavior(QAbstractItemView::SelectRows);
-  table->setSelectionMode(QAbstractItemView::SingleSelection);
-  table->setEditTriggers(QAbstractItemView::NoEditTriggers);
-  table->setAlternatingRowColors(true);
-  table->setTabKeyNavigation(false);  // Tab leaves the table, arrows move in it
-  table->setWordWrap(false);
-  table->verticalHeader()->hide();
-  table->horizontalHeader()->setStretchLastSection(true);
-  table->horizontalHeader()->setHighlightSections(false);
-  table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
-  return table;
-}
-
-void setWidths(QTableView& table, std::initializer_list<int> widths) {
-  int column = 0;
-  for (const int width : widths) table.setColumnWidth(column++, width);
-}
 
 }  // namespace
 
@@ -73,6 +53,7 @@ AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
   layout->addWidget(splitter);
 
   connect(table_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this] { showSelected(); });
+  connect(table_, &QTableView::activated, this, &AttemptsPage::attemptActivated);
 }
 
 void AttemptsPage::buildFilters(QBoxLayout& layout) {
@@ -120,33 +101,52 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
 }
 
 void AttemptsPage::buildDetails(QBoxLayout& layout) {
-  const auto label = [&](const char* name) {
-    auto* made = new QLabel;
-    made->setObjectName(name);
-    made->setWordWrap(true);
-    made->setTextFormat(Qt::PlainText);
-    made->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-    layout.addWidget(made);
-    return made;
-  };
-  watermark_ = label("watermark");
-  watermark_->setText(
-      "SYNTHETIC — made by a performer. It shows that the pipeline works and says nothing about people.");
-  watermark_->setStyleSheet("QLabel { background: #f0e442; color: #000000; font-weight: bold; padding: 4px; }");
-  watermark_->hide();
-  identity_ = label("identity");
-  badge_ = label("badge");
+  banner_ = new AttemptBanner;
+  layout.addWidget(banner_);
   details_ = makeTable(checkpoints_, "checkpoints", "Checkpoints of the selected attempt");
-  setWidths(*details_, {300, 110, 190, 150, 150, 130, 70});
+  setWidths(*details_, {300, 110, 190, 0, 0, 150, 150, 130, 70});
+  details_->hideColumn(CheckpointTableModel::normColumn);
+  details_->hideColumn(CheckpointTableModel::momentColumn);
+  details_->setToolTip("Double-click, or press Enter, to see when a figure came about");
   layout.addWidget(details_);
+  connect(details_, &QTableView::activated, this, [this](const QModelIndex& at) {
+    const analytics::CheckpointValue& value = checkpoints_.value(at.row());
+    emit figureActivated(QString::fromStdString(value.name), QString::fromStdString(value.subject));
+  });
 }
 
 void AttemptsPage::setDocument(std::shared_ptr<const CohortDocument> document) {
+  const analytics::AttemptRow* before = selected();
+  const QString uuid = before != nullptr ? QString::fromStdString(before->uuid) : QString();
   document_ = std::move(document);
-  attempts_.setAttempts(document_->attempts());
-  showCount();
-  if (filter_.rowCount() > 0) table_->selectRow(0);
+  {
+    const QSignalBlocker quiet(table_->selectionModel());
+    attempts_.setAttempts(document_->attempts());
+    showCount();
+    // The same attempt stays selected where it is still there.
+    if (filter_.rowCount() > 0) table_->selectRow(std::max(0, rowOf(uuid)));
+  }
+  table_->viewport()->update();
   showSelected();
+}
+
+int AttemptsPage::rowOf(const QString& uuid) const {
+  if (filter_.rowCount() == 0 || uuid.isEmpty()) return -1;
+  const QModelIndexList found =
+      filter_.match(filter_.index(0, 0), AttemptTableModel::uuidRole, uuid, 1, Qt::MatchExactly);
+  return found.isEmpty() ? -1 : found.first().row();
+}
+
+void AttemptsPage::select(const QString& uuid) {
+  if (rowOf(uuid) < 0) {
+    search_->clear();
+    verdict_->setCurrentIndex(0);
+    operators_->setCurrentIndex(0);
+  }
+  if (const int row = rowOf(uuid); row >= 0) {
+    table_->selectRow(row);
+    table_->scrollTo(filter_.index(row, 0));
+  }
 }
 
 void AttemptsPage::focusSearch() {
@@ -158,31 +158,27 @@ void AttemptsPage::showCount() {
   count_->setText(QString("%1 of %2 attempts").arg(filter_.rowCount()).arg(attempts_.rowCount()));
 }
 
+const analytics::AttemptRow* AttemptsPage::selected() const {
+  const QModelIndex at = filter_.mapToSource(table_->currentIndex());
+  return document_ && at.isValid() ? &attempts_.attempt(at.row()) : nullptr;
+}
+
 void AttemptsPage::showSelected() {
-  const QModelIndex selected = filter_.mapToSource(table_->currentIndex());
-  if (!document_ || !selected.isValid()) {
-    identity_->setText("Select an attempt to see its checkpoints.");
-    badge_->clear();
-    watermark_->hide();
+  const analytics::AttemptRow* attempt = selected();
+  if (attempt == nullptr) {
+    banner_->showText("Select an attempt to see its checkpoints.");
     checkpoints_.setValues({});
+    emit selectionChanged();
     return;
   }
-  const analytics::AttemptRow& attempt = attempts_.attempt(selected.row());
-  QString text = QString("Attempt %1 · %2 · %3")
-                     .arg(QString::fromStdString(attempt.uuid), operatorText(attempt),
-                          QString::fromStdString(attempt.comparabilityKey));
-  if (attempt.excluded) text += "\nExcluded from studies: " + QString::fromStdString(attempt.exclusionReason);
-  identity_->setText(text);
-  const Badge badge = badgeOf(attempt);
-  badge_->setText(badge.text + ". " + QString(badge.explanation).replace('\n', ' '));
-  badge_->setStyleSheet("QLabel { color: " + badge.colour.name() + "; }");
-  watermark_->setVisible(attempt.synthetic);
+  banner_->showAttempt(*attempt);
   try {
-    checkpoints_.setValues(document_->values(attempt.uuid));
+    checkpoints_.setValues(document_->values(attempt->uuid));
   } catch (const Error& error) {
     checkpoints_.setValues({});
     emit problem(QString::fromUtf8(error.what()));
   }
+  emit selectionChanged();
 }
 
 }  // namespace calot::gui

@@ -17,6 +17,8 @@ class QTableView;
 
 namespace calot::gui {
 
+class AttemptBanner;
+
 /// The attempts of a cohort with search and filters, and the checkpoints of the selected one.
 class AttemptsPage : public QWidget {
   Q_OBJECT
@@ -25,16 +27,25 @@ class AttemptsPage : public QWidget {
   /// Shows a document; the first attempt is selected. @pre not null
   void setDocument(std::shared_ptr<const CohortDocument> document);
   void focusSearch();
+  [[nodiscard]] const analytics::AttemptRow* selected() const;  ///< or null
+  /// Selects an attempt; filters that hide it are taken away.
+  void select(const QString& uuid);
 
  signals:
   /// Something could not be read: one line for the user.
   void problem(const QString& message);
+  void selectionChanged();
+  /// The selected attempt is to be opened.
+  void attemptActivated();
+  /// So is one of its figures.
+  void figureActivated(const QString& checkpoint, const QString& subject);
 
  private:
   void buildFilters(QBoxLayout& layout);
   void buildDetails(QBoxLayout& layout);
   void showCount();
   void showSelected();
+  [[nodiscard]] int rowOf(const QString& uuid) const;  ///< in the filtered table; -1: not there
 
   std::shared_ptr<const CohortDocument> document_;
   AttemptTableModel attempts_;
@@ -45,9 +56,7 @@ class AttemptsPage : public QWidget {
   QComboBox* operators_ = nullptr;
   QLabel* count_ = nullptr;
   QTableView* table_ = nullptr;
-  QLabel* identity_ = nullptr;
-  QLabel* badge_ = nullptr;
-  QLabel* watermark_ = nullptr;
+  AttemptBanner* banner_ = nullptr;
   QTableView* details_ = nullptr;
 };
 

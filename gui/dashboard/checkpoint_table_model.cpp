@@ -1,62 +1,159 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/checkpoint_table_model.h"
 
-#include <QColor>
+#include <algorithm>
+#include <cmath>
+#include <QLocale>
 
 #include "analytics/checkpoints/registry.h"
+#include "gui/dashboard/attempt_track.h"
+#include "gui/dashboard/palette.h"
 #include "gui/dashboard/words.h"
 
 namespace calot::gui {
+namespace {
+
+/// The entry of a list that is of this figure, or null.
+template <class Entry>
+const Entry* entryOf(const std::vector<Entry>& list, const analytics::CheckpointValue& value) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const Entry& e) {
+    return e.checkpoint == value.name && e.subject == value.subject;
+  });
+  return at == list.end() ? nullptr : &*at;
+}
+
+/// The moment that made most of it. @pre there is one
+const analytics::Moment& worstOf(const std::vector<analytics::Moment>& moments) {
+  return *std::max_element(moments.begin(), moments.end(),
+                           [](const analytics::Moment& a, const analytics::Moment& b) { return a.share < b.share; });
+}
+
+QString momentText(const analytics::Moment& moment) {
+  return QString("%1 (%2 %)")
+      .arg(QString::fromStdString(timeText(moment.begin)), QLocale().toString(std::lround(100.0 * moment.share)));
+}
+
+QString standingText(const FigureStanding& standing) {
+  QString text;
+  if (standing.passed) text = *standing.passed ? QString::fromUtf8("✓ passes") : QString::fromUtf8("▼ falls short");
+  if (standing.percentile) text += QString(text.isEmpty() ? "P %1" : ", P %1").arg(std::lround(*standing.percentile));
+  return text;
+}
+
+}  // namespace
 
 void CheckpointTableModel::setValues(std::vector<analytics::CheckpointValue> values) {
   beginResetModel();
   values_ = std::move(values);
+  standings_.clear();
+  moments_.clear();
+  momentsText_.clear();
   endResetModel();
 }
+
+void CheckpointTableModel::setStandings(std::vector<FigureStanding> standings) {
+  standings_ = std::move(standings);
+  if (rowCount() > 0) emit dataChanged(index(0, normColumn), index(rowCount() - 1, normColumn));
+}
+
+void CheckpointTableModel::setMoments(std::vector<analytics::FigureMoments> moments) {
+  moments_ = std::move(moments);
+  if (rowCount() > 0) emit dataChanged(index(0, momentColumn), index(rowCount() - 1, momentColumn));
+}
+
+void CheckpointTableModel::setMomentsText(const QString& text) {
+  momentsText_ = text;
+  setMoments({});
+}
+
+const FigureStanding* CheckpointTableModel::standing(int row) const { return entryOf(standings_, value(row)); }
+const analytics::FigureMoments* CheckpointTableModel::moments(int row) const { return entryOf(moments_, value(row)); }
 
 int CheckpointTableModel::rowCount(const QModelIndex& parent) const {
   return parent.isValid() ? 0 : static_cast<int>(values_.size());
 }
 int CheckpointTableModel::columnCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : columnTotal; }
 
-QVariant CheckpointTableModel::data(const QModelIndex& index, int role) const {
-  if (!index.isValid() || index.row() >= rowCount()) return {};
-  const analytics::CheckpointValue& value = values_[static_cast<std::size_t>(index.row())];
-  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
-  if (role == Qt::DisplayRole) switch (index.column()) {
-      case nameColumn:
-        return figureTitle(value.name, {});
-      case subjectColumn:
-        return value.subject.empty() ? QStringLiteral("attempt") : QString::fromStdString(value.subject);
-      case valueColumn:
-        return valueText(value) + (value.note.empty() ? "" : " *");
-      case directionColumn:
-        return directionText(value);
-      case windowColumn:
-        return definition != nullptr ? QString::fromStdString(definition->window) : QString();
-      case originColumn:
-        return originText(value.origin);
-      case versionColumn:
-        return static_cast<int>(value.version);
-      default:
-        return {};
-    }
-  if (role == Qt::TextAlignmentRole && index.column() == valueColumn)
-    return QVariant::fromValue(Qt::Alignment(Qt::AlignVCenter | (value.value ? Qt::AlignRight : Qt::AlignLeft)));
-  if (role == Qt::ForegroundRole && index.column() == valueColumn && !value.value) return QColor(0x50, 0x50, 0x50);
-  if (role == Qt::ToolTipRole) {
-    QString tip = QString::fromStdString(value.name);
-    if (definition != nullptr) tip += ": " + QString::fromStdString(definition->definition);
-    if (!value.filter.empty()) tip += "\nFilter: " + QString::fromStdString(value.filter);
-    if (!value.note.empty()) tip += "\n* " + QString::fromStdString(value.note);
+QString CheckpointTableModel::text(int row, int column) const {
+  const analytics::CheckpointValue& shown = value(row);
+  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(shown.name);
+  switch (column) {
+    case nameColumn:
+      return figureTitle(shown.name, {});
+    case subjectColumn:
+      return shown.subject.empty() ? QStringLiteral("attempt") : QString::fromStdString(shown.subject);
+    case valueColumn:
+      return valueText(shown) + (shown.note.empty() ? "" : " *");
+    case normColumn:
+      return standing(row) != nullptr ? standingText(*standing(row)) : QString();
+    case momentColumn:
+      if (const analytics::FigureMoments* found = moments(row); found != nullptr && !found->moments.empty())
+        return momentText(worstOf(found->moments));
+      return moments_.empty() ? momentsText_ : QString();
+    case directionColumn:
+      return directionText(shown);
+    case windowColumn:
+      return definition != nullptr ? QString::fromStdString(definition->window) : QString();
+    case originColumn:
+      return originText(shown.origin);
+    case versionColumn:
+      return QString::number(shown.version);
+    default:
+      return {};
+  }
+}
+
+QString CheckpointTableModel::toolTip(int row, int column) const {
+  const analytics::CheckpointValue& shown = value(row);
+  if (const FigureStanding* place = standing(row); column == normColumn && place != nullptr) {
+    QString tip = QString::fromStdString(place->explanation).trimmed();
+    if (place->cut) tip += QString("\nCut: %1").arg(numberText(*place->cut));
+    if (place->band)
+      tip += QString("\nCompetent members: a tenth below %1, half between %2 and %3, median %4, a tenth above %5")
+                 .arg(numberText(place->band->p10), numberText(place->band->p25), numberText(place->band->p75),
+                      numberText(place->band->p50), numberText(place->band->p90));
     return tip;
   }
-  return {};
+  if (const analytics::FigureMoments* found = moments(row); column == momentColumn && found != nullptr) {
+    if (found->moments.empty()) return QString::fromStdString(found->none);
+    QStringList lines{"Most of it came about here; each click goes to the next:"};
+    for (const analytics::Moment& moment : found->moments) lines += momentText(moment);
+    return lines.join('\n');
+  }
+  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(shown.name);
+  QString tip = QString::fromStdString(shown.name);
+  if (definition != nullptr) tip += ": " + QString::fromStdString(definition->definition);
+  if (!shown.filter.empty()) tip += "\nFilter: " + QString::fromStdString(shown.filter);
+  if (!shown.note.empty()) tip += "\n* " + QString::fromStdString(shown.note);
+  return tip;
+}
+
+QVariant CheckpointTableModel::data(const QModelIndex& index, int role) const {
+  if (!index.isValid() || index.row() >= rowCount()) return {};
+  const int row = index.row(), column = index.column();
+  const bool missing = !value(row).value.has_value();
+  switch (role) {
+    case Qt::DisplayRole:
+      return text(row, column);
+    case Qt::ToolTipRole:
+      return toolTip(row, column);
+    case Qt::TextAlignmentRole:
+      if (column == valueColumn)
+        return QVariant::fromValue(Qt::Alignment(Qt::AlignVCenter | (missing ? Qt::AlignLeft : Qt::AlignRight)));
+      return {};
+    case Qt::ForegroundRole:
+      if (column == valueColumn && missing) return palette::mutedText;
+      return {};
+    case standingRole:
+      return column == normColumn ? QVariant::fromValue(static_cast<const void*>(standing(row))) : QVariant();
+    default:
+      return {};
+  }
 }
 
 QVariant CheckpointTableModel::headerData(int section, Qt::Orientation orientation, int role) const {
-  static constexpr const char* titles[columnTotal] = {"Checkpoint", "Of",     "Value",  "Direction",
-                                                      "Window",     "Origin", "Version"};
+  static constexpr const char* titles[columnTotal] = {"Checkpoint", "Of",     "Value",  "In the norm", "Worst moment",
+                                                      "Direction",  "Window", "Origin", "Version"};
   if (orientation != Qt::Horizontal || role != Qt::DisplayRole || section < 0 || section >= columnTotal) return {};
   return QString(titles[section]);
 }

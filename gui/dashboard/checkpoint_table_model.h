@@ -4,11 +4,14 @@
 #include <QAbstractTableModel>
 #include <vector>
 
+#include "analytics/assessment/moments.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "gui/dashboard/figure_standing.h"
 
 namespace calot::gui {
 
-/// The checkpoints of one attempt. A value that is missing says why; what a value declares stands beside it.
+/// The checkpoints of one attempt, with where they stand in a norm and when they came about. A value that is missing
+/// says why; what a value declares stands beside it.
 class CheckpointTableModel : public QAbstractTableModel {
   Q_OBJECT
  public:
@@ -16,6 +19,8 @@ class CheckpointTableModel : public QAbstractTableModel {
     nameColumn,
     subjectColumn,
     valueColumn,
+    normColumn,    ///< drawn by a BandDelegate
+    momentColumn,  ///< when it got worst
     directionColumn,
     windowColumn,
     originColumn,
@@ -23,8 +28,24 @@ class CheckpointTableModel : public QAbstractTableModel {
     columnTotal
   };
 
+  enum Role {
+    standingRole = Qt::UserRole,  ///< const FigureStanding*, of normColumn; or null
+  };
+
   using QAbstractTableModel::QAbstractTableModel;
+  /// Standings and moments of former values are gone.
   void setValues(std::vector<analytics::CheckpointValue> values);
+  void setStandings(std::vector<FigureStanding> standings);
+  void setMoments(std::vector<analytics::FigureMoments> moments);
+  /// What the momentColumn says while moments are being looked for, or why there are none at all.
+  void setMomentsText(const QString& text);
+
+  /// @pre 0 <= row < rowCount()
+  [[nodiscard]] const analytics::CheckpointValue& value(int row) const {
+    return values_[static_cast<std::size_t>(row)];
+  }
+  [[nodiscard]] const FigureStanding* standing(int row) const;           ///< or null
+  [[nodiscard]] const analytics::FigureMoments* moments(int row) const;  ///< or null
 
   [[nodiscard]] int rowCount(const QModelIndex& parent = {}) const override;
   [[nodiscard]] int columnCount(const QModelIndex& parent = {}) const override;
@@ -32,7 +53,13 @@ class CheckpointTableModel : public QAbstractTableModel {
   [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
 
  private:
+  [[nodiscard]] QString text(int row, int column) const;
+  [[nodiscard]] QString toolTip(int row, int column) const;
+
   std::vector<analytics::CheckpointValue> values_;
+  std::vector<FigureStanding> standings_;
+  std::vector<analytics::FigureMoments> moments_;
+  QString momentsText_;
 };
 
 }  // namespace calot::gui

@@ -1,9 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/cohort_document.h"
 
+#include <algorithm>
+
 namespace calot::gui {
 
+using Access = analytics::CohortDatabase::Access;
+
 CohortDocument::CohortDocument(const std::string& path)
-    : database_(path, analytics::CohortDatabase::Access::read), attempts_(database_.listAttempts()) {}
+    : database_(path, Access::read), attempts_(database_.listAttempts()) {}
+
+const analytics::AttemptRow* CohortDocument::attempt(const std::string& uuid) const {
+  const auto at = std::find_if(attempts_.begin(), attempts_.end(),
+                               [&](const analytics::AttemptRow& attempt) { return attempt.uuid == uuid; });
+  return at == attempts_.end() ? nullptr : &*at;
+}
+
+const std::vector<analytics::Norm>& CohortDocument::norms() const {
+  if (!norms_) norms_ = analytics::AssessmentDatabase(path(), Access::read).norms();
+  return *norms_;
+}
+
+std::vector<std::string> CohortDocument::participants() const {
+  std::vector<std::string> names;
+  for (const analytics::Participant& participant : database_.participants()) names.push_back(participant.pseudonym);
+  return names;
+}
+
+std::vector<analytics::Rating> CohortDocument::ratings() const {
+  return analytics::AssessmentDatabase(path(), Access::read).ratings();
+}
 
 }  // namespace calot::gui

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 
 namespace calot::gui {
@@ -22,10 +24,16 @@ class CohortDocument {
   }
   /// @throws calot::Error
   [[nodiscard]] std::vector<analytics::AttemptValue> allValues() const { return database_.allValues(); }
+  [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
+  /// Read when they are first asked for. @throws calot::Error
+  [[nodiscard]] const std::vector<analytics::Norm>& norms() const;
+  [[nodiscard]] std::vector<std::string> participants() const;   ///< pseudonyms, by name. @throws calot::Error
+  [[nodiscard]] std::vector<analytics::Rating> ratings() const;  ///< as they are now. @throws calot::Error
 
  private:
   analytics::CohortDatabase database_;
   std::vector<analytics::AttemptRow> attempts_;
+  mutable std::optional<std::vector<analytics::Norm>> norms_;
 };
 
 }  // namespace calot::gui

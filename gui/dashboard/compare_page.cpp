@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/compare_page.h"
 
+#include <algorithm>
+#include <exception>
 #include <QBoxLayout>
 #include <QCheckBox>
 #include <QComboBox>
@@ -9,7 +11,6 @@
 
 #include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/words.h"
-#include "recorder/errors.h"
 
 namespace calot::gui {
 
@@ -64,20 +65,37 @@ void ComparePage::showEvent(QShowEvent* event) {
 void ComparePage::readValues() {
   if (read_ || !document_) return;
   read_ = true;
-  try {
-    values_ = document_->allValues();
-  } catch (const Error& error) {
-    values_.clear();
-    emit problem(QString::fromUtf8(error.what()));
-  }
+  ready_ = false;
+  caption_->setText("Reading the values …");
+  background_.run([this, path = document_->path()]() -> Background::Answer {
+    const auto values = std::make_shared<std::vector<analytics::AttemptValue>>();
+    QString fault;
+    try {
+      *values = CohortDocument(path).allValues();
+    } catch (const std::exception& error) {
+      fault = QString::fromUtf8(error.what());
+    }
+    return [this, values, fault] {
+      if (!fault.isEmpty()) emit problem(fault);
+      takeValues(std::move(*values));
+    };
+  });
+}
+
+void ComparePage::takeValues(std::vector<analytics::AttemptValue> values) {
+  values_ = std::move(values);
+  ready_ = true;
   figures_ = figuresOf(values_);
   keys_ = comparabilityKeysOf(document_->attempts());
   {
     const QSignalBlocker quietFigure(figure_), quietKey(key_), quietGroup(groupBy_);
+    const QString figure = figure_->currentText(), key = key_->currentText();
     figure_->clear();
     for (const Figure& f : figures_) figure_->addItem(figureTitle(f.name, f.subject));
     key_->clear();
-    for (const std::string& key : keys_) key_->addItem(QString::fromStdString(key));
+    for (const std::string& k : keys_) key_->addItem(QString::fromStdString(k));
+    figure_->setCurrentIndex(std::max(0, figure_->findText(figure)));
+    key_->setCurrentIndex(std::max(0, key_->findText(key)));
     // Nobody has a study group: then profiles tell more.
     bool grouped = false;
     for (const analytics::AttemptRow& attempt : document_->attempts()) grouped = grouped || !attempt.group.empty();
@@ -87,7 +105,7 @@ void ComparePage::readValues() {
 }
 
 void ComparePage::redraw() {
-  if (!document_ || !read_) return;
+  if (!document_ || !ready_) return;
   ComparisonRequest request;
   request.groupBy = static_cast<GroupBy>(groupBy_->currentIndex());
   request.includeSynthetic = synthetic_->isChecked();

@@ -5,6 +5,7 @@
 #include <QWidget>
 #include <vector>
 
+#include "gui/dashboard/background.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/comparison.h"
 
@@ -23,6 +24,7 @@ class ComparePage : public QWidget {
   explicit ComparePage(QWidget* parent = nullptr);
   /// @pre not null. The values are read when the page is first shown.
   void setDocument(std::shared_ptr<const CohortDocument> document);
+  [[nodiscard]] bool ready() const { return ready_; }  ///< the values were read
 
  signals:
   void problem(const QString& message);
@@ -32,10 +34,12 @@ class ComparePage : public QWidget {
 
  private:
   void readValues();
+  void takeValues(std::vector<analytics::AttemptValue> values);
   void redraw();
 
   std::shared_ptr<const CohortDocument> document_;
-  bool read_ = false;
+  bool read_ = false, ready_ = false;
+  Background background_;
   std::vector<analytics::AttemptValue> values_;
   std::vector<Figure> figures_;
   std::vector<std::string> keys_;

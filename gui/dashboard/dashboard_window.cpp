@@ -1,32 +1,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/dashboard_window.h"
 
+#include <exception>
 #include <QBoxLayout>
-#include <QCoreApplication>
+#include <QDockWidget>
+#include <QDragEnterEvent>
+#include <QDropEvent>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QInputDialog>
 #include <QLabel>
 #include <QMenuBar>
+#include <QMimeData>
 #include <QStackedWidget>
 #include <QTabWidget>
+#include <QTimer>
+#include <QUndoStack>
+#include <QUrl>
 
+#include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/compare_page.h"
+#include "gui/dashboard/exclusion_command.h"
 #include "gui/dashboard/greeting_page.h"
+#include "gui/dashboard/import_panel.h"
+#include "gui/dashboard/pair_page.h"
+#include "gui/dashboard/rating_page.h"
+#include "gui/dashboard/settings.h"
+#include "gui/dashboard/settings_dialog.h"
+#include "gui/dashboard/study_page.h"
+#include "gui/dashboard/trainee_page.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
+namespace {
 
-DashboardWindow::DashboardWindow(QWidget* parent)
+constexpr int refreshEvery = 3000;  // ms, while an import runs
+
+QStringList localFiles(const QMimeData& data) {
+  QStringList files;
+  for (const QUrl& url : data.urls()) {
+    if (url.isLocalFile()) files += url.toLocalFile();
+  }
+  return files;
+}
+
+}  // namespace
+
+DashboardWindow::DashboardWindow(const std::vector<std::filesystem::path>& assetFolders, QWidget* parent)
     : QMainWindow(parent),
       problem_(new QLabel),
       stack_(new QStackedWidget),
       greeting_(new GreetingPage),
       tabs_(new QTabWidget),
       attempts_(new AttemptsPage),
-      compare_(new ComparePage) {
+      attempt_(new AttemptPage),
+      compare_(new ComparePage),
+      study_(new StudyPage),
+      trainee_(new TraineePage),
+      pair_(new PairPage),
+      rating_(new RatingPage),
+      undo_(new QUndoStack(this)) {
   setWindowTitle("Calot");
-  resize(1280, 800);
+  resize(1280, 860);
+  setAcceptDrops(true);
   problem_->setObjectName("problem");
   problem_->setTextFormat(Qt::PlainText);
   problem_->setWordWrap(true);
@@ -34,8 +71,13 @@ DashboardWindow::DashboardWindow(QWidget* parent)
   problem_->setStyleSheet(
       "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
   problem_->hide();
-  tabs_->addTab(attempts_, "&Attempts");
-  tabs_->addTab(compare_, "Com&pare");
+  tabs_->addTab(attempts_, "Attempts");
+  tabs_->addTab(attempt_, "Attempt");
+  tabs_->addTab(compare_, "Compare");
+  tabs_->addTab(study_, "Study");
+  tabs_->addTab(trainee_, "Trainee");
+  tabs_->addTab(pair_, "Side by side");
+  tabs_->addTab(rating_, "Ratings");
   stack_->addWidget(greeting_);
   stack_->addWidget(tabs_);
   auto* centre = new QWidget;
@@ -43,49 +85,127 @@ DashboardWindow::DashboardWindow(QWidget* parent)
   layout->addWidget(problem_);
   layout->addWidget(stack_, 1);
   setCentralWidget(centre);
+  rating_->setForms(readForms(assetFolders));
+  buildImport();
   buildMenus();
-  connect(greeting_, &GreetingPage::openRequested, this, &DashboardWindow::askForDatabase);
-  connect(attempts_, &AttemptsPage::problem, this, &DashboardWindow::showProblem);
-  connect(compare_, &ComparePage::problem, this, &DashboardWindow::showProblem);
+  connectPages();
 }
 
 DashboardWindow::~DashboardWindow() = default;
+
+void DashboardWindow::buildImport() {
+  importDock_ = new QDockWidget("Import", this);
+  importDock_->setObjectName("import");
+  importDock_->setWidget(new ImportPanel(imports_));
+  addDockWidget(Qt::BottomDockWidgetArea, importDock_);
+  importDock_->hide();
+  refresh_ = new QTimer(this);
+  refresh_->setSingleShot(true);
+  refresh_->setInterval(refreshEvery);
+  connect(refresh_, &QTimer::timeout, this, [this] { reload(); });
+  connect(&imports_, &ImportQueue::fileDone, this, [this](const ImportResult& result) {
+    if (result.kind == ImportResult::Kind::stored && !refresh_->isActive()) refresh_->start();
+  });
+  connect(&imports_, &ImportQueue::allDone, this, [this] {
+    refresh_->stop();
+    reload();
+  });
+}
 
 void DashboardWindow::buildMenus() {
   const auto add = [this](QMenu* menu, const char* text, const QKeySequence& keys, auto action) {
     QAction* const made = menu->addAction(text);
     made->setShortcut(keys);
     connect(made, &QAction::triggered, this, action);
+    return made;
   };
   QMenu* const file = menuBar()->addMenu("&File");
   add(file, "&Open …", QKeySequence::Open, [this] { askForDatabase(); });
+  add(file, "&New cohort …", QKeySequence::New, [this] { askForNewDatabase(); });
+  add(file, "&Import recordings …", QKeySequence(Qt::CTRL | Qt::Key_I), [this] { askForRecordings(); });
+  add(file, "&Settings …", QKeySequence(Qt::CTRL | Qt::Key_Comma), [this] { showSettings(); });
   add(file, "&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), [this] { close(); });
+  QMenu* const edit = menuBar()->addMenu("&Edit");
+  QAction* const undo = undo_->createUndoAction(this, "&Undo");
+  undo->setShortcut(QKeySequence::Undo);
+  QAction* const redo = undo_->createRedoAction(this, "&Redo");
+  redo->setShortcut(QKeySequence::Redo);
+  edit->addActions({undo, redo});
+  exclude_ = add(edit, "&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), [this] { askForExclusion(); });
+  exclude_->setEnabled(false);
   QMenu* const view = menuBar()->addMenu("&View");
-  add(view, "&Attempts", QKeySequence(Qt::CTRL | Qt::Key_1), [this] { tabs_->setCurrentWidget(attempts_); });
-  add(view, "&Compare", QKeySequence(Qt::CTRL | Qt::Key_2), [this] { tabs_->setCurrentWidget(compare_); });
+  for (int page = 0; page < tabs_->count(); ++page)
+    add(view, qPrintable(QString("&%1 ").arg(page + 1) + tabs_->tabText(page)),
+        QKeySequence(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_1 + page)),
+        [this, page] { tabs_->setCurrentIndex(page); });
   add(view, "&Find", QKeySequence::Find, [this] {
     tabs_->setCurrentWidget(attempts_);
     attempts_->focusSearch();
   });
   add(view, "&Reload", QKeySequence(Qt::Key_F5), [this] { reload(); });
+  view->addAction(importDock_->toggleViewAction());
+}
+
+void DashboardWindow::connectPages() {
+  connect(greeting_, &GreetingPage::openRequested, this, &DashboardWindow::askForDatabase);
+  connect(greeting_, &GreetingPage::newRequested, this, [this] { askForNewDatabase(); });
+  connect(greeting_, &GreetingPage::importRequested, this, [this] { askForRecordings(); });
+  connect(attempts_, &AttemptsPage::problem, this, &DashboardWindow::showProblem);
+  connect(attempt_, &AttemptPage::problem, this, &DashboardWindow::showProblem);
+  connect(compare_, &ComparePage::problem, this, &DashboardWindow::showProblem);
+  connect(study_, &StudyPage::problem, this, &DashboardWindow::showProblem);
+  connect(trainee_, &TraineePage::problem, this, &DashboardWindow::showProblem);
+  connect(pair_, &PairPage::problem, this, &DashboardWindow::showProblem);
+  connect(rating_, &RatingPage::problem, this, &DashboardWindow::showProblem);
+  connect(attempts_, &AttemptsPage::selectionChanged, this, [this] {
+    const analytics::AttemptRow* attempt = attempts_->selected();
+    exclude_->setEnabled(attempt != nullptr && !attempt->withdrawn);
+    if (attempt == nullptr) {
+      attempt_->clear();
+      return;
+    }
+    exclude_->setText(attempt->excluded ? "&Include in studies again …" : "&Exclude from studies …");
+    attempt_->setAttempt(document_, *attempt);
+    pair_->setAttempt(1, attempt->uuid);
+    rating_->setAttempt(*attempt);
+  });
+  connect(attempts_, &AttemptsPage::attemptActivated, this, [this] { tabs_->setCurrentWidget(attempt_); });
+  connect(attempts_, &AttemptsPage::figureActivated, this, [this](const QString& checkpoint, const QString& subject) {
+    tabs_->setCurrentWidget(attempt_);
+    attempt_->goToFigure(checkpoint.toStdString(), subject.toStdString());
+  });
+  connect(trainee_, &TraineePage::attemptActivated, this, &DashboardWindow::openAttempt);
+}
+
+void DashboardWindow::openAttempt(const QString& uuid) {
+  attempts_->select(uuid);
+  tabs_->setCurrentWidget(attempt_);
 }
 
 void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document) {
+  const bool another = !document_ || document_->path() != document->path();
   document_ = std::move(document);
+  if (another) undo_->clear();
   problem_->hide();
   const QString name = QFileInfo(QString::fromStdString(document_->path())).fileName();
   setWindowTitle(name + " – Calot");
-  attempts_->setDocument(document_);
+  study_->setDocument(document_);
+  trainee_->setDocument(document_);
+  pair_->setDocument(document_);
+  rating_->setDocument(document_);
   compare_->setDocument(document_);
+  attempts_->setDocument(document_);
   if (document_->attempts().empty()) {
     greeting_->explainEmptyDatabase(name);
     stack_->setCurrentWidget(greeting_);
   } else {
     stack_->setCurrentWidget(tabs_);
   }
+  emit documentShown();
 }
 
 bool DashboardWindow::openDatabase(const QString& path) {
+  loader_.forget();
   try {
     setDocument(std::make_shared<const CohortDocument>(path.toStdString()));
     return true;
@@ -95,8 +215,53 @@ bool DashboardWindow::openDatabase(const QString& path) {
   }
 }
 
+bool DashboardWindow::createDatabase(const QString& path) {
+  try {
+    const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create);
+  } catch (const Error& error) {
+    showProblem(QString::fromUtf8(error.what()));
+    return false;
+  }
+  return openDatabase(path);
+}
+
 void DashboardWindow::reload() {
-  if (document_) openDatabase(QString::fromStdString(document_->path()));
+  if (!document_) return;
+  loader_.run([this, path = document_->path()]() -> Background::Answer {
+    try {
+      auto document = std::make_shared<const CohortDocument>(path);
+      return [this, document] { setDocument(document); };
+    } catch (const std::exception& error) {
+      return [this, text = QString::fromUtf8(error.what())] { showProblem(text); };
+    }
+  });
+}
+
+void DashboardWindow::importRecordings(const QStringList& paths) {
+  const QStringList files = recordingsIn(paths);
+  if (files.isEmpty()) {
+    showProblem("There is no recording (*.h5) in what was chosen.");
+    return;
+  }
+  if (!imports_.busy())
+    imports_.configure(settings::calotProgram(), QString::fromStdString(document_->path()), settings::importThreads());
+  // Where recordings come from is where their replays are looked for.
+  for (const QString& file : files) settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
+  importDock_->show();
+  imports_.add(files);
+}
+
+void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {
+  const analytics::AttemptRow* attempt = attempts_->selected();
+  if (attempt == nullptr) return;
+  undo_->push(new ExclusionCommand({document_->path(), attempt->uuid, reason.toStdString(), by.toStdString(),
+                                    !attempt->excluded, attempt->exclusionReason},
+                                   [this](const QString& fault) {
+                                     if (fault.isEmpty())
+                                       reload();
+                                     else
+                                       showProblem(fault);
+                                   }));
 }
 
 void DashboardWindow::askForDatabase() {
@@ -105,26 +270,61 @@ void DashboardWindow::askForDatabase() {
   if (!path.isEmpty()) openDatabase(path);
 }
 
+void DashboardWindow::askForNewDatabase() {
+  const QString path =
+      QFileDialog::getSaveFileName(this, "Make a cohort database", "cohort.db", "Cohort databases (*.db)", nullptr,
+                                   QFileDialog::DontConfirmOverwrite);
+  if (!path.isEmpty()) createDatabase(path);
+}
+
+void DashboardWindow::askForRecordings() {
+  if (!document_) {
+    showProblem("Open a cohort database first, or make one: recordings are imported into it.");
+    return;
+  }
+  const QStringList files =
+      QFileDialog::getOpenFileNames(this, "Import recordings", {}, "Recordings (*.h5);;All files (*)");
+  if (!files.isEmpty()) importRecordings(files);
+}
+
+void DashboardWindow::askForExclusion() {
+  const analytics::AttemptRow* attempt = attempts_->selected();
+  if (attempt == nullptr) return;
+  QString by = settings::person();
+  if (by.isEmpty()) by = QInputDialog::getText(this, "Who decides", "Your pseudonym:").trimmed();
+  if (by.isEmpty()) return;
+  const QString what = attempt->excluded ? "Include in studies again" : "Exclude from studies";
+  const QString reason = QInputDialog::getText(this, what, "Reason, for the record:").trimmed();
+  if (reason.isEmpty()) return;
+  settings::setPerson(by);
+  excludeOrInclude(reason, by);
+}
+
+void DashboardWindow::showSettings() {
+  SettingsDialog dialog(this);
+  dialog.exec();
+}
+
 void DashboardWindow::showProblem(const QString& message) {
   problem_->setText(message);
   problem_->show();
 }
 
-void DashboardWindow::savePictures(const QString& folder) {
-  const auto save = [&](const QString& name) {
-    QCoreApplication::processEvents();
-    const QString file = folder + '/' + name;
-    if (!grab().save(file, "PNG"))
-      throw Error(ExitCode::failure, file.toStdString() + ": cannot write the picture; does the folder exist?");
-  };
-  if (stack_->currentWidget() == greeting_) {
-    save("greeting.png");
-    return;
+void DashboardWindow::dragEnterEvent(QDragEnterEvent* event) {
+  if (!localFiles(*event->mimeData()).isEmpty()) event->acceptProposedAction();
+}
+
+void DashboardWindow::dropEvent(QDropEvent* event) {
+  const QStringList files = localFiles(*event->mimeData());
+  if (files.isEmpty()) return;
+  event->acceptProposedAction();
+  if (files.size() == 1 && files[0].endsWith(".db")) {
+    openDatabase(files[0]);
+  } else if (!document_) {
+    showProblem("Open a cohort database first, or make one: recordings are imported into it.");
+  } else {
+    importRecordings(files);
   }
-  tabs_->setCurrentWidget(attempts_);
-  save("attempts.png");
-  tabs_->setCurrentWidget(compare_);
-  save("compare.png");
 }
 
 }  // namespace calot::gui

@@ -1,36 +1,59 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <QMainWindow>
+#include <vector>
 
+#include "gui/dashboard/background.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/import_queue.h"
 
+class QAction;
+class QDockWidget;
 class QLabel;
 class QStackedWidget;
 class QTabWidget;
+class QTimer;
+class QUndoStack;
 
 namespace calot::gui {
 
+class AttemptPage;
 class AttemptsPage;
 class ComparePage;
 class GreetingPage;
+class PairPage;
+class RatingPage;
+class StudyPage;
+class TraineePage;
 
-/// The dashboard: a cohort's attempts and checkpoints, and one checkpoint over groups. It only puts pages together;
-/// what they show is decided by models that know no window. Nothing is ever written to a database.
+/// The dashboard: pages over one cohort database. It only puts pages together; what they show is decided by models that
+/// know no window. The database is written by imports, ratings and exclusions alone.
 class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
-  explicit DashboardWindow(QWidget* parent = nullptr);
+  /// @param assetFolders that may hold forms (recorder::assetRoots)
+  explicit DashboardWindow(const std::vector<std::filesystem::path>& assetFolders = {}, QWidget* parent = nullptr);
   ~DashboardWindow() override;
 
   /// Shows an open document. @pre not null
   void setDocument(std::shared_ptr<const CohortDocument> document);
   /// Opens a database. On failure says why in one line on the window, keeps what was open, and returns false.
   bool openDatabase(const QString& path);
-  /// Reads the open database again.
+  /// Makes an empty database, or opens the one that is there.
+  bool createDatabase(const QString& path);
+  /// Reads the open database again, in the background.
   void reload();
-  /// Writes a PNG of each page into a folder that exists: attempts.png and compare.png (or greeting.png).
+  /// Puts recordings (files, and folders with such) into the import's queue. @pre a database is open
+  void importRecordings(const QStringList& paths);
+  /// Excludes the selected attempt from studies, or takes it in again where it is excluded. Can be undone.
+  void excludeOrInclude(const QString& reason, const QString& by);
+
+  [[nodiscard]] ImportQueue& imports() { return imports_; }
+  /// Writes a PNG of each page into a folder that exists, after what it shows has been read: attempts.png, attempt.png,
+  /// compare.png, study.png, trainee.png, pair.png, ratings.png and settings.png (or greeting.png).
   /// @throws calot::Error (failure) if one cannot be written.
   void savePictures(const QString& folder);
 
@@ -38,8 +61,23 @@ class DashboardWindow : public QMainWindow {
   void askForDatabase();
   void showProblem(const QString& message);
 
+ signals:
+  void documentShown();
+
+ protected:
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+
  private:
   void buildMenus();
+  void buildImport();
+  void connectPages();
+  void openAttempt(const QString& uuid);
+  void askForNewDatabase();
+  void askForRecordings();
+  void askForExclusion();
+  void showSettings();
+  void savePicture(QWidget& page, const QString& file);
 
   std::shared_ptr<const CohortDocument> document_;
   QLabel* problem_;
@@ -47,7 +85,18 @@ class DashboardWindow : public QMainWindow {
   GreetingPage* greeting_;
   QTabWidget* tabs_;
   AttemptsPage* attempts_;
+  AttemptPage* attempt_;
   ComparePage* compare_;
+  StudyPage* study_;
+  TraineePage* trainee_;
+  PairPage* pair_;
+  RatingPage* rating_;
+  QUndoStack* undo_;
+  QAction* exclude_ = nullptr;
+  QDockWidget* importDock_ = nullptr;
+  QTimer* refresh_ = nullptr;  ///< while an import runs
+  ImportQueue imports_;
+  Background loader_;
 };
 
 }  // namespace calot::gui

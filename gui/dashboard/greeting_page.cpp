@@ -7,7 +7,7 @@
 
 namespace calot::gui {
 
-GreetingPage::GreetingPage(QWidget* parent) : QWidget(parent), title_(new QLabel), text_(new QLabel) {
+GreetingPage::GreetingPage(QWidget* parent) : QWidget(parent), title_(new QLabel), text_(new QLabel), import_(nullptr) {
   auto* layout = new QVBoxLayout(this);
   layout->addStretch(1);
   QFont large = font();
@@ -27,7 +27,17 @@ GreetingPage::GreetingPage(QWidget* parent) : QWidget(parent), title_(new QLabel
   layout->addSpacing(12);
   layout->addWidget(text_);
   layout->addSpacing(18);
-  layout->addWidget(open, 0, Qt::AlignHCenter);
+  auto* fresh = new QPushButton("&Make a new one …");
+  fresh->setObjectName("new");
+  connect(fresh, &QPushButton::clicked, this, &GreetingPage::newRequested);
+  import_ = new QPushButton("&Import recordings …");
+  import_->setObjectName("import-recordings");
+  connect(import_, &QPushButton::clicked, this, &GreetingPage::importRequested);
+  auto* buttons = new QHBoxLayout;
+  buttons->addStretch(1);
+  for (QPushButton* button : {import_, open, fresh}) buttons->addWidget(button);
+  buttons->addStretch(1);
+  layout->addLayout(buttons);
   layout->addStretch(2);
   explainNoDatabase();
 }
@@ -35,17 +45,19 @@ GreetingPage::GreetingPage(QWidget* parent) : QWidget(parent), title_(new QLabel
 void GreetingPage::explainNoDatabase() {
   title_->setText("Welcome to Calot");
   text_->setText(
-      "A cohort database holds attempts and their checkpoints.\nOpen one, or make one from recordings with\n\n"
-      "calot assess recording.h5 --cohort cohort.db");
+      "A cohort database holds attempts and their checkpoints.\nOpen one, make a new one, or drop one here. On the "
+      "command line:\n\ncalot assess recording.h5 --cohort cohort.db");
+  import_->hide();
 }
 
 void GreetingPage::explainEmptyDatabase(const QString& fileName) {
   title_->setText("This cohort is still empty");
   text_->setText(
       fileName +
-      " is a cohort database without attempts.\nAssess recordings into it; each is simulated again, verified "
-      "and measured:\n\ncalot assess recording.h5 --cohort " +
-      fileName + "\n\nThen choose View, Reload.");
+      " is a cohort database without attempts.\nImport recordings, or drop them here: each is simulated again, "
+      "verified and measured. On the command line:\n\ncalot assess recording.h5 --cohort " +
+      fileName);
+  import_->show();
 }
 
 }  // namespace calot::gui

@@ -4,6 +4,7 @@
 #include <QWidget>
 
 class QLabel;
+class QPushButton;
 
 namespace calot::gui {
 
@@ -17,10 +18,13 @@ class GreetingPage : public QWidget {
 
  signals:
   void openRequested();
+  void newRequested();
+  void importRequested();
 
  private:
   QLabel* title_;
   QLabel* text_;
+  QPushButton* import_;
 };
 
 }  // namespace calot::gui

@@ -21,6 +21,10 @@ class GuardedSource final : public SampleSource, private Observer {
     return source_.next(tick, out);
   }
   SourceStatus status() override { return source_.status(); }
+  void rest() override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    source_.rest();
+  }
   [[nodiscard]] Observer* watcher() override { return this; }
   [[nodiscard]] Outcome ending() const override { return source_.ending(); }
   [[nodiscard]] std::string statusText() const override { return source_.statusText(); }

@@ -45,6 +45,11 @@ class SampleSource {
   /// the step has its ticks.
   virtual SourceStatus status() { return SourceStatus::ok; }
 
+  /// Called instead of next() while somebody else holds the run (ControlledSource), by the thread that calls next(),
+  /// every few milliseconds: what hands do meanwhile belongs to no tick. When the run goes on, a device's hands set out
+  /// from where they stood.
+  virtual void rest() {}
+
   /// Who among this source's own has to be told of every step: an operator in closed loop sees. nullptr: nobody. The
   /// loop tells it before it asks for the next step's first tick; live, from the thread that steps.
   [[nodiscard]] virtual Observer* watcher() { return nullptr; }

@@ -39,8 +39,9 @@ MAY_SEE = {
     "analytics/report": ("sim", "recorder", "analytics"),
     "gui/render": ("sim", "recorder contracts"),
     "gui/film": ("sim", "recorder", "analytics", "gui/render"),
-    "gui/dashboard": ("sim", "recorder", "analytics", "gui/render"),
-    "gui/trainer": ("sim", "recorder", "analytics", "gui/render"),
+    "gui/view": ("sim", "recorder contracts", "gui/render"),
+    "gui/dashboard": ("sim", "recorder", "analytics", "gui/render", "gui/view"),
+    "gui/trainer": ("sim", "recorder", "analytics", "gui/render", "gui/view"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui"),
     "apps/calot-bench": ("recorder", "tests/bench"),
@@ -59,7 +60,7 @@ BULLET = "BulletCollision/"  # that one folder sees Bullet
 
 # Foreign headers that only some rooms may see: prefix -> rooms.
 ONLY = {
-    "Q": ("gui/dashboard", "gui/trainer", "gui/report", "apps"),
+    "Q": ("gui/view", "gui/dashboard", "gui/trainer", "gui/report", "apps"),
     "hdf5": ("recorder/recording",),
     "H5": ("recorder/recording",),
     "SQLiteCpp/": ("analytics/cohort",),

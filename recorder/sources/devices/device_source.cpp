@@ -38,7 +38,7 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescriptio
       return settings_.calibration && settings_.calibration->hand[which] ? &*settings_.calibration->hand[which]
                                                                          : nullptr;
     };
-    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false, false};
+    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false, false, false};
     state.held.position = scene.hands[h].home;
     state.held.orientation = pointing(scene.hands[h].port, scene.hands[h].home);
     state.held.instrument = InstrumentKind::none;
@@ -140,9 +140,9 @@ void DeviceSource::fill(HandState& hand, InstrumentSample& out) {
     const bool fresh = lost_.empty() && static_cast<double>(now() - sample.hostTime) <= 1e9 * settings_.staleAfter;
     const bool clutch = (sample.buttons & clutchButton) != 0;
     if (fresh) {
-      if (!hand.mapping.anchored()) {
+      if (!hand.mapping.anchored() && !hand.placed) {
         hand.mapping.anchorAtHome(sample);
-      } else if (hand.anchorAgain || (hand.clutched && !clutch)) {
+      } else if (!hand.mapping.anchored() || hand.anchorAgain || (hand.clutched && !clutch)) {
         hand.mapping.anchor(sample, hand.held.position, hand.held.orientation);
       }
       hand.anchorAgain = false;
@@ -179,6 +179,22 @@ SourceStatus DeviceSource::status() {
   }
   if (failed_) return SourceStatus::failed;
   return lost_.empty() ? SourceStatus::ok : SourceStatus::paused;
+}
+
+void DeviceSource::rest() {
+  gather();
+  fresh_.clear();
+  for (HandState& hand : hand_) hand.anchorAgain = hand.mapping.anchored();
+}
+
+void DeviceSource::setOutFrom(const TickSamples& start) {
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const InstrumentSample& from = start.hand[h];
+    if (from.instrument == InstrumentKind::none) continue;
+    hand_[h].held.position = from.position;
+    hand_[h].held.orientation = from.orientation;
+    hand_[h].placed = true;
+  }
 }
 
 void DeviceSource::feedback(const std::array<Wrench, handCount>& inWorld) {

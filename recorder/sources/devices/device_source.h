@@ -56,9 +56,15 @@ class DeviceSource final : public SampleSource {
   /// and why.
   void waitForFirst(double seconds, const std::atomic<bool>* stop = nullptr);
 
+  /// Before the first tick: the hands set out from these poses instead of the scene's home (a branch). A hand that has
+  /// no instrument there begins at home.
+  void setOutFrom(const TickSamples& start);
+
   [[nodiscard]] const Provenance& provenance() const override { return provenance_; }
   bool next(std::uint64_t tick, TickSamples& out) override;
   SourceStatus status() override;
+  /// Forgets what the device measures meanwhile; each hand is anchored anew when the run goes on.
+  void rest() override;
   [[nodiscard]] std::string statusText() const override { return lost_; }
   /// What the hands shall feel; for devices with motors.
   void feedback(const std::array<Wrench, handCount>& inWorld);
@@ -78,7 +84,8 @@ class DeviceSource final : public SampleSource {
     InstrumentSample held;
     bool anchorAgain = false;
     bool clutched = false;
-    bool used = false;  ///< the tick's pose was made from the newest
+    bool placed = false;  ///< setOutFrom(): held says where it begins
+    bool used = false;    ///< the tick's pose was made from the newest
   };
   void gather();
   void beginAttempt();

@@ -82,6 +82,8 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
   } else if (kind == "scripted") {
     if (rest.empty()) refuse(name, "a file is missing: scripted:FILE");
     out.device = std::make_unique<ScriptedDevice>(readDeviceScript(rest), clock);
+  } else if (kind == "mouse") {
+    refuse(name, "mouse and keyboard need a window: calot-trainer has one");
   } else {
     refuse(name, "no such device; there are gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE and null");
   }

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot-trainer: options, then the window.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <QApplication>
+#include <QTimer>
+#include <string>
+#include <utility>
+
+#include "apps/calot-trainer/options_input.h"
+#include "apps/calot-trainer/pictures.h"
+#include "apps/calot/environment.h"
+#include "apps/calot/station_options.h"
+#include "apps/calot/stop_request.h"
+#include "gui/trainer/mouse_attempt_input.h"
+#include "gui/trainer/trainer_window.h"
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+struct Options {
+  SourceOptions source;
+  std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
+  std::string mode = "practice", pictures;
+  std::uint64_t seed = 1;
+  unsigned threads = 1;
+};
+
+void add(CLI::App& app, Options& o) {
+  app.set_version_flag("--version", recorder::softwareName());
+  app.add_option("--scene", o.scene,
+                 "name of a scene (calot scenes), or a scene file; without one, the window offers them");
+  auto* const device = app.add_option("--device", o.source.device.name,
+                                      "gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE or null "
+                                      "(docs/devices.md); default: mouse and keyboard");
+  app.add_option("--performer", o.source.performer,
+                 "watch a synthetic operator: skilled, intermediate, unskilled, or a file")
+      ->excludes(device);
+  addTools(app, o.source.device);
+  app.add_option("--calibration", o.source.device.calibration, "of the device; an assessment needs one")->needs(device);
+  app.add_option("--participant", o.participant, "pseudonym")->check([](const std::string& p) {
+    return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
+  });
+  app.add_option("--mode", o.mode, "practice or assessment: no hints, no pause, no going back")
+      ->check(CLI::IsMember({"practice", "assessment"}))
+      ->capture_default_str();
+  app.add_option("--purpose", o.purpose, "training, study, demo")
+      ->check(CLI::IsMember({"training", "study", "demo"}))
+      ->capture_default_str();
+  app.add_option("--handedness", o.handedness, "right, left, unknown")
+      ->check(CLI::IsMember({"right", "left", "unknown"}))
+      ->capture_default_str();
+  app.add_option("--station", o.station, "name of this training station");
+  addStationKey(app, o.stationKey);
+  app.add_option("--seed", o.seed, "of simulation and performer")->check(wholeNumber)->capture_default_str();
+  app.add_option("--threads", o.threads, "of the simulation; 0: all")
+      ->check(CLI::Range(0U, 64U))
+      ->capture_default_str();
+  app.add_option("-o,--output", o.folder, "folder for the recordings")->capture_default_str();
+  app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
+}
+
+void checkFolder(const std::string& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw Error(ExitCode::usage, fmt::format("{}: is no folder; recordings go into one that exists", folder));
+}
+
+/// Everything that can be wrong is told here, before there is a window.
+gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedScene>& scene) {
+  checkFolder(o.folder);
+  gui::TrainerSetup setup;
+  recorder::AttemptSettings& attempt = setup.settings.attempt;
+  setup.settings.key = stationKeyOf(o.stationKey);
+  attempt.participant = o.participant;
+  attempt.station = stationOf(o.station, setup.settings.key);
+  attempt.purpose = o.purpose;
+  attempt.handedness = o.handedness;
+  attempt.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
+  attempt.seed = o.seed;
+  setup.settings.folder = o.folder;
+  setup.settings.threads = o.threads;
+  SourceOptions who = o.source;
+  who.mode = attempt.mode;
+  if (who.device.name.empty() && who.performer.empty()) {
+    if (attempt.mode == recorder::Mode::assessment) {
+      throw Error(ExitCode::usage,
+                  "--mode assessment: mouse and keyboard cannot be calibrated; name a --device and its --calibration");
+    }
+    setup.mouse = std::make_shared<recorder::MouseInput>();
+    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse);
+  } else {
+    auto input = std::make_shared<OptionsInput>(who, o.seed);
+    // A performer needs a scene; a device is there or not whatever the scene.
+    if (scene || who.performer.empty()) input->check(scene ? scene->description : SceneDescription{});
+    setup.input = std::move(input);
+  }
+  return setup;
+}
+
+std::optional<recorder::LoadedScene> sceneOf(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(name, assetFolders()));
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot-trainer: warning: {}\n", warning);
+  const Model::Built built = Model::build(scene.description);
+  if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", name, built.error));
+  return scene;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Practises or assesses an operation, live: every attempt is recorded."};
+  Options o;
+  add(app, o);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    fmt::print(stderr, "calot-trainer: {}; try --help\n", error.what());
+    return static_cast<int>(ExitCode::usage);
+  }
+  stopOnSignals();
+  std::optional<recorder::LoadedScene> scene = sceneOf(o.scene);
+  gui::TrainerSetup setup = setUp(o, scene);
+  std::vector<std::string> faults;
+  if (!scene || !o.pictures.empty()) setup.scenes = gui::sceneChoices(assetFolders(), faults);
+  for (const std::string& fault : faults) fmt::print(stderr, "calot-trainer: {}\n", fault);
+  if (!scene && setup.scenes.empty())
+    throw Error(ExitCode::usage, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
+
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("Calot");
+  gui::TrainerWindow window(std::move(setup));
+  window.show();
+  if (!o.pictures.empty()) {
+    takePictures(window, std::move(scene), o.pictures);
+    return 0;
+  }
+  if (scene) window.begin(std::move(*scene));
+  QTimer asking;
+  QObject::connect(&asking, &QTimer::timeout, &window, [&window] {
+    if (stopRequested()) window.close();
+  });
+  asking.start(100);
+  const int code = QApplication::exec();
+  for (const std::string& line : window.endAndReport()) fmt::print("{}\n", line);
+  return code;
+}
+
+}  // namespace
+}  // namespace calot::apps
+
+int main(int argc, char** argv) {
+  try {
+    return calot::apps::run(argc, argv);
+  } catch (const calot::Error& error) {
+    fmt::print(stderr, "calot-trainer: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "calot-trainer: {}\n", error.what());
+    return static_cast<int>(calot::ExitCode::failure);
+  }
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/calot-trainer/pictures.h"
+
+#include <functional>
+#include <QApplication>
+#include <QDeadlineTimer>
+#include <utility>
+
+#include "gui/trainer/operation_view.h"
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+/// Lets the window live until `there`, or so many seconds are over. @returns there()
+bool waitFor(const std::function<bool()>& there, int seconds) {
+  const QDeadlineTimer limit(1000LL * seconds);
+  while (!there() && !limit.hasExpired()) QApplication::processEvents(QEventLoop::WaitForMoreEvents, 20);
+  return there();
+}
+
+}  // namespace
+
+void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScene> scene, const std::string& folder) {
+  const auto save = [&](const char* name) {
+    window.refresh();
+    window.savePicture(QString::fromStdString(folder + "/" + name + ".png"));
+  };
+  const auto wanted = [](bool there, const char* what) {
+    if (!there) throw Error(ExitCode::failure, std::string("--pictures: ") + what);
+  };
+  window.chooseScene();
+  save("greeting");
+  if (!scene) return;
+  window.begin(std::move(*scene));
+  const auto status = [&] { return window.session()->status(); };
+  wanted(waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > 10; }, 60), "nothing is running");
+  save("running");
+  waitFor([&] { return !status().figures.mistakes->empty(); }, 60);
+  waitFor([] { return false; }, 1);  // what comes of it
+  if (window.session()->pause()) {
+    save("paused");
+    window.session()->resume();
+  }
+  window.session()->finish();
+  wanted(waitFor([&] { return status().stage == gui::Stage::ended; }, 30), "the attempt does not end");
+  save("end");
+}
+
+}  // namespace calot::apps

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/attempt_track.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace calot::gui {
+namespace {
+
+/// Subjects of these kinds are structures.
+bool namesStructure(EventKind kind) {
+  switch (kind) {
+    case EventKind::instrumentExchange:
+    case EventKind::strandsTorn:
+    case EventKind::connectiveFreed:
+    case EventKind::clipDropped:
+    case EventKind::clockStretched:
+    case EventKind::runaway:
+      return false;
+    default:
+      return true;
+  }
+}
+
+std::string textOf(const Event& event, const std::vector<std::string>& structures) {
+  std::string text = wordFor(event.kind);
+  if (namesStructure(event.kind) && event.subject < structures.size()) text += ": " + structures[event.subject];
+  if (event.hand < handCount) text += fmt::format(" ({} hand)", handNames[event.hand]);
+  return text;
+}
+
+/// Largest force and the way of each hand, bin by bin.
+class Tracer {
+ public:
+  Tracer(AttemptTrack& track, std::uint64_t stepsPerBin, double stepSeconds)
+      : track_(track), stepsPerBin_(stepsPerBin), stepSeconds_(stepSeconds) {}
+
+  void add(const recorder::RecordedStep& step) {
+    for (std::size_t h = 0; h < handCount; ++h) {
+      for (const recorder::TickOutcome& tick : step.ticks) force_[h] = std::max(force_[h], tick.hand[h].force.norm());
+      const Vec3& tip = step.result.hand[h].tipReal;
+      const InstrumentKind now = step.result.hand[h].instrument;
+      // Another instrument, or one that was not there, is no movement.
+      if (any_ && now != InstrumentKind::none && now == instrument_[h]) way_[h] += (tip - tip_[h]).norm();
+      tip_[h] = tip;
+      instrument_[h] = now;
+    }
+    any_ = true;
+    if (++steps_ == stepsPerBin_) finishBin();
+  }
+  void finishBin() {
+    if (steps_ == 0) return;
+    for (std::size_t h = 0; h < handCount; ++h) {
+      track_.hand[h].force.push_back(force_[h]);
+      track_.hand[h].speed.push_back(way_[h] / (static_cast<double>(steps_) * stepSeconds_));
+    }
+    force_.fill(0.0);
+    way_.fill(0.0);
+    steps_ = 0;
+  }
+
+ private:
+  AttemptTrack& track_;
+  std::uint64_t stepsPerBin_, steps_ = 0;
+  double stepSeconds_;
+  bool any_ = false;
+  std::array<double, handCount> force_{}, way_{};
+  std::array<Vec3, handCount> tip_{Vec3::Zero(), Vec3::Zero()};
+  std::array<InstrumentKind, handCount> instrument_{};
+};
+
+}  // namespace
+
+const char* wordFor(EventKind kind) {
+  switch (kind) {
+    case EventKind::instrumentExchange:
+      return "instrument exchanged";
+    case EventKind::graspSlip:
+      return "grasp slips";
+    case EventKind::tissueTear:
+      return "held tissue tears";
+    case EventKind::strandsTorn:
+      return "connective tissue torn";
+    case EventKind::connectiveFreed:
+      return "connective tissue parted";
+    case EventKind::vesselTorn:
+      return "vessel torn";
+    case EventKind::clipSet:
+      return "clip set";
+    case EventKind::clipHalfOn:
+      return "clip not across the whole vessel";
+    case EventKind::clipOnClip:
+      return "clip on a clip";
+    case EventKind::clipTooNear:
+      return "clip too near";
+    case EventKind::clipDropped:
+      return "clip dropped";
+    case EventKind::vesselCut:
+      return "vessel cut";
+    case EventKind::cutOpen:
+      return "open vessel";
+    case EventKind::cutThroughClip:
+      return "cut through a clip";
+    case EventKind::vesselBurned:
+      return "vessel burned through";
+    case EventKind::organPerforated:
+      return "organ perforated";
+    case EventKind::tooFewClips:
+      return "too few clips";
+    case EventKind::criticalError:
+      return "critical error";
+    case EventKind::clockStretched:
+      return "simulation late, clock stretched";
+    case EventKind::runaway:
+      return "simulation failed";
+    default:
+      return nullptr;
+  }
+}
+
+bool isError(EventKind kind) {
+  switch (kind) {
+    case EventKind::tissueTear:
+    case EventKind::strandsTorn:
+    case EventKind::vesselTorn:
+    case EventKind::clipHalfOn:
+    case EventKind::clipOnClip:
+    case EventKind::clipTooNear:
+    case EventKind::clipDropped:
+    case EventKind::cutOpen:
+    case EventKind::cutThroughClip:
+    case EventKind::vesselBurned:
+    case EventKind::organPerforated:
+    case EventKind::tooFewClips:
+    case EventKind::criticalError:
+    case EventKind::runaway:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string timeText(double seconds) {
+  const auto tenths = static_cast<std::int64_t>(std::floor(std::max(0.0, seconds) * 10.0 + 1e-6));
+  return fmt::format("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
+}
+
+AttemptTrack readTrack(recorder::Recording& recording,
+                       const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+  AttemptTrack track;
+  track.seconds = recording.seconds();
+  const recorder::AttemptHeader& header = recording.header();
+  if (header.purpose == "golden") {
+    track.none =
+        "A golden recording holds no results of its steps: there is no timeline. The replay shows it all the same.";
+    return track;
+  }
+  const std::uint64_t steps = recording.stepCount();
+  const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
+  const std::uint64_t stepsPerBin = std::max<std::uint64_t>(1, (steps + mostBins - 1) / mostBins);
+  track.bin = static_cast<double>(stepsPerBin) * stepSeconds;
+  const std::vector<std::string> structures = header.structures();
+  Tracer tracer(track, stepsPerBin, stepSeconds);
+  for (std::uint64_t n = 0; n < steps; ++n) {
+    const recorder::RecordedStep& step = recording.step(n);
+    const double end = static_cast<double>(n + 1) * stepSeconds;
+    tracer.add(step);
+    const Phase phase = step.result.procedure.phase;
+    if (track.phases.empty() || track.phases.back().phase != phase)
+      track.phases.push_back({phase, static_cast<double>(n) * stepSeconds, end});
+    track.phases.back().end = end;
+    for (const Event& event : step.result.events) {
+      if (wordFor(event.kind) != nullptr)
+        track.events.push_back({end, event.kind, textOf(event, structures), isError(event.kind)});
+    }
+    if (progress && (n % 100 == 99 || n + 1 == steps)) progress(n + 1, steps);
+  }
+  tracer.finishBin();
+  if (track.phases.size() == 1 && track.phases[0].phase == Phase::none) track.phases.clear();
+  return track;
+}
+
+}  // namespace calot::gui

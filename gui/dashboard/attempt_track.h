@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a recording says of itself over time: phases, events, forces and speeds. Knows no window.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "recorder/recording/reader.h"
+
+namespace calot::gui {
+
+/// A stretch of one phase; phases may recur.
+struct TrackPhase {
+  Phase phase = Phase::none;
+  double begin = 0.0, end = 0.0;  ///< s
+};
+
+/// An event that a person would look for; contacts and smoke are left out.
+struct TrackEvent {
+  double time = 0.0;  ///< end of its step (s)
+  EventKind kind = EventKind::clipSet;
+  std::string text;    ///< "clip set on cystic_duct, right hand"
+  bool error = false;  ///< something that should not happen
+};
+
+/// One hand's values over bins of equal length.
+struct HandTrace {
+  std::vector<double> force;  ///< largest force on the hand within the bin (N)
+  std::vector<double> speed;  ///< way of the real tip within the bin, over its length (m/s)
+};
+
+struct AttemptTrack {
+  double seconds = 0.0;
+  double bin = 0.0;  ///< length of a trace's bin (s); the last one may be shorter
+  std::array<HandTrace, handCount> hand;
+  std::vector<TrackPhase> phases;
+  std::vector<TrackEvent> events;
+  std::string none;  ///< why there are no phases, events and traces, or empty
+};
+
+inline constexpr std::uint64_t mostBins = 1500;  ///< of a trace: more than a screen has columns for it
+
+/// Reads the whole recording. @param progress steps done, of all; may throw to break off
+/// @throws Error (damaged)
+AttemptTrack readTrack(recorder::Recording& recording,
+                       const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+
+/// Which events a track has and how they read: "clip set", or null for those that it leaves out.
+const char* wordFor(EventKind kind);
+/// Whether it should not happen.
+bool isError(EventKind kind);
+/// "0:42.5", "12:03.0": minutes, seconds and tenths, with the decimal point of no locale.
+std::string timeText(double seconds);
+
+}  // namespace calot::gui

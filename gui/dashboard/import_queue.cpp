@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/import_queue.h"
+
+#include <QDir>
+#include <QFileInfo>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <utility>
+
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+constexpr qsizetype mostOutput = 64 * 1024 * 1024;  // bytes; the report of a recording is far smaller
+constexpr int patience = 3000;                      // ms for a killed process to be gone
+
+QString storedText(const QString& how) {
+  if (how == "added") return "new in the cohort";
+  if (how == "extended") return "brought up to date";
+  if (how == "unchanged") return "was in the cohort already";
+  return "not stored";
+}
+
+QString verdictText(const QString& verdict, const QString& message) {
+  if (verdict == "bit-exact") return QString::fromUtf8("✓ verified");
+  if (verdict == "diverged") return QString::fromUtf8("≠ diverged: ") + message;
+  if (verdict == "damaged") return QString::fromUtf8("✕ damaged: ") + message;
+  return "? not checkable here: " + message;
+}
+
+QString lastLine(const QByteArray& text) {
+  const QList<QByteArray> lines = text.trimmed().split('\n');
+  return QString::fromUtf8(lines.last()).trimmed();
+}
+
+}  // namespace
+
+ImportResult importResultOf(const QString& file, int exitCode, bool crashed, const QByteArray& output,
+                            const QByteArray& errors) {
+  ImportResult result;
+  result.file = file;
+  if (crashed) {
+    result.text = "the program that assesses it ended without an answer";
+    return result;
+  }
+  const QJsonObject row = QJsonDocument::fromJson(output).array().at(0).toObject();
+  if (row.isEmpty()) {
+    result.text = lastLine(errors);
+    if (result.text.isEmpty()) result.text = QString("no answer (exit code %1)").arg(exitCode);
+    if (exitCode == static_cast<int>(ExitCode::damaged) || exitCode == static_cast<int>(ExitCode::no))
+      result.kind = ImportResult::Kind::refused;
+    return result;
+  }
+  const QString stored = row["stored"].toString();
+  result.kind = stored == "not stored" ? ImportResult::Kind::refused : ImportResult::Kind::stored;
+  result.text = verdictText(row["verdict"].toString(), row["message"].toString()) + "; " + storedText(stored);
+  if (const QString key = row["key"].toString(); !key.isEmpty()) result.text += "; " + key;
+  return result;
+}
+
+QStringList recordingsIn(const QStringList& paths) {
+  QStringList files;
+  for (const QString& path : paths) {
+    if (!QFileInfo(path).isDir()) {
+      files += path;
+      continue;
+    }
+    const QDir folder(path);
+    for (const QString& name : folder.entryList({"*.h5"}, QDir::Files, QDir::Name)) files += folder.filePath(name);
+  }
+  files.removeDuplicates();
+  return files;
+}
+
+ImportQueue::ImportQueue(QObject* parent) : QObject(parent) {
+  connect(&process_, &QProcess::readyReadStandardOutput, this, [this] { collect(); });
+  connect(&process_, &QProcess::readyReadStandardError, this, [this] { collect(); });
+  connect(&process_, &QProcess::finished, this, [this](int code, QProcess::ExitStatus status) {
+    collect();
+    finishCurrent(importResultOf(current_, code, status == QProcess::CrashExit, output_, errors_));
+  });
+  connect(&process_, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {
+    if (error != QProcess::FailedToStart) return;  // the others end with finished()
+    finishCurrent({current_, ImportResult::Kind::failed,
+                   (program_.isEmpty() ? QString("the program calot was not found") : program_ + " cannot be started") +
+                       "; name it under File, Settings"});
+  });
+}
+
+ImportQueue::~ImportQueue() {
+  process_.disconnect(this);
+  if (process_.state() != QProcess::NotRunning) {
+    process_.kill();
+    process_.waitForFinished(patience);
+  }
+}
+
+void ImportQueue::configure(const QString& program, const QString& database, int threads) {
+  program_ = program;
+  database_ = database;
+  threads_ = threads;
+}
+
+void ImportQueue::add(const QStringList& files) {
+  if (!busy()) done_ = total_ = 0;
+  waiting_ += files;
+  total_ += static_cast<int>(files.size());
+  if (current_.isEmpty()) startNext();
+}
+
+void ImportQueue::cancel() {
+  total_ -= static_cast<int>(waiting_.size());
+  waiting_.clear();
+  if (process_.state() == QProcess::NotRunning) return;
+  cancelled_ = true;
+  process_.kill();
+}
+
+void ImportQueue::startNext() {
+  if (waiting_.isEmpty()) {
+    emit allDone();
+    return;
+  }
+  current_ = waiting_.takeFirst();
+  cancelled_ = false;
+  output_.clear();
+  errors_.clear();
+  clock_.start();
+  emit progressed();
+  // An absolute path: no file's name is an option.
+  process_.start(program_, {"assess", QFileInfo(current_).absoluteFilePath(), "--cohort", database_, "--threads",
+                            QString::number(threads_), "--json"});
+  process_.closeWriteChannel();
+}
+
+void ImportQueue::collect() {
+  output_ += process_.readAllStandardOutput();
+  errors_ += process_.readAllStandardError();
+  if (output_.size() + errors_.size() > mostOutput) process_.kill();
+}
+
+void ImportQueue::finishCurrent(ImportResult result) {
+  if (cancelled_) result = {current_, ImportResult::Kind::failed, "stopped"};
+  ++done_;
+  current_.clear();
+  emit fileDone(result);
+  emit progressed();
+  // Not from within the process's own signal.
+  QMetaObject::invokeMethod(
+      this,
+      [this] {
+        if (current_.isEmpty()) startNext();
+      },
+      Qt::QueuedConnection);
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QProcess>
+#include <QStringList>
+
+namespace calot::gui {
+
+/// What became of one recording.
+struct ImportResult {
+  enum class Kind {
+    stored,   ///< it is an attempt of the cohort, whatever its verdict
+    refused,  ///< damaged, in conflict with the cohort, or of no use: nothing was stored
+    failed,   ///< the program that assesses crashed, could not be started or was stopped
+  };
+  QString file;
+  Kind kind = Kind::failed;
+  QString text;  ///< "✓ verified, new in the cohort"; or why not
+};
+
+/// What `calot assess --json` said of one file. @param crashed it did not end by itself
+ImportResult importResultOf(const QString& file, int exitCode, bool crashed, const QByteArray& output,
+                            const QByteArray& errors);
+
+/// The recordings behind what was dropped or chosen: files as they are, of folders the *.h5 in them, by name.
+QStringList recordingsIn(const QStringList& paths);
+
+/// Assesses recordings into a cohort, one after the other, each by `calot assess` in a process of its own: whatever a
+/// file does to the program that reads it, the window stays.
+class ImportQueue : public QObject {
+  Q_OBJECT
+ public:
+  explicit ImportQueue(QObject* parent = nullptr);
+  ~ImportQueue() override;
+
+  /// Which program and which database the next recordings go through. @pre not busy()
+  void configure(const QString& program, const QString& database, int threads);
+  /// Puts recordings behind those that wait; starts.
+  void add(const QStringList& files);
+  /// Stops the one that is being assessed (the cohort keeps nothing of it) and drops the others.
+  void cancel();
+
+  [[nodiscard]] bool busy() const { return process_.state() != QProcess::NotRunning || !waiting_.isEmpty(); }
+  [[nodiscard]] int done() const { return done_; }
+  [[nodiscard]] int total() const { return total_; }
+  [[nodiscard]] QString current() const { return current_; }
+  [[nodiscard]] qint64 seconds() const { return current_.isEmpty() ? 0 : clock_.elapsed() / 1000; }  ///< of the current
+
+ signals:
+  void progressed();
+  void fileDone(const calot::gui::ImportResult& result);
+  void allDone();
+
+ private:
+  void startNext();
+  void finishCurrent(ImportResult result);
+  void collect();
+
+  QString program_, database_;
+  int threads_ = 1;
+  QStringList waiting_;
+  QString current_;
+  int done_ = 0, total_ = 0;
+  bool cancelled_ = false;
+  QByteArray output_, errors_;
+  QElapsedTimer clock_;
+  QProcess process_;
+};
+
+}  // namespace calot::gui

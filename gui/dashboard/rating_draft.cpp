@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/rating_draft.h"
+
+#include <algorithm>
+
+#include "recorder/errors.h"
+
+namespace calot::gui {
+
+namespace fs = std::filesystem;
+
+KnownForms readForms(const std::vector<fs::path>& folders) {
+  std::map<std::string, fs::path> byName;
+  for (const fs::path& root : folders) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / "forms", fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+    }
+  }
+  KnownForms known;
+  for (const auto& entry : byName) {
+    try {
+      known.forms.push_back(analytics::readRatingForm(entry.second));
+    } catch (const Error& error) {
+      known.faults.emplace_back(error.what());
+    }
+  }
+  return known;
+}
+
+void RatingDraft::store(const std::string& database, const std::string& attempt, const std::string& rater,
+                        const std::string& participant, bool replace) const {
+  if (form_.ofAttempts && attempt.empty()) throw Error(ExitCode::usage, "Choose the attempt that is rated.");
+  if (form_.ofAttempts && rater.empty()) throw Error(ExitCode::usage, "Say who rates, by a pseudonym.");
+  if (!form_.ofAttempts && participant.empty())
+    throw Error(ExitCode::usage, "Choose the participant who fills in the form.");
+  std::vector<std::pair<std::string, std::string>> given;
+  for (const auto& [item, score] : answers_) given.emplace_back(item, score ? std::to_string(*score) : "-");
+  analytics::Rating rating;
+  rating.attempt = form_.ofAttempts ? attempt : std::string();
+  rating.rater = form_.ofAttempts ? rater : std::string();
+  rating.participant = form_.ofAttempts ? std::string() : participant;
+  rating.answers = analytics::answersOf(form_, given);
+  analytics::AssessmentDatabase(database, analytics::CohortDatabase::Access::write)
+      .storeRating({form_.name, form_.version, form_.sha256, form_.text}, rating, replace);
+}
+
+std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
+                                               const analytics::RatingForm& form, const std::string& attempt,
+                                               const std::string& rater, const std::string& participant) {
+  const auto at = std::find_if(ratings.begin(), ratings.end(), [&](const analytics::Rating& r) {
+    if (r.form != form.name || r.formVersion != form.version) return false;
+    return form.ofAttempts ? r.attempt == attempt && r.rater == rater
+                           : r.attempt.empty() && r.participant == participant;
+  });
+  if (at == ratings.end()) return std::nullopt;
+  return *at;
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <QObject>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytics/assessment/moments.h"
+#include "gui/dashboard/attempt_track.h"
+#include "gui/dashboard/link.h"
+
+namespace calot::gui {
+
+/// Reads a recording's timeline, then the moments of its figures, on a thread of its own. Signals come on the thread of
+/// the object.
+class RecordingReader : public QObject {
+  Q_OBJECT
+ public:
+  using Figures = std::vector<std::pair<std::string, std::string>>;  ///< checkpoint and subject
+
+  explicit RecordingReader(QObject* parent = nullptr);
+  ~RecordingReader() override;
+  /// Breaks off what it is at, without waiting for it, and begins anew. @pre the file was opened by openRecording()
+  /// before
+  void read(const std::filesystem::path& file, const Figures& figures);
+  void stop();
+
+ signals:
+  void progress(int percent);  ///< of both together
+  void trackRead(const calot::gui::AttemptTrack& track);
+  void momentsFound(const std::vector<calot::analytics::FigureMoments>& moments);
+  void failed(const QString& reason);
+
+ private:
+  using Back = std::shared_ptr<Link<RecordingReader>>;
+  static void run(const Back& back, const std::filesystem::path& file, const Figures& figures);
+
+  Back back_;  ///< of what is being read
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/replay_player.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "gui/dashboard/open_recording.h"
+#include "gui/dashboard/replay_plan.h"
+#include "recorder/errors.h"
+#include "recorder/live/worker_pool.h"
+#include "recorder/replay.h"
+#include "sim/scene/version.h"
+
+namespace calot::gui {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto pictureEvery = std::chrono::milliseconds(33);
+constexpr double stepsShare = 0.025;   // s of re-simulation before the next picture
+constexpr double longWay = 0.08;       // s of re-simulation from which a keyframe is shown on the way
+constexpr double whileSeeking = 0.25;  // s between pictures on a long way
+constexpr double firstGuess = 0.005;   // s a step, before any was measured
+
+double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+}  // namespace
+
+/// The thread's own: recording, seeker and where they stand.
+class ReplayPlayer::Run {
+ public:
+  explicit Run(ReplayPlayer& player)
+      : player_(player),
+        recording_(openRecording(player.file_, player.attempt_)),
+        pool_(1),
+        seeker_(recording_, pool_),
+        stepSeconds_(recording_.seconds() / static_cast<double>(recording_.stepCount())) {
+    position_.steps = recording_.stepCount();
+    position_.seconds = recording_.seconds();
+  }
+
+  void loop() {
+    goTo(0);
+    publish(true, false);
+    for (;;) {
+      Wish wish;
+      {
+        std::unique_lock lock(player_.mutex_);
+        player_.wake_.wait(lock, [&] { return player_.wish_.number != seen_ || player_.wish_.playing; });
+        wish = player_.wish_;
+        player_.wish_.time.reset();
+        player_.wish_.steps = 0;
+      }
+      if (wish.stop) return;
+      if (wish.number != seen_) take(wish);
+      if (wish.playing) playOn();
+    }
+  }
+
+ private:
+  [[nodiscard]] ReplayReach reach() const {
+    const double budget = std::max(1.0, stepsShare / stepCost_);
+    return {done_, recording_.keyframeSteps(), static_cast<std::uint64_t>(std::min(budget, 1e6))};
+  }
+  [[nodiscard]] std::uint64_t stepAt(double time) const {
+    const double n = std::clamp(std::floor(time / stepSeconds_ + 1e-6), 0.0, static_cast<double>(position_.steps - 1));
+    return static_cast<std::uint64_t>(n);
+  }
+  [[nodiscard]] bool newerWish() const {
+    const std::lock_guard lock(player_.mutex_);
+    return player_.wish_.number != seen_;
+  }
+
+  void goTo(std::uint64_t step) {
+    const std::uint64_t steps = stepsTo(reach(), step);
+    const auto begin = Clock::now();
+    seeker_.seek(step);
+    done_ = step;
+    if (steps > 0) stepCost_ += 0.2 * (secondsSince(begin) / static_cast<double>(steps) - stepCost_);
+  }
+
+  void publish(bool settled, bool hopping) {
+    position_.step = *done_;
+    position_.time = static_cast<double>(*done_ + 1) * stepSeconds_;
+    position_.settled = settled;
+    position_.hopping = hopping;
+    player_.receiver_.moment(std::make_shared<const SceneView>(seeker_.session().view()), position_);
+  }
+
+  void take(const Wish& wish) {
+    seen_ = wish.number;
+    position_.playing = wish.playing;
+    position_.speed = wish.speed;
+    std::uint64_t target = goal_.value_or(*done_);
+    if (wish.time) target = stepAt(*wish.time);
+    if (wish.steps != 0) {
+      const auto last = static_cast<std::int64_t>(position_.steps) - 1;
+      target =
+          static_cast<std::uint64_t>(std::clamp<std::int64_t>(static_cast<std::int64_t>(target) + wish.steps, 0, last));
+    }
+    if (wish.playing && !wish.time && target + 1 == position_.steps) target = 0;
+    seek(target);
+    restartClock();
+  }
+
+  /// Goes to a step, as long as nothing newer is wished for.
+  void seek(std::uint64_t target) {
+    goal_ = target;
+    auto lastPicture = Clock::now();
+    bool first = true;
+    while (done_ != target) {
+      if (newerWish()) return;
+      const std::uint64_t next = seekTowards(reach(), target);
+      const bool jumped = next != target && stepsTo(reach(), next) == 0;
+      goTo(next);
+      const double left = static_cast<double>(target - next) * stepCost_;
+      if (next != target && ((first && jumped && left > longWay) || secondsSince(lastPicture) > whileSeeking)) {
+        publish(false, false);
+        lastPicture = Clock::now();
+      }
+      first = false;
+    }
+    goal_.reset();
+    publish(true, false);
+  }
+
+  void restartClock() {
+    clockBegin_ = Clock::now();
+    clockStep_ = *done_;
+  }
+
+  void playOn() {
+    const auto picture = Clock::now();
+    const double passed = secondsSince(clockBegin_) * position_.speed;
+    const double due = static_cast<double>(clockStep_) + passed / stepSeconds_;
+    const std::uint64_t last = position_.steps - 1;
+    const auto dueStep = static_cast<std::uint64_t>(std::min(due, static_cast<double>(last)));
+    bool hops = false;
+    const bool moves = dueStep > *done_;
+    if (moves) {
+      const ReplayMove move = playTowards(reach(), dueStep);
+      hops = move.hops;
+      goTo(move.step);
+    }
+    const bool ended = *done_ == last;
+    if (ended) {
+      const std::lock_guard lock(player_.mutex_);
+      // Whoever wished for something else meanwhile is asked first.
+      if (player_.wish_.number == seen_) player_.wish_.playing = position_.playing = false;
+    }
+    if (moves || ended) publish(true, hops);
+    std::unique_lock lock(player_.mutex_);
+    player_.wake_.wait_until(lock, picture + pictureEvery, [&] { return player_.wish_.number != seen_; });
+  }
+
+  ReplayPlayer& player_;
+  recorder::Recording recording_;
+  recorder::WorkerPool pool_;
+  recorder::Seeker seeker_;
+  const double stepSeconds_;
+  PlayerPosition position_;
+  std::optional<std::uint64_t> done_;  ///< the seeker's step
+  std::optional<std::uint64_t> goal_;  ///< of a seek that something newer broke off
+  double stepCost_ = firstGuess;       ///< s, of late
+  std::uint64_t seen_ = 0;             ///< wishes taken
+  Clock::time_point clockBegin_;
+  std::uint64_t clockStep_ = 0;
+};
+
+ReplayPlayer::ReplayPlayer(std::filesystem::path file, std::string attempt, Receiver receiver)
+    : file_(std::move(file)),
+      attempt_(std::move(attempt)),
+      receiver_(std::move(receiver)),
+      thread_([this] { run(); }) {}
+
+ReplayPlayer::~ReplayPlayer() {
+  change([](Wish& wish) { wish.stop = true; });
+  thread_.join();
+}
+
+void ReplayPlayer::change(const std::function<void(Wish&)>& how) {
+  {
+    const std::lock_guard lock(mutex_);
+    how(wish_);
+    ++wish_.number;
+  }
+  wake_.notify_one();
+}
+
+void ReplayPlayer::seek(double time) {
+  change([&](Wish& wish) {
+    wish.time = time;
+    wish.steps = 0;
+  });
+}
+
+void ReplayPlayer::stepBy(int steps) {
+  change([&](Wish& wish) {
+    wish.steps += steps;
+    wish.playing = false;
+  });
+}
+
+void ReplayPlayer::play() {
+  change([](Wish& wish) { wish.playing = true; });
+}
+
+void ReplayPlayer::playFrom(double time) {
+  change([&](Wish& wish) {
+    wish.time = time;
+    wish.steps = 0;
+    wish.playing = true;
+  });
+}
+
+void ReplayPlayer::pause() {
+  change([](Wish& wish) { wish.playing = false; });
+}
+
+void ReplayPlayer::setSpeed(double speed) {
+  change([&](Wish& wish) { wish.speed = std::clamp(speed, slowestReplay, fastestReplay); });
+}
+
+void ReplayPlayer::run() {
+  try {
+    Run(*this).loop();
+  } catch (const std::exception& error) {
+    receiver_.failed(error.what());
+  }
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "sim/scene/scene_view.h"
+
+namespace calot::gui {
+
+/// What a replay shows.
+struct PlayerPosition {
+  std::uint64_t step = 0;   ///< the last step done
+  std::uint64_t steps = 0;  ///< of the recording
+  double time = 0.0;        ///< end of that step since the attempt's start (s)
+  double seconds = 0.0;     ///< of the recording
+  double speed = 1.0;       ///< asked for
+  bool playing = false;
+  bool settled = true;   ///< false: on the way to the moment that was asked for
+  bool hopping = false;  ///< re-simulation cannot keep pace; from keyframe to keyframe
+};
+
+inline constexpr double slowestReplay = 0.1, fastestReplay = 16.0;  ///< times real time
+
+/// Plays a recording by simulating it again, on a thread of its own. A moment is reached from the nearest keyframe; the
+/// keyframe is shown at once where the way from there is long. Every picture is of a State that the recording gives;
+/// its time is told with it. Knows no window.
+class ReplayPlayer {
+ public:
+  struct Receiver {
+    /// On the player's thread. The view is changed by nobody any more.
+    std::function<void(std::shared_ptr<const SceneView>, const PlayerPosition&)> moment;
+    std::function<void(const std::string&)> failed;  ///< on the player's thread: one line; nothing more comes
+  };
+
+  /// Opens the file (after a child process read all of it) and shows its first step.
+  /// @param attempt uuid that the recording must have; empty: any
+  ReplayPlayer(std::filesystem::path file, std::string attempt, Receiver receiver);
+  /// Waits for the step that is being computed.
+  ~ReplayPlayer();
+  ReplayPlayer(const ReplayPlayer&) = delete;
+  ReplayPlayer& operator=(const ReplayPlayer&) = delete;
+
+  // Any thread; each returns at once. What is asked for before the file is open is done then. A newer wish replaces
+  // one that is not reached yet.
+  void seek(double time);  ///< (s) since the attempt's start; clamped
+  void stepBy(int steps);  ///< stops playing; clamped
+  void play();             ///< from the start again, where it stands at the end
+  void playFrom(double time);
+  void pause();
+  void setSpeed(double speed);  ///< clamped to slowestReplay and fastestReplay
+
+ private:
+  class Run;
+  struct Wish {
+    std::optional<double> time;  ///< to go there
+    int steps = 0;               ///< then by so many
+    bool playing = false;
+    double speed = 1.0;
+    bool stop = false;
+    std::uint64_t number = 0;  ///< of changes so far
+  };
+  void change(const std::function<void(Wish&)>& how);
+  void run();
+
+  std::filesystem::path file_;
+  std::string attempt_;
+  Receiver receiver_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  Wish wish_;
+  std::thread thread_;  // last: it uses what is above
+};
+
+}  // namespace calot::gui

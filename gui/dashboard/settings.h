@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the dashboard remembers for its user, from run to run. Nothing of it changes a figure.
+#pragma once
+
+#include <filesystem>
+#include <QString>
+#include <QStringList>
+#include <vector>
+
+namespace calot::gui::settings {
+
+/// Folders in which recordings are looked for, beside the database's own; the newest first.
+[[nodiscard]] QStringList recordingFolders();
+[[nodiscard]] std::vector<std::filesystem::path> recordingPlaces();
+void setRecordingFolders(const QStringList& folders);
+/// Puts a folder first; adds it where it is new.
+void rememberRecordingFolder(const QString& folder);
+
+/// The program that assesses recordings: as set; else `calot` beside this program; else on the search path; else empty.
+[[nodiscard]] QString calotProgram();
+void setCalotProgram(const QString& file);   ///< empty: looked for as said
+[[nodiscard]] QString chosenCalotProgram();  ///< as set, or empty
+
+/// Threads of an import's simulation: 1 to 64.
+[[nodiscard]] int importThreads();
+void setImportThreads(int threads);
+
+/// Who rates, excludes and includes: a pseudonym, or empty.
+[[nodiscard]] QString person();
+void setPerson(const QString& name);
+
+}  // namespace calot::gui::settings

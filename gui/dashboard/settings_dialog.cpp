@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/settings_dialog.h"
+
+#include <QBoxLayout>
+#include <QDialogButtonBox>
+#include <QFileDialog>
+#include <QFormLayout>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPushButton>
+#include <QSpinBox>
+
+#include "gui/dashboard/settings.h"
+
+namespace calot::gui {
+
+SettingsDialog::SettingsDialog(QWidget* parent)
+    : QDialog(parent),
+      folders_(new QListWidget),
+      program_(new QLineEdit),
+      threads_(new QSpinBox),
+      person_(new QLineEdit) {
+  setWindowTitle("Settings");
+  resize(560, 360);
+  folders_->setObjectName("settings-folders");
+  folders_->addItems(settings::recordingFolders());
+  auto* addFolder = new QPushButton("&Add …");
+  auto* removeFolder = new QPushButton("&Remove");
+  auto* buttons = new QVBoxLayout;
+  buttons->addWidget(addFolder);
+  buttons->addWidget(removeFolder);
+  buttons->addStretch(1);
+  auto* folderRow = new QHBoxLayout;
+  folderRow->addWidget(folders_, 1);
+  folderRow->addLayout(buttons);
+  program_->setObjectName("settings-program");
+  program_->setText(settings::chosenCalotProgram());
+  const QString found = settings::calotProgram();
+  program_->setPlaceholderText(found.isEmpty() ? QString("not found: name it here") : found);
+  threads_->setObjectName("settings-threads");
+  threads_->setRange(1, 64);
+  threads_->setValue(settings::importThreads());
+  person_->setObjectName("settings-person");
+  person_->setMaxLength(64);
+  person_->setText(settings::person());
+  person_->setPlaceholderText("pseudonym of who rates and excludes");
+  auto* decision = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
+  auto* form = new QFormLayout(this);
+  form->addRow("&Folders with recordings", folderRow);
+  form->addRow("&Program that imports", program_);
+  form->addRow("&Threads of an import", threads_);
+  form->addRow("&You", person_);
+  form->addRow(decision);
+  connect(addFolder, &QPushButton::clicked, this, [this] {
+    const QString folder = QFileDialog::getExistingDirectory(this, "A folder with recordings");
+    if (!folder.isEmpty()) folders_->addItem(folder);
+  });
+  connect(removeFolder, &QPushButton::clicked, this, [this] { delete folders_->currentItem(); });
+  connect(decision, &QDialogButtonBox::accepted, this, &SettingsDialog::accept);
+  connect(decision, &QDialogButtonBox::rejected, this, &SettingsDialog::reject);
+}
+
+void SettingsDialog::accept() {
+  QStringList folders;
+  for (int row = 0; row < folders_->count(); ++row) folders += folders_->item(row)->text();
+  settings::setRecordingFolders(folders);
+  settings::setCalotProgram(program_->text().trimmed());
+  settings::setImportThreads(threads_->value());
+  settings::setPerson(person_->text().trimmed());
+  QDialog::accept();
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/study_page.h"
+
+#include <algorithm>
+#include <QBoxLayout>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QLabel>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QSplitter>
+#include <QTextBrowser>
+#include <QTextOption>
+
+#include "gui/dashboard/comparison_chart.h"
+#include "gui/dashboard/roc_chart.h"
+#include "gui/dashboard/words.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+QString effectText(const analytics::StudyRow& row) {
+  QStringList parts;
+  if (row.area)
+    parts += QString("A = %1 [%2, %3]")
+                 .arg(numberText(row.area->value.a), numberText(row.area->a.lower), numberText(row.area->a.upper));
+  if (row.hedges) parts += QString("Hedges' g = %1").arg(numberText(row.hedges->g));
+  if (row.test) parts += QString("p = %1").arg(numberText(row.test->p));
+  if (row.holm) parts += QString("Holm-adjusted p = %1").arg(numberText(*row.holm));
+  if (parts.isEmpty()) return "No effect size: " + QString::fromStdString(row.area.reason()) + '.';
+  return parts.join(QString::fromUtf8(" · "));
+}
+
+}  // namespace
+
+StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  buildChoices(*layout);
+  state_ = new QLabel;
+  state_->setObjectName("study-state");
+  state_->setTextFormat(Qt::PlainText);
+  state_->setWordWrap(true);
+  layout->addWidget(state_);
+
+  text_ = new QTextBrowser;
+  text_->setObjectName("study-text");
+  text_->setAccessibleName("Tables of the study");
+  text_->setOpenLinks(false);
+  text_->setWordWrapMode(QTextOption::WordWrap);
+  row_ = new QComboBox;
+  row_->setObjectName("study-row");
+  auto* rowLabel = new QLabel("&Checkpoint");
+  rowLabel->setBuddy(row_);
+  auto* rowLayout = new QHBoxLayout;
+  rowLayout->addWidget(rowLabel);
+  rowLayout->addWidget(row_, 1);
+  effect_ = new QLabel;
+  effect_->setObjectName("study-effect");
+  effect_->setWordWrap(true);
+  boxes_ = new ComparisonChart;
+  boxes_->setObjectName("study-boxes");
+  roc_ = new RocChart;
+  auto* charts = new QWidget;
+  auto* chartLayout = new QVBoxLayout(charts);
+  chartLayout->setContentsMargins(0, 0, 0, 0);
+  chartLayout->addLayout(rowLayout);
+  chartLayout->addWidget(effect_);
+  chartLayout->addWidget(boxes_, 1);
+  chartLayout->addWidget(roc_, 1);
+  auto* splitter = new QSplitter(Qt::Horizontal);
+  splitter->addWidget(text_);
+  splitter->addWidget(charts);
+  splitter->setSizes({760, 480});
+  splitter->setStretchFactor(0, 3);
+  splitter->setStretchFactor(1, 2);
+  splitter->setChildrenCollapsible(false);
+  layout->addWidget(splitter, 1);
+  connectParts();
+}
+
+void StudyPage::buildChoices(QBoxLayout& layout) {
+  const auto add = [](QHBoxLayout& row, const char* name, const char* text, int stretch) {
+    auto* box = new QComboBox;
+    box->setObjectName(name);
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(10);
+    auto* label = new QLabel(text);
+    label->setBuddy(box);
+    row.addWidget(label);
+    row.addWidget(box, stretch);
+    return box;
+  };
+  auto* upper = new QHBoxLayout;
+  groupBy_ = add(*upper, "study-group-by", "&By", 0);
+  groupBy_->setMinimumContentsLength(16);
+  groupBy_->addItem("study group", static_cast<int>(GroupBy::group));
+  groupBy_->addItem("performer's profile", static_cast<int>(GroupBy::profile));
+  first_ = add(*upper, "study-first", "C&ompare", 0);
+  second_ = add(*upper, "study-second", "wit&h", 0);
+  rule_ = add(*upper, "study-rule", "&Of several attempts", 0);
+  rule_->addItem("the first", static_cast<int>(analytics::AttemptRule::first));
+  rule_->addItem("the mean", static_cast<int>(analytics::AttemptRule::mean));
+  upper->addStretch(1);
+  csv_ = new QPushButton("Export CS&V …");
+  html_ = new QPushButton("Export HTM&L …");
+  csv_->setObjectName("study-csv");
+  html_->setObjectName("study-html");
+  upper->addWidget(csv_);
+  upper->addWidget(html_);
+  layout.addLayout(upper);
+  auto* lower = new QHBoxLayout;
+  key_ = add(*lower, "study-key", "Comparable &within", 1);
+  synthetic_ = new QCheckBox("S&ynthetic attempts");
+  synthetic_->setObjectName("study-synthetic");
+  practice_ = new QCheckBox("&Practice attempts");
+  practice_->setObjectName("study-practice");
+  lower->addWidget(synthetic_);
+  lower->addWidget(practice_);
+  layout.addLayout(lower);
+}
+
+void StudyPage::connectParts() {
+  connect(groupBy_, &QComboBox::currentIndexChanged, this, [this] {
+    fillGroups();
+    make();
+  });
+  for (QComboBox* box : {first_, second_, rule_, key_})
+    connect(box, &QComboBox::currentIndexChanged, this, [this] { make(); });
+  for (QCheckBox* box : {synthetic_, practice_}) connect(box, &QCheckBox::toggled, this, [this] { make(); });
+  connect(row_, &QComboBox::currentIndexChanged, this, [this] { showRow(); });
+  connect(csv_, &QPushButton::clicked, this, [this] { saveAs(false); });
+  connect(html_, &QPushButton::clicked, this, [this] { saveAs(true); });
+}
+
+void StudyPage::setDocument(std::shared_ptr<const CohortDocument> document) {
+  const bool another = !document_ || document_->path() != document->path();
+  document_ = std::move(document);
+  made_ = false;
+  if (another) fillChoices();
+  if (isVisible()) make();
+}
+
+void StudyPage::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  if (!made_) make();
+}
+
+void StudyPage::fillChoices() {
+  const auto& attempts = document_->attempts();
+  const QSignalBlocker quietGroup(groupBy_), quietKey(key_), quietSynthetic(synthetic_), quietPractice(practice_);
+  // Nobody has a study group: then profiles tell more, and all is synthetic.
+  const bool people = !groupsOf(attempts, GroupBy::group).empty();
+  groupBy_->setCurrentIndex(people ? 0 : 1);
+  synthetic_->setChecked(!people);
+  bool assessment = false;
+  for (const analytics::AttemptRow& attempt : attempts)
+    assessment = assessment || attempt.mode == recorder::Mode::assessment;
+  practice_->setChecked(!assessment);
+  key_->clear();
+  for (const std::string& key : comparabilityKeysOf(attempts)) key_->addItem(QString::fromStdString(key));
+  fillGroups();
+}
+
+void StudyPage::fillGroups() {
+  if (!document_) return;
+  const QSignalBlocker quietFirst(first_), quietSecond(second_);
+  first_->clear();
+  second_->clear();
+  for (const std::string& name :
+       groupsOf(document_->attempts(), static_cast<GroupBy>(groupBy_->currentData().toInt()))) {
+    first_->addItem(QString::fromStdString(name));
+    second_->addItem(QString::fromStdString(name));
+  }
+  second_->setCurrentIndex(second_->count() > 1 ? 1 : -1);
+}
+
+void StudyPage::make() {
+  if (!document_ || !isVisible()) return;
+  made_ = true;
+  study_.reset();
+  csv_->setEnabled(false);
+  html_->setEnabled(false);
+  state_->setText("Computing …");
+  StudyRequest request;
+  request.groupBy = static_cast<GroupBy>(groupBy_->currentData().toInt());
+  request.includeSynthetic = synthetic_->isChecked();
+  request.includePractice = practice_->isChecked();
+  request.key = key_->currentText().toStdString();
+  request.attemptRule = static_cast<analytics::AttemptRule>(rule_->currentData().toInt());
+  request.first = first_->currentText().toStdString();
+  request.second = second_->currentText().toStdString();
+  background_.run([this, request, database = document_->path()]() -> Background::Answer {
+    auto answer = std::make_shared<StudyAnswer>(studyOf(database, request));
+    return [this, answer] { take(std::move(*answer)); };
+  });
+}
+
+void StudyPage::take(StudyAnswer answer) {
+  study_ = std::move(answer.study);
+  csv_->setEnabled(study_.has_value());
+  html_->setEnabled(study_.has_value());
+  {
+    const QSignalBlocker quiet(row_);
+    const QString before = row_->currentText();
+    row_->clear();
+    if (study_) {
+      for (const analytics::StudyRow& row : study_->rows) row_->addItem(figureTitle(row.checkpoint, row.subject));
+      row_->setCurrentIndex(std::max(0, row_->findText(before)));
+    }
+  }
+  if (study_) {
+    state_->setText(QString("%1 of %2 attempts are analysed.").arg(study_->analysed).arg(study_->recruited));
+    text_->setHtml(QString::fromStdString(studyText(*study_)));
+  } else {
+    state_->setText("There is no study with these choices: " + QString::fromStdString(answer.refusal));
+    text_->clear();
+  }
+  showRow();
+  emit studyShown();
+}
+
+void StudyPage::showRow() {
+  const int at = row_->currentIndex();
+  if (!study_ || at < 0) {
+    effect_->clear();
+    boxes_->showComparison({}, "Box plot");
+    roc_->clear("ROC");
+    return;
+  }
+  const analytics::StudyRow& row = study_->rows[static_cast<std::size_t>(at)];
+  effect_->setText(effectText(row));
+  boxes_->showComparison(comparisonOf(row, *study_), row_->currentText());
+  if (row.values[0].empty() || row.values[1].empty()) {
+    roc_->clear("No ROC: a group has no values");
+    return;
+  }
+  const RocCurve curve = rocOf(row);
+  roc_->showCurve(curve, QString("ROC: %1 values speak for %2; area %3")
+                             .arg(curve.lowerIsPositive ? "small" : "large", QString::fromStdString(study_->groups[0]),
+                                  numberText(curve.area)));
+}
+
+void StudyPage::exportCsv(const QString& folder) {
+  try {
+    const std::string warning = exportStudyCsv(*study_, document_->path(), folder.toStdString(), true);
+    state_->setText(warning.empty() ? "Written: " + folder : QString::fromStdString(warning));
+  } catch (const Error& error) {
+    emit problem(QString::fromUtf8(error.what()));
+  }
+}
+
+void StudyPage::exportHtml(const QString& file) {
+  try {
+    const std::string warning = exportStudyHtml(*study_, document_->path(), file.toStdString(), true);
+    state_->setText(warning.empty() ? "Written: " + file : QString::fromStdString(warning));
+  } catch (const Error& error) {
+    emit problem(QString::fromUtf8(error.what()));
+  }
+}
+
+void StudyPage::saveAs(bool html) {
+  if (!study_) return;
+  const QString target =
+      html ? QFileDialog::getSaveFileName(this, "Write the study as a page", "study.html", "Pages (*.html)")
+           : QFileDialog::getExistingDirectory(this, "Write study.csv, values.csv and flow.csv into");
+  if (target.isEmpty()) return;
+  if (html)
+    exportHtml(target);
+  else
+    exportCsv(target);
+}
+
+}  // namespace calot::gui

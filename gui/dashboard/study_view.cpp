@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/study_view.h"
+
+#include <algorithm>
+#include <exception>
+#include <set>
+
+#include "analytics/cohort/withdraw.h"
+#include "analytics/report/html_text.h"
+#include "analytics/report/page_html.h"
+#include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
+#include "analytics/statistics/descriptive.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
+
+namespace calot::gui {
+namespace {
+
+using Access = analytics::CohortDatabase::Access;
+
+std::string cell(const std::string& text, const char* tag, bool right) {
+  return std::string("<") + tag + " style=\"white-space:nowrap\"" + (right ? " align=\"right\"" : " align=\"left\"") +
+         ">" + analytics::escaped(text) + "</" + tag + ">";
+}
+
+std::string tableText(const analytics::ReportTable& table) {
+  std::string html = "<h3>" + analytics::escaped(table.title) +
+                     "</h3><table cellspacing=\"0\" cellpadding=\"4\" border=\"0\"><tr bgcolor=\"#e8eef2\">";
+  const auto right = [&](std::size_t column) {
+    return column < table.columns.size() && table.columns[column].second == analytics::TextTable::Align::right;
+  };
+  for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell(table.columns[c].first, "th", right(c));
+  html += "</tr>";
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    html += r % 2 == 1 ? "<tr bgcolor=\"#f5f7f8\">" : "<tr>";
+    for (std::size_t c = 0; c < table.rows[r].size(); ++c) html += cell(table.rows[r][c], "td", right(c));
+    html += "</tr>";
+  }
+  return html + "</table>";
+}
+
+std::string paragraph(const std::string& text) { return "<p>" + analytics::escaped(text) + "</p>"; }
+
+/// What of the database went out. @return a warning, or empty
+std::string noteExport(const analytics::Study& study, const std::string& database, const std::string& kind,
+                       const std::string& target) {
+  try {
+    std::vector<std::string> attempts;
+    for (const analytics::AttemptRow& attempt : analytics::CohortDatabase(database, Access::read).listAttempts()) {
+      if (study.groupOf.count(attempt.uuid) > 0) attempts.push_back(attempt.uuid);
+    }
+    analytics::recordExport(database, kind, target, attempts);
+    return {};
+  } catch (const Error& error) {
+    return std::string("What was written is not noted for withdrawals: ") + error.what();
+  }
+}
+
+}  // namespace
+
+StudyAnswer studyOf(const std::string& database, const StudyRequest& request) {
+  try {
+    analytics::StudyOptions options;
+    options.grouping =
+        request.groupBy == GroupBy::profile ? analytics::Grouping::performer : analytics::Grouping::group;
+    options.includeSynthetic = request.includeSynthetic;
+    options.includePractice = request.includePractice;
+    options.key = request.key;
+    options.attemptRule = request.attemptRule;
+    if (!request.first.empty() && !request.second.empty()) options.groups = {request.first, request.second};
+    analytics::Study study = analytics::makeStudy(analytics::CohortDatabase(database, Access::read), options);
+    analytics::addRatings(study, analytics::AssessmentDatabase(database, Access::read));
+    return {std::move(study), {}};
+  } catch (const std::exception& error) {
+    return {std::nullopt, error.what()};
+  }
+}
+
+std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, GroupBy groupBy) {
+  std::set<std::string> names;
+  for (const analytics::AttemptRow& attempt : attempts) {
+    const std::string& name = groupBy == GroupBy::profile ? attempt.profile : attempt.group;
+    if (!name.empty()) names.insert(name);
+  }
+  return {names.begin(), names.end()};
+}
+
+std::string studyText(const analytics::Study& study) {
+  std::string html;
+  if (study.synthetic)
+    html += "<p style=\"background-color:#f0e442; color:#000000\"><b>&nbsp;" +
+            analytics::escaped(analytics::watermarkText) + "&nbsp;</b></p>";
+  html += "<h2>" + analytics::escaped(analytics::studyTitle(study)) + "</h2>";
+  for (const std::string& line : analytics::protocolLines(study)) html += paragraph(line);
+  html += tableText(analytics::flowTable(study));
+  for (const analytics::ReportTable& table : analytics::studyTables(study)) html += tableText(table);
+  for (const analytics::FormReport& report : study.ratings) {
+    for (const analytics::ReportTable& table : analytics::ratingTables(report)) html += tableText(table);
+  }
+  html += "<h3>Notes</h3>";
+  for (const std::string& note : analytics::studyNotes(study)) html += paragraph(note);
+  html += "<h3>Methods</h3>" + paragraph(analytics::studyMethods(study));
+  return html;
+}
+
+Comparison comparisonOf(const analytics::StudyRow& row, const analytics::Study& study) {
+  Comparison comparison;
+  comparison.unit = row.unit == "1" ? std::string() : row.unit;
+  comparison.synthetic = study.synthetic;
+  for (std::size_t g = 0; g < study.groups.size(); ++g) {
+    if (row.values[g].empty()) continue;
+    ComparisonGroup group;
+    group.name = study.groups[g];
+    for (std::size_t i = 0; i < row.values[g].size(); ++i)
+      group.point.push_back({row.participants[g][i], row.values[g][i], study.synthetic});
+    std::sort(group.point.begin(), group.point.end(), [](const ComparisonPoint& a, const ComparisonPoint& b) {
+      return a.value != b.value ? a.value < b.value : a.attempt < b.attempt;
+    });
+    std::vector<double> sorted = row.values[g];
+    std::sort(sorted.begin(), sorted.end());
+    group.smallest = sorted.front();
+    group.largest = sorted.back();
+    group.lowerQuartile = analytics::quantileOfSorted(sorted, 0.25);
+    group.median = analytics::quantileOfSorted(sorted, 0.5);
+    group.upperQuartile = analytics::quantileOfSorted(sorted, 0.75);
+    comparison.shown += static_cast<int>(sorted.size());
+    comparison.group.push_back(std::move(group));
+  }
+  return comparison;
+}
+
+RocCurve rocOf(const std::vector<double>& first, const std::vector<double>& second, bool lowerIsPositive) {
+  struct Value {
+    double score;
+    bool first;
+  };
+  std::vector<Value> values;
+  const double sign = lowerIsPositive ? -1.0 : 1.0;
+  for (const double v : first) values.push_back({sign * v, true});
+  for (const double v : second) values.push_back({sign * v, false});
+  std::sort(values.begin(), values.end(), [](const Value& a, const Value& b) { return a.score > b.score; });
+  RocCurve curve;
+  curve.lowerIsPositive = lowerIsPositive;
+  curve.points.push_back({0.0, 0.0});
+  curve.area = 0.0;
+  std::size_t positives = 0, negatives = 0;
+  for (std::size_t i = 0; i < values.size();) {
+    // Equal values change hands together.
+    for (const double score = values[i].score; i < values.size() && values[i].score == score; ++i)
+      ++(values[i].first ? positives : negatives);
+    const RocPoint point{static_cast<double>(negatives) / static_cast<double>(second.size()),
+                         static_cast<double>(positives) / static_cast<double>(first.size())};
+    const RocPoint& before = curve.points.back();
+    curve.area += (point.falsePositive - before.falsePositive) * 0.5 * (point.truePositive + before.truePositive);
+    curve.points.push_back(point);
+  }
+  return curve;
+}
+
+RocCurve rocOf(const analytics::StudyRow& row) {
+  return rocOf(row.values[0], row.values[1], row.hypothesis == analytics::Hypothesis::firstSmaller);
+}
+
+std::string exportStudyCsv(const analytics::Study& study, const std::string& database, const std::string& folder,
+                           bool force) {
+  analytics::writeStudyCsv(study, folder, force);
+  return noteExport(study, database, "study-csv", folder);
+}
+
+std::string exportStudyHtml(const analytics::Study& study, const std::string& database, const std::string& file,
+                            bool force) {
+  recorder::refuseOutput(file, force);
+  recorder::writeText(file, analytics::pageHtml(analytics::studyDocument(study)), force);
+  return noteExport(study, database, "study-html", file);
+}
+
+}  // namespace calot::gui

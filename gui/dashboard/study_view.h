@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A study made ready for a page: choices to options, tables to text, rows to charts, export. Knows no window.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/report/study.h"
+#include "gui/dashboard/comparison.h"
+
+namespace calot::gui {
+
+/// What a person chooses on the study page.
+struct StudyRequest {
+  GroupBy groupBy = GroupBy::group;  ///< group or profile
+  bool includeSynthetic = false;
+  bool includePractice = false;
+  std::string key;  ///< only attempts of this comparability key; empty: all, which must then have one
+  analytics::AttemptRule attemptRule = analytics::AttemptRule::first;
+  std::string first, second;  ///< groups to compare, or both empty: the only two that are there
+};
+
+/// The study, with ratings; or why there is none.
+struct StudyAnswer {
+  std::optional<analytics::Study> study;
+  std::string refusal;  ///< one line
+};
+/// Opens the database on its own: for a thread that is not the interface's. Does not throw.
+StudyAnswer studyOf(const std::string& database, const StudyRequest& request);
+
+/// Groups that attempts have, by name, for the choice of two.
+std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, GroupBy groupBy);
+
+/// Title, methods, flow, tables and notes as HTML for a text widget; every text is escaped.
+std::string studyText(const analytics::Study& study);
+
+/// One row's values as a box plot with points.
+Comparison comparisonOf(const analytics::StudyRow& row, const analytics::Study& study);
+
+/// A point of a receiver operating characteristic: taking `threshold` and beyond as the first group's.
+struct RocPoint {
+  double falsePositive = 0.0;  ///< share of the second group taken for the first
+  double truePositive = 0.0;   ///< share of the first group taken for it
+};
+struct RocCurve {
+  std::vector<RocPoint> points;  ///< from (0, 0) to (1, 1)
+  double area = 0.5;             ///< under it, by trapezoids: P(X > Y) + P(X = Y) / 2 in the curve's direction
+  bool lowerIsPositive = false;  ///< small values are taken for the first group
+};
+/// The empirical curve of two groups' values (Fawcett 2006, Pattern Recognit. Lett. 27:861); ties go aslant.
+/// @param lowerIsPositive small values speak for the first group. @pre both have a value, all finite
+RocCurve rocOf(const std::vector<double>& first, const std::vector<double>& second, bool lowerIsPositive);
+/// In the direction of the row's hypothesis; without one, larger values speak for the first group. @pre as rocOf()
+RocCurve rocOf(const analytics::StudyRow& row);
+
+/// Writes as `calot study --csv` and `--html` do, and notes in the database whose attempts went out.
+/// @return a warning where that could not be noted, or empty
+/// @throws Error where a file cannot be written, or is there and `force` is not set.
+std::string exportStudyCsv(const analytics::Study& study, const std::string& database, const std::string& folder,
+                           bool force);
+std::string exportStudyHtml(const analytics::Study& study, const std::string& database, const std::string& file,
+                            bool force);
+
+}  // namespace calot::gui

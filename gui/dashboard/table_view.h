@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <initializer_list>
+
+class QAbstractItemModel;
+class QTableView;
+
+namespace calot::gui {
+
+/// A table to look at: whole rows are selected, nothing is edited, Tab leaves it and arrows move in it.
+/// @param name of the object; @param spokenName for screen readers
+QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* spokenName);
+/// Widths of the first columns (pixels).
+void setWidths(QTableView& table, std::initializer_list<int> widths);
+
+}  // namespace calot::gui

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/timeline_bar.h"
+
+#include <cmath>
+#include <QHelpEvent>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QToolTip>
+#include <utility>
+
+#include "analytics/checkpoints/phases.h"
+#include "gui/dashboard/palette.h"
+
+namespace calot::gui {
+namespace {
+
+constexpr int phaseTop = 4, phaseHeight = 24, eventTop = 34, eventHeight = 22;
+constexpr double reach = 5.0;  // pixels from an event that still count as on it
+
+void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<TrackEvent>& events) {
+  // Errors last, so that nothing covers them.
+  for (const bool errors : {false, true}) {
+    for (const TrackEvent& event : events) {
+      if (event.error != errors) continue;
+      const double x = scale.x(event.time);
+      if (errors) {
+        painter.setPen(QPen(Qt::white, 0.8));
+        painter.setBrush(palette::vermillion);
+        const QPolygonF triangle{
+            {QPointF(x, eventTop + 2), QPointF(x - 6, eventTop + 15), QPointF(x + 6, eventTop + 15)}};
+        painter.drawPolygon(triangle);
+      } else {
+        painter.setPen(QPen(palette::blue, 2.0));
+        painter.drawLine(QPointF(x, eventTop + 4), QPointF(x, eventTop + 15));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TimelineBar::TimelineBar(QWidget* parent) : QWidget(parent) {
+  setObjectName("timeline");
+  setAccessibleName("Timeline of phases and events");
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  setMouseTracking(true);
+}
+
+void TimelineBar::setTrack(AttemptTrack track) {
+  track_ = std::move(track);
+  text_ = QString::fromStdString(track_.none);
+  marked_.clear();
+  update();
+}
+
+void TimelineBar::setText(const QString& text) {
+  track_ = {};
+  marked_.clear();
+  text_ = text;
+  update();
+}
+
+void TimelineBar::setPosition(double time) {
+  position_ = time;
+  update();
+}
+
+void TimelineBar::setMarked(std::vector<std::pair<double, double>> windows) {
+  marked_ = std::move(windows);
+  update();
+}
+
+void TimelineBar::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.fillRect(rect(), QWidget::palette().color(QPalette::Base));
+  const TimeScale s = scale();
+  for (const TrackPhase& phase : track_.phases) {
+    const QRectF box(s.x(phase.begin), phaseTop, s.x(phase.end) - s.x(phase.begin), phaseHeight);
+    painter.fillRect(box, palette::ofPhase(phase.phase));
+    const QString name = phase.phase == Phase::none   ? QString()
+                         : phase.phase == Phase::done ? QString("done")
+                                                      : QString(analytics::nameOf(phase.phase));
+    painter.setPen(palette::darkText);
+    if (painter.fontMetrics().horizontalAdvance(name) + 6 < box.width()) painter.drawText(box, Qt::AlignCenter, name);
+    painter.setPen(QPen(Qt::white, 1.0));
+    painter.drawLine(box.topRight(), box.bottomRight());
+  }
+  if (!text_.isEmpty()) {
+    painter.setPen(palette::mutedText);
+    painter.drawText(rect().adjusted(12, 0, -12, 0), Qt::AlignCenter | Qt::TextWordWrap, text_);
+    return;
+  }
+  if (track_.seconds <= 0.0) return;
+  painter.setPen(palette::mutedText);
+  painter.drawText(QRectF(4, phaseTop, TimeScale::leftMargin - 10, phaseHeight), Qt::AlignVCenter | Qt::AlignRight,
+                   "Phases");
+  painter.drawText(QRectF(4, eventTop, TimeScale::leftMargin - 10, eventHeight - 4), Qt::AlignVCenter | Qt::AlignRight,
+                   "Events");
+  for (const auto& [begin, end] : marked_) {
+    painter.fillRect(QRectF(s.x(begin), eventTop - 4, std::max(3.0, s.x(end) - s.x(begin)), eventHeight + 4),
+                     QColor(0xcc, 0x79, 0xa7, 120));
+  }
+  paintEvents(painter, s, track_.events);
+  painter.setPen(QPen(Qt::black, 1.5));
+  painter.drawLine(QPointF(s.x(position_), 0), QPointF(s.x(position_), height()));
+}
+
+const TrackEvent* TimelineBar::eventAt(const QPoint& at) const {
+  if (at.y() < eventTop - 4) return nullptr;
+  const TimeScale s = scale();
+  const TrackEvent* best = nullptr;
+  double nearest = reach + 1.0;
+  for (const TrackEvent& event : track_.events) {
+    const double away = std::abs(s.x(event.time) - at.x());
+    // Of those that stand together the error is meant.
+    const bool better =
+        away < nearest - 1.0 || (away < nearest + 1.0 && event.error && best != nullptr && !best->error);
+    if (away <= reach && (best == nullptr || better)) {
+      best = &event;
+      nearest = away;
+    }
+  }
+  return best;
+}
+
+void TimelineBar::mousePressEvent(QMouseEvent* event) {
+  if (track_.seconds <= 0.0 || event->button() != Qt::LeftButton) return;
+  const TrackEvent* const hit = eventAt(event->pos());
+  emit timeChosen(hit != nullptr ? hit->time : scale().time(event->position().x()));
+}
+
+void TimelineBar::mouseMoveEvent(QMouseEvent* event) {
+  if (track_.seconds <= 0.0) return;
+  setCursor(eventAt(event->pos()) != nullptr ? Qt::PointingHandCursor : Qt::ArrowCursor);
+  if (event->buttons().testFlag(Qt::LeftButton)) emit timeChosen(scale().time(event->position().x()));
+}
+
+bool TimelineBar::event(QEvent* event) {
+  if (event->type() == QEvent::ToolTip) {
+    const auto* help = static_cast<QHelpEvent*>(event);
+    if (const TrackEvent* hit = eventAt(help->pos()))
+      QToolTip::showText(help->globalPos(), QString::fromStdString(timeText(hit->time) + "  " + hit->text), this);
+    else
+      QToolTip::hideText();
+    return true;
+  }
+  return QWidget::event(event);
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/trainee_page.h"
+
+#include <algorithm>
+#include <exception>
+#include <QBoxLayout>
+#include <QComboBox>
+#include <QHeaderView>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QSplitter>
+#include <QTableWidget>
+
+#include "gui/dashboard/history_chart.h"
+#include "gui/dashboard/words.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+QString curveText(const TraineeHistory& history) {
+  QString text;
+  if (history.curve)
+    text =
+        QString("Learning curve a - b / x over the attempt's number x: plateau a = %1 (standard error %2) %3, b = %4.")
+            .arg(numberText(history.curve->plateau), numberText(history.curve->plateauError),
+                 QString::fromStdString(history.unit), numberText(history.curve->gap));
+  else
+    text = "No learning curve: " + QString::fromStdString(history.curve.reason()) + '.';
+  if (history.otherKeys > 0)
+    text += QString(" %1 attempts of other comparability keys cannot stand beside these.").arg(history.otherKeys);
+  return text;
+}
+
+}  // namespace
+
+TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  auto* row = new QHBoxLayout;
+  const auto add = [&](const char* name, const char* text, int stretch) {
+    auto* box = new QComboBox;
+    box->setObjectName(name);
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(12);
+    auto* label = new QLabel(text);
+    label->setBuddy(box);
+    row->addWidget(label);
+    row->addWidget(box, stretch);
+    return box;
+  };
+  trainee_ = add("trainee", "T&rainee", 1);
+  figure_ = add("trainee-figure", "&Checkpoint", 3);
+  key_ = add("trainee-key", "Comparable &within", 3);
+  layout->addLayout(row);
+  chart_ = new HistoryChart;
+  table_ = new QTableWidget(0, 6);
+  table_->setObjectName("trainee-attempts");
+  table_->setAccessibleName("Attempts of the trainee");
+  table_->setHorizontalHeaderLabels({"No.", "Started", "Value", "Outcome", "Verification", "Remark"});
+  table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  table_->setSelectionBehavior(QAbstractItemView::SelectRows);
+  table_->setTabKeyNavigation(false);
+  table_->setAlternatingRowColors(true);
+  table_->setToolTip("Double-click, or press Enter, to open an attempt");
+  table_->verticalHeader()->hide();
+  table_->verticalHeader()->setDefaultSectionSize(table_->fontMetrics().height() + 9);
+  table_->horizontalHeader()->setStretchLastSection(true);
+  table_->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
+  int column = 0;
+  for (const int width : {50, 170, 130, 130, 170}) table_->setColumnWidth(column++, width);
+  auto* splitter = new QSplitter(Qt::Vertical);
+  splitter->addWidget(chart_);
+  splitter->addWidget(table_);
+  splitter->setSizes({460, 220});
+  splitter->setStretchFactor(0, 3);
+  splitter->setStretchFactor(1, 2);
+  splitter->setChildrenCollapsible(false);
+  layout->addWidget(splitter, 1);
+  caption_ = new QLabel;
+  caption_->setObjectName("trainee-caption");
+  caption_->setTextFormat(Qt::PlainText);
+  caption_->setWordWrap(true);
+  layout->addWidget(caption_);
+  connectParts();
+}
+
+void TraineePage::connectParts() {
+  connect(trainee_, &QComboBox::currentIndexChanged, this, [this] {
+    fillKeys();
+    redraw();
+  });
+  for (QComboBox* box : {figure_, key_}) connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
+  connect(table_, &QTableWidget::itemActivated, this, [this](const QTableWidgetItem* item) {
+    emit attemptActivated(table_->item(item->row(), 0)->data(Qt::UserRole).toString());
+  });
+}
+
+void TraineePage::setDocument(std::shared_ptr<const CohortDocument> document) {
+  document_ = std::move(document);
+  read_ = false;
+  if (isVisible()) readValues();
+}
+
+void TraineePage::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  readValues();
+}
+
+void TraineePage::readValues() {
+  if (read_ || !document_) return;
+  read_ = true;
+  ready_ = false;
+  caption_->setText("Reading the values …");
+  struct Read {
+    std::vector<analytics::AttemptValue> values;
+    QString fault;
+  };
+  background_.run([this, path = document_->path()]() -> Background::Answer {
+    const auto read = std::make_shared<Read>();
+    try {
+      read->values = CohortDocument(path).allValues();
+    } catch (const std::exception& error) {
+      read->fault = QString::fromUtf8(error.what());
+    }
+    return [this, read] {
+      if (!read->fault.isEmpty()) emit problem(read->fault);
+      values_ = std::move(read->values);
+      ready_ = true;
+      figures_ = figuresOf(values_);
+      trainees_ = traineesOf(document_->attempts());
+      {
+        const QSignalBlocker quietTrainee(trainee_), quietFigure(figure_);
+        const QString trainee = trainee_->currentText(), figure = figure_->currentText();
+        trainee_->clear();
+        for (const Trainee& t : trainees_)
+          trainee_->addItem(QString::fromStdString(t.name) + (t.synthetic ? " (performer)" : ""));
+        figure_->clear();
+        for (const Figure& f : figures_) figure_->addItem(figureTitle(f.name, f.subject));
+        trainee_->setCurrentIndex(std::max(0, trainee_->findText(trainee)));
+        figure_->setCurrentIndex(std::max(0, figure_->findText(figure)));
+      }
+      fillKeys();
+      redraw();
+    };
+  });
+}
+
+void TraineePage::fillKeys() {
+  const QSignalBlocker quiet(key_);
+  key_->clear();
+  const int at = trainee_->currentIndex();
+  if (at < 0) return;
+  for (const std::string& key : keysOf(document_->attempts(), trainees_[static_cast<std::size_t>(at)]))
+    key_->addItem(QString::fromStdString(key));
+}
+
+void TraineePage::redraw() {
+  const int trainee = trainee_->currentIndex(), figure = figure_->currentIndex();
+  if (trainee < 0 || figure < 0 || key_->currentIndex() < 0) {
+    chart_->showHistory({}, "No attempts");
+    caption_->setText("No attempt has a participant or a profile yet.");
+    table_->setRowCount(0);
+    return;
+  }
+  std::vector<analytics::Norm> none;
+  const std::vector<analytics::Norm>* norms = &none;
+  try {
+    norms = &document_->norms();
+  } catch (const Error& error) {
+    emit problem(QString::fromUtf8(error.what()));
+  }
+  const Figure& shown = figures_[static_cast<std::size_t>(figure)];
+  const TraineeHistory history =
+      historyOf(document_->attempts(), values_, *norms, trainees_[static_cast<std::size_t>(trainee)], shown,
+                key_->currentText().toStdString());
+  chart_->showHistory(history, trainee_->currentText() + ": " + figureTitle(shown.name, shown.subject));
+  caption_->setText(curveText(history));
+  fillTable(history);
+}
+
+void TraineePage::fillTable(const TraineeHistory& history) {
+  table_->setRowCount(static_cast<int>(history.attempts.size()));
+  for (int row = 0; row < table_->rowCount(); ++row) {
+    const HistoryAttempt& entry = history.attempts[static_cast<std::size_t>(row)];
+    const Badge badge = badgeOf(*entry.attempt);
+    const QString value = entry.value ? numberText(*entry.value) + ' ' + QString::fromStdString(history.unit) : "none";
+    const QStringList texts{
+        QString::number(row + 1),
+        startText(entry.attempt->startUtc),
+        value.trimmed(),
+        outcomeText(entry.attempt->outcome),
+        badge.text,
+        QString(QString::fromStdString(entry.why) + (entry.attempt->synthetic ? " synthetic" : "")).trimmed()};
+    for (int column = 0; column < texts.size(); ++column)
+      table_->setItem(row, column, new QTableWidgetItem(texts[column]));
+    table_->item(row, 0)->setData(Qt::UserRole, QString::fromStdString(entry.attempt->uuid));
+    table_->item(row, 4)->setForeground(badge.colour);
+    table_->item(row, 4)->setToolTip(badge.explanation);
+  }
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/trainer/attempt_monitor.h"
+
+namespace calot::gui {
+namespace {
+
+std::vector<std::string> structureNames(const Model& model) {
+  std::vector<std::string> names;
+  for (const StructureModel& structure : model.structures()) names.push_back(structure.name);
+  return names;
+}
+
+std::vector<std::string> connectiveNames(const Model& model) {
+  std::vector<std::string> names;
+  for (const ConnectiveDescription& tissue : model.scene().connective) names.push_back(tissue.name);
+  return names;
+}
+
+std::size_t bedOf(const SceneDescription& scene) {
+  std::size_t bed = 0;
+  while (bed < scene.connective.size() && scene.connective[bed].name != scene.procedure.bed) ++bed;
+  return bed;
+}
+
+}  // namespace
+
+AttemptMonitor::AttemptMonitor(const Model& model)
+    : model_(model),
+      list_(structureNames(model), connectiveNames(model), model.stepSeconds()),
+      bed_(bedOf(model.scene())) {
+  for (std::size_t h = 0; h < handCount; ++h) {
+    figures_.hand[h].instrument = model.scene().hands[h].instrument;
+    figures_.hand[h].clips = model.scene().hands[h].clips;
+  }
+  figures_.vessel.resize(model.scene().vessels.size());
+  figures_.seen = std::chrono::steady_clock::now();
+}
+
+void AttemptMonitor::onStep(const recorder::StepRecord& record) {
+  for (const TickSamples& tick : record.samples) {
+    for (std::size_t h = 0; h < handCount; ++h) {
+      if (tick.hand[h].valid) lastPose_.hand[h] = tick.hand[h];
+    }
+    lastPose_.camera = tick.camera;
+  }
+  std::uint32_t missed = 0;
+  double stretched = 0.0;
+  for (const recorder::TickOutcome& tick : record.ticks) {
+    if (tick.lateness > recorder::tickDeadline) ++missed;
+    if (tick.lateness > recorder::longestLag) stretched += static_cast<double>(tick.lateness - recorder::longestLag);
+  }
+  const bool added = list_.add(record.result.events);
+
+  const std::lock_guard lock(mutex_);
+  figures_.time = static_cast<double>(record.step + 1) * model_.stepSeconds();
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const HandResult& hand = record.result.hand[h];
+    figures_.hand[h] = {hand.instrument, hand.jaw,     hand.grasping != 0,
+                        hand.clips,      hand.cautery, record.samples.back().hand[h].valid};
+  }
+  for (std::size_t v = 0; v < record.result.vessel.size(); ++v)
+    figures_.vessel[v] = {record.result.vessel[v].clips, record.result.vessel[v].partings};
+  figures_.procedure = record.result.procedure;
+  if (bed_ < record.result.connective.size()) figures_.attached = record.result.connective[bed_].attached;
+  figures_.ticks += record.ticks.size();
+  figures_.missedDeadlines += missed;
+  figures_.missedLately += missed;
+  figures_.missedLately -= missed_[slot_];
+  missed_[slot_] = missed;
+  slot_ = (slot_ + 1) % missed_.size();
+  figures_.stretched += stretched;
+  if (added) figures_.mistakes = std::make_shared<const std::vector<Mistake>>(list_.all());
+  figures_.seen = std::chrono::steady_clock::now();
+}
+
+void AttemptMonitor::beginRun() {
+  const std::lock_guard lock(mutex_);
+  missed_ = {};
+  figures_.ticks = figures_.missedDeadlines = figures_.missedLately = 0;
+  figures_.stretched = 0.0;
+  figures_.seen = std::chrono::steady_clock::now();
+}
+
+void AttemptMonitor::expectSteps() {
+  const std::lock_guard lock(mutex_);
+  figures_.seen = std::chrono::steady_clock::now();
+}
+
+AttemptFigures AttemptMonitor::figures() const {
+  const std::lock_guard lock(mutex_);
+  return figures_;
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which key does what in the picture of the operation.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "recorder/sources/devices/mouse_input.h"
+#include "sim/scene/samples.h"
+
+namespace calot::gui {
+
+struct KeyAction {
+  enum class Kind : std::uint8_t {
+    control,     ///< does it while it is held
+    switchHand,  ///< passes mouse and keyboard to the other hand
+    toggleLock,
+    mount,  ///< exchanges an instrument
+    pause,  ///< or goes on
+  };
+  Kind kind = Kind::control;
+  recorder::MouseControl control = recorder::MouseControl::right;
+  InstrumentKind instrument = InstrumentKind::none;
+  bool otherHand = false;  ///< mount: not the hand that is driven
+};
+
+/// @param key of Qt::Key
+[[nodiscard]] std::optional<KeyAction> actionOf(int key);
+
+/// For the page of keys: "Space" and "the other hand".
+struct KeyHelp {
+  const char* keys;
+  const char* what;
+};
+/// @param mouse both hands are driven by mouse and keyboard; else only instruments are exchanged and runs held
+/// @param pauses the mode has a pause
+[[nodiscard]] std::vector<KeyHelp> keyHelp(bool mouse, bool pauses);
+
+}  // namespace calot::gui

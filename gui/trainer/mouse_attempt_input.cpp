@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/trainer/mouse_attempt_input.h"
+
+#include <array>
+#include <utility>
+
+#include "recorder/sources/devices/device_source.h"
+#include "recorder/sources/devices/mouse_device.h"
+
+namespace calot::gui {
+namespace {
+
+constexpr double patience = 5.0;  // s
+
+/// Ports in D (the camera's axes), seen from where the tips begin.
+std::array<Vec3, handCount> portsFrom(const SceneDescription& scene, const std::array<Vec3, handCount>& tips) {
+  std::array<Vec3, handCount> out;
+  for (std::size_t h = 0; h < handCount; ++h)
+    out[h] = scene.camera.orientation.conjugate() * Vec3(scene.hands[h].port - tips[h]);
+  return out;
+}
+
+recorder::DeviceSource& deviceOf(recorder::SampleSource& source) {
+  return dynamic_cast<recorder::DeviceSource&>(source);
+}
+
+}  // namespace
+
+MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse) : mouse_(std::move(mouse)) {}
+
+std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescription& scene) {
+  mouse_->reset();
+  mouse_->setPorts(portsFrom(scene, {scene.hands[0].home, scene.hands[1].home}));
+  auto source = std::make_unique<recorder::DeviceSource>(std::make_unique<recorder::MouseDevice>(mouse_), scene,
+                                                         recorder::DeviceSourceSettings{});
+  source->waitForFirst(patience);
+  return source;
+}
+
+void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& scene,
+                               const TickSamples& start) {
+  mouse_->setPorts(portsFrom(scene, {start.hand[0].position, start.hand[1].position}));
+  deviceOf(source).setOutFrom(start);
+}
+
+void MouseAttemptInput::record(recorder::SampleSource& source, recorder::RecordingWriter& writer,
+                               std::uint64_t firstTick) {
+  writer.takeRawSamples(deviceOf(source).rawSamples(), firstTick);
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "gui/trainer/attempt_input.h"
+#include "recorder/sources/devices/mouse_input.h"
+
+namespace calot::gui {
+
+/// Both hands by mouse and keyboard. Practice only: a mouse has no calibration.
+class MouseAttemptInput final : public AttemptInput {
+ public:
+  /// @param mouse what the window writes to; not null
+  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse);
+
+  std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;
+  void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) override;
+  void drive(recorder::SampleSource&, recorder::RunSettings&) override {}
+  void record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) override;
+
+ private:
+  std::shared_ptr<recorder::MouseInput> mouse_;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/trainer/run_panel.h"
+
+#include <cmath>
+#include <QBoxLayout>
+#include <QGridLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QStackedWidget>
+
+namespace calot::gui {
+namespace {
+
+// Okabe and Ito's orange and blue, darkened for text on light ground: sign and word carry the meaning.
+constexpr const char* lateStyle = "QLabel { color: #8a3c00; font-weight: bold; }";
+constexpr const char* hintStyle =
+    "QLabel { background: #e3eef6; color: #10263a; border-left: 5px solid #0072b2; padding: 8px; }";
+
+QLabel* plainLabel(const char* name, bool wrap = true) {
+  auto* const label = new QLabel;
+  label->setObjectName(name);
+  label->setTextFormat(Qt::PlainText);
+  label->setWordWrap(wrap);
+  return label;
+}
+
+QPushButton* button(const char* text, const char* name) {
+  auto* const made = new QPushButton(text);
+  made->setObjectName(name);
+  made->setAutoDefault(true);  // Enter presses it
+  return made;
+}
+
+void say(QLabel* label, const QString& text) {
+  if (label->text() != text) label->setText(text);
+  label->setVisible(!text.isEmpty());
+}
+
+QWidget* keyPage(bool mouse, bool pauses) {
+  auto* const page = new QWidget;
+  auto* const grid = new QGridLayout(page);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setVerticalSpacing(3);
+  grid->setColumnStretch(1, 1);
+  int row = 0;
+  for (const KeyHelp& help : keyHelp(mouse, pauses)) {
+    auto* const keys = new QLabel(help.keys);
+    QFont bold = keys->font();
+    bold.setBold(true);
+    keys->setFont(bold);
+    auto* const what = new QLabel(help.what);
+    what->setWordWrap(true);
+    grid->addWidget(keys, row, 0, Qt::AlignTop);
+    grid->addWidget(what, row, 1, Qt::AlignTop);
+    ++row;
+  }
+  grid->setRowStretch(row, 1);
+  return page;
+}
+
+}  // namespace
+
+RunPanel::RunPanel(recorder::Mode mode, bool mouse, QWidget* parent)
+    : QWidget(parent),
+      mode_(mode),
+      stage_(plainLabel("stage", false)),
+      modeLabel_(plainLabel("mode", false)),
+      time_(plainLabel("time", false)),
+      deadlines_(plainLabel("deadlines")),
+      phase_(plainLabel("phase")),
+      score_(plainLabel("score")),
+      hint_(plainLabel("hint")),
+      result_(plainLabel("result")),
+      hand_{plainLabel("left"), plainLabel("right")},
+      progress_(new QProgressBar),
+      lower_(new QStackedWidget),
+      keys_(keyPage(mouse, mode == recorder::Mode::practice)),
+      mistakes_(new QWidget),
+      mistakesTitle_(plainLabel("mistakesTitle")),
+      list_(new QListWidget),
+      back_(button("&Go back to 2 s before it", "back")),
+      pause_(button("&Pause", "pause")),
+      finish_(button("&End the attempt", "finish")),
+      restart_(button("Start a&gain", "restart")),
+      scenes_(button("&Other scene", "otherScene")) {
+  setMinimumWidth(300);
+  setMaximumWidth(340);
+  QFont bold = font();
+  bold.setBold(true);
+  stage_->setFont(bold);
+  phase_->setFont(bold);
+  QFont large = font();
+  large.setPointSizeF(2.0 * large.pointSizeF());
+  time_->setFont(large);
+  hint_->setStyleSheet(hintStyle);
+  result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+  progress_->setObjectName("progress");
+  progress_->setRange(0, 100);
+  list_->setObjectName("mistakes");
+  list_->setAccessibleName("Mistakes");
+  list_->setWordWrap(true);
+  back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
+
+  auto* const lower = new QVBoxLayout(mistakes_);
+  lower->setContentsMargins(0, 0, 0, 0);
+  lower->addWidget(mistakesTitle_);
+  lower->addWidget(list_, 1);
+  lower->addWidget(back_);
+  lower_->addWidget(keys_);
+  lower_->addWidget(mistakes_);
+
+  auto* const head = new QHBoxLayout;
+  head->addWidget(stage_, 1);
+  head->addWidget(modeLabel_);
+  auto* const buttons = new QGridLayout;
+  buttons->addWidget(pause_, 0, 0);
+  buttons->addWidget(finish_, 0, 1);
+  buttons->addWidget(restart_, 1, 0);
+  buttons->addWidget(scenes_, 1, 1);
+
+  auto* const layout = new QVBoxLayout(this);
+  layout->addLayout(head);
+  layout->addWidget(progress_);
+  layout->addWidget(time_);
+  layout->addWidget(deadlines_);
+  layout->addSpacing(6);
+  layout->addWidget(phase_);
+  layout->addWidget(score_);
+  layout->addWidget(hint_);
+  layout->addWidget(result_);
+  layout->addSpacing(6);
+  for (QLabel* const hand : hand_) layout->addWidget(hand);
+  layout->addSpacing(10);
+  layout->addWidget(lower_, 1);
+  layout->addLayout(buttons);
+
+  connect(pause_, &QPushButton::clicked, this, &RunPanel::pauseRequested);
+  connect(finish_, &QPushButton::clicked, this, &RunPanel::finishRequested);
+  connect(restart_, &QPushButton::clicked, this, &RunPanel::restartRequested);
+  connect(scenes_, &QPushButton::clicked, this, &RunPanel::scenesRequested);
+  connect(back_, &QPushButton::clicked, this, &RunPanel::goBack);
+  connect(list_, &QListWidget::itemActivated, this, &RunPanel::goBack);
+  connect(list_, &QListWidget::currentRowChanged, this, [this](int row) { back_->setEnabled(row >= 0); });
+}
+
+void RunPanel::show(const TrainingStatus& status, const PanelText& text, double stepSeconds) {
+  say(stage_, text.stage);
+  say(modeLabel_, text.mode);
+  say(time_, text.time);
+  say(deadlines_, text.late ? QString::fromUtf8("⚠ ") + text.deadlines : text.deadlines);
+  deadlines_->setStyleSheet(text.late ? lateStyle : "");
+  say(phase_, text.phase);
+  say(score_, text.score);
+  say(hint_, text.hint);
+  say(result_, text.result);
+  for (std::size_t h = 0; h < handCount; ++h) say(hand_[h], text.hand[h]);
+  progress_->setVisible(status.stage == Stage::takingParent);
+  progress_->setValue(static_cast<int>(std::floor(100.0 * status.progress)));
+
+  const bool runs = status.stage == Stage::running || status.stage == Stage::paused;
+  const bool practice = mode_ == recorder::Mode::practice;
+  pause_->setText(status.stage == Stage::paused ? "&Go on" : "&Pause");
+  pause_->setVisible(practice);
+  pause_->setEnabled(runs);
+  finish_->setEnabled(runs);
+  // Mistakes are a score: an assessment shows none.
+  const bool looksBack = practice && (status.stage == Stage::paused || status.stage == Stage::ended);
+  lower_->setCurrentWidget(looksBack ? mistakes_ : keys_);
+  if (looksBack) showMistakes(status, stepSeconds);
+}
+
+void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
+  if (listed_ == status.figures.mistakes) return;
+  listed_ = status.figures.mistakes;
+  list_->clear();
+  for (const Mistake& mistake : *listed_) {
+    auto* const item = new QListWidgetItem(mistakeText(mistake), list_);
+    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
+  }
+  const bool some = list_->count() > 0;
+  mistakesTitle_->setText(some ? "What went wrong:" : "Nothing went wrong so far.");
+  list_->setVisible(some);
+  back_->setVisible(some);
+  // The last one is the one to be undone, mostly.
+  list_->setCurrentRow(list_->count() - 1);
+}
+
+void RunPanel::goBack() {
+  if (const QListWidgetItem* const item = list_->currentItem(); item != nullptr)
+    emit backRequested(item->data(Qt::UserRole).toDouble());
+}
+
+}  // namespace calot::gui

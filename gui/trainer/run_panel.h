@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <memory>
+#include <QWidget>
+#include <vector>
+
+#include "gui/trainer/key_bindings.h"
+#include "gui/trainer/trainer_texts.h"
+
+class QLabel;
+class QListWidget;
+class QProgressBar;
+class QPushButton;
+class QStackedWidget;
+
+namespace calot::gui {
+
+/// Beside the picture: what the attempt is at, what to do next, the keys; paused and afterwards the mistakes to go back
+/// to. It shows what it is told and asks for what is pressed.
+class RunPanel : public QWidget {
+  Q_OBJECT
+ public:
+  /// @param mouse both hands are driven by mouse and keyboard
+  RunPanel(recorder::Mode mode, bool mouse, QWidget* parent = nullptr);
+
+  void show(const TrainingStatus& status, const PanelText& text, double stepSeconds);
+
+ signals:
+  void pauseRequested();
+  void finishRequested();
+  void restartRequested();
+  void scenesRequested();
+  void backRequested(double time);
+
+ private:
+  void showMistakes(const TrainingStatus& status, double stepSeconds);
+  void goBack();
+
+  recorder::Mode mode_;
+  QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *result_;
+  std::array<QLabel*, handCount> hand_;
+  QProgressBar* progress_;
+  QStackedWidget* lower_;
+  QWidget *keys_, *mistakes_;
+  QLabel* mistakesTitle_;
+  QListWidget* list_;
+  QPushButton *back_, *pause_, *finish_, *restart_, *scenes_;
+  std::shared_ptr<const std::vector<Mistake>> listed_;
+};
+
+}  // namespace calot::gui

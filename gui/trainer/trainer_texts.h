@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the trainer's window says: from a session's status to words. Numbers follow the user's locale. No window.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <QString>
+#include <vector>
+
+#include "gui/trainer/training_session.h"
+
+namespace calot::gui {
+
+/// Beside the picture. Empty: not said.
+struct PanelText {
+  QString stage;  ///< "● recording", "❚❚ paused", ...
+  QString mode;   ///< "practice", "assessment", with "synthetic" where no person acts
+  QString time;   ///< "1:02.5"
+  QString deadlines;
+  bool late = false;  ///< deadlines were missed within the last second
+  QString phase;
+  QString score;  ///< critical view and errors; practice only
+  QString hint;   ///< practice only
+  std::array<QString, handCount> hand;
+  QString result;  ///< of an attempt that has ended: outcome and file
+};
+
+/// @param driven the hand that mouse and keyboard drive, if they do
+[[nodiscard]] PanelText panelText(const TrainingStatus& status, const SceneDescription& scene,
+                                  const std::string& summary, recorder::Mode mode, std::optional<Hand> driven);
+
+/// Minutes, seconds and tenths: "1:02.5".
+[[nodiscard]] QString clockText(double seconds);
+/// "0:41.2  cystic duct: clip half on", a critical one with "critical" before it.
+[[nodiscard]] QString mistakeText(const Mistake& mistake);
+
+}  // namespace calot::gui

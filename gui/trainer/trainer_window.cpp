@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/trainer/trainer_window.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <QBoxLayout>
+#include <QCoreApplication>
+#include <QLabel>
+#include <QMenuBar>
+#include <QStackedWidget>
+#include <utility>
+
+#include "gui/trainer/operation_view.h"
+#include "gui/trainer/run_panel.h"
+#include "gui/trainer/scenes_page.h"
+#include "gui/trainer/trainer_texts.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+constexpr int refreshPeriod = 50;  // ms
+}
+
+TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
+    : QMainWindow(parent),
+      setup_(std::move(setup)),
+      problem_(new QLabel),
+      stack_(new QStackedWidget),
+      scenes_(new ScenesPage),
+      operation_(new QWidget),
+      view_(new OperationView(setup_.mouse)),
+      panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr)) {
+  setWindowTitle("Calot trainer");
+  problem_->setObjectName("problem");
+  problem_->setTextFormat(Qt::PlainText);
+  problem_->setWordWrap(true);
+  problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+  problem_->setStyleSheet(
+      "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
+  problem_->hide();
+  auto* const row = new QHBoxLayout(operation_);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->addWidget(view_, 1);
+  row->addWidget(panel_);
+  stack_->addWidget(scenes_);
+  stack_->addWidget(operation_);
+  auto* const centre = new QWidget;
+  auto* const layout = new QVBoxLayout(centre);
+  layout->addWidget(problem_);
+  layout->addWidget(stack_, 1);
+  setCentralWidget(centre);
+  buildMenus();
+  resize(sizeHint());  // not what a small screen would make of it: the picture has 1280 by 720
+  scenes_->setScenes(setup_.scenes);
+
+  connect(scenes_, &ScenesPage::chosen, this, &TrainerWindow::openScene);
+  connect(view_, &OperationView::mountRequested, this, &TrainerWindow::mount);
+  connect(view_, &OperationView::pauseRequested, this, &TrainerWindow::togglePause);
+  connect(view_, &OperationView::handSwitched, this, &TrainerWindow::refresh);
+  connect(view_, &ScenePictureWidget::pictureShown, this, [this] {
+    if (!session_) return;
+    if (!looked_.isValid()) {
+      looked_.start();
+      shownBefore_ = view_->shown();
+    }
+    session_->shown();
+  });
+  connect(panel_, &RunPanel::pauseRequested, this, &TrainerWindow::togglePause);
+  connect(panel_, &RunPanel::finishRequested, finishAction_, &QAction::trigger);
+  connect(panel_, &RunPanel::restartRequested, restartAction_, &QAction::trigger);
+  connect(panel_, &RunPanel::scenesRequested, this, &TrainerWindow::chooseScene);
+  connect(panel_, &RunPanel::backRequested, this, [this](double time) {
+    if (!session_ || !session_->goBack(time)) return;
+    refresh();
+    view_->setFocus();
+  });
+  connect(&timer_, &QTimer::timeout, this, &TrainerWindow::refresh);
+  timer_.setInterval(refreshPeriod);
+  refresh();
+}
+
+TrainerWindow::~TrainerWindow() { endSession(); }
+
+void TrainerWindow::buildMenus() {
+  const auto add = [this](QMenu* menu, const char* text, const QKeySequence& keys, auto action) {
+    QAction* const made = menu->addAction(text);
+    made->setShortcut(keys);
+    connect(made, &QAction::triggered, this, action);
+    return made;
+  };
+  QMenu* const attempt = menuBar()->addMenu("&Attempt");
+  pauseAction_ = add(attempt, "&Pause or go on", QKeySequence(Qt::CTRL | Qt::Key_P), [this] { togglePause(); });
+  pauseAction_->setVisible(setup_.settings.attempt.mode == recorder::Mode::practice);
+  finishAction_ = add(attempt, "&End", QKeySequence(Qt::CTRL | Qt::Key_E), [this] {
+    if (session_) session_->finish();
+    refresh();
+  });
+  restartAction_ = add(attempt, "Start a&gain", QKeySequence(Qt::CTRL | Qt::Key_R), [this] {
+    if (session_) session_->start();
+    refresh();
+    view_->setFocus();
+  });
+  add(attempt, "&Other scene", QKeySequence::Open, [this] { chooseScene(); });
+  add(attempt, "&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), [this] { close(); });
+  QMenu* const look = menuBar()->addMenu("&View");
+  add(look, "&Full screen", QKeySequence(Qt::Key_F11),
+      [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
+  add(look, "&Operation", QKeySequence(Qt::Key_F6), [this] { view_->setFocus(); });
+}
+
+void TrainerWindow::begin(recorder::LoadedScene scene) {
+  endSession();
+  problem_->hide();
+  setWindowTitle(QString::fromStdString(scene.description.name) + QString::fromUtf8(" – Calot trainer"));
+  TrainingSettings settings = setup_.settings;
+  settings.scene = std::move(scene);
+  view_->showText("Getting ready …");
+  looked_.invalidate();
+  session_ = std::make_unique<TrainingSession>(
+      std::move(settings), setup_.input,
+      [view = view_](std::shared_ptr<const SceneView> seen) { view->showView(std::move(seen)); });
+  session_->start();
+  stack_->setCurrentWidget(operation_);
+  view_->setFocus();
+  timer_.start();
+  refresh();
+}
+
+bool TrainerWindow::openScene(const QString& file) {
+  try {
+    begin(recorder::loadScene(file.toStdString()));
+    return true;
+  } catch (const Error& error) {
+    showProblem(QString::fromUtf8(error.what()));
+    return false;
+  }
+}
+
+void TrainerWindow::chooseScene() {
+  endSession();
+  setWindowTitle("Calot trainer");
+  problem_->hide();
+  stack_->setCurrentWidget(scenes_);
+  scenes_->focusList();
+  refresh();
+}
+
+void TrainerWindow::endSession() {
+  timer_.stop();
+  view_->setActive(false);
+  if (!session_) return;
+  // Its thread shows views: it ends before the picture is cleared. The last attempt is reported when it has ended.
+  session_->stop();
+  std::vector<std::string> lines = session_->recorded();
+  recorded_.insert(recorded_.end(), std::make_move_iterator(lines.begin()), std::make_move_iterator(lines.end()));
+  if (looked_.isValid()) {
+    const double seconds = 1e-3 * static_cast<double>(looked_.elapsed());
+    const auto pictures = static_cast<double>(view_->shown() - shownBefore_);
+    recorded_.push_back(fmt::format("{}: {:.0f} pictures of {}x{} in {:.1f} s, {:.1f} a second", session_->scene().name,
+                                    pictures, view_->width(), view_->height(), seconds,
+                                    seconds > 0.0 ? pictures / seconds : 0.0));
+  }
+  session_.reset();
+}
+
+std::vector<std::string> TrainerWindow::endAndReport() {
+  endSession();
+  return recorded_;
+}
+
+void TrainerWindow::togglePause() {
+  if (!session_) return;
+  if (session_->resume())
+    view_->setFocus();
+  else
+    session_->pause();
+  refresh();
+}
+
+void TrainerWindow::mount(InstrumentKind instrument, bool otherHand) {
+  if (!session_) return;
+  const Hand driven = setup_.mouse ? setup_.mouse->hand() : Hand::right;
+  session_->mount(otherHand ? (driven == Hand::right ? Hand::left : Hand::right) : driven, instrument);
+}
+
+void TrainerWindow::showProblem(const QString& message) {
+  problem_->setText(message);
+  problem_->setVisible(!message.isEmpty());
+}
+
+void TrainerWindow::refresh() {
+  const bool open = session_ != nullptr;
+  for (QAction* const action : {pauseAction_, finishAction_, restartAction_}) action->setEnabled(open);
+  if (!open) return;
+  const TrainingStatus status = session_->status();
+  view_->setActive(status.stage == Stage::running);
+  const SceneDescription& scene = session_->scene();
+  const std::optional<Hand> driven = setup_.mouse ? std::optional(setup_.mouse->hand()) : std::nullopt;
+  panel_->show(status, panelText(status, scene, session_->summary(), session_->mode(), driven),
+               tickLength * scene.ticksPerStep);
+  if (QString::fromStdString(status.problem) != problem_->text() || status.problem.empty() == problem_->isVisible())
+    showProblem(QString::fromStdString(status.problem));
+}
+
+void TrainerWindow::savePicture(const QString& file) {
+  QCoreApplication::processEvents();
+  if (!grab().save(file, "PNG"))
+    throw Error(ExitCode::failure, file.toStdString() + ": cannot write the picture; does the folder exist?");
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <QElapsedTimer>
+#include <QMainWindow>
+#include <QTimer>
+#include <string>
+#include <vector>
+
+#include "gui/trainer/scene_choice.h"
+#include "gui/trainer/training_session.h"
+#include "recorder/sources/devices/mouse_input.h"
+
+class QAction;
+class QLabel;
+class QStackedWidget;
+
+namespace calot::gui {
+
+class OperationView;
+class RunPanel;
+class ScenesPage;
+
+/// What a window is made for, whatever the scene.
+struct TrainerSetup {
+  TrainingSettings settings;                    ///< its scene is left empty
+  std::shared_ptr<AttemptInput> input;          ///< not null
+  std::shared_ptr<recorder::MouseInput> mouse;  ///< what the input listens to; null: another device drives
+  std::vector<SceneChoice> scenes;
+};
+
+/// The trainer: a page to choose a scene, and the operation with its panel. It puts pages together and asks a
+/// TrainingSession twenty times a second; what may be done is decided there.
+class TrainerWindow : public QMainWindow {
+  Q_OBJECT
+ public:
+  explicit TrainerWindow(TrainerSetup setup, QWidget* parent = nullptr);
+  /// Ends what runs; its recording is whole.
+  ~TrainerWindow() override;
+
+  /// Begins with a scene: an attempt starts as soon as all is ready.
+  void begin(recorder::LoadedScene scene);
+  /// The same from a file. On failure says why in one line on the window, and returns false.
+  bool openScene(const QString& file);
+  /// Back to the scenes; what runs ends.
+  void chooseScene();
+
+  /// The session of the scene that is open; null on the page of scenes.
+  [[nodiscard]] TrainingSession* session() { return session_.get(); }
+  [[nodiscard]] OperationView* view() { return view_; }
+  /// Recordings of all scenes so far, one line each for a terminal, and how many pictures each scene was shown in. Ends
+  /// what runs.
+  [[nodiscard]] std::vector<std::string> endAndReport();
+
+  /// Writes a PNG of what is seen. @throws calot::Error (failure)
+  void savePicture(const QString& file);
+
+ public slots:
+  void refresh();
+
+ private:
+  void buildMenus();
+  void togglePause();
+  void mount(InstrumentKind instrument, bool otherHand);
+  void showProblem(const QString& message);
+  void endSession();
+
+  TrainerSetup setup_;
+  QLabel* problem_;
+  QStackedWidget* stack_;
+  ScenesPage* scenes_;
+  QWidget* operation_;
+  OperationView* view_;
+  RunPanel* panel_;
+  QAction *pauseAction_, *finishAction_, *restartAction_;
+  QTimer timer_;
+  QElapsedTimer looked_;  ///< since the scene's first picture
+  quint64 shownBefore_ = 0;
+  std::vector<std::string> recorded_;
+  std::unique_ptr<TrainingSession> session_;
+};
+
+}  // namespace calot::gui

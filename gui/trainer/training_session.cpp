@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/trainer/training_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "gui/trainer/hints.h"
+#include "recorder/blended_source.h"
+#include "recorder/branch.h"
+#include "recorder/errors.h"
+#include "recorder/live/worker_pool.h"
+#include "recorder/words.h"
+
+namespace calot::gui {
+
+using recorder::Outcome;
+
+namespace {
+
+constexpr std::chrono::milliseconds longSilence(500);
+
+}  // namespace
+
+/// A run that commands can reach.
+class TrainingSession::Registered {
+ public:
+  Registered(TrainingSession& session, recorder::ControlledSource& controlled, AttemptMonitor& monitor)
+      : session_(session) {
+    const std::lock_guard lock(session_.mutex_);
+    if (session_.command_) controlled.finish(Outcome::stopped);  // it came while the run was made ready
+    session_.controlled_ = &controlled;
+    session_.monitor_ = &monitor;
+  }
+  ~Registered() {
+    const std::lock_guard lock(session_.mutex_);
+    session_.status_.figures = session_.monitor_->figures();
+    session_.controlled_ = nullptr;
+    session_.monitor_ = nullptr;
+  }
+  Registered(const Registered&) = delete;
+  Registered& operator=(const Registered&) = delete;
+
+ private:
+  TrainingSession& session_;
+};
+
+TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink)
+    : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)), thread_([this] { work(); }) {}
+
+TrainingSession::~TrainingSession() { stop(); }
+
+void TrainingSession::stop() {
+  post({true, std::nullopt}, Outcome::stopped);
+  if (thread_.joinable()) thread_.join();
+}
+
+void TrainingSession::post(Command command, Outcome ending) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (command_ && command_->quit) return;
+    command_ = command;
+    if (controlled_ != nullptr) controlled_->finish(ending);
+  }
+  wake_.notify_one();
+}
+
+void TrainingSession::start() { post({}, Outcome::abandoned); }
+
+bool TrainingSession::goBack(double time) {
+  {
+    const std::lock_guard lock(mutex_);
+    const bool there =
+        status_.stage == Stage::running || status_.stage == Stage::paused || status_.stage == Stage::ended;
+    if (mode() != recorder::Mode::practice || !there || status_.file.empty()) return false;
+    const double now = monitor_ != nullptr ? monitor_->figures().time : status_.figures.time;
+    const double stepSeconds = tickLength * scene().ticksPerStep;
+    if (!(time >= stepSeconds && time <= now)) return false;
+  }
+  post({false, time}, Outcome::stopped);
+  return true;
+}
+
+bool TrainingSession::pause() {
+  const std::lock_guard lock(mutex_);
+  if (mode() != recorder::Mode::practice || controlled_ == nullptr || status_.stage != Stage::running) return false;
+  controlled_->hold(true);
+  status_.stage = Stage::paused;
+  return true;
+}
+
+bool TrainingSession::resume() {
+  const std::lock_guard lock(mutex_);
+  if (controlled_ == nullptr || status_.stage != Stage::paused) return false;
+  monitor_->expectSteps();
+  controlled_->hold(false);
+  status_.stage = Stage::running;
+  return true;
+}
+
+bool TrainingSession::finish() {
+  const std::lock_guard lock(mutex_);
+  if (controlled_ == nullptr) return false;
+  controlled_->finish(isDone(scene(), monitor_->figures()) ? Outcome::completed : Outcome::abandoned);
+  return true;
+}
+
+bool TrainingSession::mount(Hand hand, InstrumentKind instrument) {
+  const std::lock_guard lock(mutex_);
+  if (controlled_ == nullptr || status_.stage != Stage::running) return false;
+  controlled_->mount(hand, instrument);
+  return true;
+}
+
+void TrainingSession::shown() { tap_.shown(); }
+
+TrainingStatus TrainingSession::status() const {
+  const std::lock_guard lock(mutex_);
+  TrainingStatus out = status_;
+  if (monitor_ != nullptr) out.figures = monitor_->figures();
+  out.waiting = out.stage == Stage::running && std::chrono::steady_clock::now() - out.figures.seen > longSilence;
+  return out;
+}
+
+std::vector<std::string> TrainingSession::recorded() const {
+  const std::lock_guard lock(mutex_);
+  return recorded_;
+}
+
+void TrainingSession::work() {
+  for (;;) {
+    Command command;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return command_.has_value(); });
+      command = *command_;
+      if (command.quit) return;
+      command_.reset();
+    }
+    std::string problem;
+    try {
+      obey(command);
+    } catch (const Interrupted&) {
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    status_.stage = Stage::ended;
+    if (!problem.empty()) status_.problem = problem;
+  }
+}
+
+void TrainingSession::obey(const Command& command) {
+  enter(command.back ? Stage::takingParent : Stage::preparing);
+  prepare();
+  if (command.back)
+    branch(*command.back);
+  else
+    attempt();
+}
+
+void TrainingSession::enter(Stage stage) {
+  const std::lock_guard lock(mutex_);
+  status_.stage = stage;
+  status_.progress = 0.0;
+  status_.problem.clear();
+}
+
+void TrainingSession::giveWay() const {
+  const std::lock_guard lock(mutex_);
+  if (command_) throw Interrupted{};
+}
+
+void TrainingSession::prepare() {
+  if (model_) return;
+  Model::Built built = Model::build(settings_.scene.description);
+  if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", scene().name, built.error));
+  model_ = std::move(built.model);
+}
+
+std::filesystem::path TrainingSession::freshFile(const std::string& startUtc) const {
+  std::string when;
+  for (const char c : startUtc) {
+    if (c != '-' && c != ':') when += c;
+  }
+  const std::string stem = fmt::format("{}-{}", scene().name, when);
+  std::filesystem::path file = settings_.folder / (stem + ".h5");
+  for (int n = 2; std::filesystem::exists(file); ++n) file = settings_.folder / fmt::format("{}-{}.h5", stem, n);
+  return file;
+}
+
+void TrainingSession::attempt() {
+  const std::unique_ptr<recorder::SampleSource> source = input_->open(scene());
+  giveWay();
+  recorder::ControlledSource controlled(*source);
+  const recorder::AttemptHeader header =
+      recorder::makeHeader(*model_, settings_.scene.assets, source->provenance(), settings_.attempt);
+  const std::filesystem::path file = freshFile(header.startUtc);
+  recorder::RecordingWriter writer(file, header, {false, settings_.key});
+  recorder::WorkerPool pool(settings_.threads);
+  recorder::Session session(*model_, header.seed, pool);
+  AttemptMonitor monitor(*model_);
+  session.join(writer);
+  session.join(monitor);
+  input_->record(*source, writer, 0);
+  run(session, *source, controlled, writer, monitor, header, file);
+}
+
+void TrainingSession::branch(double time) {
+  std::filesystem::path parentFile;
+  {
+    const std::lock_guard lock(mutex_);
+    parentFile = status_.file;
+  }
+  const std::unique_ptr<recorder::SampleSource> source = input_->open(scene());
+  recorder::Recording parent(parentFile);
+  recorder::refuseParent(parent, parent.verifyChain());
+  const std::uint64_t fork = recorder::forkStepAt(parent, time);
+  const recorder::AttemptHeader header = recorder::branchHeader(parent, *model_, fork, source->provenance());
+  const std::filesystem::path file = freshFile(header.startUtc);
+  recorder::BranchFile place(file, false);
+  recorder::RecordingWriter writer(place.path(), header, {true, settings_.key});
+  recorder::WorkerPool pool(settings_.threads);
+  recorder::Session session(*model_, header.seed, pool);
+  AttemptMonitor monitor(*model_);
+  session.join(writer);
+  session.join(monitor);
+  recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
+    giveWay();
+    if (writer.failed()) {
+      session.end(Outcome::technicalFailure);
+      writer.finish();  // says why
+    }
+    const std::lock_guard lock(mutex_);
+    status_.progress = static_cast<double>(step) / static_cast<double>(of);
+  });
+  place.publish();
+  monitor.beginRun();
+
+  const TickSamples start = monitor.lastPose();
+  input_->setOut(*source, scene(), start);
+  recorder::BlendedSource blended(*source, start);
+  recorder::ControlledSource controlled(blended);
+  // A device knows nothing of instruments: what was exchanged stays so. Other sources choose their own.
+  if (!header.provenance.device.empty()) {
+    for (const Hand hand : {Hand::left, Hand::right}) {
+      const InstrumentKind had = start.hand[static_cast<std::size_t>(hand)].instrument;
+      if (had != InstrumentKind::none) controlled.mount(hand, had);
+    }
+  }
+  input_->record(*source, writer, session.steps() * scene().ticksPerStep);
+  run(session, *source, controlled, writer, monitor, header, file);
+}
+
+void TrainingSession::run(recorder::Session& session, recorder::SampleSource& source,
+                          recorder::ControlledSource& controlled, recorder::RecordingWriter& writer,
+                          AttemptMonitor& monitor, const recorder::AttemptHeader& header,
+                          const std::filesystem::path& file) {
+  tap_.follow(session);
+  session.join(tap_);
+  recorder::RunSettings run;
+  run.live = true;
+  run.progress = [&](std::uint64_t) {
+    if (writer.failed()) controlled.finish(Outcome::stopped);  // nothing more can be kept; finish() says why
+  };
+  input_->drive(source, run);
+  recorder::RunReport report;
+  {
+    const Registered registered(*this, controlled, monitor);
+    {
+      const std::lock_guard lock(mutex_);
+      status_.stage = Stage::running;
+      status_.file = file;
+      status_.attempt = header.attempt;
+      status_.parent = header.parent;
+      status_.branchedAt = static_cast<double>(header.forkStep + 1) * model_->stepSeconds();
+      status_.operatorKind = header.provenance.kind;
+      status_.report = {};
+    }
+    report = recorder::runAttempt(session, controlled, run);
+  }
+  writer.finish();
+  keepResult(report, source);
+}
+
+void TrainingSession::keepResult(const recorder::RunReport& report, const recorder::SampleSource& source) {
+  const std::lock_guard lock(mutex_);
+  status_.report = report;
+  if (report.disagreements > 0) {
+    status_.problem = fmt::format(
+        "{}: {} ticks got other forces on the haptic thread than when computed again; the recording will not replay",
+        status_.file.string(), report.disagreements);
+  } else if (!report.fault.empty()) {
+    status_.problem = fmt::format("{}: {}", status_.file.string(), report.fault);
+  } else if (report.outcome == Outcome::technicalFailure) {
+    status_.problem = source.statusText();
+  }
+  recorded_.push_back(fmt::format("{}: attempt {}, {:.2f} s, {}; {} of {} ticks missed their deadline",
+                                  status_.file.string(), status_.attempt, status_.figures.time,
+                                  recorder::wordFor(report.outcome), report.missedDeadlines, report.ticks));
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One trainee at one scene: attempts one after the other, each recorded as `calot record --live` records. No window.
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "gui/trainer/attempt_input.h"
+#include "gui/trainer/attempt_monitor.h"
+#include "gui/trainer/view_tap.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/live/controlled_source.h"
+#include "recorder/recording/station_key.h"
+#include "sim/scene/model.h"
+
+namespace calot::gui {
+
+struct TrainingSettings {
+  recorder::LoadedScene scene;
+  recorder::AttemptSettings attempt;  ///< participant, station, mode, seed, ...
+  std::optional<recorder::StationKey> key;
+  std::filesystem::path folder;  ///< where recordings go; it exists
+  unsigned threads = 1;          ///< of the simulation
+};
+
+/// What the session is at.
+enum class Stage : std::uint8_t {
+  preparing,     ///< a scene is built, a device waited for
+  takingParent,  ///< going back: the parent's steps are simulated again
+  running,
+  paused,
+  ended,  ///< nothing runs; what there was is recorded
+};
+
+struct TrainingStatus {
+  Stage stage = Stage::preparing;
+  double progress = 0.0;        ///< of takingParent, from 0 to 1
+  bool waiting = false;         ///< it runs and no step has come for half a second: the device is gone
+  std::string problem;          ///< why it could not go on, in one line; or empty
+  std::filesystem::path file;   ///< of the attempt; empty before there is one
+  std::string attempt, parent;  ///< uuids; parent empty unless it is a branch
+  double branchedAt = 0.0;      ///< where a branch left its parent (s)
+  recorder::OperatorKind operatorKind = recorder::OperatorKind::human;
+  recorder::RunReport report;  ///< of the attempt that ended
+  AttemptFigures figures;
+};
+
+/// Runs attempts on a thread of its own with the loops of a live run. Commands return at once; a command that the rules
+/// do not allow now does nothing and returns false. Any thread may call.
+///
+/// The rules of the modes hold here, whatever a window offers: an assessment is neither paused nor branched.
+class TrainingSession {
+ public:
+  /// @param input not null. @param sink is given views of the scene, on the session's thread; must not wait
+  TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink);
+  /// Ends what runs as stopped; its recording is whole.
+  ~TrainingSession();
+  TrainingSession(const TrainingSession&) = delete;
+  TrainingSession& operator=(const TrainingSession&) = delete;
+
+  /// A new attempt from the scene's beginning. One that runs ends as abandoned.
+  void start();
+  bool pause();
+  bool resume();
+  /// The trainee has done: completed where the procedure is, or where there is none; else abandoned.
+  bool finish();
+  /// Ends what runs as stopped, and goes on from that moment of it in a branch.
+  /// @param time of the attempt (s), not before its first step's end and not after its last step
+  bool goBack(double time);
+  /// Hands an instrument over, from the next tick on.
+  bool mount(Hand hand, InstrumentKind instrument);
+  /// Ends what runs as stopped and waits for its recording; no command does anything any more.
+  void stop();
+  /// A view was shown.
+  void shown();
+
+  [[nodiscard]] TrainingStatus status() const;
+  [[nodiscard]] recorder::Mode mode() const { return settings_.attempt.mode; }
+  [[nodiscard]] const SceneDescription& scene() const { return settings_.scene.description; }
+  [[nodiscard]] const std::string& summary() const { return settings_.scene.summary; }
+  /// Recordings so far, one line each for a terminal.
+  [[nodiscard]] std::vector<std::string> recorded() const;
+
+ private:
+  struct Command {
+    bool quit = false;
+    std::optional<double> back;  ///< go back to this time; none: a new attempt
+  };
+  struct Interrupted {};  ///< thrown where another command came before a run began
+  class Registered;
+
+  void post(Command command, recorder::Outcome ending);
+  void work();
+  void obey(const Command& command);
+  void prepare();
+  void attempt();
+  void branch(double time);
+  void run(recorder::Session& session, recorder::SampleSource& source, recorder::ControlledSource& controlled,
+           recorder::RecordingWriter& writer, AttemptMonitor& monitor, const recorder::AttemptHeader& header,
+           const std::filesystem::path& file);
+  void keepResult(const recorder::RunReport& report, const recorder::SampleSource& source);
+  [[nodiscard]] std::filesystem::path freshFile(const std::string& startUtc) const;
+  void enter(Stage stage);
+  void giveWay() const;
+
+  TrainingSettings settings_;
+  std::shared_ptr<AttemptInput> input_;
+  ViewTap tap_;
+  std::unique_ptr<const Model> model_;  ///< the thread's, made by it
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::optional<Command> command_;
+  TrainingStatus status_;
+  std::vector<std::string> recorded_;
+  recorder::ControlledSource* controlled_ = nullptr;  ///< while a run is under way
+  AttemptMonitor* monitor_ = nullptr;                 ///< likewise
+  std::thread thread_;                                // last: it uses what is above
+};
+
+}  // namespace calot::gui

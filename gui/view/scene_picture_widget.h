@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <QImage>
+#include <QWidget>
+
+#include "gui/view/picture_loop.h"
+
+namespace calot::gui {
+
+/// Shows scene views as pictures, drawn off screen in interactive quality at the widget's size, on a thread of its own:
+/// the interface's thread only copies finished pictures to the screen. Where views come faster than they can be drawn,
+/// those between are left out.
+class ScenePictureWidget : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ScenePictureWidget(QWidget* parent = nullptr);
+  ~ScenePictureWidget() override;
+
+  /// Any thread; returns at once. @pre not null, changed by nobody any more
+  void showView(std::shared_ptr<const SceneView> view);
+  /// Shows a text instead of a picture, until the next view.
+  void showText(const QString& text);
+
+  /// How many pictures were shown so far.
+  [[nodiscard]] quint64 shown() const { return shown_; }
+  /// The picture on the screen; null before the first one.
+  [[nodiscard]] const QImage& picture() const { return picture_; }
+
+  [[nodiscard]] QSize sizeHint() const override { return {640, 400}; }
+  [[nodiscard]] QSize minimumSizeHint() const override { return {160, 100}; }
+
+ signals:
+  /// A picture came on the screen. @param time since the attempt's start (s)
+  void pictureShown(quint64 step, double time);
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+
+ private:
+  void takePicture();
+  void takeFailure(const QString& text);
+
+  QImage picture_;
+  QString text_;
+  quint64 shown_ = 0;
+  bool awaits_ = false;  ///< a view was given after the last text
+
+  std::mutex mutex_;
+  ScenePicture newest_;                ///< drawn and not yet on the screen
+  std::unique_ptr<PictureLoop> loop_;  // last: its thread uses what is above
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/mouse_input.h"
+
+namespace calot::recorder {
+
+/// Mouse and keyboard of a window as one pointer that drives one hand at a time.
+///
+/// D is x right, y down, z away. The pointer moves the tip right and down, 0.15 mm a pixel; the wheel along the shaft,
+/// 3 mm a notch. Keys do the same at 30 mm/s, roll at 1.5 rad/s, open and close the jaw at 1.8 rad/s. No motion is
+/// faster than 0.5 m/s: what the pointer is ahead, the tip makes good. `fine` divides all of it by four.
+///
+/// The hand that is driven gives 250 samples a second. The other one holds: it stands still as it was left, without a
+/// pedal, and says so 50 times a second, so that it is measured.
+class MouseDevice final : public Device {
+ public:
+  /// @param input what the window writes to; not null
+  explicit MouseDevice(std::shared_ptr<MouseInput> input, DeviceClock clock = monotonicNanoseconds);
+
+  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
+  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
+  [[nodiscard]] bool connected() const override { return open_; }
+  void close() override { open_ = false; }
+
+ private:
+  struct Pointer {
+    Vec3 position = Vec3::Zero();  ///< of the tip, from where it began, in D (m)
+    double roll = 0.0, jaw = 0.0;
+    double right = 0.0, down = 0.0, in = 0.0;  ///< asked for and not yet done (m)
+    std::uint64_t sequence = 0;
+  };
+  void advance(Pointer& pointer, const MouseInput::Wish& wish, double seconds);
+  void emit(Hand hand, const MouseInput::Wish& wish, std::uint8_t momentary, std::int64_t now, DeviceInput& out);
+
+  std::shared_ptr<MouseInput> input_;
+  DeviceInfo info_;
+  DeviceClock clock_;
+  std::array<Pointer, handCount> pointer_;
+  Hand hand_ = Hand::right;
+  std::int64_t last_ = 0;         ///< time of the last sample (ns)
+  std::int64_t lastResting_ = 0;  ///< of the hand that holds
+  bool open_ = true, greeted_ = false;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+
+#include "recorder/device_sample.h"
+
+namespace calot::recorder {
+
+/// What a person does while a key or a button is down.
+enum class MouseControl : std::uint8_t {
+  right,
+  left,
+  down,
+  up,
+  in,         ///< deeper along the shaft
+  out,        ///< back along it
+  rollRight,  ///< clockwise, seen from the hand
+  rollLeft,
+  openJaw,
+  closeJaw,
+  cut,        ///< pedal
+  coagulate,  ///< pedal
+  fire,       ///< closes a clip
+  fine,       ///< a quarter of every speed
+};
+inline constexpr std::size_t mouseControls = 14;
+
+/// What a window saw of mouse and keyboard and a MouseDevice turns into samples. Any thread may call anything: it is
+/// never the haptic thread that does.
+class MouseInput {
+ public:
+  /// The pointer went by so many pixels.
+  void move(double right, double down);
+  /// The wheel turned by so many notches; positive: away from the hand, deeper.
+  void turnWheel(double notches);
+  void hold(MouseControl control, bool held);
+  /// Ratchet of the driven hand's grasper: locks, or lets go.
+  void toggleLock();
+  /// Passes mouse and keyboard to the other hand. The one that is left stays where and as it is, its lock too, but
+  /// without pedals.
+  void switchHand();
+  /// Nothing is held any more and what was not yet turned into motion is dropped: the window lost the keyboard.
+  void release();
+
+  /// The hand that is driven now; the right one first.
+  [[nodiscard]] Hand hand() const;
+  [[nodiscard]] bool locked(Hand hand) const;
+  /// A new attempt: the right hand, nothing held, nothing locked.
+  void reset();
+
+  /// Where each hand's port lies in D, seen from where its tip began (m): the wheel moves along the line from there.
+  void setPorts(const std::array<Vec3, handCount>& ports);
+
+  /// What the device takes at each of its samples.
+  struct Wish {
+    Hand hand = Hand::right;
+    std::array<double, 2> pixels{};  ///< right and down, since the last one
+    double notches = 0.0;            ///< since the last one
+    std::array<bool, mouseControls> held{};
+    std::array<bool, handCount> locked{};
+    std::array<Vec3, handCount> port{Vec3::Zero(), Vec3::Zero()};
+
+    [[nodiscard]] bool holds(MouseControl control) const { return held[static_cast<std::size_t>(control)]; }
+  };
+  [[nodiscard]] Wish take();
+
+ private:
+  mutable std::mutex mutex_;
+  Wish wish_;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""calot-trainer before its window: wrong options, scenes and devices are one line and the right exit code; and a run by a script from start to end."""
+
+import os
+import signal
+import subprocess
+import time
+
+import program
+from program import SCENE, ProgramTest
+
+TRAINER = program.PROGRAM.with_name("calot-trainer")
+OFFSCREEN = {"QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8"}
+
+
+def trainer(*arguments):
+    return program.calot(*arguments, program=TRAINER, environment=OFFSCREEN)
+
+
+class Trainer(ProgramTest):
+    def declined(self, code, *arguments):
+        answer = trainer(*arguments)
+        self.assertEqual(answer.code, code, answer)
+        lines = answer.err.splitlines()
+        self.assertEqual(len(lines), 1, answer)
+        self.assertTrue(lines[0].startswith("calot-trainer: "), answer)
+        self.assertEqual(answer.out, "", answer)
+        self.assertEqual(list(self.folder.glob("*.h5")), [], "something was recorded")
+        return lines[0]
+
+    def test_wrong_use(self):
+        out = ("-o", self.folder)
+        self.assertIn("there are", self.declined(2, "--scene", "no-such-scene", *out))
+        self.assertIn("no such device", self.declined(2, "--scene", SCENE, "--device", "joystick", *out))
+        self.assertIn("no such device", self.declined(2, "--device", "joystick", *out))
+        self.assertIn("--calibration", self.declined(2, "--scene", SCENE, "--device", "null", "--mode", "assessment", *out))
+        self.assertIn("mouse and keyboard", self.declined(2, "--scene", SCENE, "--mode", "assessment", *out))
+        self.assertIn("/nowhere", self.declined(2, "--scene", SCENE, "-o", "/nowhere"))
+        self.declined(2, "--scene", SCENE, "--mode", "play", *out)
+        self.declined(2, "--device", "null", "--performer", "skilled", *out)
+        self.declined(2, "--no-such-option")
+
+    def test_damaged_input(self):
+        scene = self.folder / "bad.json"
+        scene.write_text('{"format": "calot-scene"')
+        self.assertIn("bad.json", self.declined(4, "--scene", scene, "-o", self.folder))
+        script = self.folder / "script.json"
+        script.write_text("[]")
+        self.assertIn("script.json", self.declined(4, "--scene", SCENE, "--device", f"scripted:{script}", "-o", self.folder))
+
+    def test_the_command_line_says_where_the_mouse_is(self):
+        answer = program.calot("record", "--scene", SCENE, "--device", "mouse", "-o", self.folder / "a.h5")
+        self.assertEqual(answer.code, 2, answer)
+        self.assertIn("calot-trainer", answer.err)
+
+    def test_a_signal_ends_it_and_the_recording_is_whole(self):
+        running = subprocess.Popen([str(TRAINER), "--scene", SCENE, "--device", "null", "-o", str(self.folder)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   env={**os.environ, **OFFSCREEN}, text=True)
+        try:
+            limit = time.monotonic() + program.PATIENCE
+            while not list(self.folder.glob("*.h5")) and time.monotonic() < limit:
+                time.sleep(0.05)
+            running.send_signal(signal.SIGTERM)
+            out, err = running.communicate(timeout=program.PATIENCE)
+        finally:
+            running.kill()
+        self.assertEqual(running.returncode, 0, err)
+        self.assertNotIn("calot-trainer: ", err)  # Qt itself has remarks on a platform without a screen
+        [file] = self.folder.glob("*.h5")
+        self.assertTrue(out.startswith(f"{file}: attempt "), out)
+        self.assertIn(", stopped;", out)
+        self.assertRegex(file.name, rf"^{SCENE}-\d{{8}}T\d{{6}}Z\.h5$")
+        self.well("replay", file)
+
+
+if __name__ == "__main__":
+    program.main()

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long a user waits. Times of a machine that may be busy: run where CALOT_HEAVY is set.
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <QCoreApplication>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <QElapsedTimer>
+#include <QTabWidget>
+#include <QTemporaryDir>
+#include <QTest>
+#include <QTimer>
+#include <random>
+
+#include "gui/dashboard/attempt_page.h"
+#include "gui/dashboard/dashboard_window.h"
+#include "gui/dashboard/settings.h"
+#include "tests/gui/dashboard/support/cohort.h"
+#include "tests/gui/dashboard/support/recorded.h"
+
+namespace calot::gui {
+namespace {
+
+namespace fs = std::filesystem;
+using Access = analytics::CohortDatabase::Access;
+
+constexpr double longestStart = 1000.0;  // ms, of 10,000 attempts
+constexpr double longestGap = 100.0;     // ms between two turns of the interface
+constexpr double longestSeek = 300.0;    // ms till a picture of about that moment
+
+class InterfaceHeavy : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("CALOT_HEAVY") == nullptr) GTEST_SKIP() << "CALOT_HEAVY=1 measures how long a user waits";
+    test::startApplication();
+    settings::setRecordingFolders({});
+    settings::setCalotProgram(CALOT_PROGRAM);
+    root_ = folder_.path().toStdString();
+  }
+  static void judge(const char* what, double took, double limit) {
+    std::cout << what << ": " << took << " of " << limit << " ms, " << took / limit << '\n';
+    EXPECT_LT(took / limit, 1.0) << what;
+  }
+  QTemporaryDir folder_;
+  fs::path root_;
+};
+
+TEST_F(InterfaceHeavy, TenThousandAttemptsAreOnTheScreenWithinASecond) {
+  const std::string path = (root_ / "c.db").string();
+  {
+    analytics::CohortDatabase database(path, Access::create);
+    for (int i = 0; i < 10000; ++i) database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1)});
+  }
+  QElapsedTimer clock;
+  clock.start();
+  DashboardWindow window;
+  window.setDocument(std::make_shared<const CohortDocument>(path));
+  window.show();
+  QTest::qWait(1);
+  judge("start", static_cast<double>(clock.elapsed()), longestStart);
+  clock.restart();
+  window.reload();
+  QElapsedTimer turn;
+  turn.start();
+  double gap = 0.0;
+  bool shown = false;
+  QObject::connect(&window, &DashboardWindow::documentShown, [&] { shown = true; });
+  while (!shown || clock.elapsed() < 2000) {
+    QCoreApplication::processEvents(QEventLoop::AllEvents, 5);
+    gap = std::max(gap, static_cast<double>(turn.nsecsElapsed()) * 1e-6);
+    turn.restart();
+  }
+  judge("largest gap while 10,000 attempts are read again", gap, longestGap);
+}
+
+TEST_F(InterfaceHeavy, NothingBlocksWhileAReplayAndAnImportRun) {
+  // A whole operation where one is named, else a short recording.
+  const char* named = std::getenv("CALOT_RECORDING");
+  if (named != nullptr)
+    fs::copy_file(named, root_ / "one.h5");
+  else
+    test::recordPerformer(root_ / "one.h5", 6.0, 3);
+  for (int i = 0; i < 3; ++i)
+    test::recordPerformer(root_ / ("more" + std::to_string(i) + ".h5"), 3.0, 10U + static_cast<unsigned>(i));
+  const std::string command = std::string(CALOT_PROGRAM) + " assess " + (root_ / "one.h5").string() + " --cohort " +
+                              (root_ / "c.db").string() + " > /dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(QString::fromStdString((root_ / "c.db").string())));
+  QCoreApplication::processEvents();
+
+  double gap = 0.0;
+  QElapsedTimer turn;
+  QTimer timer;
+  QObject::connect(&timer, &QTimer::timeout, [&] {
+    gap = std::max(gap, static_cast<double>(turn.nsecsElapsed()) * 1e-6);
+    turn.restart();
+  });
+  turn.start();
+  timer.start(1);
+  window.findChild<QTabWidget*>()->setCurrentIndex(1);
+  AttemptPage& page = *window.findChild<AttemptPage*>();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, 300000));
+  judge("largest gap while an attempt is opened", gap, longestGap);
+  gap = 0.0;
+  window.importRecordings({folder_.path()});
+  page.replay().setSpeed(16.0);
+  page.replay().play();
+  QElapsedTimer clock;
+  clock.start();
+  while (window.imports().busy() || clock.elapsed() < 5000) {
+    QTest::qWait(20);
+    if (page.replay().isOpen() && !page.replay().position().playing) page.replay().play();
+  }
+  judge("largest gap while a replay and an import run", gap, longestGap);
+}
+
+TEST_F(InterfaceHeavy, AnyMomentOfALongRecordingIsShownAtOnce) {
+  const char* named = std::getenv("CALOT_RECORDING");
+  if (named == nullptr) GTEST_SKIP() << "CALOT_RECORDING names a long recording";
+  std::mutex mutex;
+  std::condition_variable changed;
+  PlayerPosition newest;
+  std::uint64_t told = 0;
+  ReplayPlayer player(named, "",
+                      {[&](const std::shared_ptr<const SceneView>&, const PlayerPosition& position) {
+                         const std::lock_guard lock(mutex);
+                         newest = position;
+                         ++told;
+                         changed.notify_all();
+                       },
+                       [&](const std::string& fault) { FAIL() << fault; }});
+  const auto seed = std::random_device{}();
+  std::cout << "seed " << seed << '\n';
+  std::mt19937 random(seed);
+  std::unique_lock lock(mutex);
+  ASSERT_TRUE(changed.wait_for(lock, std::chrono::minutes(5), [&] { return told > 0; }));
+  const double seconds = newest.seconds;
+  double slowest = 0.0, slowestExact = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const double time = std::uniform_real_distribution<double>(0.0, seconds)(random);
+    const std::uint64_t before = told;
+    lock.unlock();
+    QElapsedTimer clock;
+    clock.start();
+    player.seek(time);
+    lock.lock();
+    changed.wait(lock, [&] { return told > before; });
+    slowest = std::max(slowest, static_cast<double>(clock.nsecsElapsed()) * 1e-6);
+    EXPECT_LT(time - newest.time, 2.0) << "the picture on the way is of a keyframe nearby";
+    changed.wait(lock, [&] { return newest.settled && newest.time >= time - 0.011; });
+    slowestExact = std::max(slowestExact, static_cast<double>(clock.nsecsElapsed()) * 1e-6);
+  }
+  std::cout << "exact moment after at most " << slowestExact << " ms\n";
+  judge("first picture after a seek", slowest, longestSeek);
+}
+
+}  // namespace
+}  // namespace calot::gui

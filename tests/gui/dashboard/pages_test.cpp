@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pages as a user goes through them, with recordings and with the program that assesses them.
+#include <gtest/gtest.h>
+#include <cmath>
+#include <cstdlib>
+#include <QApplication>
+
+#include <filesystem>
+#include <fstream>
+#include <QAbstractItemModel>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QImage>
+#include <QLabel>
+#include <QListWidget>
+#include <QMimeData>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QSignalSpy>
+#include <QSlider>
+#include <QTableView>
+#include <QTabWidget>
+#include <QTemporaryDir>
+#include <QTest>
+#include <QTextBrowser>
+#include <QToolButton>
+#include <QUndoStack>
+#include <QUrl>
+
+#include "analytics/cohort/assessment_database.h"
+#include "gui/dashboard/attempt_page.h"
+#include "gui/dashboard/attempts_page.h"
+#include "gui/dashboard/dashboard_window.h"
+#include "gui/dashboard/pair_page.h"
+#include "gui/dashboard/settings.h"
+#include "gui/dashboard/study_page.h"
+#include "gui/view/scene_picture_widget.h"
+#include "tests/gui/dashboard/support/cohort.h"
+#include "tests/gui/dashboard/support/recorded.h"
+
+namespace calot::gui {
+namespace {
+
+namespace fs = std::filesystem;
+using Access = analytics::CohortDatabase::Access;
+constexpr int patience = 120000;  // ms
+
+/// Two recordings of a performer, assessed into one cohort by the real program, for all tests; each test has a copy.
+struct Assessed {
+  QTemporaryDir folder;
+  fs::path root = folder.path().toStdString();
+  Assessed() {
+    test::startApplication();
+    test::recordPerformer(root / "one.h5", 3.0, 3);
+    test::recordPerformer(root / "two.h5", 2.4, 5);
+    const std::string command = std::string(CALOT_PROGRAM) + " assess " + (root / "one.h5").string() + ' ' +
+                                (root / "two.h5").string() + " --cohort " + (root / "c.db").string() + " > /dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+  }
+};
+
+class Pages : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static const Assessed assessed;
+    settings::setRecordingFolders({});
+    settings::setCalotProgram(CALOT_PROGRAM);
+    settings::setPerson({});
+    root_ = folder_.path().toStdString();
+    for (const char* name : {"one.h5", "two.h5", "c.db"}) fs::copy_file(assessed.root / name, root_ / name);
+  }
+
+  [[nodiscard]] QString file(const char* name) const { return folder_.filePath(name); }
+  template <class T>
+  static T* child(const QWidget& window, const char* name) {
+    T* const found = window.findChild<T*>(name);
+    EXPECT_NE(found, nullptr) << name;
+    return found;
+  }
+  static void showPage(DashboardWindow& window, int number) {
+    window.findChild<QTabWidget*>()->setCurrentIndex(number - 1);
+  }
+  static void drop(DashboardWindow& window, const QStringList& files) {
+    QMimeData data;
+    QList<QUrl> urls;
+    for (const QString& name : files) urls += QUrl::fromLocalFile(name);
+    data.setUrls(urls);
+    QDragEnterEvent enter(QPoint(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(&window, &enter);
+    QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(&window, &event);
+  }
+  static AttemptPage& openAttempt(DashboardWindow& window) {
+    showPage(window, 2);
+    AttemptPage& page = *window.findChild<AttemptPage*>();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, patience));
+    return page;
+  }
+
+  QTemporaryDir folder_;
+  fs::path root_;
+};
+
+TEST_F(Pages, RecordingsThatAreDroppedAreAssessedAndShown) {
+  fs::remove(root_ / "c.db");
+  std::ofstream(root_ / "hostile.h5") << "\x89HDF\r\n\x1a\n and then nothing that belongs there";
+  DashboardWindow window;
+  window.show();
+  drop(window, {file("one.h5")});
+  EXPECT_TRUE(child<QLabel>(window, "problem")->text().contains("Open a cohort database first"));
+  ASSERT_TRUE(window.createDatabase(file("c.db")));
+  EXPECT_TRUE(child<QLabel>(window, "greeting")->text().contains("Import recordings"));
+  drop(window, {file("one.h5"), file("hostile.h5"), file("two.h5")});
+  const QListWidget& results = *child<QListWidget>(window, "import-results");
+  const QAbstractItemModel& rows = *child<QTableView>(window, "attempts")->model();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return rows.rowCount() == 2 && !window.imports().busy(); }, patience));
+  ASSERT_EQ(results.count(), 3);
+  EXPECT_EQ(results.item(0)->text(), QString::fromUtf8("one.h5: ✓ verified; new in the cohort"));
+  EXPECT_TRUE(results.item(1)->text().startsWith(QString::fromUtf8("hostile.h5: ✕ damaged")))
+      << results.item(1)->text().toStdString();
+  drop(window, {file("two.h5")});
+  ASSERT_TRUE(QTest::qWaitFor([&] { return results.count() == 4; }, patience));
+  EXPECT_EQ(results.item(3)->text(), QString::fromUtf8("two.h5: ✓ verified; was in the cohort already"));
+}
+
+TEST_F(Pages, AClickOnAFigureShowsTheMomentThatMadeMostOfIt) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  AttemptPage& page = openAttempt(window);
+  ASSERT_TRUE(page.replay().isOpen());
+  EXPECT_GT(child<ScenePictureWidget>(page, "scene")->shown(), 0U);
+  QTableView& table = *child<QTableView>(page, "attempt-checkpoints");
+  const auto& model = dynamic_cast<const CheckpointTableModel&>(*table.model());
+  int row = 0;
+  while (row < model.rowCount() && (model.moments(row) == nullptr || model.moments(row)->moments.empty() ||
+                                    model.moments(row)->moments[0].begin < 0.5))
+    ++row;
+  ASSERT_LT(row, model.rowCount()) << "no figure has a moment after its begin";
+  const analytics::Moment* most = &model.moments(row)->moments[0];
+  for (const analytics::Moment& moment : model.moments(row)->moments) {
+    if (moment.share > most->share) most = &moment;
+  }
+  table.scrollTo(model.index(row, 0));
+  QTest::mouseClick(table.viewport(), Qt::LeftButton, {}, table.visualRect(model.index(row, 0)).center());
+  const double wanted = most->begin - MomentCycle::leadIn;
+  EXPECT_TRUE(QTest::qWaitFor(
+      [&] {
+        const PlayerPosition& at = page.replay().position();
+        return at.settled && at.time > wanted && at.time < wanted + 0.011;
+      },
+      patience))
+      << "wanted " << wanted << ", shows " << page.replay().position().time;
+}
+
+TEST_F(Pages, TheReplayIsScrubbedSteppedAndPlayed) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  AttemptPage& page = openAttempt(window);
+  const auto shows = [&](std::uint64_t step) {
+    return QTest::qWaitFor([&] { return page.replay().position().settled && page.replay().position().step == step; },
+                           patience);
+  };
+  const std::uint64_t steps = page.replay().position().steps;
+  child<QSlider>(page, "scrub")->setValue(5000);
+  EXPECT_TRUE(shows(steps / 2));
+  QTest::mouseClick(child<QToolButton>(page, "step-forward"), Qt::LeftButton);
+  EXPECT_TRUE(shows(steps / 2 + 1));
+  page.setFocus();
+  QTest::keyClick(&page, Qt::Key_Comma);
+  QTest::keyClick(&page, Qt::Key_Comma);
+  EXPECT_TRUE(shows(steps / 2 - 1));
+  child<QComboBox>(page, "speed")->setCurrentIndex(7);
+  QTest::mouseClick(child<QToolButton>(page, "play"), Qt::LeftButton);
+  EXPECT_TRUE(shows(steps - 1)) << "plays to its end";
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !page.replay().position().playing; }, patience));
+}
+
+TEST_F(Pages, ARecordingThatIsNotThereIsSaidAndAskedFor) {
+  fs::create_directories(root_ / "elsewhere");
+  for (const char* name : {"one.h5", "two.h5"}) fs::rename(root_ / name, root_ / "elsewhere" / name);
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  AttemptPage& page = openAttempt(window);
+  EXPECT_FALSE(page.replay().isOpen());
+  EXPECT_TRUE(child<QPushButton>(page, "find-recording")->isVisibleTo(&page));
+  EXPECT_GT(child<QTableView>(page, "attempt-checkpoints")->model()->rowCount(), 0) << "the checkpoints stand";
+  // Once it is known where recordings are, it is found there.
+  settings::rememberRecordingFolder(file("elsewhere"));
+  DashboardWindow again;
+  again.show();
+  ASSERT_TRUE(again.openDatabase(file("c.db")));
+  EXPECT_TRUE(openAttempt(again).replay().isOpen());
+}
+
+TEST_F(Pages, AnAttemptIsExcludedAndThatIsUndone) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  const auto excluded = [&] {
+    int count = 0;
+    const analytics::CohortDatabase database(file("c.db").toStdString(), Access::read);
+    for (const analytics::AttemptRow& attempt : database.listAttempts()) count += attempt.excluded ? 1 : 0;
+    return count;
+  };
+  window.excludeOrInclude("the light failed", "R1");
+  EXPECT_EQ(excluded(), 1);
+  EXPECT_TRUE(QTest::qWaitFor(
+      [&] {
+        return child<QLabel>(*window.findChild<AttemptsPage*>(), "identity")->text().contains("the light failed");
+      },
+      patience));
+  QUndoStack& undo = *window.findChild<QUndoStack*>();
+  undo.undo();
+  EXPECT_EQ(excluded(), 0);
+  undo.redo();
+  EXPECT_EQ(excluded(), 1);
+  QSignalSpy shown(&window, &DashboardWindow::documentShown);
+  window.reload();
+  ASSERT_TRUE(shown.wait(patience));
+  window.excludeOrInclude("it was another room's light", "R1");
+  EXPECT_EQ(excluded(), 0) << "an excluded one is taken in again";
+}
+
+TEST_F(Pages, ARaterFillsInAFormAndChangesIt) {
+  DashboardWindow window({fs::path(CALOT_SOURCE_DIR) / "assets"});
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  settings::setPerson("R1");
+  showPage(window, 7);
+  QComboBox& form = *child<QComboBox>(window, "form");
+  form.setCurrentIndex(form.findText("goals", Qt::MatchStartsWith));
+  QPushButton& store = *child<QPushButton>(window, "store-rating");
+  const QStringList items{"depth-perception", "bimanual-dexterity", "efficiency", "tissue-handling"};
+  for (const QString& item : items) child<QRadioButton>(window, qPrintable(item + "=4"))->click();
+  EXPECT_FALSE(store.isEnabled()) << "one item is not answered";
+  child<QRadioButton>(window, "autonomy=-")->click();
+  ASSERT_TRUE(store.isEnabled());
+  store.click();
+  const auto ratings = [&] {
+    return analytics::AssessmentDatabase(file("c.db").toStdString(), Access::read).ratings();
+  };
+  ASSERT_EQ(ratings().size(), 1U) << child<QLabel>(window, "problem")->text().toStdString();
+  EXPECT_EQ(ratings()[0].form, "goals");
+  EXPECT_EQ(ratings()[0].rater, "R1");
+  EXPECT_EQ(ratings()[0].answers.size(), 4U) << "what was left blank has no score";
+  EXPECT_EQ(ratings()[0].answers.at("efficiency"), 4);
+  child<QRadioButton>(window, "efficiency=2")->click();
+  EXPECT_TRUE(store.text().startsWith("Replace"));
+  store.click();
+  ASSERT_EQ(ratings().size(), 1U);
+  EXPECT_EQ(ratings()[0].answers.at("efficiency"), 2);
+}
+
+TEST_F(Pages, TwoRecordingsGoInStep) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  showPage(window, 6);
+  PairPage& page = *window.findChild<PairPage*>();
+  page.chooseTwo();
+  child<QComboBox>(page, "left-attempt")->setCurrentIndex(1);
+  child<QComboBox>(page, "right-attempt")->setCurrentIndex(2);
+  const auto times = [&] { return std::array{page.replay(0).position().time, page.replay(1).position().time}; };
+  ASSERT_TRUE(
+      QTest::qWaitFor([&] { return page.settled() && child<QSlider>(page, "pair-scrub")->isEnabled(); }, patience));
+  child<QSlider>(page, "pair-scrub")->setValue(3333);
+  EXPECT_TRUE(QTest::qWaitFor(
+      [&] { return std::abs(times()[0] - 1.0) < 0.011 && std::abs(times()[0] - times()[1]) < 1e-9; }, patience))
+      << times()[0] << ' ' << times()[1];
+  QTest::mouseClick(child<QToolButton>(page, "pair-play"), Qt::LeftButton);
+  EXPECT_TRUE(QTest::qWaitFor(
+      [&] {
+        const auto at = std::array{page.replay(0).position(), page.replay(1).position()};
+        return at[0].step + 1 == at[0].steps && at[1].step + 1 == at[1].steps;
+      },
+      patience))
+      << "each to its own end";
+}
+
+TEST_F(Pages, AStudyIsShownAndExported) {
+  fs::remove(root_ / "c.db");
+  {
+    analytics::CohortDatabase database(file("c.db").toStdString(), Access::create);
+    for (int i = 0; i < 12; ++i)
+      database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1 + 0.01 * i + 0.2 * (i % 2))});
+  }
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  StudyPage& page = *window.findChild<StudyPage*>();
+  QSignalSpy shown(&page, &StudyPage::studyShown);
+  showPage(window, 4);
+  ASSERT_TRUE(shown.wait(patience));
+  ASSERT_TRUE(page.ready()) << child<QLabel>(page, "study-state")->text().toStdString();
+  const QString text = child<QTextBrowser>(page, "study-text")->toPlainText();
+  EXPECT_TRUE(text.contains("SYNTHETIC")) << text.toStdString();
+  EXPECT_TRUE(text.contains("skilled"));
+  EXPECT_EQ(child<QComboBox>(page, "study-row")->count(), 1);
+  EXPECT_TRUE(child<QLabel>(page, "study-effect")->text().contains("A = "));
+  page.exportHtml(file("study.html"));
+  page.exportCsv(file("csv"));
+  EXPECT_TRUE(fs::exists(root_ / "study.html"));
+  for (const char* name : {"study.csv", "values.csv", "flow.csv"})
+    EXPECT_TRUE(fs::exists(root_ / "csv" / name)) << name;
+  child<QCheckBox>(page, "study-synthetic")->click();
+  ASSERT_TRUE(shown.wait(patience));
+  EXPECT_FALSE(page.ready());
+  EXPECT_TRUE(child<QLabel>(page, "study-state")->text().startsWith("There is no study")) << "and why";
+}
+
+TEST_F(Pages, PicturesOfAllPagesAreWritten) {
+  DashboardWindow window({fs::path(CALOT_SOURCE_DIR) / "assets"});
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  window.savePictures(folder_.path());
+  for (const char* name : {"attempts.png", "attempt.png", "compare.png", "study.png", "trainee.png", "pair.png",
+                           "ratings.png", "settings.png"})
+    EXPECT_GT(QImage(file(name)).width(), 400) << name;
+}
+
+}  // namespace
+}  // namespace calot::gui

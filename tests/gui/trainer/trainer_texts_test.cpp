@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mistakes, hints, words and keys: what the window says, without a window.
+#include "gui/trainer/trainer_texts.h"
+
+#include <gtest/gtest.h>
+
+#include <QLocale>
+#include <set>
+
+#include "gui/trainer/hints.h"
+#include "gui/trainer/key_bindings.h"
+
+namespace calot::gui {
+namespace {
+
+Event event(std::uint64_t step, EventKind kind, std::uint16_t subject, double value = 0.0) {
+  Event e;
+  e.step = step;
+  e.kind = kind;
+  e.hand = 1;
+  e.subject = subject;
+  e.value = value;
+  return e;
+}
+
+MistakeList list() { return MistakeList({"liver", "cystic-duct", "hepatic_artery"}, {"bed"}, 0.01); }
+
+TEST(Mistakes, OneForEachStructureOfAStep) {
+  MistakeList mistakes = list();
+  EXPECT_FALSE(mistakes.add(std::vector{event(9, EventKind::clipSet, 1), event(9, EventKind::phaseBegin, 2),
+                                        event(9, EventKind::contactBegin, 0), event(9, EventKind::smoke, 0)}));
+  EXPECT_TRUE(mistakes.add(std::vector{event(99, EventKind::vesselCut, 1), event(99, EventKind::tooFewClips, 1),
+                                       event(99, EventKind::cutOpen, 1), event(99, EventKind::clipDropped, 0)}));
+  ASSERT_EQ(mistakes.all().size(), 2U);
+  EXPECT_EQ(mistakes.all()[0].text, "cystic duct: cut with too few clips, left open");
+  EXPECT_DOUBLE_EQ(mistakes.all()[0].time, 1.0);
+  EXPECT_FALSE(mistakes.all()[0].critical);
+  EXPECT_EQ(mistakes.all()[1].text, "clip dropped");
+}
+
+TEST(Mistakes, WhatMustBeSparedIsCritical) {
+  MistakeList mistakes = list();
+  mistakes.add(std::vector{event(500, EventKind::clipSet, 2), event(500, EventKind::criticalError, 2, 21.0)});
+  ASSERT_EQ(mistakes.all().size(), 1U);
+  EXPECT_TRUE(mistakes.all()[0].critical);
+  EXPECT_EQ(mistakes.all()[0].text, "hepatic artery: must be spared");
+  EXPECT_EQ(mistakeText(mistakes.all()[0]), "0:05.0  critical: hepatic artery: must be spared");
+}
+
+TEST(Mistakes, WhatGoesOnIsOne) {
+  MistakeList mistakes = list();
+  for (std::uint64_t n = 100; n < 400; ++n) mistakes.add(std::vector{event(n, EventKind::strandsTorn, 0, 0.01)});
+  ASSERT_EQ(mistakes.all().size(), 1U);
+  EXPECT_EQ(mistakes.all()[0].text, "bed: torn instead of burned");
+  mistakes.add(std::vector{event(501, EventKind::strandsTorn, 0, 0.01)});
+  EXPECT_EQ(mistakes.all().size(), 2U) << "more than a second later it is another one";
+}
+
+TEST(Mistakes, ABranchLeavesTwoSecondsBeforeButNotBeforeTheFirstStep) {
+  EXPECT_DOUBLE_EQ((Mistake{10.0, false, ""}.branchTime(0.01)), 8.0);
+  EXPECT_DOUBLE_EQ((Mistake{1.5, false, ""}.branchTime(0.01)), 0.01);
+}
+
+SceneDescription operation() {
+  SceneDescription scene;
+  for (const char* name : {"cystic_duct", "cystic_artery", "common_duct"}) {
+    scene.vessels.emplace_back();
+    scene.vessels.back().name = name;
+  }
+  scene.procedure.specimen = "gallbladder";
+  scene.procedure.bed = "bed";
+  scene.procedure.fat = "fat";
+  scene.procedure.divide = {{"cystic_duct", 2, 1, true}, {"cystic_artery", 2, 1, true}};
+  return scene;
+}
+
+AttemptFigures figuresAt(Phase phase) {
+  AttemptFigures figures;
+  figures.hand[0].instrument = InstrumentKind::grasper;
+  figures.hand[1].instrument = InstrumentKind::hook;
+  figures.vessel.resize(3);
+  figures.procedure.phase = phase;
+  figures.ticks = 1000;
+  figures.attached = 1.0;
+  return figures;
+}
+
+TEST(Hints, FollowTheProcedure) {
+  const SceneDescription scene = operation();
+  AttemptFigures figures = figuresAt(Phase::identification);
+  const auto hint = [&] { return hintFor(scene, "summary", figures); };
+  EXPECT_EQ(hint(), "Carve the fat off Calot's triangle: pull it tight and press the cut pedal.");
+  figures.hand[1].instrument = InstrumentKind::scissors;
+  EXPECT_EQ(hint().rfind("Take the hook. ", 0), 0U);
+  figures.procedure.triangleCleared = figures.procedure.twoStructures = 2;
+  figures.procedure.lowerThirdAttached = 0.401;
+  EXPECT_EQ(hint(), "Take the hook. Free the lower third of the bed: 41 % of that third is still attached.");
+  figures.procedure.lowerThirdFreed = 1;  // five of six
+  EXPECT_EQ(hint(), "Take the clip applier. Clip the cystic duct: 0 of 3 clips are on, 2 stay with the patient.");
+  figures.hand[1].instrument = InstrumentKind::clipApplier;
+  figures.procedure.criticalViewFrozen = true;
+  figures.procedure.lowerThirdFreed = 0;  // frozen as it is: no way back
+  figures.vessel[0].clips = 3;
+  EXPECT_EQ(hint(), "Take the scissors. Cut the cystic duct between its clips, 2 on the side that stays.");
+  figures.vessel[0].partings = 1;
+  figures.vessel[1].clips = 1;
+  EXPECT_EQ(hint(), "Clip the cystic artery: 1 of 3 clips are on, 2 stay with the patient.");
+  figures.vessel[1].partings = 1;
+  figures.hand[1].instrument = InstrumentKind::hook;
+  figures.attached = 0.25;
+  EXPECT_EQ(hint(),
+            "Take the gallbladder off its bed: pull it away and burn what is stretched. 25 % is still attached.");
+  EXPECT_FALSE(isDone(scene, figures));
+  figures.hand[1].cautery = Cautery::withoutContact;
+  EXPECT_EQ(hint(), "The right hook burns in the air: press the pedal on tissue only.");
+  figures.procedure.phase = Phase::done;
+  EXPECT_TRUE(isDone(scene, figures));
+  EXPECT_EQ(hint(), "All is done. End the attempt when you are content.");
+}
+
+TEST(Hints, AreTheSummaryWhereThereIsNoProcedure) {
+  EXPECT_EQ(hintFor(SceneDescription{}, "Touch the liver.", AttemptFigures{}), "Touch the liver.");
+  EXPECT_TRUE(isDone(SceneDescription{}, AttemptFigures{}));
+}
+
+class Texts : public ::testing::Test {
+ protected:
+  void SetUp() override { QLocale::setDefault(QLocale::c()); }
+  void TearDown() override { QLocale::setDefault(QLocale::c()); }
+  static TrainingStatus running() {
+    TrainingStatus status;
+    status.stage = Stage::running;
+    status.attempt = std::string("one");
+    status.file = "/data/cholecystectomy.h5";
+    status.figures = figuresAt(Phase::clipping);
+    status.figures.time = 62.56;
+    status.figures.procedure.errors = 1;
+    return status;
+  }
+};
+
+TEST_F(Texts, SayWhatRuns) {
+  TrainingStatus status = running();
+  status.figures.hand[1] = {InstrumentKind::clipApplier, 0.0, true, 1, Cautery::off, true};
+  const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, Hand::right);
+  EXPECT_EQ(text.stage, QString::fromUtf8("● Recording"));
+  EXPECT_EQ(text.mode, "Practice");
+  EXPECT_EQ(text.time, "1:02.5") << "a clock does not round up";
+  EXPECT_EQ(text.deadlines, "Forces on time");
+  EXPECT_EQ(text.phase, "Phase: clipping");
+  EXPECT_EQ(text.score, "Critical view 0 of 6\n1 error");
+  EXPECT_FALSE(text.hint.isEmpty());
+  EXPECT_EQ(text.hand[0], "Left: grasper");
+  EXPECT_EQ(text.hand[1], QString::fromUtf8("▶ Right: clip applier, 1 clip left, holds tissue"));
+  EXPECT_EQ(text.result, "");
+}
+
+TEST_F(Texts, AnAssessmentHasNeitherHintsNorScore) {
+  const PanelText text = panelText(running(), operation(), "summary", recorder::Mode::assessment, std::nullopt);
+  EXPECT_EQ(text.mode, "Assessment");
+  EXPECT_EQ(text.hint, "");
+  EXPECT_EQ(text.score, "");
+  EXPECT_EQ(text.phase, "Phase: clipping");
+}
+
+TEST_F(Texts, SyntheticOperatorsAreMarked) {
+  TrainingStatus status = running();
+  status.operatorKind = recorder::OperatorKind::performer;
+  EXPECT_EQ(panelText(status, operation(), "", recorder::Mode::practice, std::nullopt).mode, "Practice, synthetic");
+}
+
+TEST_F(Texts, LateForcesAndALostDeviceAreTold) {
+  TrainingStatus status = running();
+  status.figures.ticks = 20000;
+  status.figures.missedDeadlines = 30;
+  PanelText text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
+  EXPECT_EQ(text.deadlines, "30 forces late (0.15 %)");
+  EXPECT_FALSE(text.late) << "long ago";
+  status.figures.missedLately = 1;
+  status.figures.stretched = 1.25;
+  text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
+  EXPECT_TRUE(text.late);
+  EXPECT_TRUE(text.deadlines.startsWith("30 forces late (0.15 %)\nClock slowed by 1.")) << text.deadlines.toStdString();
+  status.waiting = true;
+  EXPECT_EQ(panelText(status, operation(), "", recorder::Mode::practice, std::nullopt).stage,
+            QString::fromUtf8("Waiting for the device …"));
+}
+
+TEST_F(Texts, TheEndNamesOutcomeAndFile) {
+  TrainingStatus status = running();
+  status.stage = Stage::ended;
+  status.report.outcome = recorder::Outcome::timeLimit;
+  status.parent = std::string("one");
+  status.branchedAt = 40.0;
+  const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
+  EXPECT_EQ(text.result,
+            "Outcome: time limit, after 1:02.5.\nA branch, from 0:40.0 on.\nRecorded in /data/cholecystectomy.h5");
+  EXPECT_EQ(text.hint, "");
+}
+
+TEST_F(Texts, NumbersFollowTheLocale) {
+  QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
+  TrainingStatus status = running();
+  status.figures.ticks = 2000000;
+  status.figures.missedDeadlines = 3000;
+  const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
+  EXPECT_EQ(text.time, "1:02,5");
+  EXPECT_EQ(text.deadlines, "3.000 forces late (0,15 %)");
+}
+
+TEST(KeyBindings, EveryKeyOnceAndEveryControlHasOne) {
+  std::set<recorder::MouseControl> controls;
+  std::set<std::pair<InstrumentKind, bool>> mounts;
+  for (int key = 0x20; key <= 0x01000100; key = key == 0xff ? 0x01000000 : key + 1) {
+    const std::optional<KeyAction> action = actionOf(key);
+    if (!action) continue;
+    if (action->kind == KeyAction::Kind::control) {
+      EXPECT_TRUE(controls.insert(action->control).second) << key;
+    }
+    if (action->kind == KeyAction::Kind::mount) {
+      EXPECT_TRUE(mounts.emplace(action->instrument, action->otherHand).second) << key;
+    }
+  }
+  EXPECT_EQ(controls.size(), recorder::mouseControls);
+  EXPECT_EQ(mounts.size(), 8U) << "four instruments for either hand";
+  EXPECT_FALSE(actionOf(Qt::Key_Tab)) << "leads out of the picture";
+}
+
+}  // namespace
+}  // namespace calot::gui

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drives the trainer as a trainee would, on Qt's offscreen platform.
+#include "gui/trainer/trainer_window.h"
+
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QImage>
+#include <QLabel>
+#include <QListWidget>
+#include <QLocale>
+#include <QPushButton>
+#include <QTest>
+
+#include "gui/trainer/mouse_attempt_input.h"
+#include "gui/trainer/operation_view.h"
+#include "recorder/errors.h"
+#include "recorder/recording/reader.h"
+#include "tests/gui/trainer/support/trainer_rig.h"
+
+namespace calot::gui {
+namespace {
+
+using trainertest::expectExact;
+
+constexpr int patience = 60000;  // ms
+
+class Trainer : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    qputenv("QT_QPA_PLATFORM", "offscreen");
+    static int count = 1;
+    static char name[] = "test";
+    static char* arguments[] = {name, nullptr};
+    if (QApplication::instance() == nullptr) new QApplication(count, arguments);
+  }
+  void SetUp() override { QLocale::setDefault(QLocale::c()); }
+  void TearDown() override {
+    window_.reset();
+    QLocale::setDefault(QLocale::c());
+  }
+
+  /// @param device another device's input; null: mouse and keyboard
+  TrainerWindow& open(std::shared_ptr<AttemptInput> device = nullptr, recorder::Mode mode = recorder::Mode::practice) {
+    TrainerSetup setup;
+    setup.settings.attempt.mode = mode;
+    setup.settings.folder = folder_ / "";
+    setup.scenes = {{"touch-liver", "Touch the liver.", CALOT_SOURCE_DIR "/assets/scenes/touch-liver.json"},
+                    {"gone", "Is not there.", "/nowhere/gone.json"}};
+    if (device) {
+      setup.input = std::move(device);
+    } else {
+      setup.mouse = std::make_shared<recorder::MouseInput>();
+      setup.input = std::make_shared<MouseAttemptInput>(setup.mouse);
+    }
+    window_ = std::make_unique<TrainerWindow>(std::move(setup));
+    window_->show();
+    window_->activateWindow();
+    EXPECT_TRUE(QTest::qWaitForWindowActive(window_.get()));
+    return *window_;
+  }
+  void beginSmall() {
+    window_->begin(trainertest::smallLoadedScene());
+    ASSERT_TRUE(runs(0.1));
+  }
+  bool runs(double time) {
+    return QTest::qWaitFor(
+        [&] {
+          const TrainingStatus status = window_->session()->status();
+          return status.stage == Stage::running && status.figures.time >= time;
+        },
+        patience);
+  }
+  bool reaches(Stage stage) {
+    const bool there = QTest::qWaitFor([&] { return window_->session()->status().stage == stage; }, patience);
+    window_->refresh();
+    return there;
+  }
+  template <class T>
+  T* child(const char* name) {
+    T* const found = window_->findChild<T*>(name);
+    EXPECT_NE(found, nullptr) << name;
+    return found;
+  }
+  QString text(const char* label) { return child<QLabel>(label)->text(); }
+  /// Lets a key be down until something is so.
+  void hold(Qt::Key key, const std::function<bool()>& until) {
+    QTest::keyPress(window_->view(), key);
+    EXPECT_TRUE(QTest::qWaitFor(until, patience));
+    QTest::keyRelease(window_->view(), key);
+  }
+  double jaw() { return window_->session()->status().figures.hand[1].jaw; }
+
+  recorder::test::Folder folder_;
+  std::unique_ptr<TrainerWindow> window_;
+};
+
+TEST_F(Trainer, GreetsAndBeginsByKeyboard) {
+  TrainerWindow& window = open();
+  window.chooseScene();
+  auto* const scenes = child<QListWidget>("scenes");
+  ASSERT_EQ(scenes->count(), 2);
+  EXPECT_EQ(scenes->item(0)->text(), "touch-liver\nTouch the liver.");
+  EXPECT_TRUE(scenes->hasFocus());
+  QTest::keyClick(scenes, Qt::Key_Down);
+  QTest::keyClick(scenes, Qt::Key_Return);
+  EXPECT_TRUE(text("problem").contains("gone.json")) << text("problem").toStdString();
+  EXPECT_EQ(window.session(), nullptr);
+  QTest::keyClick(scenes, Qt::Key_Up);
+  QTest::keyClick(scenes, Qt::Key_Return);
+  ASSERT_NE(window.session(), nullptr);
+  EXPECT_FALSE(child<QLabel>("problem")->isVisible());
+  EXPECT_TRUE(window.view()->hasFocus());
+  ASSERT_TRUE(runs(0.2));
+  window.refresh();
+  EXPECT_EQ(text("stage"), QString::fromUtf8("● Recording"));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return window.view()->shown() > 2; }, patience));
+  const QImage picture = window.view()->picture();
+  EXPECT_EQ(picture.size(), window.view()->size());
+}
+
+TEST_F(Trainer, MouseAndKeysDriveTheHands) {
+  TrainerWindow& window = open();
+  beginSmall();
+  OperationView& view = *window.view();
+  const QPoint middle = view.rect().center();
+  QTest::mouseMove(&view, middle);
+  QTest::mouseMove(&view, middle + QPoint(100, 0));
+  hold(Qt::Key_S, [&] { return jaw() > 0.5; });
+  QTest::keyClick(&view, Qt::Key_Space);
+  hold(Qt::Key_Down, [&, begin = window.session()->status().figures.time] {
+    return window.session()->status().figures.time > begin + 0.5;
+  });
+  QTest::keyClick(&view, Qt::Key_2);  // the left hand, which is driven, has the hook
+  EXPECT_TRUE(QTest::qWaitFor(
+      [&] { return window.session()->status().figures.hand[0].instrument == InstrumentKind::hook; }, patience));
+  window.refresh();
+  EXPECT_EQ(text("left"), QString::fromUtf8("▶ Left: hook"));
+  EXPECT_EQ(text("right"), "Right: grasper");
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  const std::filesystem::path file = window.session()->status().file;
+  EXPECT_TRUE(text("result").contains(QString::fromStdString(file.string())));
+  EXPECT_TRUE(text("result").startsWith("Outcome: completed")) << text("result").toStdString();
+  expectExact(file);
+
+  recorder::Recording recording(file);
+  EXPECT_EQ(recording.header().provenance.device, "mouse");
+  EXPECT_EQ(recording.header().provenance.kind, recorder::OperatorKind::human);
+  const SceneDescription& scene = window.session()->scene();
+  const TickSamples last = recording.step(recording.stepCount() - 1).samples.back();
+  // 100 pixels to the right are 15 mm along the camera's x.
+  const Vec3 right = scene.camera.orientation.conjugate() * (last.hand[1].position - scene.hands[1].home);
+  EXPECT_NEAR((right - Vec3(0.015, 0, 0)).norm(), 0.0, 1e-5);
+  // 0.5 s of a key are 15 mm down; the machine may be late in letting it go.
+  const Vec3 left = scene.camera.orientation.conjugate() * (last.hand[0].position - scene.hands[0].home);
+  EXPECT_GT(left.y(), 0.0145);
+  EXPECT_NEAR(left.x(), 0.0, 1e-5);
+}
+
+TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
+  TrainerWindow& window = open();
+  beginSmall();
+  OperationView& view = *window.view();
+  QTest::keyClick(&view, Qt::Key_3);  // clip applier
+  hold(Qt::Key_S, [&] { return jaw() > 0.5; });
+  hold(Qt::Key_A, [&] { return !window.session()->status().figures.mistakes->empty(); });
+  const TrainingStatus before = window.session()->status();
+  QTest::keyClick(&view, Qt::Key_Escape);
+  ASSERT_TRUE(reaches(Stage::paused));
+  EXPECT_EQ(text("stage"), QString::fromUtf8("❚❚ Paused"));
+  auto* const mistakes = child<QListWidget>("mistakes");
+  ASSERT_EQ(mistakes->count(), 1);
+  EXPECT_TRUE(mistakes->item(0)->text().endsWith("clip dropped"));
+  EXPECT_TRUE(mistakes->isVisible());
+  // What the mouse does meanwhile moves nothing.
+  QTest::mouseMove(&view, view.rect().center());
+  QTest::mouseMove(&view, view.rect().center() + QPoint(60, 60));
+  QTest::keyClick(mistakes, Qt::Key_Return);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().parent == before.attempt; }, patience));
+  ASSERT_TRUE(runs(window.session()->status().branchedAt + 0.2));
+  EXPECT_TRUE(window.session()->status().figures.mistakes->empty()) << "it has not happened in the branch";
+  window.refresh();
+  EXPECT_FALSE(mistakes->isVisible());
+  QTest::mouseClick(child<QPushButton>("finish"), Qt::LeftButton);
+  ASSERT_TRUE(reaches(Stage::ended));
+  EXPECT_TRUE(text("result").contains("A branch"));
+  expectExact(before.file);
+  expectExact(window.session()->status().file);
+  QTest::mouseClick(child<QPushButton>("restart"), Qt::LeftButton);
+  ASSERT_TRUE(runs(0.1));
+  const std::vector<std::string> lines = window.endAndReport();
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_NE(lines[2].find("stopped"), std::string::npos);
+  EXPECT_NE(lines[3].find(" pictures of "), std::string::npos);
+}
+
+TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
+  TrainerWindow& window =
+      open(std::make_shared<trainertest::ScriptInput>(trainertest::swayingScript(20.0)), recorder::Mode::assessment);
+  beginSmall();
+  window.session()->mount(Hand::right, InstrumentKind::clipApplier);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !window.session()->status().figures.mistakes->empty(); }, patience));
+  window.refresh();
+  EXPECT_EQ(text("mode"), "Assessment, synthetic");
+  for (const char* name : {"hint", "score"}) EXPECT_FALSE(child<QLabel>(name)->isVisible()) << name;
+  EXPECT_FALSE(child<QPushButton>("pause")->isVisible());
+  QTest::keyClick(window.view(), Qt::Key_Escape);
+  EXPECT_EQ(window.session()->status().stage, Stage::running);
+  QTest::mouseClick(child<QPushButton>("finish"), Qt::LeftButton);
+  ASSERT_TRUE(reaches(Stage::ended));
+  EXPECT_FALSE(child<QListWidget>("mistakes")->isVisible()) << "mistakes are a score";
+}
+
+TEST_F(Trainer, LosingTheKeyboardLetsGoOfEverything) {
+  TrainerWindow& window = open();
+  beginSmall();
+  QTest::keyPress(window.view(), Qt::Key_S);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return jaw() > 0.1; }, patience));
+  child<QPushButton>("finish")->setFocus();
+  const double from = window.session()->status().figures.time;
+  ASSERT_TRUE(runs(from + 0.3));
+  const double jawThen = jaw();
+  ASSERT_TRUE(runs(from + 0.6));
+  EXPECT_EQ(jaw(), jawThen) << "a key that was down for a window without focus still opens the jaws";
+}
+
+TEST_F(Trainer, ThePictureIsSavedOrTheFolderNamed) {
+  TrainerWindow& window = open();
+  window.savePicture(QString::fromStdString((folder_ / "a.png").string()));
+  EXPECT_FALSE(QImage(QString::fromStdString((folder_ / "a.png").string())).isNull());
+  try {
+    window.savePicture("/nowhere/a.png");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::failure);
+    EXPECT_NE(std::string(error.what()).find("/nowhere/a.png"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace calot::gui

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session without a window: what it records replays bit for bit, and the rules of the modes hold.
+#include "gui/trainer/training_session.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "recorder/errors.h"
+#include "recorder/recording/reader.h"
+#include "tests/gui/trainer/support/trainer_rig.h"
+
+namespace calot::gui {
+namespace {
+
+using recorder::Outcome;
+using trainertest::expectExact;
+using trainertest::ScriptInput;
+using trainertest::waitFor;
+using trainertest::waitForTime;
+
+/// A session over a script of so many seconds.
+struct Rig {
+  recorder::test::Folder folder;
+  std::shared_ptr<ScriptInput> input;
+  std::atomic<int> views{0};
+  std::unique_ptr<TrainingSession> session;
+
+  explicit Rig(double seconds, recorder::Mode mode = recorder::Mode::practice)
+      : input(std::make_shared<ScriptInput>(trainertest::swayingScript(seconds))) {
+    TrainingSettings settings = trainertest::smallSettings(folder);
+    settings.attempt.mode = mode;
+    session = std::make_unique<TrainingSession>(std::move(settings), input, [this](auto view) {
+      EXPECT_GT(view->surface.size(), 0U);
+      ++views;
+      session->shown();
+    });
+  }
+  /// @returns whether the attempt ended within a minute
+  bool ended() {
+    return waitFor([this] { return session->status().stage == Stage::ended && !session->status().file.empty(); });
+  }
+  std::size_t recordings() {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "")) {
+      EXPECT_EQ(entry.path().extension(), ".h5") << entry.path();
+      ++count;
+    }
+    return count;
+  }
+};
+
+TEST(TrainingSession, RecordsAsTheCommandLineDoesAndReplaysExactly) {
+  Rig rig(3.0);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.2));
+  EXPECT_TRUE(rig.session->mount(Hand::right, InstrumentKind::clipApplier));
+  ASSERT_TRUE(rig.ended());
+  const TrainingStatus status = rig.session->status();
+  EXPECT_EQ(status.problem, "");
+  EXPECT_EQ(status.report.outcome, Outcome::completed);
+  EXPECT_EQ(status.report.disagreements, 0U);
+  EXPECT_NEAR(status.figures.time, 2.99, 1e-9) << "the whole steps of the script";
+  EXPECT_GT(rig.views, 5);
+  EXPECT_LE(rig.views, 120);
+  expectExact(status.file);
+
+  recorder::Recording recording(status.file);
+  EXPECT_EQ(recording.header().participant, "P7");
+  EXPECT_EQ(recording.header().attempt, status.attempt);
+  EXPECT_EQ(recording.header().mode, recorder::Mode::practice);
+  EXPECT_EQ(recording.header().provenance.device, "scripted");
+  EXPECT_EQ(recording.outcome(), Outcome::completed);
+  EXPECT_GT(recording.rawSampleCount(Hand::right), 200U);
+  EXPECT_EQ(recording.step(0).result.hand[1].instrument, InstrumentKind::grasper);
+  const recorder::RecordedStep& last = recording.step(recording.stepCount() - 1);
+  EXPECT_EQ(last.result.hand[1].instrument, InstrumentKind::clipApplier);
+  EXPECT_EQ(last.result.hand[0].instrument, InstrumentKind::grasper);
+  std::uint64_t missed = 0;
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    for (const recorder::TickOutcome& tick : recording.step(n).ticks) missed += tick.lateness > recorder::tickDeadline;
+  }
+  EXPECT_EQ(status.figures.missedDeadlines, missed);
+  // The jaws close on nothing each second, at the step after 0.811 s: that is a mistake.
+  ASSERT_GE(status.figures.mistakes->size(), 1U);
+  for (const Mistake& mistake : *status.figures.mistakes) {
+    EXPECT_EQ(mistake.text, "clip dropped");
+    EXPECT_NEAR(mistake.time - std::floor(mistake.time), 0.82, 0.011);
+  }
+}
+
+TEST(TrainingSession, APauseLeavesNoTick) {
+  Rig rig(0.8);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.2));
+  EXPECT_FALSE(rig.session->resume());
+  ASSERT_TRUE(rig.session->pause());
+  EXPECT_FALSE(rig.session->pause());
+  EXPECT_FALSE(rig.session->mount(Hand::left, InstrumentKind::hook));
+  EXPECT_EQ(rig.session->status().stage, Stage::paused);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the steps that had begun
+  const double held = rig.session->status().figures.time;
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(rig.session->status().figures.time, held);
+  ASSERT_TRUE(rig.session->resume());
+  ASSERT_TRUE(rig.ended());
+  const TrainingStatus status = rig.session->status();
+  EXPECT_EQ(status.report.pauses, 1U);
+  EXPECT_GE(status.report.paused, 0.4);
+  EXPECT_EQ(status.report.steps, 79U) << "the script stood still meanwhile";
+  expectExact(status.file);
+}
+
+TEST(TrainingSession, GoesBackAndBranches) {
+  Rig rig(3.0);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.1));
+  ASSERT_TRUE(rig.session->mount(Hand::right, InstrumentKind::scissors));
+  ASSERT_TRUE(waitForTime(*rig.session, 0.9));
+  const TrainingStatus parent = rig.session->status();
+  EXPECT_FALSE(rig.session->goBack(0.0)) << "before the first step";
+  EXPECT_FALSE(rig.session->goBack(60.0)) << "not yet there";
+  ASSERT_TRUE(rig.session->goBack(0.5));
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().parent == parent.attempt; }));
+  ASSERT_TRUE(waitForTime(*rig.session, 0.7));
+  const TrainingStatus branch = rig.session->status();
+  EXPECT_NEAR(branch.branchedAt, 0.5, 1e-9);
+  ASSERT_TRUE(rig.session->goBack(0.6));  // of the branch
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().parent == branch.attempt; }));
+  ASSERT_TRUE(waitForTime(*rig.session, 0.8));
+  ASSERT_TRUE(rig.session->finish());
+  ASSERT_TRUE(rig.ended());
+  const TrainingStatus twig = rig.session->status();
+  EXPECT_EQ(twig.report.outcome, Outcome::completed) << "the scene has no procedure: whoever ends it has done";
+  ASSERT_TRUE(rig.session->goBack(0.7));  // of an attempt that has ended
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().parent == twig.attempt; }));
+  ASSERT_TRUE(waitForTime(*rig.session, 0.75));
+  rig.session->stop();
+  const TrainingStatus last = rig.session->status();
+  EXPECT_EQ(rig.session->recorded().size(), 4U);
+  EXPECT_EQ(rig.recordings(), 4U);
+
+  for (const auto& file : {parent.file, branch.file, twig.file, last.file}) expectExact(file);
+  recorder::Recording a(parent.file), b(branch.file);
+  EXPECT_EQ(a.outcome(), Outcome::stopped);
+  EXPECT_EQ(b.header().parent, a.header().attempt);
+  EXPECT_EQ(b.header().forkStep, 49);
+  for (std::uint64_t n = 0; n < 50; ++n) ASSERT_EQ(a.step(n).digest, b.step(n).digest) << n;
+  // The hands set out from where they were, with what they had.
+  const TickSamples before = b.step(49).samples.back();
+  const TickSamples after = b.step(50).samples.front();
+  for (std::size_t h = 0; h < handCount; ++h)
+    EXPECT_LT((after.hand[h].position - before.hand[h].position).norm(), 1e-4) << h;
+  EXPECT_EQ(before.hand[1].instrument, InstrumentKind::scissors);
+  EXPECT_EQ(after.hand[1].instrument, InstrumentKind::scissors);
+}
+
+TEST(TrainingSession, AnAssessmentIsNeitherPausedNorBranched) {
+  Rig rig(5.0, recorder::Mode::assessment);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.3));
+  EXPECT_FALSE(rig.session->pause());
+  EXPECT_FALSE(rig.session->goBack(0.2));
+  EXPECT_TRUE(rig.session->mount(Hand::left, InstrumentKind::hook)) << "instruments are exchanged in life, too";
+  ASSERT_TRUE(rig.session->finish());
+  ASSERT_TRUE(rig.ended());
+  EXPECT_FALSE(rig.session->goBack(0.2));
+  recorder::Recording recording(rig.session->status().file);
+  EXPECT_EQ(recording.header().mode, recorder::Mode::assessment);
+}
+
+TEST(TrainingSession, StartingAgainAbandonsAndQuittingStops) {
+  Rig rig(30.0);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.2));
+  const std::filesystem::path first = rig.session->status().file;
+  ASSERT_TRUE(rig.session->pause());
+  rig.session->start();  // out of a pause
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().file != first; }));
+  ASSERT_TRUE(waitForTime(*rig.session, 0.1));
+  const std::filesystem::path second = rig.session->status().file;
+  rig.session->stop();
+  rig.session->start();  // nothing any more
+  rig.session.reset();
+  EXPECT_EQ(recorder::Recording(first).outcome(), Outcome::abandoned);
+  EXPECT_EQ(recorder::Recording(second).outcome(), Outcome::stopped);
+  EXPECT_EQ(rig.recordings(), 2U);
+  for (const auto& file : {first, second}) expectExact(file);
+}
+
+TEST(TrainingSession, SaysWhatIsWrongAndTriesAgain) {
+  Rig rig(0.3);
+  rig.input->refusal = "gamepad: none is attached";
+  rig.session->start();
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().stage == Stage::ended; }));
+  EXPECT_EQ(rig.session->status().problem, "gamepad: none is attached");
+  EXPECT_EQ(rig.recordings(), 0U);
+  EXPECT_FALSE(rig.session->goBack(0.1));
+  EXPECT_FALSE(rig.session->finish());
+  rig.input->refusal.clear();
+  rig.session->start();
+  ASSERT_TRUE(rig.ended());
+  EXPECT_EQ(rig.session->status().problem, "");
+  EXPECT_EQ(rig.recordings(), 1U);
+}
+
+}  // namespace
+}  // namespace calot::gui

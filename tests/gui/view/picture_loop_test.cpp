@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/view/picture_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <stdexcept>
+#include <vector>
+
+namespace calot::gui {
+namespace {
+
+std::shared_ptr<const SceneView> viewOfStep(std::uint64_t step) {
+  SceneView view;
+  view.step = step;
+  return std::make_shared<const SceneView>(view);
+}
+
+/// A loop whose drawing waits to be allowed, one permit a picture, and which remembers what it drew.
+class HeldLoop {
+ public:
+  explicit HeldLoop(std::uint64_t faulty = ~0ULL)
+      : loop_([this,
+               faulty] { return [this, faulty](const SceneView& v, int w, int h) { return draw(v, w, h, faulty); }; },
+              {[this](ScenePicture p) {
+                 const std::lock_guard lock(mutex_);
+                 shown_.push_back(p.view->step);
+                 sizes_.push_back(p.image.width);
+                 changed_.notify_all();
+               },
+               [this](const std::string& fault) {
+                 const std::lock_guard lock(mutex_);
+                 faults_.push_back(fault);
+                 changed_.notify_all();
+               }}) {}
+  ~HeldLoop() { allow(1000); }
+
+  PictureLoop& loop() { return loop_; }
+  void allow(int pictures) {
+    const std::lock_guard lock(mutex_);
+    permits_ += pictures;
+    changed_.notify_all();
+  }
+  void awaitBegun(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return begun_.size() >= count; });
+  }
+  void awaitAnswers(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return shown_.size() + faults_.size() >= count; });
+  }
+  std::vector<std::uint64_t> shown() { return locked(shown_); }
+  std::vector<int> sizes() { return locked(sizes_); }
+  std::vector<std::string> faults() { return locked(faults_); }
+
+ private:
+  template <class T>
+  T locked(const T& value) {
+    const std::lock_guard lock(mutex_);
+    return value;
+  }
+  Image draw(const SceneView& view, int width, int height, std::uint64_t faulty) {
+    std::unique_lock lock(mutex_);
+    begun_.push_back(view.step);
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return permits_ > 0; });
+    --permits_;
+    if (view.step == faulty) throw std::runtime_error("no such view");
+    Image image;
+    image.width = width;
+    image.height = height;
+    return image;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int permits_ = 0;
+  std::vector<std::uint64_t> begun_, shown_;
+  std::vector<int> sizes_;
+  std::vector<std::string> faults_;
+  PictureLoop loop_;
+};
+
+TEST(PictureLoop, ViewsThatComeWhileOneIsDrawnReplaceEachOther) {
+  HeldLoop held;
+  held.loop().resize(64, 48);
+  held.loop().show(viewOfStep(0));
+  held.awaitBegun(1);
+  for (std::uint64_t step = 1; step <= 500; ++step) held.loop().show(viewOfStep(step));
+  held.allow(2);
+  held.awaitAnswers(2);
+  EXPECT_EQ(held.shown(), (std::vector<std::uint64_t>{0, 500})) << "the first, then the newest, and nothing between";
+}
+
+TEST(PictureLoop, NothingIsDrawnBeforeThereIsASizeAndANewSizeDrawsTheNewestAgain) {
+  HeldLoop held;
+  held.allow(10);
+  held.loop().show(viewOfStep(7));
+  held.loop().resize(64, 48);
+  held.awaitAnswers(1);
+  held.loop().resize(64, 48);  // the same: nothing to do
+  held.loop().resize(80, 60);
+  held.awaitAnswers(2);
+  EXPECT_EQ(held.shown(), (std::vector<std::uint64_t>{7, 7}));
+  EXPECT_EQ(held.sizes(), (std::vector<int>{64, 80}));
+}
+
+TEST(PictureLoop, AViewThatCannotBeDrawnIsToldAndTheNextOneIsDrawn) {
+  HeldLoop held(3);
+  held.allow(10);
+  held.loop().resize(64, 48);
+  held.loop().show(viewOfStep(3));
+  held.awaitAnswers(1);
+  EXPECT_EQ(held.faults(), std::vector<std::string>{"no such view"});
+  held.loop().show(viewOfStep(4));
+  held.awaitAnswers(2);
+  EXPECT_EQ(held.shown(), std::vector<std::uint64_t>{4});
+}
+
+TEST(PictureLoop, WhatWasClearedIsNotDrawn) {
+  HeldLoop held;
+  held.loop().resize(64, 48);
+  held.loop().show(viewOfStep(0));
+  held.awaitBegun(1);
+  held.loop().show(viewOfStep(1));
+  held.loop().clear();
+  held.loop().resize(65, 48);
+  held.allow(10);
+  held.awaitAnswers(1);
+  held.loop().show(viewOfStep(2));
+  held.awaitAnswers(2);
+  EXPECT_EQ(held.shown(), (std::vector<std::uint64_t>{0, 2}));
+}
+
+TEST(PictureLoop, EndsWhileOneIsDrawnAndOthersWait) {
+  std::promise<void> begun;
+  std::promise<void> go;
+  std::shared_future<void> allowed = go.get_future().share();
+  int drawn = 0;
+  auto loop = std::make_unique<PictureLoop>(
+      [&] {
+        return [&, allowed](const SceneView&, int, int) {
+          if (drawn++ == 0) begun.set_value();
+          allowed.wait();
+          return Image{};
+        };
+      },
+      PictureLoop::Receiver{[](const ScenePicture&) {}, [](const std::string&) {}});
+  loop->resize(64, 48);
+  loop->show(viewOfStep(0));
+  begun.get_future().wait();
+  loop->show(viewOfStep(1));
+  std::thread later([&] { go.set_value(); });
+  loop.reset();
+  later.join();
+  EXPECT_LE(drawn, 2);
+}
+
+}  // namespace
+}  // namespace calot::gui
