@@ -38,7 +38,8 @@ analytics::Norm normOf(int count, double cut) {
   mark.lower = cut - 0.4;
   mark.upper = cut + 0.4;
   norm.checkpoints = {mark};
-  for (int i = 1; i <= count; ++i) norm.members.push_back({std::string("m").append(std::to_string(i)), true, {static_cast<double>(i)}});
+  for (int i = 1; i <= count; ++i)
+    norm.members.push_back({std::string("m").append(std::to_string(i)), true, {static_cast<double>(i)}});
   norm.members.push_back({"far", false, {1000.0}});
   return norm;
 }
