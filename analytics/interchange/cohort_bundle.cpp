@@ -293,6 +293,7 @@ Bundle writeBundle(const std::string& database, const std::string& folder, const
                 fmt::format("{}: none of {} attempts can be handed out{}", database, bundle.recruited, list));
   Writer(source, options, taken).write(output, bundle);
   std::vector<std::string> uuids;
+  uuids.reserve(taken.size());
   for (const AttemptRow* a : taken) uuids.push_back(a->uuid);
   // An attempt that was withdrawn since it was read is not there any more: then nothing is handed out.
   recordExport(database, "bundle", folder, uuids);
