@@ -190,10 +190,10 @@ void ScenePainter::setCamera(const ShaderProgram& program, float focalX, float f
   program.set("eye", x, y, 0.0F);
 }
 
-void ScenePainter::clear(const RenderTarget& target, GLbitfield what, float alpha) const {
+void ScenePainter::clear(const RenderTarget& target, GLbitfield what, float alpha, float grey) const {
   gl_.Disable(GL_SCISSOR_TEST);
   target.bind();
-  gl_.ClearColor(0.0F, 0.0F, 0.0F, alpha);
+  gl_.ClearColor(grey, grey, grey, alpha);
   gl_.Clear(what);
 }
 
@@ -220,6 +220,8 @@ void ScenePainter::drawOcclusion(const DrawList& list, const Frame& frame) const
   setCamera(programs.prepass, frame.focalX, frame.focalY, 0.0F, 0.0F);
   drawParts(list, true);
 
+  // What lies around the field is read by neighbours and filters: without this, memory that was there before.
+  clear(targets.open, GL_COLOR_BUFFER_BIT, 1.0F, 1.0F);
   begin(targets.open, frame);
   setCamera(programs.occlusion, frame.focalX, frame.focalY, 0.0F, 0.0F);
   targets.prepass.sampleColour(depthUnit, 0);
@@ -229,6 +231,7 @@ void ScenePainter::drawOcclusion(const DrawList& list, const Frame& frame) const
   programs.occlusion.set("reach", occlusionReach);
   drawPicture();
 
+  clear(targets.smoothed, GL_COLOR_BUFFER_BIT, 1.0F, 1.0F);
   begin(targets.smoothed, frame);
   programs.blur.use();
   targets.open.sampleColour(occlusionUnit);

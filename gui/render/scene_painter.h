@@ -35,7 +35,7 @@ class ScenePainter {
 
   void upload(const DrawList& list);
   void prepareTargets(int width, int height, Quality quality);
-  void clear(const RenderTarget& target, GLbitfield what, float alpha = 0.0F) const;
+  void clear(const RenderTarget& target, GLbitfield what, float alpha = 0.0F, float grey = 0.0F) const;
   /// Binds the target and confines drawing to the endoscope's field.
   void begin(const RenderTarget& target, const Frame& frame) const;
   void setCamera(const ShaderProgram& program, float focalX, float focalY, float x, float y) const;

@@ -7,7 +7,8 @@
 
 namespace calot::gui {
 
-SheetPainter::SheetPainter(const GlFunctions& gl, int fibreUnit) : gl_(gl) {
+SheetPainter::SheetPainter(const GlFunctions& gl, int fibreUnit)
+    : gl_(gl), fibreUnit_(static_cast<GLenum>(GL_TEXTURE0 + fibreUnit)) {
   gl_.GenVertexArrays(1, &vertexArray_);
   gl_.GenBuffers(1, &vertexBuffer_);
   gl_.GenBuffers(1, &indexBuffer_);
@@ -28,7 +29,7 @@ SheetPainter::SheetPainter(const GlFunctions& gl, int fibreUnit) : gl_(gl) {
 
   const std::vector<std::uint8_t> texels = makeFibreTexture();
   gl_.GenTextures(1, &fibres_);
-  gl_.ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + fibreUnit));
+  gl_.ActiveTexture(fibreUnit_);
   gl_.BindTexture(GL_TEXTURE_2D, fibres_);
   gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, fibreColumns, fibreRows, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
   gl_.GenerateMipmap(GL_TEXTURE_2D);
@@ -44,6 +45,8 @@ SheetPainter::~SheetPainter() {
 }
 
 void SheetPainter::draw(const SheetList& list) const {
+  gl_.ActiveTexture(fibreUnit_);  // new targets may have been bound to it
+  gl_.BindTexture(GL_TEXTURE_2D, fibres_);
   gl_.BindVertexArray(vertexArray_);
   gl_.BindBuffer(GL_ARRAY_BUFFER, vertexBuffer_);
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list.vertex.size() * sizeof(SheetVertex)), list.vertex.data(),

@@ -10,7 +10,7 @@ namespace calot::gui {
 class SheetPainter {
  public:
   /// @pre the context of `gl` is current, here and in every call; `gl` outlives this
-  /// @param fibreUnit a texture unit that nobody else uses: it holds the fibre texture from here on
+  /// @param fibreUnit a texture unit, which every draw() binds the fibre texture to
   SheetPainter(const GlFunctions& gl, int fibreUnit);
   ~SheetPainter();
   SheetPainter(const SheetPainter&) = delete;
@@ -22,6 +22,7 @@ class SheetPainter {
 
  private:
   const GlFunctions& gl_;
+  GLenum fibreUnit_;
   GLuint vertexArray_ = 0, vertexBuffer_ = 0, indexBuffer_ = 0, fibres_ = 0;
 };
 
