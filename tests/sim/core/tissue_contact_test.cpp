@@ -147,7 +147,7 @@ TEST(TissueContact, APushGoesThroughToTheOrganBelow) {
 std::size_t insideOut(const SolidModel& solid, const SolidState& state) {
   return static_cast<std::size_t>(
       std::count_if(solid.tetrahedra().begin(), solid.tetrahedra().end(), [&](const Index4& t) {
-        const auto at = [&](std::size_t k) -> const Vec3& { return state.position[static_cast<std::size_t>(t[k])]; };
+        const auto at = [&](int k) -> const Vec3& { return state.position[static_cast<std::size_t>(t[k])]; };
         return !((at(1) - at(0)).dot((at(2) - at(0)).cross(at(3) - at(0))) > 0.0);
       }));
 }
@@ -165,7 +165,7 @@ TEST(TissueContact, WhatIsInsideOutTurnsBack) {
   const std::unique_ptr<const Model> model = test::buildModel(scene);
   ASSERT_TRUE(model);
   const SolidModel& solid = model->organs()[1].solid;
-  for (const std::uint64_t seed : {81, 82, 83}) {
+  for (const std::uint64_t seed : {81U, 82U, 83U}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     test::Rig rig(*model);
