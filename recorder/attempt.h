@@ -11,6 +11,7 @@
 #include "recorder/observer.h"
 #include "recorder/session.h"
 #include "recorder/sources/source.h"
+#include "recorder/step_misses.h"
 
 namespace calot::recorder {
 
@@ -58,6 +59,7 @@ struct RunReport {
   std::uint64_t pauses = 0;      ///< of the source
   double paused = 0.0;           ///< s
   double wallSeconds = 0.0;
+  StepMisses misses;  ///< of this run's steps
   std::string fault;  ///< why the attempt had to end, in one line: the simulation ran away (miss::runaway); or empty
   // Live:
   bool realTime = false;            ///< the haptic thread ran before all ordinary threads

@@ -82,6 +82,13 @@ class Comparer final : public Observer {
   bool resolved_ = false;
 };
 
+class MissCount final : public Observer {
+ public:
+  void onStep(const StepRecord& record) override { misses.add(record.result.misses); }
+  void onEnd(Outcome /*outcome*/) override {}
+  StepMisses misses;
+};
+
 std::optional<Divergence> runOnce(Recording& recording, const Model& model, const ReplaySettings& settings,
                                   const std::vector<Observer*>& observers) {
   WorkerPool pool(settings.threads);
@@ -166,9 +173,11 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
     report.message = "the recorded digests have other components than this build's State: nothing to compare";
     return;
   }
-  const std::vector<Observer*> observers =
-      settings.observers ? settings.observers(header, *model) : std::vector<Observer*>{};
+  std::vector<Observer*> observers = settings.observers ? settings.observers(header, *model) : std::vector<Observer*>{};
+  MissCount count;
+  observers.push_back(&count);
   report.divergence = runOnce(recording, *model, settings, observers);
+  report.misses = count.misses;
   if (report.divergence) {
     ReplaySettings again = settings;
     again.progress = nullptr;
@@ -244,7 +253,8 @@ void Seeker::seek(std::uint64_t step) {
   // Going on from here is as good as a keyframe that lies behind.
   const bool goOn = session_ && done <= step + 1 && (!nearest || recording_.keyframeSteps()[*nearest] < done);
   if (!goOn) {
-    session_ = std::make_unique<Session>(*model_, recording_.header().seed, executor_);
+    // A session that has been there keeps what it worked out of the model, above all compliances.
+    if (!session_ || !nearest) session_ = std::make_unique<Session>(*model_, recording_.header().seed, executor_);
     if (nearest) {
       const Keyframe keyframe = recording_.keyframe(*nearest);
       if (!session_->restore(keyframe)) {

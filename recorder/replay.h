@@ -14,6 +14,7 @@
 #include "recorder/observer.h"
 #include "recorder/recording/reader.h"
 #include "recorder/session.h"
+#include "recorder/step_misses.h"
 
 namespace calot::recorder {
 
@@ -40,6 +41,7 @@ struct ReplayReport {
   double wallSeconds = 0.0;             ///< of the whole check
   std::uint32_t simulationVersion = 0;  ///< of the recording
   std::array<std::byte, 32> chainHead{};
+  StepMisses misses;  ///< of the steps that were computed again
   bool chainIntact = false;
   std::string chainFault;  ///< where the chain breaks, or empty
   std::optional<Divergence> divergence;

@@ -40,12 +40,13 @@ class Gate {
   const RunSettings& settings_;
 };
 
-/// Notices a step after which nothing that is simulated means anything.
-class RunawayWatch final : public Observer {
+/// Counts the steps that missed a tolerance, and notices one after which nothing that is simulated means anything.
+class StepWatch final : public Observer {
  public:
-  explicit RunawayWatch(const Model& model) : model_(model) {}
+  explicit StepWatch(const Model& model) : model_(model) {}
 
   void onStep(const StepRecord& record) override {
+    misses_.add(record.result.misses);
     if (!fault_.empty() || (record.result.misses & miss::runaway) == 0) return;
     for (const Event& event : record.result.events) {
       if (event.kind != EventKind::runaway) continue;
@@ -58,16 +59,18 @@ class RunawayWatch final : public Observer {
   }
   void onEnd(Outcome /*outcome*/) override {}
   [[nodiscard]] const std::string& fault() const { return fault_; }
+  [[nodiscard]] const StepMisses& misses() const { return misses_; }
 
  private:
   const Model& model_;
   std::string fault_;
+  StepMisses misses_;
 };
 
 float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, seconds(monotonicNow() - due))); }
 
 /// Ticks and steps on one thread.
-void runInline(Session& session, SampleSource& source, const RunSettings& settings, const RunawayWatch& watch,
+void runInline(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
                RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
   const Gate gate(session, settings);
@@ -125,7 +128,7 @@ bool sameForce(const HandTick& a, const HandTick& b) {
 }
 
 /// Ticks on the haptic thread, steps on this one.
-void runLive(Session& session, SampleSource& source, const RunSettings& settings, const RunawayWatch& watch,
+void runLive(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
              RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
   const Gate gate(session, settings);
@@ -183,7 +186,7 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
   SampleSource& asked = guarded ? *guarded : source;
   Observer* watcher = asked.watcher();
   if (watcher != nullptr) session.join(*watcher);
-  RunawayWatch watch(session.model());
+  StepWatch watch(session.model());
   session.join(watch);
   if (settings.live) {
     runLive(session, asked, settings, watch, report);
@@ -192,6 +195,7 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
   }
   session.leave(watch);
   report.fault = watch.fault();
+  report.misses = watch.misses();
   report.steps = session.steps();
   if (watcher != nullptr) session.leave(*watcher);
   session.end(report.outcome);

@@ -17,7 +17,6 @@ export CALOT_PROFILES="skilled unskilled"
 
 say "the whole operation, three times each: record and assess (each is re-simulated: every step and force, bit for bit)"
 "$root/scripts/cohort.sh" 3 "$demo"
-"$calot" replay "$demo/cholecystectomy-skilled-1.h5"
 
 say "study: the two profiles side by side (synthetic performers: no statement about people)"
 "$calot" study "$demo/cohort.db" --group-by performer --include-synthetic

@@ -38,6 +38,7 @@ CLIP_IS_SET = 21
 SOURCES = (("touch-liver", "skilled", 1, 8, "touch"), ("touch-liver", "unskilled", 2, 8, "touch"),
            ("cholecystectomy", "skilled", 1, 8, "touch"), ("clip-and-cut", "skilled", 2, 30, CLIP_IS_SET))
 STEPS, STEPS_BEFORE = 200, 20
+LARGE_SOLID = pathlib.Path("--large-solid")  # the program's own, for its solver is one that no scene's organs need
 
 
 @dataclasses.dataclass(frozen=True)
@@ -218,7 +219,7 @@ def make_states(calot, work):
         step = step_before(recording, moment)
         states.append(folder / f"{scene}-{performer}-{step}.flat")
         call(calot, "state", recording, "--step", step, "--flat", "-o", states[-1], "--force")
-    return states
+    return [*states, LARGE_SOLID]
 
 
 def run_cell(cell, states, work):

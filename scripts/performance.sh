@@ -13,7 +13,7 @@ fi
 filter=${1:-.}
 "$root/scripts/setup.sh" python3-matplotlib
 configure release
-build release calot-bench
+build release calot-bench calot-box-unbound
 folder=$root/build/performance
 mkdir -p "$folder"
 for run in 1 2; do

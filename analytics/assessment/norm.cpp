@@ -10,6 +10,7 @@
 #include <set>
 
 #include "analytics/checkpoints/registry.h"
+#include "analytics/report/coverage_warning.h"
 #include "analytics/statistics/contrasting_groups.h"
 #include "recorder/errors.h"
 
@@ -75,9 +76,19 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const std::string&
   return mark;
 }
 
+/// Whether a figure is in the norm: those of phases, which repeat the whole attempt's, where they are asked for.
+bool isAskedFor(const CheckpointDefinition& definition, const std::string& subject, const NormRequest& request) {
+  const std::vector<std::string>& named = request.checkpoints;
+  return !isOfPhases(definition) || request.who.includePhases ||
+         std::any_of(named.begin(), named.end(), [&](const std::string& wanted) {
+           return wanted == definition.name || wanted == figureName(definition.name, subject);
+         });
+}
+
 /// Which figures members have that judge, in the registry's order; their values, once a member.
 std::vector<std::pair<const CheckpointDefinition*, std::string>> collectValues(Norm& norm,
                                                                                const std::vector<AttemptValue>& values,
+                                                                               const NormRequest& request,
                                                                                const std::string& name) {
   std::vector<std::pair<const CheckpointDefinition*, std::string>> figures;
   std::map<std::string, NormMember*> member;
@@ -87,6 +98,7 @@ std::vector<std::pair<const CheckpointDefinition*, std::string>> collectValues(N
     const CheckpointDefinition* definition = findCheckpoint(item.value.name);
     if (whose == member.end() || definition == nullptr || definition->direction == Direction::none) continue;
     if (!item.value.value || !std::isfinite(*item.value.value) || definition->name == "critical-errors") continue;
+    if (!isAskedFor(*definition, item.value.subject, request)) continue;
     if (item.value.version != definition->version)
       throw Error(ExitCode::no,
                   fmt::format("{}: attempt {} has {} of version {}, this program computes {}; assess its "
@@ -169,7 +181,7 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
     if (group != study.groupOf.end()) norm.members.push_back({a.uuid, group->second == study.better, {}});
   }
   norm.membersMade = norm.members.size();
-  const auto figures = collectValues(norm, values, name);
+  const auto figures = collectValues(norm, values, request, name);
   for (std::size_t i = 0; i < figures.size(); ++i)
     norm.checkpoints.push_back(markOf(*figures[i].first, figures[i].second, norm, i));
   declareRule(norm, request, name);
@@ -184,6 +196,15 @@ std::size_t neededPasses(const Norm& norm) {
   if (norm.leastPassed > 0) return norm.leastPassed;
   return static_cast<std::size_t>(
       std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }));
+}
+
+std::string passMarkWarning(const Norm& norm) {
+  if (std::none_of(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.lower; })) return {};
+  const auto competent = static_cast<std::size_t>(
+      std::count_if(norm.members.begin(), norm.members.end(), [](const NormMember& m) { return m.competent; }));
+  const std::string text =
+      coverageWarning(CoveredInterval::cut, "pass mark", competent, norm.members.size() - competent);
+  return text.empty() ? text : "Warning: " + text + ".";
 }
 
 std::pair<PassRate, PassRate> passRates(const Norm& norm) {

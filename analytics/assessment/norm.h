@@ -16,8 +16,8 @@ namespace calot::analytics {
 
 struct NormRequest {
   std::string name, by;
-  /// Whose attempts, of which key, synthetic or not: as a study's. Of several attempts of a participant the first
-  /// counts where `who.attemptRule` says so; a mean is no attempt and has less spread than one.
+  /// Whose attempts, of which key, synthetic or not, with phases or not: as a study's. Of several attempts of a
+  /// participant the first counts where `who.attemptRule` says so; a mean is no attempt and has less spread than one.
   StudyOptions who;
   std::string judgedBy;  ///< form with the one item "competent", 0 or 1, by which raters judge; empty: by group
   std::vector<std::string> checkpoints;  ///< in the rule, "path-length" or "path-length left"; empty: all with a cut
@@ -46,6 +46,9 @@ struct PassRate {
 };
 /// First of the competent, then of the others. A member without a value of a figure has not passed it.
 std::pair<PassRate, PassRate> passRates(const Norm& norm);
+
+/// What a report says of the pass marks' intervals where their published coverage is low at the norm's size; or empty.
+std::string passMarkWarning(const Norm& norm);
 
 /// How many of the rule's figures must be passed: leastPassed, or all of them.
 std::size_t neededPasses(const Norm& norm);

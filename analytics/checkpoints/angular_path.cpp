@@ -50,4 +50,6 @@ CheckpointEntry angularPathEntry() {
   return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
 }
 
+CheckpointEntry phaseAngularPathEntry() { return phaseMotionEntry<definition, measure>(); }
+
 }  // namespace calot::analytics

@@ -3,6 +3,7 @@
 #include "analytics/checkpoints/entries.h"
 
 #include "analytics/checkpoints/gallbladder_bed.h"
+#include "analytics/checkpoints/phase_growth.h"
 
 namespace calot::analytics {
 namespace {
@@ -27,8 +28,7 @@ const CheckpointDefinition& definition() {
       .version = 1,
       .definition =
           "charred area of all organs' skins at rest / share of the bed's area that is not attached any more; bed as "
-          "in "
-          "connective-remaining",
+          "in connective-remaining",
       .paperReading = "",
   };
   return d;
@@ -42,8 +42,7 @@ class BurnPerBed final : public Checkpoint {
   void onStep(const recorder::StepRecord& record) override {
     if (!notApplicable_.empty()) return;
     bed_.take(record.result);
-    charred_ = 0.0;
-    for (const OrganResult& organ : record.result.organ) charred_ += organ.charredArea;
+    charred_ = charredArea(record.result);
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {

@@ -2,7 +2,9 @@
 // Current on a hook that touches nothing, debounced: a hook that hops over tissue is not held in the air.
 #include "analytics/checkpoints/entries.h"
 
-#include <array>
+#include <utility>
+
+#include "analytics/checkpoints/phases.h"
 
 namespace calot::analytics {
 namespace {
@@ -33,58 +35,121 @@ const CheckpointDefinition& definition() {
 /// Shorter stretches do not count (s).
 constexpr double leastStretch = 0.1;
 
+/// One hook's current in the air.
+class CurrentInTheAir {
+ public:
+  explicit CurrentInTheAir(const AttemptContext& context)
+      : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {}
+
+  void add(const HandResult& result) {
+    hook_ = hook_ || result.instrument == InstrumentKind::hook;
+    if (result.cautery == Cautery::withoutContact) {
+      ++stretch_;
+    } else {
+      endStretch();
+    }
+  }
+  void endStretch() {
+    counted_ += counts(stretch_);
+    stretch_ = 0;
+  }
+  [[nodiscard]] bool hook() const { return hook_; }  ///< one was mounted at any time
+  /// Of all stretches that are long enough, the present one among them.
+  [[nodiscard]] double seconds() const { return secondsOf(counted_ + counts(stretch_)); }
+
+ private:
+  [[nodiscard]] double secondsOf(std::uint64_t steps) const {
+    return static_cast<double>(steps * ticksPerStep_) * tickSeconds_;
+  }
+  /// As many steps, if they are enough. Half a tick of room: lengths are products of rounded numbers.
+  [[nodiscard]] std::uint64_t counts(std::uint64_t steps) const {
+    return secondsOf(steps) + 0.5 * tickSeconds_ >= leastStretch ? steps : 0;
+  }
+
+  double tickSeconds_;
+  std::uint64_t ticksPerStep_;
+  bool hook_ = false;
+  std::uint64_t counted_ = 0;  ///< steps of the stretches that are over
+  std::uint64_t stretch_ = 0;  ///< steps of the present one
+};
+
+using BothHands = std::vector<CurrentInTheAir>;
+
+CheckpointValue valueOf(const CheckpointDefinition& d, std::string subject, const CurrentInTheAir& hand,
+                        const AttemptEnd& end) {
+  if (!hand.hook())
+    return makeMissing(d, std::move(subject), end.origin, Availability::notApplicable, "no hook in this hand");
+  return makeValue(d, std::move(subject), end.origin, hand.seconds(), stretchNote(end));
+}
+
 class CauteryWithoutContact final : public Checkpoint {
  public:
   explicit CauteryWithoutContact(const AttemptContext& context)
-      : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep), tooOld_(whyTooOld(context, 3)) {}
+      : tooOld_(whyTooOld(context, 3)), hand_(handCount, CurrentInTheAir(context)) {}
 
   void onStep(const recorder::StepRecord& record) override {
-    for (std::size_t h = 0; h < hand_.size(); ++h) {
-      const HandResult& result = record.result.hand[h];
-      Hand& hand = hand_[h];
-      hand.hook = hand.hook || result.instrument == InstrumentKind::hook;
-      if (result.cautery == Cautery::withoutContact) {
-        ++hand.stretch;
-      } else {
-        hand.counted += counts(hand.stretch);
-        hand.stretch = 0;
-      }
-    }
+    for (std::size_t h = 0; h < hand_.size(); ++h) hand_[h].add(record.result.hand[h]);
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     std::vector<CheckpointValue> result;
     for (std::size_t h = 0; h < hand_.size(); ++h) {
-      const Hand& hand = hand_[h];
-      const std::string why = !tooOld_.empty() ? tooOld_ : hand.hook ? "" : "no hook in this hand";
-      if (!why.empty()) {
-        result.push_back(makeMissing(definition(), handNames[h], end.origin, Availability::notApplicable, why));
-        continue;
-      }
-      result.push_back(makeValue(definition(), handNames[h], end.origin, seconds(hand.counted + counts(hand.stretch)),
-                                 stretchNote(end)));
+      result.push_back(tooOld_.empty()
+                           ? valueOf(definition(), handNames[h], hand_[h], end)
+                           : makeMissing(definition(), handNames[h], end.origin, Availability::notApplicable, tooOld_));
     }
     return result;
   }
 
  private:
-  struct Hand {
-    bool hook = false;
-    std::uint64_t counted = 0;  ///< steps of the stretches that are over
-    std::uint64_t stretch = 0;  ///< steps of the present one
-  };
-  [[nodiscard]] double seconds(std::uint64_t steps) const {
-    return static_cast<double>(steps * ticksPerStep_) * tickSeconds_;
-  }
-  /// As many steps, if they are enough. Half a tick of room: lengths are products of rounded numbers.
-  [[nodiscard]] std::uint64_t counts(std::uint64_t steps) const {
-    return seconds(steps) + 0.5 * tickSeconds_ >= leastStretch ? steps : 0;
+  std::string tooOld_;
+  BothHands hand_;
+};
+
+const CheckpointDefinition& inPhases() {
+  static const CheckpointDefinition d = phaseDefinition(definition(), "steps");
+  return d;
+}
+
+/// A stretch that goes on into the next phase counts with each of its parts that is long enough.
+class PhaseCauteryWithoutContact final : public Checkpoint {
+ public:
+  explicit PhaseCauteryWithoutContact(const AttemptContext& context)
+      : notApplicable_(whyNoPhases(context)),
+        window_(windowPhases.size(), BothHands(handCount, CurrentInTheAir(context))) {}
+
+  void onStep(const recorder::StepRecord& record) override {
+    const Phase phase = record.result.procedure.phase;
+    if (phase != phase_) {
+      for (BothHands& hands : window_) {
+        for (CurrentInTheAir& hand : hands) hand.endStretch();
+      }
+    }
+    phase_ = phase;
+    const std::size_t window = windowOf(phase);
+    if (window == window_.size()) return;
+    for (std::size_t h = 0; h < window_[window].size(); ++h) window_[window][h].add(record.result.hand[h]);
   }
 
-  double tickSeconds_;
-  std::uint64_t ticksPerStep_;
-  std::string tooOld_;
-  std::array<Hand, handCount> hand_;
+  [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
+    if (!notApplicable_.empty())
+      return {makeMissing(inPhases(), "", end.origin, Availability::notApplicable, notApplicable_)};
+    std::vector<CheckpointValue> result;
+    for (std::size_t w = 0; w < window_.size(); ++w) {
+      for (std::size_t h = 0; h < window_[w].size(); ++h) {
+        std::string subject = handAndPhase(h, windowPhases[w]);
+        result.push_back((*end.phases)[w].seconds > 0.0 ? valueOf(inPhases(), std::move(subject), window_[w][h], end)
+                                                        : makeMissing(inPhases(), std::move(subject), end.origin,
+                                                                      Availability::notApplicable, noSuchPhase));
+      }
+    }
+    return result;
+  }
+
+ private:
+  std::string notApplicable_;
+  std::vector<BothHands> window_;  ///< as windowPhases
+  Phase phase_ = Phase::none;
 };
 
 }  // namespace
@@ -92,6 +157,12 @@ class CauteryWithoutContact final : public Checkpoint {
 CheckpointEntry cauteryWithoutContactEntry() {
   return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<CauteryWithoutContact>(context);
+          }};
+}
+
+CheckpointEntry phaseCauteryWithoutContactEntry() {
+  return {inPhases(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+            return std::make_unique<PhaseCauteryWithoutContact>(context);
           }};
 }
 

@@ -96,6 +96,7 @@ std::string whyTooOld(const AttemptContext& context, std::uint32_t needed);
 struct Motion;
 struct PhaseMotion;
 class ForceTrack;
+class PhaseForceTrack;
 
 /// What is known after the last step (or, for provisional values, after the newest one).
 struct AttemptEnd {
@@ -106,7 +107,8 @@ struct AttemptEnd {
   std::array<const Motion*, handCount> motion{};  ///< both hands' motion, never null (checkpoints/motion.h)
   /// The same for each phase of a procedure, in its order (checkpoints/phases.h), never null.
   const std::vector<PhaseMotion>* phases = nullptr;
-  const ForceTrack* force = nullptr;  ///< haptic forces of both hands, never null (checkpoints/force.h)
+  const ForceTrack* force = nullptr;            ///< haptic forces of both hands, never null (checkpoints/force.h)
+  const PhaseForceTrack* phaseForce = nullptr;  ///< the same of each phase, never null
 };
 
 /// One running computation of one definition over one attempt. Deterministic contract: IEEE + - * / sqrt in

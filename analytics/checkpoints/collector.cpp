@@ -30,7 +30,8 @@ struct CheckpointCollector::Storage {
         ticksPerStep(header.ticksPerStep),
         track{MotionTrack(header.tickSeconds, sourceRate(header.provenance)),
               MotionTrack(header.tickSeconds, sourceRate(header.provenance))},
-        force(header.tickSeconds) {
+        force(header.tickSeconds),
+        phaseForce(header.tickSeconds) {
     const std::vector<std::string>& components = header.layout.components;
     const bool procedure = std::find(components.begin(), components.end(), "procedure") != components.end();
     const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
@@ -44,6 +45,7 @@ struct CheckpointCollector::Storage {
   std::array<MotionTrack, handCount> track;
   PhaseTrack phases;
   ForceTrack force;
+  PhaseForceTrack phaseForce;
   std::vector<std::unique_ptr<Checkpoint>> checkpoint;
   std::uint64_t steps = 0;
   double stretched = 0.0;
@@ -65,6 +67,7 @@ void CheckpointCollector::onStep(const recorder::StepRecord& record) {
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
   }
   storage_->force.add(record);
+  storage_->phaseForce.add(record);
   storage_->phases.add(record.result.procedure.phase, storage_->ticksPerStep);
   for (const Event& event : record.result.events) {
     if (event.kind == EventKind::clockStretched) storage_->stretched += event.value;
@@ -86,6 +89,7 @@ std::vector<CheckpointValue> CheckpointCollector::values() const {
   end.outcome = storage_->outcome;
   end.origin = storage_->origin;
   end.force = &storage_->force;
+  end.phaseForce = &storage_->phaseForce;
   for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
     motion[h] = storage_->track[h].motion(storage_->cutoff);
     end.motion[h] = &motion[h];

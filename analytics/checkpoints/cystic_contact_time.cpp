@@ -2,7 +2,10 @@
 // Time of collision with cystic duct and artery, in the one reading under which the paper's figure is possible.
 #include "analytics/checkpoints/entries.h"
 
-#include <fmt/format.h>
+#include <utility>
+
+#include "analytics/checkpoints/phases.h"
+#include "analytics/checkpoints/vessel_contact.h"
 
 namespace calot::analytics {
 namespace {
@@ -33,60 +36,69 @@ const CheckpointDefinition& definition() {
   return d;
 }
 
-/// Bits of HandResult::touching.
-constexpr std::size_t touchingBits = 32;
+bool isCystic(const SceneFacts::Vessel& vessel) { return vessel.cystic; }
+
+std::string whyNoCystic(const AttemptContext& context, const VesselContact& contact) {
+  return contact.anyVessel() ? whyTooOld(context, 3) : "the scene has no duct or artery that enters a gallbladder";
+}
+
+CheckpointValue valueOf(const CheckpointDefinition& d, std::string subject, const VesselContact& contact,
+                        const AttemptEnd& end) {
+  std::string note = contact.parts();
+  if (const std::string stretch = stretchNote(end); !stretch.empty()) note += "; " + stretch;
+  return makeValue(d, std::move(subject), end.origin, contact.sum(), std::move(note));
+}
 
 class CysticContactTime final : public Checkpoint {
  public:
   explicit CysticContactTime(const AttemptContext& context)
-      : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {
-    const std::vector<SceneFacts::Vessel>& vessels = context.scene.vessel;
-    for (std::size_t v = 0; v < vessels.size(); ++v) {
-      const std::size_t structure = context.scene.organ.size() + v;
-      if (!vessels[v].cystic || structure >= touchingBits) continue;
-      mask_ |= std::uint32_t{1} << structure;
-      names_.push_back(vessels[v].name);
-    }
-    steps_.resize(names_.size(), 0);
-    notApplicable_ =
-        names_.empty() ? "the scene has no duct or artery that enters a gallbladder" : whyTooOld(context, 3);
-  }
+      : contact_(context, isCystic), notApplicable_(whyNoCystic(context, contact_)) {}
 
-  void onStep(const recorder::StepRecord& record) override {
-    for (const HandResult& hand : record.result.hand) {
-      std::size_t name = 0;
-      for (std::size_t s = 0; s < touchingBits; ++s) {
-        if ((mask_ >> s & 1U) == 0) continue;
-        steps_[name++] += hand.touching >> s & 1U;
-      }
-    }
-  }
+  void onStep(const recorder::StepRecord& record) override { contact_.add(record.result); }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    if (!notApplicable_.empty()) {
+    if (!notApplicable_.empty())
       return {makeMissing(definition(), "", end.origin, Availability::notApplicable, notApplicable_)};
-    }
-    std::uint64_t steps = 0;
-    std::string note;
-    for (std::size_t v = 0; v < steps_.size(); ++v) {
-      steps += steps_[v];
-      note += fmt::format("{}{} {:.2f} s", v == 0 ? "" : ", ", names_[v], seconds(steps_[v]));
-    }
-    const std::string stretch = stretchNote(end);
-    if (!stretch.empty()) note += "; " + stretch;
-    return {makeValue(definition(), "", end.origin, seconds(steps), std::move(note))};
+    return {valueOf(definition(), "", contact_, end)};
   }
 
  private:
-  [[nodiscard]] double seconds(std::uint64_t steps) const {
-    return static_cast<double>(steps * ticksPerStep_) * tickSeconds_;
+  VesselContact contact_;
+  std::string notApplicable_;
+};
+
+const CheckpointDefinition& inPhases() {
+  static const CheckpointDefinition d = phaseDefinition(definition(), "steps");
+  return d;
+}
+
+class PhaseCysticContactTime final : public Checkpoint {
+ public:
+  explicit PhaseCysticContactTime(const AttemptContext& context)
+      : window_(windowPhases.size(), VesselContact(context, isCystic)), notApplicable_(whyNoPhases(context)) {
+    if (notApplicable_.empty()) notApplicable_ = whyNoCystic(context, window_.front());
   }
 
-  double tickSeconds_;
-  std::uint64_t ticksPerStep_;
-  std::uint32_t mask_ = 0;            ///< of `touching`
-  std::vector<std::string> names_;    ///< of the vessels in it, by rising bits
-  std::vector<std::uint64_t> steps_;  ///< as many; over both hands
+  void onStep(const recorder::StepRecord& record) override {
+    const std::size_t window = windowOf(record.result.procedure.phase);
+    if (window < window_.size()) window_[window].add(record.result);
+  }
+
+  [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
+    if (!notApplicable_.empty())
+      return {makeMissing(inPhases(), "", end.origin, Availability::notApplicable, notApplicable_)};
+    std::vector<CheckpointValue> result;
+    for (std::size_t w = 0; w < window_.size(); ++w) {
+      const char* subject = nameOf(windowPhases[w]);
+      result.push_back((*end.phases)[w].seconds > 0.0
+                           ? valueOf(inPhases(), subject, window_[w], end)
+                           : makeMissing(inPhases(), subject, end.origin, Availability::notApplicable, noSuchPhase));
+    }
+    return result;
+  }
+
+ private:
+  std::vector<VesselContact> window_;  ///< as windowPhases
   std::string notApplicable_;
 };
 
@@ -95,6 +107,12 @@ class CysticContactTime final : public Checkpoint {
 CheckpointEntry cysticContactTimeEntry() {
   return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<CysticContactTime>(context);
+          }};
+}
+
+CheckpointEntry phaseCysticContactTimeEntry() {
+  return {inPhases(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+            return std::make_unique<PhaseCysticContactTime>(context);
           }};
 }
 

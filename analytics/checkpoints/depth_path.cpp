@@ -52,4 +52,6 @@ CheckpointEntry depthPathEntry() {
   return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
 }
 
+CheckpointEntry phaseDepthPathEntry() { return phaseMotionEntry<definition, measure>(); }
+
 }  // namespace calot::analytics

@@ -34,4 +34,18 @@ void ForceTrack::add(const recorder::StepRecord& record) {
   }
 }
 
+void ForceTrack::interrupt() {
+  for (Newest& newest : newest_) newest.ticks = 0;
+}
+
+void PhaseForceTrack::add(const recorder::StepRecord& record) {
+  const Phase phase = record.result.procedure.phase;
+  const std::size_t window = windowOf(phase);
+  if (window < track_.size()) {
+    if (phase != phase_) track_[window].interrupt();
+    track_[window].add(record);
+  }
+  phase_ = phase;
+}
+
 }  // namespace calot::analytics

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "analytics/checkpoints/phases.h"
 #include "recorder/observer.h"
 #include "sim/scene/samples.h"
 
@@ -20,6 +21,9 @@ class ForceTrack {
   explicit ForceTrack(double tickSeconds) : tickSeconds_(tickSeconds) {}
 
   void add(const recorder::StepRecord& record);
+  /// What comes next does not follow on what came before: no rate of change is taken across.
+  void interrupt();
+  /// There was an instrument at any tick.
   [[nodiscard]] bool mounted(int hand) const { return mounted_[static_cast<std::size_t>(hand)]; }
   /// Those of at least leastForce (N), in the order of ticks.
   [[nodiscard]] const std::vector<double>& felt(int hand) const { return felt_[static_cast<std::size_t>(hand)]; }
@@ -43,6 +47,21 @@ class ForceTrack {
   std::array<bool, handCount> mounted_{};
   std::array<double, handCount> largest_{};
   std::array<std::vector<double>, handCount> felt_, rates_;
+};
+
+/// The same of each phase of a procedure by itself.
+class PhaseForceTrack {
+ public:
+  /// @param tickSeconds length of a tick (s).
+  explicit PhaseForceTrack(double tickSeconds) : track_(windowPhases.size(), ForceTrack(tickSeconds)) {}
+
+  void add(const recorder::StepRecord& record);
+  /// @param window which of windowPhases.
+  [[nodiscard]] const ForceTrack& of(std::size_t window) const { return track_[window]; }
+
+ private:
+  std::vector<ForceTrack> track_;
+  Phase phase_ = Phase::none;
 };
 
 }  // namespace calot::analytics

@@ -72,27 +72,66 @@ const CheckpointDefinition& rateDefinition() {
   return d;
 }
 
-/// One member: `figure` gives its value from the track, @pre for members other than the maximum: something was felt.
-template <const CheckpointDefinition& (*definition)(), double (*figure)(const ForceTrack&, int), bool needsFelt>
-class Force final : public Checkpoint {
+struct ForceMeasure {
+  double (*figure)(const ForceTrack& track, int hand);
+  bool needsFelt;  ///< without a force of leastForce there is none
+};
+
+CheckpointValue forceValue(const CheckpointDefinition& definition, std::string subject, const ForceTrack& track,
+                           int hand, const ForceMeasure& measure, Origin origin) {
+  const auto missing = [&](const char* why) {
+    return makeMissing(definition, std::move(subject), origin, Availability::notApplicable, why);
+  };
+  if (!track.mounted(hand)) return missing("no instrument in this hand");
+  if (measure.needsFelt && track.felt(hand).empty()) return missing("no force of 0.01 N or more");
+  return makeValue(definition, std::move(subject), origin, measure.figure(track, hand));
+}
+
+class OfHands final : public Checkpoint {
  public:
+  OfHands(const CheckpointDefinition& definition, const ForceMeasure& measure)
+      : definition_(definition), measure_(measure) {}
+
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    const ForceTrack& track = *end.force;
     std::vector<CheckpointValue> result;
+    result.reserve(handCount);
     for (int h = 0; h < handCount; ++h) {
-      const char* hand = handNames[static_cast<std::size_t>(h)];
-      if (!track.mounted(h)) {
+      result.push_back(
+          forceValue(definition_, handNames[static_cast<std::size_t>(h)], *end.force, h, measure_, end.origin));
+    }
+    return result;
+  }
+
+ private:
+  const CheckpointDefinition& definition_;
+  const ForceMeasure& measure_;
+};
+
+class OfHandsInPhases final : public Checkpoint {
+ public:
+  OfHandsInPhases(const CheckpointDefinition& definition, const ForceMeasure& measure, const AttemptContext& context)
+      : definition_(definition), measure_(measure), notApplicable_(whyNoPhases(context)) {}
+
+  [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
+    if (!notApplicable_.empty())
+      return {makeMissing(definition_, "", end.origin, Availability::notApplicable, notApplicable_)};
+    std::vector<CheckpointValue> result;
+    for (std::size_t w = 0; w < windowPhases.size(); ++w) {
+      for (int h = 0; h < handCount; ++h) {
+        std::string subject = handAndPhase(static_cast<std::size_t>(h), windowPhases[w]);
         result.push_back(
-            makeMissing(definition(), hand, end.origin, Availability::notApplicable, "no instrument in this hand"));
-      } else if (needsFelt && track.felt(h).empty()) {
-        result.push_back(
-            makeMissing(definition(), hand, end.origin, Availability::notApplicable, "no force of 0.01 N or more"));
-      } else {
-        result.push_back(makeValue(definition(), hand, end.origin, figure(track, h)));
+            (*end.phases)[w].seconds > 0.0
+                ? forceValue(definition_, std::move(subject), end.phaseForce->of(w), h, measure_, end.origin)
+                : makeMissing(definition_, std::move(subject), end.origin, Availability::notApplicable, noSuchPhase));
       }
     }
     return result;
   }
+
+ private:
+  const CheckpointDefinition& definition_;
+  const ForceMeasure& measure_;
+  std::string notApplicable_;
 };
 
 double maximumOf(const ForceTrack& track, int hand) { return track.largest(hand); }
@@ -117,36 +156,34 @@ double meanOf(const ForceTrack& track, int hand) {
   return sum / static_cast<double>(track.felt(hand).size());
 }
 
+constexpr ForceMeasure maximumMeasure{maximumOf, false}, percentileMeasure{percentileOf, true},
+    meanMeasure{meanOf, true}, impulseMeasure{impulseOf, false}, rateMeasure{rateOf, true};
+
+template <const CheckpointDefinition& (*definition)(), const ForceMeasure& measure>
+CheckpointEntry entryOf() {
+  return {definition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
+            return std::make_unique<OfHands>(definition(), measure);
+          }};
+}
+
+template <const CheckpointDefinition& (*definition)(), const ForceMeasure& measure>
+CheckpointEntry phaseEntryOf() {
+  static const CheckpointDefinition d = phaseDefinition(definition(), "ticks");
+  return {d, [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+            return std::make_unique<OfHandsInPhases>(d, measure, context);
+          }};
+}
+
 }  // namespace
 
-CheckpointEntry forceMaximumEntry() {
-  return {maximumDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
-            return std::make_unique<Force<maximumDefinition, maximumOf, false>>();
-          }};
-}
+CheckpointEntry forceMaximumEntry() { return entryOf<maximumDefinition, maximumMeasure>(); }
+CheckpointEntry forcePercentileEntry() { return entryOf<percentileDefinition, percentileMeasure>(); }
+CheckpointEntry forceMeanEntry() { return entryOf<meanDefinition, meanMeasure>(); }
+CheckpointEntry forceImpulseEntry() { return entryOf<impulseDefinition, impulseMeasure>(); }
+CheckpointEntry forceRateEntry() { return entryOf<rateDefinition, rateMeasure>(); }
 
-CheckpointEntry forcePercentileEntry() {
-  return {percentileDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
-            return std::make_unique<Force<percentileDefinition, percentileOf, true>>();
-          }};
-}
-
-CheckpointEntry forceMeanEntry() {
-  return {meanDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
-            return std::make_unique<Force<meanDefinition, meanOf, true>>();
-          }};
-}
-
-CheckpointEntry forceImpulseEntry() {
-  return {impulseDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
-            return std::make_unique<Force<impulseDefinition, impulseOf, false>>();
-          }};
-}
-
-CheckpointEntry forceRateEntry() {
-  return {rateDefinition(), [](const AttemptContext&) -> std::unique_ptr<Checkpoint> {
-            return std::make_unique<Force<rateDefinition, rateOf, true>>();
-          }};
-}
+CheckpointEntry phaseForceMaximumEntry() { return phaseEntryOf<maximumDefinition, maximumMeasure>(); }
+CheckpointEntry phaseForcePercentileEntry() { return phaseEntryOf<percentileDefinition, percentileMeasure>(); }
+CheckpointEntry phaseForceImpulseEntry() { return phaseEntryOf<impulseDefinition, impulseMeasure>(); }
 
 }  // namespace calot::analytics

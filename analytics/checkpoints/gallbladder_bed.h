@@ -19,6 +19,8 @@ class GallbladderBed {
   [[nodiscard]] bool any() const { return any_; }  ///< a step was taken
   [[nodiscard]] double attached() const { return attached_; }
   [[nodiscard]] double torn() const { return torn_; }
+  [[nodiscard]] double area() const { return area_; }            ///< of all the beds at rest (m^2)
+  [[nodiscard]] double freedArea() const { return freedArea_; }  ///< that is not attached any more (m^2)
 
  private:
   std::vector<std::size_t> tissue_;  ///< of StepResult::connective
@@ -26,6 +28,9 @@ class GallbladderBed {
   bool any_ = false;
   double attached_ = 1.0;
   double torn_ = 0.0;
+  std::vector<double> areas_;  ///< as tissue_
+  double area_ = 0.0;
+  double freedArea_ = 0.0;
 };
 
 }  // namespace calot::analytics

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "analytics/checkpoints/phases.h"
-
 namespace calot::analytics {
 namespace {
 
@@ -41,10 +39,9 @@ class PerHandAndPhase final : public Checkpoint {
     for (const PhaseMotion& phase : *end.phases) {
       for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
         const Motion& motion = phase.motion[h];
-        const Measured measured = phase.seconds > 0.0 ? measureHand(motion, measure_)
-                                                      : Measured::notApplicable("the attempt has no such phase");
-        result.push_back(motionValue(definition_, fmt::format("{} {}", handNames[h], nameOf(phase.phase)), measured,
-                                     motion.cutoff, end.origin));
+        const Measured measured =
+            phase.seconds > 0.0 ? measureHand(motion, measure_) : Measured::notApplicable(noSuchPhase);
+        result.push_back(motionValue(definition_, handAndPhase(h, phase.phase), measured, motion.cutoff, end.origin));
       }
     }
     return result;
@@ -110,13 +107,6 @@ double largestSpeed(const Motion& motion) {
 
 std::unique_ptr<Checkpoint> perHand(const CheckpointDefinition& definition, MotionMeasure measure) {
   return std::make_unique<PerHand>(definition, measure);
-}
-
-CheckpointDefinition inPhases(CheckpointDefinition definition) {
-  definition.window = "each phase of the procedure, as often as it recurs, while an instrument is mounted and measured";
-  definition.aggregation = Aggregation::handAndPhase;
-  definition.origins = {Origin::resimulated, Origin::observables};
-  return definition;
 }
 
 std::unique_ptr<Checkpoint> perHandAndPhase(const CheckpointDefinition& definition, MotionMeasure measure,

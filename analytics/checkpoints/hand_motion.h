@@ -10,6 +10,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/phases.h"
 
 namespace calot::analytics {
 
@@ -56,11 +57,15 @@ double largestSpeed(const Motion& motion);
 /// A checkpoint that gives `measure` of each hand. @pre the definition outlives it.
 std::unique_ptr<Checkpoint> perHand(const CheckpointDefinition& definition, MotionMeasure measure);
 
-/// The declaration of a hand's figure in each phase. Where a phase begins and ends is the simulation's to say, so its
-/// origin is that of the steps.
-CheckpointDefinition inPhases(CheckpointDefinition definition);
-/// A checkpoint that gives `measure` of each hand in each phase: "left clipping".
+/// A checkpoint that gives `measure` of each hand in each phase: "left clipping". @pre the definition outlives it.
 std::unique_ptr<Checkpoint> perHandAndPhase(const CheckpointDefinition& definition, MotionMeasure measure,
                                             const AttemptContext& context);
+
+/// The entry of the figure of each hand in each phase, declared as phaseDefinition() of the whole attempt's says.
+template <const CheckpointDefinition& (*whole)(), MotionMeasure measure>
+CheckpointEntry phaseMotionEntry() {
+  static const CheckpointDefinition d = phaseDefinition(whole(), "points");
+  return {d, [](const AttemptContext& context) { return perHandAndPhase(d, measure, context); }};
+}
 
 }  // namespace calot::analytics

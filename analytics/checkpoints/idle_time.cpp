@@ -17,13 +17,6 @@ const CheckpointDefinition& definition() {
   return d;
 }
 
-const CheckpointDefinition& phaseDefinition() {
-  static const CheckpointDefinition d =
-      inPhases(motionDefinition("phase-idle-time", "Time at rest in the phase", "s", Direction::lower,
-                                "as idle-time, of the points in the phase"));
-  return d;
-}
-
 const CheckpointDefinition& bothDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition both =
@@ -69,10 +62,7 @@ CheckpointEntry idleTimeEntry() {
   return {definition(), [](const AttemptContext&) { return perHand(definition(), idle); }};
 }
 
-CheckpointEntry phaseIdleTimeEntry() {
-  return {phaseDefinition(),
-          [](const AttemptContext& context) { return perHandAndPhase(phaseDefinition(), idle, context); }};
-}
+CheckpointEntry phaseIdleTimeEntry() { return phaseMotionEntry<definition, idle>(); }
 
 CheckpointEntry idleTimeBothEntry() {
   return {bothDefinition(),

@@ -18,13 +18,6 @@ const CheckpointDefinition& countDefinition() {
   return d;
 }
 
-const CheckpointDefinition& phaseDefinition() {
-  static const CheckpointDefinition d = inPhases(motionDefinition(
-      "phase-movements", "Number of movements in the phase", "1", Direction::lower,
-      "as movements, of the points in the phase: one that goes on beyond it counts by its part inside"));
-  return d;
-}
-
 const CheckpointDefinition& straightnessDefinition() {
   static const CheckpointDefinition d =
       motionDefinition("movement-straightness", "Straightness of the movements", "1", Direction::higher,
@@ -60,10 +53,7 @@ CheckpointEntry movementsEntry() {
   return {countDefinition(), [](const AttemptContext&) { return perHand(countDefinition(), count); }};
 }
 
-CheckpointEntry phaseMovementsEntry() {
-  return {phaseDefinition(),
-          [](const AttemptContext& context) { return perHandAndPhase(phaseDefinition(), count, context); }};
-}
+CheckpointEntry phaseMovementsEntry() { return phaseMotionEntry<countDefinition, count>(); }
 
 CheckpointEntry movementStraightnessEntry() {
   return {straightnessDefinition(),

@@ -7,31 +7,18 @@
 namespace calot::analytics {
 namespace {
 
-CheckpointDefinition inMillimetres(CheckpointDefinition d) {
-  d.displayUnit = "mm";
-  d.displayFactor = 1000.0;
-  return d;
-}
-
 const CheckpointDefinition& definition() {
   static const CheckpointDefinition d = [] {
-    CheckpointDefinition whole = inMillimetres(
+    CheckpointDefinition whole =
         motionDefinition("path-length", "Path length of the instrument's tip", "m", Direction::lower,
-                         "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, within segments"));
+                         "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, within segments");
+    whole.displayUnit = "mm";
+    whole.displayFactor = 1000.0;
     whole.version = 2;
     whole.paperReading =
         "Total trajectory dist. (left), (right) (mm): path of the real tip in the world, not of the "
         "device's handle nor of the simulated tip";
     return whole;
-  }();
-  return d;
-}
-
-const CheckpointDefinition& phaseDefinition() {
-  static const CheckpointDefinition d = [] {
-    return inPhases(inMillimetres(
-        motionDefinition("phase-path-length", "Path length of the instrument's tip in the phase", "m", Direction::lower,
-                         "L as in path-length, over pairs of points that both lie in the phase")));
   }();
   return d;
 }
@@ -44,9 +31,6 @@ CheckpointEntry pathLengthEntry() {
   return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
 }
 
-CheckpointEntry phasePathLengthEntry() {
-  return {phaseDefinition(),
-          [](const AttemptContext& context) { return perHandAndPhase(phaseDefinition(), measure, context); }};
-}
+CheckpointEntry phasePathLengthEntry() { return phaseMotionEntry<definition, measure>(); }
 
 }  // namespace calot::analytics

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/checkpoints/phases.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <string_view>
 
 namespace calot::analytics {
 namespace {
@@ -42,9 +46,30 @@ const char* nameOf(Phase phase) {
   return "none";
 }
 
+std::size_t windowOf(Phase phase) {
+  return static_cast<std::size_t>(std::find(windowPhases.begin(), windowPhases.end(), phase) - windowPhases.begin());
+}
+
 std::string whyNoPhases(const AttemptContext& context) {
   return context.procedure ? whyTooOld(context, 3) : "the scene has no procedure";
 }
+
+CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces) {
+  constexpr std::string_view attempt = "whole attempt";
+  assert(whole.window.starts_with(attempt));
+  CheckpointDefinition d = whole;
+  d.name = "phase-" + whole.name;
+  d.title = whole.title + " in the phase";
+  d.window = "each phase of the procedure, as often as it recurs" + whole.window.substr(attempt.size());
+  d.aggregation = whole.aggregation == Aggregation::hand ? Aggregation::handAndPhase : Aggregation::phase;
+  d.origins = {Origin::resimulated, Origin::observables};
+  d.version = 1;
+  d.definition = fmt::format("as {}, of the {} in the phase", whole.name, pieces);
+  d.paperReading.clear();
+  return d;
+}
+
+std::string handAndPhase(std::size_t hand, Phase phase) { return fmt::format("{} {}", handNames[hand], nameOf(phase)); }
 
 void PhaseTrack::add(Phase phase, std::uint64_t ticks) {
   if (spans_.empty() || spans_.back().phase != phase) {

@@ -16,8 +16,19 @@ namespace calot::analytics {
 inline constexpr std::array<Phase, 4> windowPhases{Phase::identification, Phase::clipping, Phase::cutting,
                                                    Phase::dissection};
 const char* nameOf(Phase phase);  ///< "identification", ...
+/// Which of windowPhases it is; windowPhases.size(): none of them.
+std::size_t windowOf(Phase phase);
 /// Empty, or why an attempt has no phases.
 std::string whyNoPhases(const AttemptContext& context);
+/// The declaration of a figure of the whole attempt in each of its phases: "phase-NAME", of hands or the attempt as it
+/// was. Where a phase begins and ends is the simulation's to say, so its origin is that of the steps.
+/// @param pieces what the figure counts: "points", "ticks", "steps".
+/// @pre whole.window begins with "whole attempt"
+CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces);
+/// "left clipping"
+std::string handAndPhase(std::size_t hand, Phase phase);
+/// Why a phase of no steps has no figure.
+inline constexpr const char* noSuchPhase = "the attempt has no such phase";
 
 /// One phase of an attempt, as often as it recurred.
 struct PhaseMotion {

@@ -37,11 +37,25 @@ const std::vector<CheckpointEntry>& checkpointRegistry() {
       // Phases.
       phaseDurationEntry(),
       phasePathLengthEntry(),
+      phaseDepthPathEntry(),
+      phaseAngularPathEntry(),
+      phaseSpeedMeanEntry(),
       phaseMovementsEntry(),
       phaseIdleTimeEntry(),
+      phaseSparcEntry(),
+      phaseLogDimensionlessJerkEntry(),
+      phaseWorkingVolumeEntry(),
+      phaseForceMaximumEntry(),
+      phaseForcePercentileEntry(),
+      phaseForceImpulseEntry(),
+      phaseCysticContactTimeEntry(),
+      phaseCauteryWithoutContactEntry(),
+      phaseCharredAreaEntry(),
       // Contact, force.
       contactTimeUnionEntry(),
       contactTimeSumEntry(),
+      sparedContactUnionEntry(),
+      sparedContactSumEntry(),
       forceMaximumEntry(),
       forcePercentileEntry(),
       forceMeanEntry(),
@@ -53,8 +67,12 @@ const std::vector<CheckpointEntry>& checkpointRegistry() {
       connectiveTornEntry(),
       organPerforationsEntry(),
       burnPerBedEntry(),
+      burnPerFatEntry(),
+      burnPerDissectionEntry(),
       criticalViewEntry(),
       criticalErrorsEntry(),
+      // How exact the simulation was.
+      stepsMissedEntry(),
   };
   return registry;
 }
@@ -64,6 +82,21 @@ const CheckpointDefinition* findCheckpoint(std::string_view name) {
     if (entry.definition.name == name) return &entry.definition;
   }
   return nullptr;
+}
+
+bool isOfPhases(const CheckpointDefinition& definition) {
+  return definition.aggregation == Aggregation::phase || definition.aggregation == Aggregation::handAndPhase;
+}
+
+const std::vector<std::string>& phaseCheckpoints() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const CheckpointEntry& entry : checkpointRegistry()) {
+      if (isOfPhases(entry.definition)) list.push_back(entry.definition.name);
+    }
+    return list;
+  }();
+  return names;
 }
 
 }  // namespace calot::analytics

@@ -15,4 +15,9 @@ const std::vector<CheckpointEntry>& checkpointRegistry();
 /// The definition of a name, or null.
 const CheckpointDefinition* findCheckpoint(std::string_view name);
 
+/// Given for each phase of a procedure, not of the whole attempt.
+bool isOfPhases(const CheckpointDefinition& definition);
+/// Names of those, in the registry's order.
+const std::vector<std::string>& phaseCheckpoints();
+
 }  // namespace calot::analytics

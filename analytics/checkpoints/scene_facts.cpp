@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/connective/connective_bed.h"
+
 namespace calot::analytics {
 namespace {
 
@@ -19,6 +21,19 @@ double areaOf(const SurfaceDescription& surface) {
     area += 0.5 * std::sqrt(x * x + y * y + z * z);
   }
   return area;
+}
+
+TriangleMesh meshOf(const SurfaceDescription& surface) { return {surface.vertex, surface.triangle}; }
+
+/// Area of the bed of a tissue (m^2), as the simulation finds it; 0 where the scene lacks one of its organs.
+double bedAreaOf(const SceneDescription& scene, const ConnectiveDescription& tissue) {
+  const auto organ = [&](const std::string& name) {
+    return std::find_if(scene.organs.begin(), scene.organs.end(), [&](const auto& o) { return o.name == name; });
+  };
+  const auto first = organ(tissue.first), second = organ(tissue.second);
+  if (first == scene.organs.end() || second == scene.organs.end() || second->surface.triangle.empty()) return 0.0;
+  const SurfaceDistance distance(meshOf(second->surface));
+  return areaOf({first->surface.vertex, bedTriangles(meshOf(first->surface), distance, tissue.reach)});
 }
 
 }  // namespace
@@ -41,10 +56,13 @@ SceneFacts sceneFacts(const SceneDescription& scene) {
     facts.organ.push_back({organ.name, areaOf(organ.surface), organ.burnThrough > 0.0});
   }
   for (const VesselDescription& vessel : scene.vessels) {
-    facts.vessel.push_back({vessel.name, entersGallbladder(vessel.start) || entersGallbladder(vessel.end)});
+    const std::vector<std::string>& spare = scene.procedure.spare;
+    facts.vessel.push_back({vessel.name, entersGallbladder(vessel.start) || entersGallbladder(vessel.end),
+                            std::find(spare.begin(), spare.end(), vessel.name) != spare.end()});
   }
   for (const ConnectiveDescription& tissue : scene.connective) {
-    facts.connective.push_back({tissue.name, isGallbladder(tissue.first) || isGallbladder(tissue.second)});
+    const bool holds = isGallbladder(tissue.first) || isGallbladder(tissue.second);
+    facts.connective.push_back({tissue.name, holds, holds ? bedAreaOf(scene, tissue) : 0.0});
   }
   facts.fat = scene.fat.size();
   facts.triangle = std::any_of(scene.fat.begin(), scene.fat.end(),

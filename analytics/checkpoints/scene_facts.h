@@ -24,10 +24,12 @@ struct SceneFacts {
   struct Vessel {
     std::string name;
     bool cystic = false;
+    bool spared = false;  ///< the procedure tells to spare it
   };
   struct Connective {
     std::string name;
     bool holdsGallbladder = false;  ///< one of the two organs that it joins is a gallbladder
+    double area = 0.0;              ///< of its bed at rest (m^2), where it holds a gallbladder (connective_bed.h)
   };
   /// In the scene's order: the columns of StepResult.
   std::vector<Organ> organ;

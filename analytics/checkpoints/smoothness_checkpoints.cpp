@@ -113,9 +113,13 @@ CheckpointEntry sparcEntry() {
   return {sparcDefinition(), [](const AttemptContext&) { return perHand(sparcDefinition(), sparc); }};
 }
 
+CheckpointEntry phaseSparcEntry() { return phaseMotionEntry<sparcDefinition, sparc>(); }
+
 CheckpointEntry logDimensionlessJerkEntry() {
   return {jerkDefinition(), [](const AttemptContext&) { return perHand(jerkDefinition(), jerk); }};
 }
+
+CheckpointEntry phaseLogDimensionlessJerkEntry() { return phaseMotionEntry<jerkDefinition, jerk>(); }
 
 CheckpointEntry movementJerkEntry() {
   return {movementDefinition(), [](const AttemptContext&) { return perHand(movementDefinition(), jerkOfMovements); }};

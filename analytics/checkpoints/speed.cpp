@@ -54,6 +54,8 @@ CheckpointEntry speedMeanEntry() {
   return {meanDefinition(), [](const AttemptContext&) { return perHand(meanDefinition(), meanOf); }};
 }
 
+CheckpointEntry phaseSpeedMeanEntry() { return phaseMotionEntry<meanDefinition, meanOf>(); }
+
 CheckpointEntry speedPercentileEntry() {
   return {percentileDefinition(), [](const AttemptContext&) { return perHand(percentileDefinition(), percentileOf); }};
 }

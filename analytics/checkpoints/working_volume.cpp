@@ -30,6 +30,8 @@ const CheckpointDefinition& definition() {
 }
 
 Measured measure(const Motion& motion) {
+  // A piece of a phase may be a single point, which has no covariance.
+  if (motion.points() < 2) return Measured::notAvailable("fewer than two points of motion");
   const auto n = static_cast<double>(motion.points());
   Vec3 mean = Vec3::Zero();
   for (const MotionSegment& segment : motion.segments) {
@@ -61,5 +63,7 @@ Measured measure(const Motion& motion) {
 CheckpointEntry workingVolumeEntry() {
   return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
 }
+
+CheckpointEntry phaseWorkingVolumeEntry() { return phaseMotionEntry<definition, measure>(); }
 
 }  // namespace calot::analytics

@@ -233,8 +233,8 @@ std::vector<CheckpointValue> CohortDatabase::values(const std::string& attempt) 
   return guarded(path(), [&] { return readValues(*storage_->db, attemptId(*storage_->db, attempt)); });
 }
 
-std::vector<AttemptValue> CohortDatabase::allValues() const {
-  return guarded(path(), [&] { return readAllValues(*storage_->db); });
+std::vector<AttemptValue> CohortDatabase::allValues(const std::vector<std::string>& without) const {
+  return guarded(path(), [&] { return readAllValues(*storage_->db, without); });
 }
 
 std::vector<GroupCount> CohortDatabase::groups() const {

@@ -166,8 +166,8 @@ class CohortDatabase {
   [[nodiscard]] std::optional<AttemptRow> attempt(const std::string& uuid) const;
   /// An attempt's values in the order in which they were stored (the registry's).
   [[nodiscard]] std::vector<CheckpointValue> values(const std::string& attempt) const;
-  /// Values of all attempts, by attempt, then in stored order.
-  [[nodiscard]] std::vector<AttemptValue> allValues() const;
+  /// Values of all attempts, by attempt, then in stored order. @param without names of checkpoints to leave out.
+  [[nodiscard]] std::vector<AttemptValue> allValues(const std::vector<std::string>& without = {}) const;
   [[nodiscard]] std::vector<GroupCount> groups() const;  ///< by name
 
  private:

@@ -60,7 +60,7 @@ std::array<std::byte, 32> withdrawalDigest(const std::string& uuid);
 bool isWithdrawn(SQLite::Database& db, const std::string& uuid);
 
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
-std::vector<AttemptValue> readAllValues(SQLite::Database& db);
+std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<std::string>& without);
 /// @returns whether anything changed.
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
 

@@ -85,11 +85,14 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
   return true;
 }
 
-std::vector<AttemptValue> readAllValues(SQLite::Database& db) {
+std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<std::string>& without) {
+  std::string places;
+  for (std::size_t i = 0; i < without.size(); ++i) places += i == 0 ? "?" : ", ?";
   SQLite::Statement select(db,
                            fmt::format("SELECT a.uuid, {} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt "
-                                       "ORDER BY a.uuid, c.position",
-                                       valueColumns));
+                                       "WHERE c.name NOT IN ({}) ORDER BY a.uuid, c.position",
+                                       valueColumns, places));
+  for (std::size_t i = 0; i < without.size(); ++i) select.bind(static_cast<int>(i) + 1, without[i]);
   std::vector<AttemptValue> values;
   while (select.executeStep()) values.push_back({text(select.getColumn(0)), valueRow(select, 1)});
   return values;

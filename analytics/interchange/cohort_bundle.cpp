@@ -5,25 +5,22 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
 #include "analytics/cohort/withdraw.h"
+#include "analytics/interchange/bundle_manifest.h"
 #include "analytics/interchange/bundle_source.h"
 #include "analytics/interchange/codebook.h"
 #include "analytics/interchange/date_shift.h"
 #include "analytics/interchange/new_names.h"
 #include "analytics/report/csv_cells.h"
-#include "recorder/attempt.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_words.h"
 #include "recorder/words.h"
 
 namespace calot::analytics {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t fewest = 3;  ///< participants who must share a word of experience
 
@@ -37,12 +34,8 @@ std::string uintText(std::uint64_t n) { return fmt::format("{}", n); }
 
 class Writer {
  public:
-  Writer(const BundleSource& source, const BundleOptions& options, std::vector<const AttemptRow*> taken)
-      : source_(source),
-        options_(options),
-        originals_(originalsOf(source)),
-        vocabulary_(vocabularyOf(source)),
-        names_(originals_) {
+  Writer(const BundleSource& source, std::vector<const AttemptRow*> taken)
+      : source_(source), originals_(originalsOf(source)), vocabulary_(vocabularyOf(source)), names_(originals_) {
     std::map<std::string, std::int64_t> shift;
     for (const AttemptRow* a : taken) {
       const std::string& whose = a->participant.empty() ? a->uuid : a->participant;
@@ -58,7 +51,7 @@ class Writer {
     });
   }
 
-  void write(FolderOutput& output, Bundle& bundle) {
+  void write(FolderOutput& output, Bundle& bundle, const std::string& scope) {
     put(output, "participants.csv", participants(bundle));
     put(output, "experience.csv", experience());
     put(output, "attempts.csv", attempts());
@@ -72,7 +65,9 @@ class Writer {
     bundle.participants = people_.size();
     bundle.attempts = handed_.size();
     bundle.files = output.files();
-    put(output, "manifest.json", manifest(bundle));
+    bundle.synthetic =
+        std::any_of(handed_.begin(), handed_.end(), [](const Handed& h) { return h.attempt->synthetic; });
+    put(output, "manifest.json", bundleManifest(bundle, scope));
   }
 
  private:
@@ -219,43 +214,7 @@ class Writer {
     return text;
   }
 
-  std::string manifest(const Bundle& bundle) const {
-    Json leftOut = Json::array(), files = Json::array();
-    for (const FlowRow& row : bundle.leftOut) leftOut.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
-    for (const WrittenFile& f : bundle.files)
-      files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
-    const bool synthetic =
-        std::any_of(handed_.begin(), handed_.end(), [](const Handed& h) { return h.attempt->synthetic; });
-    return Json{{"format", "calot-bundle"},
-                {"formatVersion", 1},
-                {"made_by", recorder::softwareName()},
-                {"scope", options_.scope},
-                {"watermark", synthetic ? "SYNTHETIC" : ""},
-                {"participants", bundle.participants},
-                {"attempts", bundle.attempts},
-                {"values", bundle.values},
-                {"recruited", bundle.recruited},
-                {"left_out", leftOut},
-                {"smallest_group", bundle.smallest},
-                {"names",
-                 "pseudonyms, attempts and raters have random names that were drawn for this bundle and are "
-                 "kept nowhere; sites, calibrations and comparability keys are numbered"},
-                {"dates",
-                 "starts are moved by one random length of time a participant, 30 to 365 days earlier or "
-                 "later, kept nowhere; what lies between a participant's attempts is true"},
-                {"withheld",
-                 "stations, keys, seeds, chain heads, file names, notes, reasons of exclusion, audit, "
-                 "protocols, norms; words of experience that fewer than three participants share"},
-                {"recordings",
-                 "none: they hold pseudonym, start and station under a content chain that a rewritten "
-                 "copy would no longer have, and motion by which a person may be known again"},
-                {"files", files}}
-               .dump(2, ' ', false, Json::error_handler_t::replace) +
-           "\n";
-  }
-
   const BundleSource& source_;
-  const BundleOptions& options_;
   OriginalNames originals_;
   std::set<std::string> vocabulary_;
   NewNames names_;
@@ -291,7 +250,7 @@ Bundle writeBundle(const std::string& database, const std::string& folder, const
   if (taken.empty())
     throw Error(ExitCode::no,
                 fmt::format("{}: none of {} attempts can be handed out{}", database, bundle.recruited, list));
-  Writer(source, options, taken).write(output, bundle);
+  Writer(source, taken).write(output, bundle, options.scope);
   std::vector<std::string> uuids;
   uuids.reserve(taken.size());
   for (const AttemptRow* a : taken) uuids.push_back(a->uuid);

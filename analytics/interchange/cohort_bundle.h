@@ -23,6 +23,7 @@ struct Bundle {
   std::vector<FlowRow> leftOut;  ///< attempts, by reason, in the order in which they are asked
   std::uint64_t smallest = 0;    ///< participants in the smallest group that shares group, arm and site
   std::vector<WrittenFile> files;
+  bool synthetic = false;  ///< holds attempts of performers: watermarked
 };
 
 /// Writes participants, experience, attempts, values, ratings and questionnaires as CSV, the codebook and a manifest

@@ -78,8 +78,8 @@ ReportTable figuresTable(const Grade& g) {
 std::vector<std::string> notes(const Grade& g) {
   std::vector<std::string> lines{
       "pass mark: the cut of contrasting groups, at which one passes, with its bootstrap interval. open: the value "
-      "lies "
-      "within that interval. percentile: among the competent members; higher is better."};
+      "lies within that interval. percentile: among the competent members; higher is better."};
+  if (std::string warning = passMarkWarning(g.norm); !warning.empty()) lines.push_back(std::move(warning));
   for (const GradedFigure& f : g.figures) {
     if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
     if (f.value && f.passed && !f.rank)

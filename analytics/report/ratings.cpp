@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/report/ratings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 
@@ -12,7 +10,6 @@
 namespace calot::analytics {
 namespace {
 
-using Align = TextTable::Align;
 using Scores = std::map<std::string, std::vector<double>>;  ///< by attempt or participant
 
 constexpr std::size_t leastSubscale = 3;
@@ -118,73 +115,6 @@ void addConsistency(FormReport& report, const RatingForm& form, const std::vecto
   }
 }
 
-std::string number(const std::optional<double>& value) { return value ? significant(*value, 3) : "-"; }
-
-std::string withInterval(double value, const Answer<Interval>& interval) {
-  if (!interval) return fmt::format("{:.3f}", value);
-  return fmt::format("{:.3f} [{:.3f}, {:.3f}]", value, interval->lower, interval->upper);
-}
-
-std::string iccText(const Answer<IntraclassCorrelation>& icc) {
-  return icc ? withInterval(icc->value, icc->interval) : "- (" + icc.reason() + ")";
-}
-
-ReportTable answersTable(const FormReport& report) {
-  ReportTable table{fmt::format("{} ({} {})", report.title, report.name, report.version),
-                    {{"item", Align::left},
-                     {"group", Align::left},
-                     {"", Align::left},
-                     {"n", Align::right},
-                     {"blank", Align::right},
-                     {"median", Align::right},
-                     {"quartile 1", Align::right},
-                     {"quartile 3", Align::right},
-                     {"mean", Align::right},
-                     {"paper", Align::right},
-                     {"answers", Align::left}},
-                    {}};
-  for (const ItemReport& item : report.items) {
-    for (std::size_t g = 0; g < report.groups.size(); ++g) {
-      const ItemSummary& s = item.groups[g];
-      std::string counts;
-      for (const auto& [score, count] : s.counts)
-        counts += fmt::format("{}{}: {}", counts.empty() ? "" : ", ", score, count);
-      table.rows.push_back({g == 0 ? item.text : "", report.groups[g].empty() ? "(no group)" : report.groups[g],
-                            report.groups[g] == item.primaryGroup && !item.primaryGroup.empty() ? "primary" : "",
-                            fmt::format("{}", s.n), s.blank == 0 ? "" : fmt::format("{}", s.blank), number(s.median),
-                            number(s.lowerQuartile), number(s.upperQuartile), number(s.mean),
-                            item.published[g] ? fmt::format("{}", *item.published[g]) : "", counts});
-    }
-  }
-  return table;
-}
-
-ReportTable consistencyTable(const FormReport& report) {
-  ReportTable table{fmt::format("Internal consistency of {}", report.name),
-                    {{"subscale", Align::left}, {"n", Align::right}, {"Cronbach's alpha", Align::left}},
-                    {}};
-  for (const SectionConsistency& s : report.sections) {
-    table.rows.push_back({s.section, fmt::format("{}", s.n),
-                          s.alpha ? withInterval(s.alpha->value, s.alpha->interval) : "- (" + s.alpha.reason() + ")"});
-  }
-  return table;
-}
-
-ReportTable agreementTable(const FormReport& report) {
-  ReportTable table{fmt::format("Agreement between raters on {}", report.name),
-                    {{"figure", Align::left},
-                     {"attempts", Align::right},
-                     {"raters", Align::right},
-                     {"ICC(2,1), one rater", Align::left},
-                     {"ICC(2,k), their mean", Align::left}},
-                    {}};
-  for (const Agreement& a : report.agreement) {
-    table.rows.push_back(
-        {a.figure, fmt::format("{}", a.attempts), fmt::format("{}", a.raters), iccText(a.single), iccText(a.average)});
-  }
-  return table;
-}
-
 }  // namespace
 
 FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings,
@@ -244,15 +174,6 @@ std::vector<FormReport> reportForms(const AssessmentDatabase& database,
     reports.push_back(reportForm(form, ratings, groupOf, groups));
   }
   return reports;
-}
-
-std::vector<ReportTable> ratingTables(const FormReport& report) {
-  std::vector<ReportTable> tables;
-  if (report.filled == 0) return tables;
-  for (ReportTable table : {answersTable(report), consistencyTable(report), agreementTable(report)}) {
-    if (!table.rows.empty()) tables.push_back(std::move(table));
-  }
-  return tables;
 }
 
 }  // namespace calot::analytics

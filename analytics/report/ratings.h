@@ -70,6 +70,9 @@ std::vector<FormReport> reportForms(const AssessmentDatabase& database,
                                     const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups);
 
+/// What the figures are of, warnings of intervals whose coverage is low, and the items' source; none without a form.
+std::vector<std::string> ratingNotes(const FormReport& report);
+
 /// Answers, consistency and agreement of one form, without the tables that have no rows.
 std::vector<ReportTable> ratingTables(const FormReport& report);
 

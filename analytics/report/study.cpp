@@ -155,6 +155,22 @@ void addPublished(Study& study) {
   }
 }
 
+constexpr const char* phaseDuration = "phase-duration";
+
+/// Checkpoints of phases that nobody asked for. How long the phases lasted is told always.
+std::vector<std::string> unaskedPhases(const StudyOptions& options) {
+  std::vector<std::string> unasked;
+  if (options.includePhases) return unasked;
+  std::set<std::string> asked(options.family.begin(), options.family.end());
+  if (options.protocol) {
+    for (const DirectedHypothesis& h : options.protocol->protocol.hypotheses) asked.insert(h.checkpoint);
+  }
+  for (const std::string& name : phaseCheckpoints()) {
+    if (asked.count(name) == 0 && name != phaseDuration) unasked.push_back(name);
+  }
+  return unasked;
+}
+
 /// @throws Error 2 where there is no such cohort.
 std::set<std::string> participantsOf(const std::string& path, const std::string& cohort) {
   std::string list;
@@ -174,7 +190,7 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
   if (known.protocol) {
     for (const Participant& p : database.participants()) known.protocol->experience[p.pseudonym] = p.experience;
   }
-  return makeStudy(database.listAttempts(), database.allValues(), known, database.path());
+  return makeStudy(database.listAttempts(), database.allValues(unaskedPhases(known)), known, database.path());
 }
 
 Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
@@ -212,11 +228,13 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     describeProtocol(study, data, options);
   }
 
+  const std::vector<std::string> unasked = unaskedPhases(options);
+  const std::set<std::string> leftAside(unasked.begin(), unasked.end());
   std::map<ColumnKey, Column> columns;
   std::vector<ColumnKey> order;
   for (const AttemptValue& item : values) {
     const auto at = member.find(item.attempt);
-    if (at == member.end()) continue;
+    if (at == member.end() || leftAside.count(item.value.name) > 0) continue;
     const ColumnKey key{item.value.name, item.value.subject};
     if (columns.count(key) == 0) order.push_back(key);
     Column& column = columns[key];
@@ -265,6 +283,10 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
       for (std::size_t i = 0; i < row.values[g].size(); ++i) duration[g][row.participants[g][i]] = row.values[g][i];
     }
   }
+  const bool phases = std::any_of(study.rows.begin(), study.rows.end(),
+                                  [](const StudyRow& row) { return row.checkpoint == phaseDuration; });
+  if (phases && !unasked.empty())
+    study.remarks.emplace_back("Other checkpoints of single phases are left out; --phases takes them in.");
   for (StudyRow& row : study.rows) compareGroups(row, study, duration);
   finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   addPublished(study);

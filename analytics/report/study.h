@@ -58,6 +58,9 @@ struct StudyOptions : StudyChoices {
   bool includeSynthetic = false;
   bool includePractice = false;
   bool includeBranches = false;
+  /// Checkpoints that are given for each phase of the procedure. They repeat those of the whole attempt four times and
+  /// make the family large; without this only the phases' durations and what a protocol or the family names.
+  bool includePhases = false;
   std::string key;       ///< only attempts of this comparability key; empty: all, which must then have one
   bool mixKeys = false;  ///< compare across comparability keys and checkpoint versions, and say so
 };

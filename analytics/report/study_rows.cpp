@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analytics/report/coverage_warning.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/multiplicity.h"
-#include "analytics/statistics/published_coverage.h"
 #include "recorder/errors.h"
 
 namespace calot::analytics {
@@ -28,6 +28,17 @@ std::string joined(const std::vector<std::string>& parts) {
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
   return text;
+}
+
+/// Values that agree to eleven digits are one value: what is left is the rounding of their computation, of which ranks
+/// would make a difference.
+void dropRounding(std::array<std::vector<double>, 2>& values) {
+  std::vector<double> all = values[0];
+  all.insert(all.end(), values[1].begin(), values[1].end());
+  if (all.empty()) return;
+  const auto [least, greatest] = std::minmax_element(all.begin(), all.end());
+  if (*greatest - *least > 1e-11 * std::max(std::abs(*least), std::abs(*greatest))) return;
+  for (std::vector<double>& group : values) std::fill(group.begin(), group.end(), *least);
 }
 
 void summarise(GroupSummary& s, const std::vector<double>& values) {
@@ -89,18 +100,18 @@ std::array<std::vector<double>, 2> withWorst(const StudyRow& row, bool largerIsW
   return ranked;
 }
 
+void warn(StudyRow& row, CoveredInterval interval, const char* name, std::size_t nx, std::size_t ny) {
+  if (std::string text = coverageWarning(interval, name, nx, ny); !text.empty())
+    row.coverageWarnings.push_back(std::move(text));
+}
+
 void warnOfCoverage(StudyRow& row) {
-  const auto ask = [&](CoveredInterval interval, const char* name) {
-    CoverageDoubt doubt;
-    if (!doubtful(interval, row.group[0].n, row.group[1].n, doubt)) return;
-    row.coverageWarnings.push_back(
-        doubt.known ? fmt::format("{}: with {} a group an interval at 95 % covers {} % (population: {})", name,
-                                  doubt.size, doubt.percent, doubt.population)
-                    : fmt::format("{}: coverage is not known for fewer than {} in a group", name, doubt.size));
-  };
-  if (row.area) ask(CoveredInterval::areaScore, "A");
-  if (row.shiftInterval) ask(CoveredInterval::shift, "shift");
-  if (row.hedges && row.hedges->interval) ask(CoveredInterval::hedges, "g");
+  const std::size_t nx = row.group[0].n, ny = row.group[1].n;
+  if (row.area) warn(row, CoveredInterval::areaScore, "A", nx, ny);
+  if (row.shiftInterval) warn(row, CoveredInterval::shift, "shift", nx, ny);
+  if (row.hedges && row.hedges->interval) warn(row, CoveredInterval::hedges, "g", nx, ny);
+  if (row.adjusted && row.adjusted->analysis)
+    warn(row, CoveredInterval::baseline, "difference at one baseline", row.adjusted->n[0], row.adjusted->n[1]);
 }
 
 /// The adjusted p of every p that `get` finds in the family's rows, put back by `put`. @returns how many there are.
@@ -212,13 +223,14 @@ void fillRow(StudyRow& row, const StudySample& sample) {
       const auto single = onePerParticipant(repeated, AttemptRule::mean);
       for (const ParticipantValue& one : *single) row.values[g].push_back(one.value);
     }
-    summarise(row.group[g], row.values[g]);
     countMissing(row.group[g], row.participants[g], sample.missing[g]);
     row.worstRanked[g] = static_cast<std::uint64_t>(
         std::count_if(sample.unfinished[g].begin(), sample.unfinished[g].end(), [&](const std::string& person) {
           return !std::binary_search(row.participants[g].begin(), row.participants[g].end(), person);
         }));
   }
+  dropRounding(row.values);
+  for (std::size_t g = 0; g < 2; ++g) summarise(row.group[g], row.values[g]);
 }
 
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
@@ -239,7 +251,6 @@ void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<
   row.shiftInterval = hodgesLehmannInterval(x, y);
   row.hedges = hedgesG(x, y);
   row.withDuration = correlation(row, duration);
-  warnOfCoverage(row);
 }
 
 void finishRows(Study& study, const StudyChoices& choices, const Protocol* protocol) {
@@ -248,6 +259,7 @@ void finishRows(Study& study, const StudyChoices& choices, const Protocol* proto
   } else {
     adjustFamily(study, choices);
   }
+  for (StudyRow& row : study.rows) warnOfCoverage(row);
   std::vector<std::pair<std::string, std::size_t>> warnings;
   for (const StudyRow& row : study.rows) {
     for (const std::string& text : row.coverageWarnings) {

@@ -17,13 +17,6 @@ std::string brackets(double lower, double upper) {
 std::string pOrDash(const std::optional<double>& p) { return p ? pText(*p) : "-"; }
 std::string share(double a) { return fmt::format("{:.3f}", a); }
 
-bool empty(const StudyRow& row) { return row.group[0].n == 0 && row.group[1].n == 0; }
-
-template <class Test>
-bool any(const Study& study, Test test) {
-  return std::any_of(study.rows.begin(), study.rows.end(), test);
-}
-
 bool hasCorrelation(const StudyRow& row) { return static_cast<bool>(row.withDuration); }
 
 ReportTable hypothesesTable(const Study& study) {
@@ -65,7 +58,7 @@ ReportTable valuesTable(const Study& study) {
                      {"paper", Align::right}},
                     {}};
   for (const StudyRow& row : study.rows) {
-    if (empty(row)) continue;
+    if (hasNoValue(row)) continue;
     for (std::size_t g = 0; g < 2; ++g) {
       const GroupSummary& s = row.group[g];
       std::string paper;
@@ -95,7 +88,7 @@ ReportTable comparisonTable(const Study& study) {
                     {}};
   if (!study.protocol) table.columns.erase(table.columns.end() - 2);
   for (const StudyRow& row : study.rows) {
-    if (empty(row)) continue;
+    if (hasNoValue(row)) continue;
     std::string expected;
     if (row.hypothesis && row.area) expected = !row.asHypothesised ? "neither" : *row.asHypothesised ? "yes" : "no";
     table.rows.push_back({rowName(row), row.direction == Direction::none ? "" : nameOf(row.direction),
@@ -119,9 +112,9 @@ ReportTable furtherTable(const Study& study) {
                      {"p", Align::right},
                      {"n", Align::right}},
                     {}};
-  const bool known = any(study, hasCorrelation);
+  const bool known = std::any_of(study.rows.begin(), study.rows.end(), hasCorrelation);
   for (const StudyRow& row : study.rows) {
-    if (empty(row)) continue;
+    if (hasNoValue(row)) continue;
     const bool interval = row.hedges && row.hedges->interval, rho = hasCorrelation(row);
     table.rows.push_back({rowName(row), row.hedges ? significant(row.hedges->g, 3) : "-",
                           interval ? fmt::format("[{}, {}]", significant(row.hedges->interval->lower, 3),
@@ -152,7 +145,7 @@ ReportTable baselineTable(const Study& study) {
                      {"p, one slope", Align::right}},
                     {}};
   for (const StudyRow& row : study.rows) {
-    if (!row.adjusted || empty(row)) continue;
+    if (!row.adjusted || hasNoValue(row)) continue;
     const auto& analysis = row.adjusted->analysis;
     const std::string n = fmt::format("{} + {}", row.adjusted->n[0], row.adjusted->n[1]);
     if (!analysis) {
@@ -165,76 +158,6 @@ ReportTable baselineTable(const Study& study) {
                           analysis->sameSlope ? pText(*analysis->sameSlope) : "-"});
   }
   return table;
-}
-
-void explainColumns(const Study& study, std::vector<std::string>& notes) {
-  const std::string &a = study.groups[0], &b = study.groups[1];
-  notes.push_back(
-      fmt::format("none: participants without a value. shift: Hodges-Lehmann, {} - {}, with a distribution-free "
-                  "interval. p: Mann-Whitney, two-sided, exact with ties "
-                  "(~: normal approximation). {}",
-                  a, b, study.family));
-  if (study.better.empty()) {
-    notes.push_back(
-        fmt::format("A: P({} larger) + P(equal) / 2, the area under the ROC curve, score interval; no hypothesis: "
-                    "nobody said which "
-                    "group is expected to do better (--better GROUP).",
-                    a));
-  } else {
-    notes.push_back(fmt::format(
-        "A: probability that one of {} is better than one of the other group, ties half, by {}the direction that the "
-        "checkpoint declares (without one: that one of {} is larger); the area under the ROC curve, score interval. "
-        "expected: whether A is above one half.",
-        study.better, study.protocol ? "the protocol's hypothesis or else " : "", a));
-  }
-  const bool correlated = any(study, hasCorrelation);
-  notes.push_back(
-      fmt::format("g: Hedges, {} - {}, interval by non-central t, which assumes normal groups.{}", a, b,
-                  correlated ? " rho: Spearman's correlation with the attempt's duration, over both groups." : ""));
-  if (study.source == "cohort" && !correlated)
-    notes.push_back("No correlation with the attempt's duration: durations are missing, too few, or all equal.");
-  if (any(study, [](const StudyRow& r) { return r.adjusted.has_value(); })) {
-    notes.push_back(fmt::format(
-        "difference: {} - {} at one baseline, analysis of covariance with HC3 errors, Student's t; n: those "
-        "with both. p, one slope: small where the difference depends on the baseline.",
-        a, b));
-  }
-}
-
-void explainMissing(const Study& study, std::vector<std::string>& notes) {
-  for (const StudyRow& row : study.rows) {
-    const std::string name = rowName(row);
-    if (empty(row)) {
-      std::string why = row.group[0].missingReason;
-      if (row.group[1].missingReason != why) why += (why.empty() ? "" : "; ") + row.group[1].missingReason;
-      notes.push_back(fmt::format("{}: no value in either group ({})", name, why));
-      continue;
-    }
-    if (!row.test) notes.push_back(fmt::format("{}: no test, {}", name, row.test.reason()));
-    for (std::size_t g = 0; g < 2; ++g) {
-      const GroupSummary& s = row.group[g];
-      if (s.missing > 0) {
-        notes.push_back(fmt::format("{}: {} of {} {} without a value ({})", name, s.missing, s.missing + s.n,
-                                    study.groups[g], s.missingReason));
-      }
-      if (row.worstRanked[g] > 0) {
-        notes.push_back(
-            fmt::format("{}: {} of these {} did not complete the attempt and rank behind all others in p "
-                        "and A; shift and g are of the values alone",
-                        name, row.worstRanked[g], study.groups[g]));
-      }
-      if (s.partial > 0) {
-        notes.push_back(fmt::format("{}: the mean of {} of {} {} lacks some of their {}", name, s.partial, s.n,
-                                    study.groups[g], study.counted));
-      }
-      if (row.adjusted && row.adjusted->withoutBaseline[g] > 0) {
-        notes.push_back(fmt::format("{}: {} of {} {} have no baseline", name, row.adjusted->withoutBaseline[g], s.n,
-                                    study.groups[g]));
-      }
-    }
-    if (row.adjusted && !row.adjusted->analysis)
-      notes.push_back(fmt::format("{}: no analysis of covariance, {}", name, row.adjusted->analysis.reason()));
-  }
 }
 
 }  // namespace
@@ -259,6 +182,8 @@ ReportTable flowTable(const Study& study) {
   return table;
 }
 
+bool hasNoValue(const StudyRow& row) { return row.group[0].n == 0 && row.group[1].n == 0; }
+
 std::vector<ReportTable> studyTables(const Study& study) {
   std::vector<ReportTable> tables;
   for (ReportTable table : {hypothesesTable(study), valuesTable(study), comparisonTable(study), furtherTable(study),
@@ -269,33 +194,6 @@ std::vector<ReportTable> studyTables(const Study& study) {
     for (ReportTable& table : ratingTables(report)) tables.push_back(std::move(table));
   }
   return tables;
-}
-
-std::vector<std::string> studyNotes(const Study& study) {
-  std::vector<std::string> notes;
-  explainColumns(study, notes);
-  if (any(study, [](const StudyRow& r) { return r.publishedExpert.has_value(); })) {
-    notes.push_back(
-        fmt::format("paper: published means of ten experts (E) and ten novices (N), for reference only ({}).",
-                    study.publishedSource));
-  }
-  notes.insert(notes.end(), study.remarks.begin(), study.remarks.end());
-  if (study.protocol) {
-    for (const std::string& deviation : study.protocol->deviations)
-      notes.push_back("Deviation from the protocol: " + deviation);
-  }
-  explainMissing(study, notes);
-  for (const FormReport& report : study.ratings) {
-    if (report.filled == 0) continue;
-    notes.push_back(fmt::format("{}: {} forms, {} of people or attempts that are not analysed left out. {}Items: {}.",
-                                report.name, report.filled, report.leftOut,
-                                report.ofAttempts ? fmt::format("Of an attempt the mean of its raters; agreement over "
-                                                                "the attempts that every rater rated ({} were not). ",
-                                                                report.incomplete)
-                                                  : "primary: the group whose judgement counts first. ",
-                                report.source));
-  }
-  return notes;
 }
 
 }  // namespace calot::analytics

@@ -12,6 +12,7 @@ namespace calot::analytics {
 
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"
 std::string rowName(const StudyRow& row);    ///< checkpoint and subject
+bool hasNoValue(const StudyRow& row);        ///< nobody of either group has one
 /// Under the title: the protocol, when it was registered, why the study is exploratory all the same; or empty.
 std::vector<std::string> protocolLines(const Study& study);
 /// How the figures came about, a paragraph to go by for a paper: only what was done.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <sstream>
 
 namespace calot::analytics {
 namespace {
@@ -17,6 +18,28 @@ std::size_t widthOf(const std::string& text) {
 }
 
 constexpr std::size_t narrowest = 10;
+
+/// The text over as many lines as it takes, broken at blanks, those below indented; a word that is too long by itself
+/// is cut.
+std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
+  if (widthOf(text) <= width) return {text};
+  std::vector<std::string> lines;
+  std::string line(std::min(text.find_first_not_of(' '), text.size()), ' ');  // what is indented stays so
+  bool empty = true;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = empty ? line + word : line + " " + word;
+    if (empty || widthOf(longer) <= width) {
+      line = cutTo(longer, width);
+    } else {
+      lines.push_back(line);
+      line = cutTo("  " + word, width);
+    }
+    empty = false;
+  }
+  lines.push_back(line);
+  return lines;
+}
 
 }  // namespace
 
@@ -67,7 +90,34 @@ void TextTable::print(std::ostream& out, std::size_t most) const {
   };
   line([&](std::size_t c) { return columns_[c].first; }, ' ');
   line([](std::size_t) { return std::string(); }, '-');
-  for (const auto& row : rows_) line([&](std::size_t c) { return row[c]; }, ' ');
+  // What is left of cells that are too wide goes on below: in the next row where that belongs to this one (its first
+  // cell is empty) and has an empty cell there, else in a line of its own.
+  std::vector<std::vector<std::string>> rest(columns_.size());
+  const auto takeRest = [&](std::size_t c) {
+    if (rest[c].empty()) return std::string();
+    std::string text = rest[c].front();
+    rest[c].erase(rest[c].begin());
+    return text;
+  };
+  const auto printRest = [&](const auto& wanted) {
+    const auto left = [&](std::size_t c) { return !rest[c].empty() && wanted(c); };
+    for (bool any = true; any;) {
+      any = false;
+      for (std::size_t c = 0; c < columns_.size(); ++c) any = any || left(c);
+      if (any) line([&](std::size_t c) { return left(c) ? takeRest(c) : std::string(); }, ' ');
+    }
+  };
+  for (const auto& row : rows_) {
+    printRest([&](std::size_t c) { return !row[0].empty() || !row[c].empty(); });
+    line(
+        [&](std::size_t c) {
+          if (row[c].empty() || columns_[c].second != Align::left) return row[c].empty() ? takeRest(c) : row[c];
+          rest[c] = wrapped(row[c], width[c]);
+          return takeRest(c);
+        },
+        ' ');
+  }
+  printRest([](std::size_t) { return true; });
 }
 
 std::string cutTo(const std::string& text, std::size_t width) {

@@ -91,17 +91,15 @@ Answer<DeLong> deLong(std::span<const double> x, std::span<const double> y) {
   if (x.size() < 2 || y.size() < 2) return Result::none("a group of one value has no variance");
   const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size());
   DeLong d;
-  d.ofX.assign(x.size(), 0.0);
-  d.ofY.assign(y.size(), 0.0);
+  // How many of the other group a value exceeds, ties half, is its rank among all less that within its own group (Sun
+  // and Xu 2014, IEEE Signal Process. Lett. 21:1389): halves, so exact, without looking at every pair.
+  const std::vector<double> among = midRanks(pooled(x, y)), withinX = midRanks(x), withinY = midRanks(y);
   double wins = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    for (std::size_t j = 0; j < y.size(); ++j) {
-      const double psi = x[i] > y[j] ? 1.0 : x[i] == y[j] ? 0.5 : 0.0;
-      d.ofX[i] += psi;
-      d.ofY[j] += psi;
-      wins += psi;
-    }
+    d.ofX.push_back(among[i] - withinX[i]);
+    wins += d.ofX.back();
   }
+  for (std::size_t j = 0; j < y.size(); ++j) d.ofY.push_back(nx - (among[x.size() + j] - withinY[j]));
   for (double& v : d.ofX) v /= ny;
   for (double& w : d.ofY) w /= nx;
   d.a = wins / (nx * ny);

@@ -7,7 +7,7 @@ namespace calot::analytics {
 
 std::span<const PublishedCoverage> publishedCoverage() {
   using enum CoveredInterval;
-  static constexpr std::array<PublishedCoverage, 9> table{{
+  static constexpr std::array<PublishedCoverage, 16> table{{
       {areaScore, "A, score", "normal, A = 0.50", {93.9, 94.7, 94.8, 95.1}},
       {areaScore, "A, score", "normal, A = 0.75", {96.4, 95.5, 95.6, 95.0}},
       {areaScore, "A, score", "normal, A = 0.95", {96.8, 96.7, 96.8, 97.4}},
@@ -17,6 +17,13 @@ std::span<const PublishedCoverage> publishedCoverage() {
       {hedges, "g, non-central t", "normal, 0.8", {94.4, 95.0, 94.8, 94.7}},
       {hedges, "g, non-central t", "normal, 2", {93.0, 94.5, 94.8, 94.8}},
       {hedges, "g, non-central t", "exponential, 0.8", {93.8, 93.2, 93.2, 92.4}},
+      {baseline, "difference at one baseline, HC3", "normal, 1", {96.9, 96.0, 95.5, 95.7}},
+      {baseline, "difference at one baseline, HC3", "exponential, 1", {97.5, 97.3, 96.0, 95.5}},
+      {cut, "cut of contrasting groups", "normal, 70 (5) and 50 (10)", {92.3, 90.7, 93.0, 94.0}},
+      {iccSingle, "ICC(2,1)", "normal, 3 raters", {96.4, 95.7, 94.6, 95.2}},
+      {iccAverage, "ICC(2,k)", "normal, 3 raters", {97.0, 95.7, 94.6, 95.2}},
+      {alpha, "Cronbach's alpha", "normal, 5 items", {94.4, 95.3, 95.7, 95.3}},
+      {alpha, "Cronbach's alpha", "exponential, 5 items", {89.2, 85.5, 82.6, 81.5}},
   }};
   return table;
 }

@@ -10,9 +10,10 @@
 
 namespace calot::analytics {
 
-enum class CoveredInterval : std::uint8_t { areaScore, shift, hedges };
+enum class CoveredInterval : std::uint8_t { areaScore, shift, hedges, baseline, cut, iccSingle, iccAverage, alpha };
 
-/// One row: per cent of simulated intervals at 95 % that hold the truth, with 5, 10, 20 and 40 people in each group.
+/// One row: per cent of simulated intervals at 95 % that hold the truth, with 5, 10, 20 and 40 people in each group (of
+/// agreement so many rated attempts, of consistency so many people).
 struct PublishedCoverage {
   CoveredInterval interval;
   const char* name;        ///< as the page has it: "g, non-central t"

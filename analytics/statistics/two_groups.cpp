@@ -2,7 +2,9 @@
 #include "analytics/statistics/two_groups.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -32,14 +34,51 @@ Ranked ranked(std::span<const double> x, std::span<const double> y) {
   return r;
 }
 
-std::vector<double> allDifferences(std::span<const double> x, std::span<const double> y) {
-  std::vector<double> differences;
-  differences.reserve(x.size() * y.size());
-  for (const double a : x) {
-    for (const double b : y) differences.push_back(a - b);
+/// All differences x_i - y_j in order, without making the nx ny of them.
+class Differences {
+ public:
+  Differences(std::span<const double> x, std::span<const double> y) : x_(x.begin(), x.end()), y_(y.begin(), y.end()) {
+    std::sort(x_.begin(), x_.end());
+    std::sort(y_.begin(), y_.end());
   }
-  return differences;
-}
+
+  [[nodiscard]] std::size_t size() const { return x_.size() * y_.size(); }
+  /// The k-th smallest, from 0: the least double that at least k + 1 differences do not exceed, found by halving the
+  /// doubles between the least and the greatest difference (64 counts at most). @pre k < size()
+  [[nodiscard]] double at(std::size_t k) const {
+    std::uint64_t low = keyOf(x_.front() - y_.back()), high = keyOf(x_.back() - y_.front());
+    while (low < high) {
+      const std::uint64_t middle = low + (high - low) / 2;
+      if (notAbove(valueOf(middle)) > k) {
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+    return valueOf(low) + 0.0;  // of the two zeros the plain one
+  }
+
+ private:
+  /// Integers in the order of the doubles.
+  static std::uint64_t keyOf(double v) {
+    const auto bits = std::bit_cast<std::uint64_t>(v);
+    return bits >> 63U != 0 ? ~bits : bits | std::uint64_t{1} << 63U;
+  }
+  static double valueOf(std::uint64_t key) {
+    return std::bit_cast<double>(key >> 63U != 0 ? key & ~(std::uint64_t{1} << 63U) : ~key);
+  }
+  /// How many differences are at most t. Rounding keeps the order, so what y a larger x needs is no smaller.
+  [[nodiscard]] std::size_t notAbove(double t) const {
+    std::size_t count = 0, j = 0;
+    for (const double x : x_) {
+      while (j < y_.size() && x - y_[j] > t) ++j;
+      count += y_.size() - j;
+    }
+    return count;
+  }
+
+  std::vector<double> x_, y_;
+};
 
 }  // namespace
 
@@ -75,13 +114,11 @@ Answer<Superiority> superiority(std::span<const double> x, std::span<const doubl
 
 Answer<double> hodgesLehmann(std::span<const double> x, std::span<const double> y) {
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<double>::none(reason);
-  // Selection instead of sorting: there are nx ny of them.
-  std::vector<double> differences = allDifferences(x, y);
-  const auto upper = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), upper, differences.end());
-  if (differences.size() % 2 == 1) return *upper;
-  const double lower = *std::max_element(differences.begin(), upper);
-  return lower + 0.5 * (*upper - lower);
+  const Differences differences(x, y);
+  const double upper = differences.at(differences.size() / 2);
+  if (differences.size() % 2 == 1) return upper;
+  const double lower = differences.at(differences.size() / 2 - 1);
+  return lower + 0.5 * (upper - lower);
 }
 
 const char* nameOf(ShiftMethod method) {
@@ -102,7 +139,6 @@ Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
   const double n = static_cast<double>(x.size() + y.size()), ties = tieTerm(pooled(x, y));
   if (ties == n * n * n - n) return Result::none("all values are equal");
-  const std::size_t pairs = x.size() * y.size();
   // Rank u of the difference that ends the interval, from below and from above.
   std::size_t u = 0;
   ShiftInterval result;
@@ -126,10 +162,9 @@ Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span
     result.attained = level;
     result.method = ShiftMethod::asymptotic;
   }
-  std::vector<double> differences = allDifferences(x, y);
-  std::sort(differences.begin(), differences.end());
-  result.lower = differences[u - 1];
-  result.upper = differences[pairs - u];
+  const Differences differences(x, y);
+  result.lower = differences.at(u - 1);
+  result.upper = differences.at(differences.size() - u);
   return result;
 }
 

@@ -6,15 +6,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analytics/checkpoints/collector.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/golden_list.h"
 #include "apps/calot/golden_update.h"
+#include "apps/calot/golden_values.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/stop_request.h"
 #include "recorder/errors.h"
-#include "recorder/replay.h"
+#include "recorder/formats/text_output.h"
 
 namespace calot::apps {
 
@@ -34,32 +34,6 @@ std::filesystem::path folderOf(const Options& o) {
   throw Error(ExitCode::damaged, "golden: no asset folder holds golden/golden.json: name one with --folder");
 }
 
-/// A replay, and the checkpoints that differ from what they were when the recording was made.
-struct Checked {
-  recorder::ReplayReport report;
-  std::vector<std::string> changed;
-};
-
-Checked checkOne(const std::filesystem::path& file, const GoldenEntry& entry, unsigned threads) {
-  Checked checked;
-  std::unique_ptr<analytics::CheckpointCollector> collector;
-  recorder::ReplaySettings settings;
-  settings.threads = threads;
-  settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
-    collector = std::make_unique<analytics::CheckpointCollector>(h, model.scene());
-    return std::vector<recorder::Observer*>{collector.get()};
-  };
-  checked.report = recorder::replayRecording(file, settings);
-  if (checked.report.verdict != recorder::ReplayVerdict::exact) return checked;
-  checked.changed = changedValues(entry.values, goldenValues(collector->values()));
-  if (checked.changed.empty()) return checked;
-  // The simulation is the same; what is computed over it is not.
-  checked.report.verdict = recorder::ReplayVerdict::diverged;
-  checked.report.message = fmt::format("bit-exact, but {} checkpoints have other values: {}", checked.changed.size(),
-                                       checked.changed.front());
-  return checked;
-}
-
 int check(const Options& o) {
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / "golden.json");
@@ -68,7 +42,7 @@ int check(const Options& o) {
   Progress progress("replaying, recordings", o.json);
   for (const GoldenEntry& entry : list.recordings) {
     if (!o.only.empty() && entry.file != o.only) continue;
-    const Checked checked = checkOne(folder / entry.file, entry, o.threads);
+    const GoldenReplay checked = replayGolden(folder / entry.file, entry, o.threads);
     reports.push_back(checked.report);
     progress.show(reports.size(), list.recordings.size());
     if (o.json) {
@@ -83,6 +57,29 @@ int check(const Options& o) {
   if (reports.empty()) throw Error(ExitCode::usage, fmt::format("golden: --only {}: not in the list", o.only));
   if (o.json) std::cout << rows.dump(2) << '\n';
   return static_cast<int>(worstOf(reports));
+}
+
+int takeValues(const Options& o) {
+  const std::filesystem::path folder = folderOf(o);
+  GoldenList list = readGoldenList(folder / "golden.json");
+  list.valuesReason = requiredReason(o.reason);
+  Progress progress("replaying, recordings", false);
+  for (std::size_t i = 0; i < list.recordings.size(); ++i) {
+    GoldenEntry& entry = list.recordings[i];
+    const GoldenReplay replay = replayGolden(folder / entry.file, entry, o.threads);
+    progress.show(i + 1, list.recordings.size());
+    // Only where the simulation does what it did are the checkpoints all that changed.
+    if (replay.report.verdict != recorder::ReplayVerdict::exact && replay.changed.empty()) {
+      printReport(replay.report);
+      return static_cast<int>(worstOf({replay.report}));
+    }
+    refuseValues(entry, replay.values);
+    fmt::print("{}: {} checkpoints, {} changed\n", entry.file, replay.values.size(), replay.changed.size());
+    for (const std::string& line : replay.changed) fmt::print("    {}\n", line);
+    entry.values = replay.values;
+  }
+  recorder::writeText(folder / "golden.json", toJson(list), true);
+  return static_cast<int>(ExitCode::yes);
 }
 
 int update(const Options& o) {
@@ -107,15 +104,19 @@ void addGolden(CLI::App& app, Run& run) {
   command->require_subcommand(1);
   CLI::App* checking = command->add_subcommand("check", "Replays them; compares checkpoints with those of the list.");
   CLI::App* updating = command->add_subcommand("update", "Makes them anew, after a change of the simulation.");
-  for (CLI::App* one : {checking, updating})
+  CLI::App* values = command->add_subcommand("values", "Replays them; the list takes over what the checkpoints give.");
+  for (CLI::App* one : {checking, updating, values})
     one->add_option("--folder", o->folder, "with golden.json; default: golden/ of the assets");
   checking->add_option("--only", o->only, "one file of the list");
-  checking->add_option("--threads", o->threads, "of the simulation; 0: all")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
+  for (CLI::App* one : {checking, values})
+    one->add_option("--threads", o->threads, "of the simulation; 0: all")
+        ->check(CLI::Range(0U, 64U))
+        ->capture_default_str();
   checking->add_flag("--json", o->json, "print the result as JSON");
-  updating->add_option("--reason", o->reason, "why they change; kept in the list")->required();
+  for (CLI::App* one : {updating, values})
+    one->add_option("--reason", o->reason, "why they change; kept in the list")->required();
   checking->callback([o, &run] { run = [o] { return check(*o); }; });
+  values->callback([o, &run] { run = [o] { return takeValues(*o); }; });
   updating->callback([o, &run] { run = [o] { return update(*o); }; });
 }
 

@@ -19,7 +19,8 @@ constexpr double mostSeconds = 36000.0;
 constexpr double any = 1e300;
 constexpr std::size_t mostBytes = 4U << 20U;
 
-const ObjectRule rootRule{"", {{"simulation_version", true, 1, 4294967295.0}, {"reason"}, {"recordings"}}};
+const ObjectRule rootRule{
+    "", {{"simulation_version", true, 1, 4294967295.0}, {"reason"}, {"values_reason", false}, {"recordings"}}};
 const ObjectRule recordingRule{"recording",
                                {{"file"},
                                 {"scene"},
@@ -65,6 +66,7 @@ GoldenList readGoldenList(const std::filesystem::path& file) {
   GoldenList list;
   root.read("simulation_version", list.simulationVersion);
   root.read("reason", list.reason, 1000);
+  root.read("values_reason", list.valuesReason, 1000);
   std::set<std::string> names;
   for (const JsonPlace& place : root.at("recordings").list(1, 1000)) {
     list.recordings.push_back(readEntry(place));
@@ -77,6 +79,7 @@ std::string toJson(const GoldenList& list) {
   nlohmann::ordered_json json;
   json["simulation_version"] = list.simulationVersion;
   json["reason"] = list.reason;
+  if (!list.valuesReason.empty()) json["values_reason"] = list.valuesReason;
   json["recordings"] = nlohmann::ordered_json::array();
   for (const GoldenEntry& e : list.recordings) {
     nlohmann::ordered_json row;

@@ -30,6 +30,7 @@ struct GoldenEntry {
 struct GoldenList {
   std::uint32_t simulationVersion = 0;  ///< of all recordings
   std::string reason;                   ///< why they were made anew
+  std::string valuesReason;             ///< why values were taken over since; empty: they were not
   std::vector<GoldenEntry> recordings;
 };
 

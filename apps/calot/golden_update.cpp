@@ -9,13 +9,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <memory>
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
-#include "analytics/report/text_table.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/golden_values.h"
 #include "apps/calot/source_options.h"
 #include "apps/calot/stop_request.h"
 #include "recorder/attempt.h"
@@ -60,20 +58,6 @@ std::optional<std::string> git(const std::vector<std::string>& arguments) {
   return text;
 }
 
-std::string shown(const GoldenValue& v) {
-  const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(v.name);
-  if (definition == nullptr) return fmt::format("{}", v.value);
-  return fmt::format("{} {}", analytics::significant(v.value * definition->displayFactor, 8), definition->displayUnit);
-}
-
-const GoldenValue* sameOf(const std::vector<GoldenValue>& values, const GoldenValue& of) {
-  const auto found = std::find_if(values.begin(), values.end(),
-                                  [&](const GoldenValue& v) { return v.name == of.name && v.subject == of.subject; });
-  return found == values.end() ? nullptr : &*found;
-}
-
-std::string titleOf(const GoldenValue& v) { return v.subject.empty() ? v.name : v.name + " " + v.subject; }
-
 GoldenEntry recordEntry(const GoldenEntry& entry, const std::filesystem::path& file) {
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(entry.scene, assetFolders()));
   const Model::Built built = Model::build(scene.description);
@@ -114,35 +98,14 @@ struct Temporary {
 
 }  // namespace
 
-std::vector<GoldenValue> goldenValues(const std::vector<analytics::CheckpointValue>& values) {
-  std::vector<GoldenValue> kept;
-  for (const analytics::CheckpointValue& v : values) {
-    if (v.value) kept.push_back({v.name, v.subject, v.version, *v.value});
-  }
-  return kept;
-}
-
-std::vector<std::string> changedValues(const std::vector<GoldenValue>& before, const std::vector<GoldenValue>& now) {
-  std::vector<std::string> lines;
-  for (const GoldenValue& b : before) {
-    const GoldenValue* n = sameOf(now, b);
-    if (n == nullptr) {
-      lines.push_back(fmt::format("{}: {} -> none", titleOf(b), shown(b)));
-    } else if (std::bit_cast<std::uint64_t>(n->value) != std::bit_cast<std::uint64_t>(b.value)) {
-      const std::string why =
-          n->version == b.version ? "" : fmt::format(" (definition version {} -> {})", b.version, n->version);
-      lines.push_back(fmt::format("{}: {} -> {}{}", titleOf(b), shown(b), shown(*n), why));
-    }
-  }
-  for (const GoldenValue& n : now) {
-    if (sameOf(before, n) == nullptr) lines.push_back(fmt::format("{}: none -> {}", titleOf(n), shown(n)));
-  }
-  return lines;
+const std::string& requiredReason(const std::string& reason) {
+  if (reason.find_first_not_of(" \t\n") == std::string::npos)
+    throw Error(ExitCode::usage, "golden: --reason: say why the recordings or their values change");
+  return reason;
 }
 
 void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, const std::string& reason) {
-  if (reason.find_first_not_of(" \t\n") == std::string::npos)
-    throw Error(ExitCode::usage, "golden: --reason: say why the recordings change");
+  requiredReason(reason);
   const bool complete = std::all_of(list.recordings.begin(), list.recordings.end(),
                                     [&](const GoldenEntry& e) { return std::filesystem::exists(folder / e.file); });
   if (complete && list.simulationVersion >= simulationVersion) {
@@ -167,7 +130,9 @@ void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, c
 
 void updateGolden(const std::filesystem::path& folder, const GoldenList& list, const std::string& reason,
                   const std::function<void(const GoldenEntry& before, const GoldenEntry& now)>& told) {
-  GoldenList made{simulationVersion, reason, {}};
+  GoldenList made;
+  made.simulationVersion = simulationVersion;
+  made.reason = reason;
   Temporary temporary;
   for (const GoldenEntry& entry : list.recordings) {
     temporary.files.push_back(folder / ("new." + entry.file));

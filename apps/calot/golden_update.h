@@ -7,17 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/checkpoint.h"
 #include "apps/calot/golden_list.h"
 
 namespace calot::apps {
 
-/// The values that there are, as the list keeps them.
-std::vector<GoldenValue> goldenValues(const std::vector<analytics::CheckpointValue>& values);
-
-/// One line for each checkpoint whose value is not the same in both, "path-length left: 123.4 mm -> 125.0 mm"; empty
-/// where all are, to the bit.
-std::vector<std::string> changedValues(const std::vector<GoldenValue>& before, const std::vector<GoldenValue>& now);
+/// The reason given. @throws Error (usage) where it says nothing.
+const std::string& requiredReason(const std::string& reason);
 
 /// What may stand in the way of an update. @throws Error (usage): the reason is empty; or all recordings are there and
 /// of this build's simulation version; or the work tree that holds `folder` has changes outside of it, or is none.

@@ -12,6 +12,7 @@
 #include "recorder/recording/header.h"
 #include "recorder/recording/raw_statistics.h"
 #include "recorder/recording/reader.h"
+#include "recorder/step_misses.h"
 #include "sim/scene/version.h"
 
 namespace calot::apps {
@@ -36,13 +37,16 @@ struct Attributes {
   }
 };
 
-/// How a run at real time kept its deadlines, by the lateness of its ticks and steps' events.
-void describeDeadlines(recorder::Recording& recording, ordered_json& out) {
+/// How a run at real time kept its deadlines, by the lateness of its ticks and steps' events; and how many of its steps
+/// missed a tolerance.
+void describeSteps(recorder::Recording& recording, ordered_json& out) {
   std::uint64_t missed = 0;
   float worst = 0.0F;
   double stretched = 0.0;
+  recorder::StepMisses misses;
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     const recorder::RecordedStep& step = recording.step(n);
+    misses.add(step.result.misses);
     for (const recorder::TickOutcome& tick : step.ticks) {
       if (tick.lateness > recorder::tickDeadline) ++missed;
       worst = std::max(worst, tick.lateness);
@@ -54,6 +58,10 @@ void describeDeadlines(recorder::Recording& recording, ordered_json& out) {
   out["missed_deadlines"] = missed;
   out["largest_lateness_s"] = worst;
   out["clock_stretched_s"] = stretched;
+  out["steps_missed_tolerance"] = misses.any;
+  out["steps_missed_by_solver"] = misses.solver;
+  out["steps_missed_by_contact"] = misses.contact;
+  out["steps_held_back"] = misses.heldBack;
 }
 
 /// What the device measured, by hand.
@@ -83,7 +91,7 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
   out["ticks"] = recording.tickCount();
   out["events"] = recording.eventCount();
   out["keyframes"] = recording.keyframeSteps().size();
-  describeDeadlines(recording, out);
+  describeSteps(recording, out);
   if (header.deviceSamples) out["device_samples"] = describeDevice(recording);
   out["flushes"] = recording.status().size() - 1;
   out["chain"] = chain.intact ? "intact" : "broken";

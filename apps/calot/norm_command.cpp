@@ -123,6 +123,8 @@ void print(const analytics::Norm& norm) {
                           c.inRule ? "counts" : "", c.reason});
   }
   analytics::printTable(table, std::cout);
+  if (const std::string warning = analytics::passMarkWarning(norm); !warning.empty())
+    analytics::printWrapped(warning, std::cout);
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
 }
 
@@ -202,6 +204,8 @@ void addCreateOptions(CLI::App& command, Options& o) {
   command.add_option("--key", who.key, "Only attempts of this comparability key");
   command.add_flag("--include-synthetic", who.includeSynthetic, "Take in what performers made (watermarked)");
   command.add_flag("--include-practice", who.includePractice, "Take in attempts in practice mode");
+  command.add_flag("--phases", who.includePhases,
+                   "The checkpoints of each phase of the procedure, too (else those that --checkpoints names)");
   command.add_option("--seed", o.seed, "Of the bootstrap")->check(wholeNumber)->capture_default_str();
 }
 

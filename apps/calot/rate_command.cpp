@@ -129,6 +129,8 @@ int show(const Options& o) {
   if (reports.empty()) std::cout << "no ratings\n";
   for (const analytics::FormReport& report : reports) {
     for (const analytics::ReportTable& table : analytics::ratingTables(report)) analytics::printTable(table, std::cout);
+    for (const std::string& note : analytics::ratingNotes(report)) analytics::printWrapped(note, std::cout);
+    if (report.filled > 0) std::cout << '\n';
   }
   return static_cast<int>(ExitCode::yes);
 }
@@ -144,7 +146,10 @@ void addRate(CLI::App& app, Run& run) {
   command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");
   command->add_option("--rater", o->rater, "Pseudonym of who rated it");
   command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire");
-  command->add_option("--answer", o->answers, "ITEM=SCORE, - where it was left blank; one for each item")
+  command
+      ->add_option("--answer", o->answers,
+                   "ITEM=SCORE for each item, - where it was left blank: A=4,B=- or one option each")
+      ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--answers", o->answersFile, "The same as a JSON object of items and scores, null for blank");
   command->add_flag("--force", o->force, "Replace what the same rater or participant has given before");

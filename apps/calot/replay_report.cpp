@@ -30,12 +30,17 @@ void printReport(const recorder::ReplayReport& r) {
     fmt::print("{}: bit-exact{}, {:.2f} s ({} steps), {:.1f} x real time\n", r.path.string(),
                r.complete ? "" : ", incomplete", r.seconds, r.steps,
                r.wallSeconds > 0.0 ? r.seconds / r.wallSeconds : 0.0);
+    if (r.misses.any > 0) fmt::print("{}: {}\n", r.path.string(), describe(r.misses));
     return;
   }
   // A damaged file's message names the file already.
   const std::string name = r.path.string();
   const bool named = r.message.rfind(name, 0) == 0;
   fmt::print(stderr, "calot: {}{}\n", named ? "" : name + ": ", r.message);
+}
+
+nlohmann::ordered_json missesJson(const recorder::StepMisses& m) {
+  return {{"steps", m.any}, {"solver", m.solver}, {"contact", m.contact}, {"held_back", m.heldBack}};
 }
 
 nlohmann::json reportJson(const recorder::ReplayReport& r) {
@@ -46,6 +51,7 @@ nlohmann::json reportJson(const recorder::ReplayReport& r) {
                       {"steps", r.steps},
                       {"seconds", r.seconds},
                       {"wall_seconds", r.wallSeconds},
+                      {"missed_tolerance", missesJson(r.misses)},
                       {"simulation_version", r.simulationVersion},
                       {"chain_intact", r.chainIntact},
                       {"message", r.message},

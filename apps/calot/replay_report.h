@@ -8,10 +8,14 @@
 
 namespace calot::apps {
 
-/// "R.h5: bit-exact, 46.70 s (4670 steps), 12.3 x real time"; what is not exact goes to stderr.
+/// "R.h5: bit-exact, 46.70 s (4670 steps), 12.3 x real time", and a line more where steps missed a tolerance; what is
+/// not exact goes to stderr.
 void printReport(const recorder::ReplayReport& report);
 
 nlohmann::json reportJson(const recorder::ReplayReport& report);
+
+/// How many steps missed a tolerance, by what was missed.
+nlohmann::ordered_json missesJson(const recorder::StepMisses& misses);
 
 /// Exit code over many inputs: the first present of 1, 4, 3, 5, 0.
 ExitCode worstOf(const std::vector<ExitCode>& codes);

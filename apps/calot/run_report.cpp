@@ -6,6 +6,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "apps/calot/replay_report.h"
 #include "recorder/errors.h"
 #include "recorder/words.h"
 
@@ -21,6 +22,7 @@ void printJson(const FinishedRun& run, double seconds) {
                              {"steps", r.steps},
                              {"seconds", seconds},
                              {"wall_seconds", r.wallSeconds},
+                             {"missed_tolerance", missesJson(r.misses)},
                              {"ticks", r.ticks},
                              {"missed_deadlines", r.missedDeadlines},
                              {"largest_lateness_s", r.largestLateness},
@@ -44,6 +46,7 @@ void printText(const FinishedRun& run, double seconds) {
   const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
   fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, wordFor(r.outcome),
              failed ? ": " : "", failed ? run.why : "");
+  if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, describe(r.misses));
   if (run.paced) {
     fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
                run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.largestLateness, r.stretched);

@@ -26,6 +26,11 @@ void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& tabl
       command.add_flag("--include-practice", options.cohort.includePractice, "Take in attempts in practice mode"));
   added.push_back(
       command.add_flag("--include-branches", options.cohort.includeBranches, "Take in branches of other attempts"));
+  command
+      .add_flag("--phases", options.cohort.includePhases,
+                "The checkpoints of each phase of the procedure, too (else the phases' durations, and what --family or "
+                "the protocol names)")
+      ->excludes(&table);
   added.push_back(command.add_option("--key", options.cohort.key, "Only attempts of this comparability key"));
   added.push_back(command.add_flag("--mix-keys", options.cohort.mixKeys,
                                    "Compare across scenes, devices and versions, and say so"));

@@ -2,28 +2,21 @@
 #include "gui/dashboard/attempt_page.h"
 
 #include <QBoxLayout>
-#include <QComboBox>
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QLabel>
 #include <QPushButton>
 #include <QShortcut>
-#include <QSignalBlocker>
 #include <QSplitter>
-#include <QTableView>
-#include <QTabWidget>
 
 #include "analytics/checkpoints/registry.h"
 #include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/band_delegate.h"
+#include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/open_recording.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/table_view.h"
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/dashboard/transport_bar.h"
 #include "gui/view/scene_picture_widget.h"
-#include "recorder/errors.h"
 
 namespace calot::gui {
 namespace {
@@ -54,6 +47,7 @@ constexpr double millimetres = 1000.0;
 }  // namespace
 
 AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
+  figures_ = new FigurePanel;
   picture_ = new ScenePictureWidget;
   replay_ = std::make_unique<Replay>(
       [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
@@ -63,7 +57,7 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   banner_ = new AttemptBanner;
   layout->addWidget(banner_);
   auto* upper = new QSplitter(Qt::Horizontal);
-  upper->addWidget(buildFigures());
+  upper->addWidget(figures_);
   upper->addWidget(buildReplay());
   upper->setSizes({720, 520});
   upper->setStretchFactor(0, 3);
@@ -85,37 +79,6 @@ AttemptPage::~AttemptPage() {
   replay_.reset();
 }
 
-QWidget* AttemptPage::buildFigures() {
-  figureTable_ = makeTable(figures_, "attempt-checkpoints", "Checkpoints of the attempt");
-  figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
-  setWidths(*figureTable_, {190, 76, 100, 236, 100, 130, 130, 100, 60});
-  eventTable_ = makeTable(events_, "events", "Events of the attempt");
-  setWidths(*eventTable_, {80});
-  auto* tabs = new QTabWidget;
-  tabs->addTab(figureTable_, "&Checkpoints");
-  tabs->addTab(eventTable_, "E&vents");
-
-  norm_ = new QComboBox;
-  norm_->setObjectName("norm");
-  norm_->setAccessibleName("Norm that the attempt is held against");
-  verdict_ = new QLabel;
-  verdict_->setObjectName("verdict-of-norm");
-  verdict_->setWordWrap(true);
-  verdict_->setTextFormat(Qt::PlainText);
-  auto* label = new QLabel("&Norm");
-  label->setBuddy(norm_);
-  auto* row = new QHBoxLayout;
-  row->addWidget(label);
-  row->addWidget(norm_);
-  row->addWidget(verdict_, 1);
-  auto* made = new QWidget;
-  auto* layout = new QVBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(row);
-  layout->addWidget(tabs, 1);
-  return made;
-}
-
 QWidget* AttemptPage::buildReplay() {
   find_ = new QPushButton("&Find the recording …");
   find_->setObjectName("find-recording");
@@ -130,31 +93,23 @@ QWidget* AttemptPage::buildReplay() {
 
 void AttemptPage::connectParts() {
   connect(find_, &QPushButton::clicked, this, &AttemptPage::askForRecording);
-  connect(norm_, &QComboBox::currentIndexChanged, this, [this] { showStanding(); });
-  connect(figureTable_, &QTableView::clicked, this, [this](const QModelIndex& at) { showFigure(at.row()); });
-  for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter}) {
-    connect(new QShortcut(key, figureTable_, nullptr, nullptr, Qt::WidgetShortcut), &QShortcut::activated, this,
-            [this] {
-              if (figureTable_->currentIndex().isValid()) showFigure(figureTable_->currentIndex().row());
-            });
-  }
-  const auto showEvent = [this](const QModelIndex& at) { replay_->seek(events_.at(at.row()).time); };
-  connect(eventTable_, &QTableView::clicked, this, showEvent);
-  connect(eventTable_, &QTableView::activated, this, showEvent);
+  connect(figures_, &FigurePanel::problem, this, &AttemptPage::problem);
+  connect(figures_, &FigurePanel::timeChosen, replay_.get(), &Replay::seek);
+  connect(figures_, &FigurePanel::windowsChosen, timeline_, &TimelineBar::setMarked);
   connect(timeline_, &TimelineBar::timeChosen, replay_.get(), &Replay::seek);
   connect(force_, &TraceChart::timeChosen, replay_.get(), &Replay::seek);
   connect(speed_, &TraceChart::timeChosen, replay_.get(), &Replay::seek);
 
   connect(replay_.get(), &Replay::opened, this, [this] {
-    figures_.setMomentsText("looking …");
-    reader_->read(file_, judgedFigures(values_));
+    figures_->setMomentsText("looking …");
+    reader_->read(file_, judgedFigures(figures_->values()));
   });
   connect(replay_.get(), &Replay::positionChanged, this, [this] { showPosition(); });
   connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
     reading_ = false;
     picture_->showText(reason);
     timeline_->setText("No timeline: the recording cannot be shown.");
-    figures_.setMomentsText({});
+    figures_->setMomentsText({});
     find_->show();
   });
   connect(reader_.get(), &RecordingReader::progress, this, [this](int percent) {
@@ -165,7 +120,7 @@ void AttemptPage::connectParts() {
   connect(reader_.get(), &RecordingReader::failed, this, [this](const QString& reason) {
     reading_ = false;
     timeline_->setText(reason);
-    figures_.setMomentsText({});
+    figures_->setMomentsText({});
   });
 
   const auto key = [this](const QKeySequence& keys, auto action) {
@@ -184,7 +139,6 @@ void AttemptPage::setAttempt(std::shared_ptr<const CohortDocument> document, con
                     attempt_->chainHead == attempt.chainHead && attempt_->exclusionReason == attempt.exclusionReason;
   attempt_ = attempt;
   if (same) return;
-  wanted_.reset();
   loaded_ = false;
   if (isVisible()) load();
 }
@@ -196,14 +150,7 @@ void AttemptPage::clear() {
   reader_->stop();
   replay_->close();
   banner_->showText("Choose an attempt on the page Attempts: double-click it, or press Enter.");
-  figures_.setValues({});
-  events_.setEvents({});
-  {
-    const QSignalBlocker quiet(norm_);
-    norm_->clear();
-  }
-  norm_->setEnabled(false);
-  verdict_->clear();
+  figures_->clear();
   picture_->showText("No attempt is chosen.");
   find_->hide();
   timeline_->setText("No attempt is chosen.");
@@ -224,28 +171,12 @@ void AttemptPage::hideEvent(QHideEvent* event) {
 void AttemptPage::load() {
   loaded_ = true;
   reading_ = false;
-  cycle_.forget();
   reader_->stop();
   replay_->close();
   banner_->showAttempt(*attempt_);
-  events_.setEvents({});
   force_->clear();
   speed_->clear();
-  try {
-    values_ = document_->values(attempt_->uuid);
-  } catch (const Error& error) {
-    values_.clear();
-    emit problem(QString::fromUtf8(error.what()));
-  }
-  figures_.setValues(values_);
-  {
-    const QSignalBlocker quiet(norm_);
-    norm_->clear();
-    for (const analytics::Norm* norm : normsFor(*attempt_, document_->norms()))
-      norm_->addItem(QString("%1, version %2").arg(QString::fromStdString(norm->name)).arg(norm->version));
-  }
-  norm_->setEnabled(norm_->count() > 0);
-  showStanding();
+  figures_->setAttempt(document_, *attempt_);
   const std::filesystem::path file = findRecording(*attempt_, document_->path(), settings::recordingPlaces());
   if (file.empty())
     showMissingRecording();
@@ -283,42 +214,6 @@ void AttemptPage::askForRecording() {
   openRecording(file.toStdString());
 }
 
-void AttemptPage::showStanding() {
-  const auto norms = attempt_ ? normsFor(*attempt_, document_->norms()) : std::vector<const analytics::Norm*>();
-  const int at = norm_->currentIndex();
-  if (at < 0 || static_cast<std::size_t>(at) >= norms.size()) {
-    verdict_->setText("There is no norm for attempts of this kind (calot norm create).");
-    figures_.setStandings({});
-    return;
-  }
-  const AttemptStanding standing = standingOf(*attempt_, values_, *norms[static_cast<std::size_t>(at)]);
-  verdict_->setText(QString::fromStdString(standing.verdict));
-  figures_.setStandings(standing.figures);
-}
-
-void AttemptPage::showFigure(int row) {
-  const analytics::FigureMoments* found = figures_.moments(row);
-  if (found == nullptr) return;
-  std::vector<std::pair<double, double>> windows;
-  for (const analytics::Moment& moment : found->moments) windows.emplace_back(moment.begin, moment.end);
-  timeline_->setMarked(std::move(windows));
-  if (const auto time = cycle_.next(*found)) replay_->seek(*time);
-}
-
-void AttemptPage::goToFigure(const std::string& checkpoint, const std::string& subject) {
-  for (int row = 0; row < figures_.rowCount(); ++row) {
-    const analytics::CheckpointValue& value = figures_.value(row);
-    if (value.name != checkpoint || value.subject != subject) continue;
-    figureTable_->selectRow(row);
-    figureTable_->scrollTo(figures_.index(row, 0));
-    if (figures_.moments(row) != nullptr)
-      showFigure(row);
-    else
-      wanted_ = {checkpoint, subject};
-    return;
-  }
-}
-
 void AttemptPage::showPosition() {
   const double time = replay_->position().time;
   timeline_->setPosition(time);
@@ -328,25 +223,10 @@ void AttemptPage::showPosition() {
 
 void AttemptPage::takeTrack(const AttemptTrack& track) {
   timeline_->setTrack(track);
-  events_.setEvents(track.events);
+  figures_->setEvents(track.events);
   force_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::force, 1.0));
   speed_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::speed, millimetres));
   showPosition();
-}
-
-void AttemptPage::showWorst() {
-  int chosen = -1;
-  for (int row = 0; row < figures_.rowCount(); ++row) {
-    const analytics::FigureMoments* found = figures_.moments(row);
-    if (found == nullptr || found->moments.empty()) continue;
-    const FigureStanding* standing = figures_.standing(row);
-    const bool weak = standing != nullptr && standing->passed && !*standing->passed;
-    if (chosen < 0 || weak) chosen = row;
-    if (weak) break;
-  }
-  if (chosen < 0) return;
-  figureTable_->selectRow(chosen);
-  showFigure(chosen);
 }
 
 bool AttemptPage::settled() const {
@@ -355,9 +235,7 @@ bool AttemptPage::settled() const {
 
 void AttemptPage::takeMoments(const std::vector<analytics::FigureMoments>& moments) {
   reading_ = false;
-  figures_.setMomentsText({});
-  figures_.setMoments(moments);
-  if (const auto wanted = std::exchange(wanted_, std::nullopt)) goToFigure(wanted->first, wanted->second);
+  figures_->setMoments(moments);
 }
 
 }  // namespace calot::gui

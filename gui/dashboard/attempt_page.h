@@ -5,21 +5,16 @@
 #include <optional>
 #include <QWidget>
 
-#include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/event_table_model.h"
-#include "gui/dashboard/moment_cycle.h"
 #include "gui/dashboard/recording_reader.h"
 #include "gui/dashboard/replay.h"
 
-class QComboBox;
-class QLabel;
 class QPushButton;
-class QTableView;
 
 namespace calot::gui {
 
 class AttemptBanner;
+class FigurePanel;
 class ScenePictureWidget;
 class TimelineBar;
 class TraceChart;
@@ -36,10 +31,7 @@ class AttemptPage : public QWidget {
   /// Reads what belongs to the attempt when the page is visible.
   void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);
   void clear();
-  /// Goes to the moments of a figure as soon as they are known.
-  void goToFigure(const std::string& checkpoint, const std::string& subject);
-  /// Goes to the moments of the first figure that falls short of the norm, else of the first that has any.
-  void showWorst();
+  [[nodiscard]] FigurePanel& figures() { return *figures_; }
   /// Whether all that can be read of the attempt was read, and the replay stands where it was sent to.
   [[nodiscard]] bool settled() const;
   [[nodiscard]] Replay& replay() { return *replay_; }
@@ -56,14 +48,11 @@ class AttemptPage : public QWidget {
   void hideEvent(QHideEvent* event) override;
 
  private:
-  QWidget* buildFigures();
   QWidget* buildReplay();
   void connectParts();
   void load();
   void openRecording(const std::filesystem::path& file);
   void showMissingRecording();
-  void showStanding();
-  void showFigure(int row);
   void showPosition();
   void takeTrack(const AttemptTrack& track);
   void takeMoments(const std::vector<analytics::FigureMoments>& moments);
@@ -73,17 +62,9 @@ class AttemptPage : public QWidget {
   std::optional<analytics::AttemptRow> attempt_;
   bool loaded_ = false;
   std::filesystem::path file_;
-  std::vector<analytics::CheckpointValue> values_;
-  std::optional<std::pair<std::string, std::string>> wanted_;  ///< figure to go to when its moments are known
-  CheckpointTableModel figures_;
-  EventTableModel events_;
-  MomentCycle cycle_;
 
   AttemptBanner* banner_ = nullptr;
-  QComboBox* norm_ = nullptr;
-  QLabel* verdict_ = nullptr;
-  QTableView* figureTable_ = nullptr;
-  QTableView* eventTable_ = nullptr;
+  FigurePanel* figures_ = nullptr;
   ScenePictureWidget* picture_ = nullptr;
   QPushButton* find_ = nullptr;
   TimelineBar* timeline_ = nullptr;

@@ -5,28 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "gui/words/event_words.h"
 
 namespace calot::gui {
 namespace {
 
-/// Subjects of these kinds are structures.
-bool namesStructure(EventKind kind) {
-  switch (kind) {
-    case EventKind::instrumentExchange:
-    case EventKind::strandsTorn:
-    case EventKind::connectiveFreed:
-    case EventKind::clipDropped:
-    case EventKind::clockStretched:
-    case EventKind::runaway:
-      return false;
-    default:
-      return true;
-  }
-}
-
-std::string textOf(const Event& event, const std::vector<std::string>& structures) {
-  std::string text = wordFor(event.kind);
-  if (namesStructure(event.kind) && event.subject < structures.size()) text += ": " + structures[event.subject];
+std::string withHand(std::string text, const Event& event) {
   if (event.hand < handCount) text += fmt::format(" ({} hand)", handNames[event.hand]);
   return text;
 }
@@ -73,75 +59,6 @@ class Tracer {
 
 }  // namespace
 
-const char* wordFor(EventKind kind) {
-  switch (kind) {
-    case EventKind::instrumentExchange:
-      return "instrument exchanged";
-    case EventKind::graspSlip:
-      return "grasp slips";
-    case EventKind::tissueTear:
-      return "held tissue tears";
-    case EventKind::strandsTorn:
-      return "connective tissue torn";
-    case EventKind::connectiveFreed:
-      return "connective tissue parted";
-    case EventKind::vesselTorn:
-      return "vessel torn";
-    case EventKind::clipSet:
-      return "clip set";
-    case EventKind::clipHalfOn:
-      return "clip not across the whole vessel";
-    case EventKind::clipOnClip:
-      return "clip on a clip";
-    case EventKind::clipTooNear:
-      return "clip too near";
-    case EventKind::clipDropped:
-      return "clip dropped";
-    case EventKind::vesselCut:
-      return "vessel cut";
-    case EventKind::cutOpen:
-      return "open vessel";
-    case EventKind::cutThroughClip:
-      return "cut through a clip";
-    case EventKind::vesselBurned:
-      return "vessel burned through";
-    case EventKind::organPerforated:
-      return "organ perforated";
-    case EventKind::tooFewClips:
-      return "too few clips";
-    case EventKind::criticalError:
-      return "critical error";
-    case EventKind::clockStretched:
-      return "simulation late, clock stretched";
-    case EventKind::runaway:
-      return "simulation failed";
-    default:
-      return nullptr;
-  }
-}
-
-bool isError(EventKind kind) {
-  switch (kind) {
-    case EventKind::tissueTear:
-    case EventKind::strandsTorn:
-    case EventKind::vesselTorn:
-    case EventKind::clipHalfOn:
-    case EventKind::clipOnClip:
-    case EventKind::clipTooNear:
-    case EventKind::clipDropped:
-    case EventKind::cutOpen:
-    case EventKind::cutThroughClip:
-    case EventKind::vesselBurned:
-    case EventKind::organPerforated:
-    case EventKind::tooFewClips:
-    case EventKind::criticalError:
-    case EventKind::runaway:
-      return true;
-    default:
-      return false;
-  }
-}
-
 std::string timeText(double seconds) {
   const auto tenths = static_cast<std::int64_t>(std::floor(std::max(0.0, seconds) * 10.0 + 1e-6));
   return fmt::format("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
@@ -161,7 +78,7 @@ AttemptTrack readTrack(recorder::Recording& recording,
   const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
   const std::uint64_t stepsPerBin = std::max<std::uint64_t>(1, (steps + mostBins - 1) / mostBins);
   track.bin = static_cast<double>(stepsPerBin) * stepSeconds;
-  const std::vector<std::string> structures = header.structures();
+  const SubjectNames names{header.structures(), {}};
   Tracer tracer(track, stepsPerBin, stepSeconds);
   for (std::uint64_t n = 0; n < steps; ++n) {
     const recorder::RecordedStep& step = recording.step(n);
@@ -172,8 +89,9 @@ AttemptTrack readTrack(recorder::Recording& recording,
       track.phases.push_back({phase, static_cast<double>(n) * stepSeconds, end});
     track.phases.back().end = end;
     for (const Event& event : step.result.events) {
-      if (wordFor(event.kind) != nullptr)
-        track.events.push_back({end, event.kind, textOf(event, structures), isError(event.kind)});
+      const EventWords* const words = wordsOf(event.kind);
+      if (words != nullptr)
+        track.events.push_back({end, event.kind, withHand(textOf(event, names), event), words->fault});
     }
     if (progress && (n % 100 == 99 || n + 1 == steps)) progress(n + 1, steps);
   }

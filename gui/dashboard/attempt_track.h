@@ -18,12 +18,12 @@ struct TrackPhase {
   double begin = 0.0, end = 0.0;  ///< s
 };
 
-/// An event that a person would look for; contacts and smoke are left out.
+/// An event that has words (event_words.h).
 struct TrackEvent {
   double time = 0.0;  ///< end of its step (s)
   EventKind kind = EventKind::clipSet;
-  std::string text;    ///< "clip set on cystic_duct, right hand"
-  bool error = false;  ///< something that should not happen
+  std::string text;    ///< "cystic duct: clip set (right hand)"
+  bool error = false;  ///< EventWords::fault
 };
 
 /// One hand's values over bins of equal length.
@@ -48,10 +48,6 @@ inline constexpr std::uint64_t mostBins = 1500;  ///< of a trace: more than a sc
 AttemptTrack readTrack(recorder::Recording& recording,
                        const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
-/// Which events a track has and how they read: "clip set", or null for those that it leaves out.
-const char* wordFor(EventKind kind);
-/// Whether it should not happen.
-bool isError(EventKind kind);
 /// "0:42.5", "12:03.0": minutes, seconds and tenths, with the decimal point of no locale.
 std::string timeText(double seconds);
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <QBoxLayout>
 #include <QComboBox>
+#include <QHeaderView>
 #include <QItemSelectionModel>
 #include <QLabel>
 #include <QLineEdit>
@@ -104,9 +105,13 @@ void AttemptsPage::buildDetails(QBoxLayout& layout) {
   banner_ = new AttemptBanner;
   layout.addWidget(banner_);
   details_ = makeTable(checkpoints_, "checkpoints", "Checkpoints of the selected attempt");
-  setWidths(*details_, {300, 110, 190, 0, 0, 150, 150, 130, 70});
+  setWidths(*details_, {330, 110, 170, 0, 0, 140, 150, 110, 70});
   details_->hideColumn(CheckpointTableModel::normColumn);
   details_->hideColumn(CheckpointTableModel::momentColumn);
+  // The longest words are a window's.
+  details_->horizontalHeader()->setStretchLastSection(false);
+  details_->horizontalHeader()->setSectionResizeMode(CheckpointTableModel::windowColumn, QHeaderView::Stretch);
+  wrapWords(*details_);
   details_->setToolTip("Double-click, or press Enter, to see when a figure came about");
   layout.addWidget(details_);
   connect(details_, &QTableView::activated, this, [this](const QModelIndex& at) {

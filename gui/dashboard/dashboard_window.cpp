@@ -6,9 +6,7 @@
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QDropEvent>
-#include <QFileDialog>
 #include <QFileInfo>
-#include <QInputDialog>
 #include <QLabel>
 #include <QMenuBar>
 #include <QMimeData>
@@ -22,12 +20,12 @@
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/compare_page.h"
 #include "gui/dashboard/exclusion_command.h"
+#include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/rating_page.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/settings_dialog.h"
 #include "gui/dashboard/study_page.h"
 #include "gui/dashboard/trainee_page.h"
 #include "recorder/errors.h"
@@ -113,36 +111,31 @@ void DashboardWindow::buildImport() {
 }
 
 void DashboardWindow::buildMenus() {
-  const auto add = [this](QMenu* menu, const char* text, const QKeySequence& keys, auto action) {
-    QAction* const made = menu->addAction(text);
-    made->setShortcut(keys);
-    connect(made, &QAction::triggered, this, action);
-    return made;
-  };
   QMenu* const file = menuBar()->addMenu("&File");
-  add(file, "&Open …", QKeySequence::Open, [this] { askForDatabase(); });
-  add(file, "&New cohort …", QKeySequence::New, [this] { askForNewDatabase(); });
-  add(file, "&Import recordings …", QKeySequence(Qt::CTRL | Qt::Key_I), [this] { askForRecordings(); });
-  add(file, "&Settings …", QKeySequence(Qt::CTRL | Qt::Key_Comma), [this] { showSettings(); });
-  add(file, "&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), [this] { close(); });
+  file->addAction("&Open …", QKeySequence(QKeySequence::Open), this, [this] { askForDatabase(); });
+  file->addAction("&New cohort …", QKeySequence(QKeySequence::New), this, [this] { askForNewDatabase(); });
+  file->addAction("&Import recordings …", QKeySequence(Qt::CTRL | Qt::Key_I), this, [this] { askForRecordings(); });
+  file->addAction("&Settings …", QKeySequence(Qt::CTRL | Qt::Key_Comma), this, [this] { showSettings(); });
+  file->addAction("&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), this, [this] { close(); });
   QMenu* const edit = menuBar()->addMenu("&Edit");
   QAction* const undo = undo_->createUndoAction(this, "&Undo");
   undo->setShortcut(QKeySequence::Undo);
   QAction* const redo = undo_->createRedoAction(this, "&Redo");
   redo->setShortcut(QKeySequence::Redo);
   edit->addActions({undo, redo});
-  exclude_ = add(edit, "&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), [this] { askForExclusion(); });
+  exclude_ = edit->addAction("&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), this,
+                             [this] { askForExclusion(); });
   exclude_->setEnabled(false);
   QMenu* const view = menuBar()->addMenu("&View");
   for (int page = 0; page < tabs_->count(); ++page)
-    add(view, qPrintable(QString("&%1 ").arg(page + 1) + tabs_->tabText(page)),
-        QKeySequence(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_1 + page)),
-        [this, page] { tabs_->setCurrentIndex(page); });
-  add(view, "&Find", QKeySequence::Find, [this] {
+    view->addAction(QString("&%1 ").arg(page + 1) + tabs_->tabText(page),
+                    QKeySequence(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_1 + page)), this,
+                    [this, page] { tabs_->setCurrentIndex(page); });
+  view->addAction("&Find", QKeySequence(QKeySequence::Find), this, [this] {
     tabs_->setCurrentWidget(attempts_);
     attempts_->focusSearch();
   });
-  add(view, "&Reload", QKeySequence(Qt::Key_F5), [this] { reload(); });
+  view->addAction("&Reload", QKeySequence(Qt::Key_F5), this, [this] { reload(); });
   view->addAction(importDock_->toggleViewAction());
 }
 
@@ -155,7 +148,6 @@ void DashboardWindow::connectPages() {
   connect(compare_, &ComparePage::problem, this, &DashboardWindow::showProblem);
   connect(study_, &StudyPage::problem, this, &DashboardWindow::showProblem);
   connect(trainee_, &TraineePage::problem, this, &DashboardWindow::showProblem);
-  connect(pair_, &PairPage::problem, this, &DashboardWindow::showProblem);
   connect(rating_, &RatingPage::problem, this, &DashboardWindow::showProblem);
   connect(attempts_, &AttemptsPage::selectionChanged, this, [this] {
     const analytics::AttemptRow* attempt = attempts_->selected();
@@ -172,7 +164,7 @@ void DashboardWindow::connectPages() {
   connect(attempts_, &AttemptsPage::attemptActivated, this, [this] { tabs_->setCurrentWidget(attempt_); });
   connect(attempts_, &AttemptsPage::figureActivated, this, [this](const QString& checkpoint, const QString& subject) {
     tabs_->setCurrentWidget(attempt_);
-    attempt_->goToFigure(checkpoint.toStdString(), subject.toStdString());
+    attempt_->figures().goToFigure(checkpoint.toStdString(), subject.toStdString());
   });
   connect(trainee_, &TraineePage::attemptActivated, this, &DashboardWindow::openAttempt);
 }
@@ -262,47 +254,6 @@ void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by)
                                      else
                                        showProblem(fault);
                                    }));
-}
-
-void DashboardWindow::askForDatabase() {
-  const QString path =
-      QFileDialog::getOpenFileName(this, "Open a cohort database", {}, "Cohort databases (*.db);;All files (*)");
-  if (!path.isEmpty()) openDatabase(path);
-}
-
-void DashboardWindow::askForNewDatabase() {
-  const QString path =
-      QFileDialog::getSaveFileName(this, "Make a cohort database", "cohort.db", "Cohort databases (*.db)", nullptr,
-                                   QFileDialog::DontConfirmOverwrite);
-  if (!path.isEmpty()) createDatabase(path);
-}
-
-void DashboardWindow::askForRecordings() {
-  if (!document_) {
-    showProblem("Open a cohort database first, or make one: recordings are imported into it.");
-    return;
-  }
-  const QStringList files =
-      QFileDialog::getOpenFileNames(this, "Import recordings", {}, "Recordings (*.h5);;All files (*)");
-  if (!files.isEmpty()) importRecordings(files);
-}
-
-void DashboardWindow::askForExclusion() {
-  const analytics::AttemptRow* attempt = attempts_->selected();
-  if (attempt == nullptr) return;
-  QString by = settings::person();
-  if (by.isEmpty()) by = QInputDialog::getText(this, "Who decides", "Your pseudonym:").trimmed();
-  if (by.isEmpty()) return;
-  const QString what = attempt->excluded ? "Include in studies again" : "Exclude from studies";
-  const QString reason = QInputDialog::getText(this, what, "Reason, for the record:").trimmed();
-  if (reason.isEmpty()) return;
-  settings::setPerson(by);
-  excludeOrInclude(reason, by);
-}
-
-void DashboardWindow::showSettings() {
-  SettingsDialog dialog(this);
-  dialog.exec();
 }
 
 void DashboardWindow::showProblem(const QString& message) {

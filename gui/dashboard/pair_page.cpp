@@ -15,13 +15,7 @@
 #include <QToolButton>
 #include <utility>
 
-#include "analytics/checkpoints/phases.h"
-#include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/open_recording.h"
-#include "gui/dashboard/settings.h"
-#include "gui/dashboard/timeline_bar.h"
-#include "gui/dashboard/words.h"
-#include "gui/view/scene_picture_widget.h"
+#include "gui/words/event_words.h"
 
 namespace calot::gui {
 namespace {
@@ -29,79 +23,30 @@ namespace {
 constexpr int scrubSteps = 10000;
 constexpr int tickMilliseconds = 33;
 constexpr double farAway = 0.25;  // s (times speed) that a side may be off before it is sent to its place
-constexpr int mostListed = 2000;  // attempts in a choice: a longer list is no choice
-
-QString attemptText(const analytics::AttemptRow& attempt) {
-  return QString("%1 · %2 · %3 · %4")
-      .arg(operatorText(attempt), QString::fromStdString(attempt.scene), startText(attempt.startUtc),
-           badgeText(attempt.verification.verdict));
-}
 
 }  // namespace
 
-PairPage::PairPage(QWidget* parent) : QWidget(parent) {
+PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left"), new PairSide("right")} {
   auto* layout = new QVBoxLayout(this);
   auto* row = new QHBoxLayout;
-  for (std::size_t which = 0; which < 2; ++which) row->addWidget(buildSide(which), 1);
+  for (PairSide* const side : sides_) row->addWidget(side, 1);
   layout->addLayout(row, 1);
   layout->addWidget(buildTransport());
   tick_ = new QTimer(this);
   connect(tick_, &QTimer::timeout, this, [this] { onTick(); });
   connect(new QShortcut(Qt::Key_Space, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated,
           this, [this] { play(!playing_); });
-}
-
-PairPage::~PairPage() {
-  // Their threads use the pictures and this page.
-  for (Side& side : sides_) {
-    side.reader.reset();
-    side.replay.reset();
+  for (std::size_t which = 0; which < 2; ++which) {
+    connect(sides_[which], &PairSide::changing, this, [this] {
+      play(false);
+      alignment_.reset();
+      showTime();
+    });
+    connect(sides_[which], &PairSide::ready, this, [this] { fillAlignments(); });
+    connect(sides_[which], &PairSide::timeChosen, this, [this, which](double time) {
+      if (alignment_) goTo(alignment_->common(which, time));
+    });
   }
-}
-
-QWidget* PairPage::buildSide(std::size_t which) {
-  Side& side = sides_[which];
-  auto* made = new QWidget;
-  auto* layout = new QVBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
-  side.choice = new QComboBox;
-  side.choice->setObjectName(which == 0 ? "left-attempt" : "right-attempt");
-  side.choice->setAccessibleName(which == 0 ? "Attempt on the left" : "Attempt on the right");
-  side.choice->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  side.choice->setMinimumContentsLength(20);
-  side.banner = new AttemptBanner;
-  side.picture = new ScenePictureWidget;
-  side.timeline = new TimelineBar;
-  side.replay = std::make_unique<Replay>(
-      [picture = side.picture](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
-  side.reader = std::make_unique<RecordingReader>();
-  layout->addWidget(side.choice);
-  layout->addWidget(side.banner);
-  layout->addWidget(side.picture, 1);
-  layout->addWidget(side.timeline);
-  connect(side.choice, &QComboBox::currentIndexChanged, this, [this, which] { openSide(which); });
-  connect(side.replay.get(), &Replay::opened, this, [this, which] {
-    Side& opened = sides_[which];
-    opened.seconds = opened.replay->position().seconds;
-    opened.reader->read(opened.file, {});
-    fillAlignments();
-  });
-  connect(side.replay.get(), &Replay::positionChanged, this,
-          [this, which] { sides_[which].timeline->setPosition(sides_[which].replay->position().time); });
-  connect(side.replay.get(), &Replay::failed, this, [this, which](const QString& reason) {
-    sides_[which].picture->showText(reason);
-    sides_[which].timeline->setText("No timeline: the recording cannot be shown.");
-  });
-  connect(side.reader.get(), &RecordingReader::trackRead, this, [this, which](const AttemptTrack& track) {
-    sides_[which].track = track;
-    sides_[which].timeline->setTrack(track);
-    fillAlignments();
-  });
-  connect(side.reader.get(), &RecordingReader::failed, side.timeline, &TimelineBar::setText);
-  connect(side.timeline, &TimelineBar::timeChosen, this, [this, which](double time) {
-    if (alignment_) goTo(alignment_->common(which, time));
-  });
-  return made;
 }
 
 QWidget* PairPage::buildTransport() {
@@ -141,7 +86,7 @@ QWidget* PairPage::buildTransport() {
   connect(from_, &QComboBox::currentIndexChanged, this, [this] { align(); });
   connect(play_, &QToolButton::clicked, this, [this] { play(!playing_); });
   connect(speed_, &QComboBox::currentIndexChanged, this, [this] {
-    for (Side& side : sides_) side.replay->setSpeed(speed_->currentData().toDouble());
+    for (PairSide* const side : sides_) side->replay().setSpeed(speed_->currentData().toDouble());
     if (playing_) play(true);
   });
   connect(scrub_, &QSlider::valueChanged, this, [this](int value) {
@@ -154,29 +99,17 @@ QWidget* PairPage::buildTransport() {
 void PairPage::setDocument(std::shared_ptr<const CohortDocument> document) {
   document_ = std::move(document);
   filled_ = false;
-  if (isVisible()) fillChoices();
+  if (isVisible()) fillSides();
 }
 
 void PairPage::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
-  if (!filled_ && document_) fillChoices();
+  if (!filled_ && document_) fillSides();
 }
 
-void PairPage::fillChoices() {
+void PairPage::fillSides() {
   filled_ = true;
-  for (Side& side : sides_) {
-    const QSignalBlocker quiet(side.choice);
-    side.choice->clear();
-    side.choice->addItem("Choose an attempt …", QString());
-    const auto& attempts = document_->attempts();
-    // The newest first.
-    for (std::size_t i = attempts.size(); i-- > 0 && side.choice->count() <= mostListed;)
-      side.choice->addItem(attemptText(attempts[i]), QString::fromStdString(attempts[i].uuid));
-    if (!side.wanted.empty()) side.uuid = std::exchange(side.wanted, {});
-    const int at = side.uuid.empty() ? 0 : side.choice->findData(QString::fromStdString(side.uuid));
-    side.choice->setCurrentIndex(std::max(0, at));
-  }
-  for (std::size_t which = 0; which < 2; ++which) openSide(which);
+  for (PairSide* const side : sides_) side->setDocument(document_);
 }
 
 void PairPage::hideEvent(QHideEvent* event) {
@@ -185,62 +118,20 @@ void PairPage::hideEvent(QHideEvent* event) {
 }
 
 void PairPage::setAttempt(std::size_t side, const std::string& uuid) {
-  if (!isVisible()) {
-    sides_[side].wanted = uuid;
-    filled_ = false;  // is chosen when the page is shown
-    return;
-  }
-  const int at = sides_[side].choice->findData(QString::fromStdString(uuid));
-  if (at >= 0) sides_[side].choice->setCurrentIndex(at);
+  sides_[side]->choose(uuid);
+  if (!isVisible()) filled_ = false;  // it is opened when the page is shown
 }
 
 void PairPage::chooseTwo() {
-  for (std::size_t which = 0; which < 2; ++which) {
-    const auto at = static_cast<int>(2 - which);
-    if (sides_[which].uuid.empty() && sides_[which].choice->count() > at) sides_[which].choice->setCurrentIndex(at);
-  }
+  sides_[0]->chooseAnother(2);
+  sides_[1]->chooseAnother(1);
 }
 
 void PairPage::showMiddle() {
   if (alignment_) goTo(0.5 * (alignment_->begin() + alignment_->end()));
 }
 
-bool PairPage::settled() const {
-  return std::all_of(sides_.begin(), sides_.end(), [](const Side& side) {
-    return side.file.empty() || (side.track && side.replay->isOpen() && side.replay->position().settled);
-  });
-}
-
-void PairPage::openSide(std::size_t which) {
-  Side& side = sides_[which];
-  const std::string uuid = side.choice->currentData().toString().toStdString();
-  const analytics::AttemptRow* attempt = uuid.empty() ? nullptr : document_->attempt(uuid);
-  if (attempt != nullptr && side.opened == uuid && side.replay->isOpen()) return;
-  play(false);
-  side.uuid = side.opened = uuid;
-  side.reader->stop();
-  side.replay->close();
-  side.track.reset();
-  alignment_.reset();
-  if (attempt == nullptr) {
-    side.banner->showText(" ");
-    side.picture->showText("No attempt is chosen.");
-    side.timeline->setText({});
-    showTime();
-    return;
-  }
-  side.banner->showAttempt(*attempt);
-  side.file = findRecording(*attempt, document_->path(), settings::recordingPlaces());
-  if (side.file.empty()) {
-    side.picture->showText(QString::fromStdString(attempt->fileName) +
-                           " was not found. Open the attempt on its own page to say where it is.");
-    side.timeline->setText("No timeline without the recording.");
-    return;
-  }
-  side.picture->showText("Opening " + QString::fromStdString(side.file.filename().string()) + " …");
-  side.timeline->setText("Checking the recording …");
-  side.replay->open(side.file, uuid);
-}
+bool PairPage::settled() const { return sides_[0]->settled() && sides_[1]->settled(); }
 
 void PairPage::fillAlignments() {
   if (!bothOpen()) return;
@@ -249,9 +140,9 @@ void PairPage::fillAlignments() {
     const int before = from_->currentIndex() < 0 ? -1 : from_->currentData().toInt();
     from_->clear();
     from_->addItem("their starts", static_cast<int>(Phase::none));
-    if (sides_[0].track && sides_[1].track) {
-      for (const Phase phase : commonPhases(*sides_[0].track, *sides_[1].track))
-        from_->addItem(analytics::nameOf(phase), static_cast<int>(phase));
+    if (sides_[0]->track() && sides_[1]->track()) {
+      for (const Phase phase : commonPhases(*sides_[0]->track(), *sides_[1]->track()))
+        from_->addItem(QString::fromStdString(wordFor(phase)), static_cast<int>(phase));
     }
     from_->setCurrentIndex(std::max(0, from_->findData(before)));
   }
@@ -263,17 +154,17 @@ void PairPage::align() {
   const auto phase = static_cast<Phase>(from_->currentData().toInt());
   std::array<double, 2> offsets{};
   for (std::size_t which = 0; which < 2; ++which) {
-    if (phase != Phase::none && sides_[which].track)
-      offsets[which] = firstOf(*sides_[which].track, phase).value_or(0.0);
+    if (phase != Phase::none && sides_[which]->track())
+      offsets[which] = firstOf(*sides_[which]->track(), phase).value_or(0.0);
   }
-  alignment_.emplace(std::array{sides_[0].seconds, sides_[1].seconds}, offsets);
+  alignment_.emplace(std::array{sides_[0]->seconds(), sides_[1]->seconds()}, offsets);
   goTo(0.0);
 }
 
 void PairPage::goTo(double common) {
   if (!alignment_) return;
   common_ = std::clamp(common, alignment_->begin(), alignment_->end());
-  for (std::size_t which = 0; which < 2; ++which) sides_[which].replay->seek(alignment_->own(which, common_));
+  for (std::size_t which = 0; which < 2; ++which) sides_[which]->replay().seek(alignment_->own(which, common_));
   if (playing_)
     play(true);
   else
@@ -291,9 +182,9 @@ void PairPage::play(bool playing) {
   clockCommon_ = common_;
   for (std::size_t which = 0; which < 2; ++which) {
     if (playing_ && alignment_->runs(which, common_))
-      sides_[which].replay->playFrom(alignment_->own(which, common_));
+      sides_[which]->replay().playFrom(alignment_->own(which, common_));
     else
-      sides_[which].replay->pause();
+      sides_[which]->replay().pause();
   }
   if (playing_)
     tick_->start(tickMilliseconds);
@@ -308,7 +199,7 @@ void PairPage::onTick() {
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - clockBegin_;
   common_ = std::min(alignment_->end(), clockCommon_ + speed * passed.count());
   for (std::size_t which = 0; which < 2; ++which) {
-    Replay& replay = *sides_[which].replay;
+    Replay& replay = sides_[which]->replay();
     if (!replay.isOpen()) continue;
     const bool runs = alignment_->runs(which, common_);
     const PlayerPosition& at = replay.position();

@@ -9,8 +9,7 @@
 
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/pair_alignment.h"
-#include "gui/dashboard/recording_reader.h"
-#include "gui/dashboard/replay.h"
+#include "gui/dashboard/pair_side.h"
 
 class QComboBox;
 class QLabel;
@@ -20,16 +19,11 @@ class QToolButton;
 
 namespace calot::gui {
 
-class AttemptBanner;
-class ScenePictureWidget;
-class TimelineBar;
-
 /// Two recordings side by side in step: an expert's beside a trainee's, from their starts or from a phase on.
 class PairPage : public QWidget {
   Q_OBJECT
  public:
   explicit PairPage(QWidget* parent = nullptr);
-  ~PairPage() override;
   /// @pre not null
   void setDocument(std::shared_ptr<const CohortDocument> document);
   /// Puts an attempt on one side: 0 left, 1 right.
@@ -39,45 +33,26 @@ class PairPage : public QWidget {
   void showMiddle();  ///< the middle of what both show, where both are open
   /// Whether both stand where they were sent to, with their timelines.
   [[nodiscard]] bool settled() const;
-  [[nodiscard]] Replay& replay(std::size_t side) { return *sides_[side].replay; }
+  [[nodiscard]] Replay& replay(std::size_t side) { return sides_[side]->replay(); }
   [[nodiscard]] double commonTime() const { return common_; }
-
- signals:
-  void problem(const QString& message);
 
  protected:
   void showEvent(QShowEvent* event) override;
   void hideEvent(QHideEvent* event) override;
 
  private:
-  struct Side {
-    QComboBox* choice = nullptr;
-    AttemptBanner* banner = nullptr;
-    ScenePictureWidget* picture = nullptr;
-    TimelineBar* timeline = nullptr;
-    std::unique_ptr<Replay> replay;
-    std::unique_ptr<RecordingReader> reader;
-    std::filesystem::path file;
-    std::string uuid;    ///< that is chosen
-    std::string wanted;  ///< to be chosen when the page is shown
-    std::string opened;  ///< whose recording was opened
-    std::optional<AttemptTrack> track;
-    double seconds = 0.0;
-  };
-  QWidget* buildSide(std::size_t which);
   QWidget* buildTransport();
-  void fillChoices();
-  void openSide(std::size_t which);
+  void fillSides();
   void fillAlignments();
   void align();
   void goTo(double common);
   void play(bool playing);
   void onTick();
   void showTime();
-  [[nodiscard]] bool bothOpen() const { return sides_[0].replay->isOpen() && sides_[1].replay->isOpen(); }
+  [[nodiscard]] bool bothOpen() const { return sides_[0]->isOpen() && sides_[1]->isOpen(); }
 
   std::shared_ptr<const CohortDocument> document_;
-  std::array<Side, 2> sides_;
+  std::array<PairSide*, 2> sides_;
   std::optional<PairAlignment> alignment_;
   double common_ = 0.0;
   bool playing_ = false;

@@ -12,6 +12,7 @@
 #include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/replay.h"
+#include "sim/scene/scene_viewer.h"
 #include "sim/scene/version.h"
 
 namespace calot::gui {
@@ -36,6 +37,7 @@ class ReplayPlayer::Run {
         recording_(openRecording(player.file_, player.attempt_)),
         pool_(1),
         seeker_(recording_, pool_),
+        viewer_(seeker_.model()),
         stepSeconds_(recording_.seconds() / static_cast<double>(recording_.stepCount())) {
     position_.steps = recording_.stepCount();
     position_.seconds = recording_.seconds();
@@ -86,7 +88,7 @@ class ReplayPlayer::Run {
     position_.time = static_cast<double>(*done_ + 1) * stepSeconds_;
     position_.settled = settled;
     position_.hopping = hopping;
-    player_.receiver_.moment(std::make_shared<const SceneView>(seeker_.session().view()), position_);
+    player_.receiver_.moment(std::make_shared<const SceneView>(viewer_.view(seeker_.session().state())), position_);
   }
 
   void take(const Wish& wish) {
@@ -159,6 +161,7 @@ class ReplayPlayer::Run {
   recorder::Recording recording_;
   recorder::WorkerPool pool_;
   recorder::Seeker seeker_;
+  SceneViewer viewer_;
   const double stepSeconds_;
   PlayerPosition position_;
   std::optional<std::uint64_t> done_;  ///< the seeker's step

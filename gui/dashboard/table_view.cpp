@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/table_view.h"
 
+#include <QAbstractItemModel>
 #include <QHeaderView>
 #include <QTableView>
+#include <QTimer>
 
 namespace calot::gui {
 
@@ -28,6 +30,18 @@ QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* s
 void setWidths(QTableView& table, std::initializer_list<int> widths) {
   int column = 0;
   for (const int width : widths) table.setColumnWidth(column++, width);
+}
+
+void wrapWords(QTableView& table) {
+  table.setWordWrap(true);
+  table.verticalHeader()->setMinimumSectionSize(table.verticalHeader()->defaultSectionSize());
+  // Once for all columns that change together, when they have changed.
+  auto* later = new QTimer(&table);
+  later->setSingleShot(true);
+  later->setInterval(0);
+  QObject::connect(later, &QTimer::timeout, &table, &QTableView::resizeRowsToContents);
+  QObject::connect(table.model(), &QAbstractItemModel::modelReset, &table, &QTableView::resizeRowsToContents);
+  QObject::connect(table.horizontalHeader(), &QHeaderView::sectionResized, later, [later] { later->start(); });
 }
 
 }  // namespace calot::gui

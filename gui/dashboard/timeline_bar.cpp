@@ -8,8 +8,8 @@
 #include <QToolTip>
 #include <utility>
 
-#include "analytics/checkpoints/phases.h"
 #include "gui/dashboard/palette.h"
+#include "gui/words/event_words.h"
 
 namespace calot::gui {
 namespace {
@@ -78,9 +78,7 @@ void TimelineBar::paintEvent(QPaintEvent*) {
   for (const TrackPhase& phase : track_.phases) {
     const QRectF box(s.x(phase.begin), phaseTop, s.x(phase.end) - s.x(phase.begin), phaseHeight);
     painter.fillRect(box, palette::ofPhase(phase.phase));
-    const QString name = phase.phase == Phase::none   ? QString()
-                         : phase.phase == Phase::done ? QString("done")
-                                                      : QString(analytics::nameOf(phase.phase));
+    const QString name = QString::fromStdString(wordFor(phase.phase));
     painter.setPen(palette::darkText);
     if (painter.fontMetrics().horizontalAdvance(name) + 6 < box.width()) painter.drawText(box, Qt::AlignCenter, name);
     painter.setPen(QPen(Qt::white, 1.0));

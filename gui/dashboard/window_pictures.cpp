@@ -10,6 +10,7 @@
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/compare_page.h"
 #include "gui/dashboard/dashboard_window.h"
+#include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/rating_page.h"
@@ -60,7 +61,7 @@ void DashboardWindow::savePictures(const QString& folder) {
   save(attempts_, "attempts.png", atOnce);
   tabs_->setCurrentWidget(attempt_);
   waitFor([this] { return attempt_->settled(); });
-  attempt_->showWorst();
+  attempt_->figures().showWorst();
   save(attempt_, "attempt.png", [this] { return attempt_->settled(); });
   save(compare_, "compare.png", [this] { return compare_->ready(); });
   bool studied = false;

@@ -9,7 +9,7 @@ namespace calot::gui {
 FilmSource::FilmSource(const std::filesystem::path& recording, const Overlays& overlays)
     : recording_(recording), seeker_(recording_, pool_), viewer_(seeker_.model()) {
   if (overlays.needTrack() || hasResults(recording_))
-    track_ = std::make_unique<AttemptTrack>(recording, overlays.checkpoints);
+    track_ = std::make_unique<MomentTrack>(recording, overlays.checkpoints);
 }
 
 double FilmSource::stepSeconds() const { return recording_.header().tickSeconds * recording_.header().ticksPerStep; }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "gui/film/attempt_track.h"
+#include "gui/film/moment_track.h"
 #include "gui/film/overlay.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/replay.h"
@@ -43,7 +43,7 @@ class FilmSource {
   recorder::WorkerPool pool_{1};
   recorder::Seeker seeker_;
   SceneViewer viewer_;
-  std::unique_ptr<AttemptTrack> track_;
+  std::unique_ptr<MomentTrack> track_;
 };
 
 }  // namespace calot::gui

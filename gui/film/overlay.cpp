@@ -46,7 +46,7 @@ void drawPaths(Image& image, const Moment& moment, const SceneView& view) {
       const double away = drawn ? std::hypot(x - lastX, y - lastY) : 1e9;
       if (away < 1.0) continue;                                                         // at rest, dots would pile up
       const int steps = away < 200.0 ? static_cast<int>(std::ceil(away / radius)) : 1;  // else it jumped: one dot
-      const double opacity = 0.55 * (1.0 - place.age / AttemptTrack::pathSeconds);
+      const double opacity = 0.55 * (1.0 - place.age / MomentTrack::pathSeconds);
       for (int i = 1; i <= steps; ++i) {
         const double share = static_cast<double>(i) / steps;
         const double fromX = steps > 1 ? lastX : x, fromY = steps > 1 ? lastY : y;
@@ -107,7 +107,7 @@ void OverlayPainter::paint(Image& image, const Overlays& overlays, const Moment&
     for (auto line = moment.events.rbegin(); line != moment.events.rend(); ++line) {
       y -= letters_.lineHeight();
       if (y < image.height / 2) break;
-      const double fading = std::clamp(AttemptTrack::eventSeconds - line->age, 0.0, 1.0);
+      const double fading = std::clamp(MomentTrack::eventSeconds - line->age, 0.0, 1.0);
       letters_.write(image, line->text, margin_, y, Anchor::left, line->fault ? amber : white, fading);
     }
   }

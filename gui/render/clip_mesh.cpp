@@ -11,7 +11,7 @@
 namespace calot::gui {
 
 Mesh makeClip(const ClipView& clip) {
-  constexpr int around = 20, bend = 12, straight = 8;
+  constexpr int around = 12, bend = 10, straight = 5;
   const double thickness = 0.5 * clip.width;
   // Of a leg's middle line from the vessel's. Legs bite into the wall a little: no two surfaces in one place.
   const double offset = 0.75 * clip.halfGap + 0.5 * thickness;

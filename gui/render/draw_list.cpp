@@ -35,6 +35,17 @@ float referenceDistance(const std::vector<DrawVertex>& vertices) {
   return static_cast<float>(std::clamp(std::sqrt(weights / light), 0.02, 0.6));
 }
 
+/// What runs out of open vessels covers skin; their own faces stay as they are.
+float stained(float face, const Vec3& p_W, std::span<const OpenEnd> open) {
+  constexpr float most = 0.45F;  // skin, fully stained (SurfaceView::face)
+  if (face >= 1.0F) return face;
+  for (const OpenEnd& end : open) {
+    const float stain = most * static_cast<float>(stainAt(end, p_W));
+    if (stain > std::abs(face)) face = end.bile ? -stain : stain;
+  }
+  return face;
+}
+
 }  // namespace
 
 Appearance appearanceOf(const std::string& word) {
@@ -58,35 +69,49 @@ void DrawListMaker::addVertex(const Vec3& p_C, const Vec3& n_C, const Vec3& rest
   v.charred = charred;
   v.face = face;
   list_.vertex.push_back(v);
+  place_.push_back(placeIn(sight_, p_C));
 }
 
 void DrawListMaker::addPart(DrawPart part, const std::vector<Index3>& triangles) {
   part.firstIndex = static_cast<std::uint32_t>(list_.index.size());
-  for (const Index3& t : triangles)
-    for (int a = 0; a < 3; ++a) list_.index.push_back(base_ + static_cast<std::uint32_t>(t[a]));
+  cut_.clear();
+  const auto position = [&](std::uint32_t v) {
+    const float* const p = list_.vertex[v].position;
+    return Vec3(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
+  };
+  for (const Index3& t : triangles) {
+    std::array<std::uint32_t, 3> corner{};
+    for (int a = 0; a < 3; ++a) corner[static_cast<std::size_t>(a)] = base_ + static_cast<std::uint32_t>(t[a]);
+    const std::array<std::uint8_t, 3> place{place_[corner[0]], place_[corner[1]], place_[corner[2]]};
+    if ((place[0] & place[1] & place[2] & Place::sides) != 0) continue;
+    if (part.oneSided && turnedAway(position(corner[0]), position(corner[1]), position(corner[2]))) continue;
+    std::vector<std::uint32_t>& list = (place[0] | place[1] | place[2]) == 0 ? list_.index : cut_;
+    list.insert(list.end(), corner.begin(), corner.end());
+  }
+  list_.index.insert(list_.index.end(), cut_.begin(), cut_.end());
   part.indexCount = static_cast<std::uint32_t>(list_.index.size()) - part.firstIndex;
   if (part.indexCount > 0) list_.part.push_back(part);
 }
 
-void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form) {
+void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open) {
   form.update(surface.rest, surface.triangle);
   const std::vector<Vec3> normal = vertexNormals(surface.position, surface.triangle);
   begin();
   for (std::size_t v = 0; v < surface.position.size(); ++v)
     addVertex(point(surface.position[v]), direction(normal[v]), surface.rest[v], form.restNormal()[v],
               surface.charred.empty() ? 0.0F : std::clamp(surface.charred[v], 0.0F, mostCharred),
-              surface.face.empty() ? 0.0F : surface.face[v]);
+              stained(surface.face.empty() ? 0.0F : surface.face[v], surface.position[v], open));
   DrawPart part;
   part.appearance = appearanceOf(surface.appearance);
   part.oneSided = form.closed();
-  if (surface.charred.empty() && surface.face.empty()) {
+  if (surface.charred.empty() && surface.face.empty() && open.empty()) {
     addPart(part, surface.triangle);
     return;
   }
   // Only the triangles that are charred or parted pay for that.
   const auto harmed = [&](int i) {
     const DrawVertex& vertex = list_.vertex[base_ + static_cast<std::uint32_t>(i)];
-    return vertex.charred > 0.0F || vertex.face > 0.0F;
+    return vertex.charred > 0.0F || vertex.face != 0.0F;
   };
   std::array<std::vector<Index3>, 2> split;
   for (const Index3& t : surface.triangle) split[harmed(t[0]) || harmed(t[1]) || harmed(t[2]) ? 1 : 0].push_back(t);
@@ -105,10 +130,11 @@ void DrawListMaker::addMesh(const Mesh& mesh, Appearance appearance, const Pose&
               brushed(mesh.normal[v]));
   DrawPart part;
   part.appearance = appearance;
+  part.oneSided = true;
   addPart(part, mesh.triangle);
 }
 
-void DrawListMaker::addCavity(const SceneView& view, double aspect) {
+void DrawListMaker::addCavity(const SceneView& view) {
   if (const CavityShape shape = cavityShape(view); shape != cavityShape_) {
     cavity_ = makeCavity(shape);
     cavityShape_ = shape;
@@ -116,33 +142,29 @@ void DrawListMaker::addCavity(const SceneView& view, double aspect) {
   begin();
   for (std::size_t v = 0; v < cavity_.position.size(); ++v)
     addVertex(point(cavity_.position[v]), direction(cavity_.normal[v]), cavity_.position[v], cavity_.normal[v]);
-  // Most of it lies beside or behind the camera.
-  const double up = std::tan(0.5 * view.verticalFieldOfView), aside = up * aspect;
-  const auto outside = [&](int i) {  // of which sides of the field of view
-    const float* const p = list_.vertex[base_ + static_cast<std::uint32_t>(i)].position;
-    const double x = static_cast<double>(p[0]), y = static_cast<double>(p[1]), z = static_cast<double>(p[2]);
-    return (z <= 0.0 ? 1U : 0U) | (x > aside * z ? 2U : 0U) | (-x > aside * z ? 4U : 0U) | (y > up * z ? 8U : 0U) |
-           (-y > up * z ? 16U : 0U);
-  };
-  seen_.clear();
-  for (const Index3& t : cavity_.triangle)
-    if ((outside(t[0]) & outside(t[1]) & outside(t[2])) == 0U) seen_.push_back(t);
   DrawPart part;
   part.appearance = Appearance::cavity;
   part.oneSided = true;
-  addPart(part, seen_);
+  addPart(part, cavity_.triangle);
 }
 
-const DrawList& DrawListMaker::make(const SceneView& view, double aspect, bool cavity, std::span<const Puff> smoke) {
+const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, bool cavity,
+                                    std::span<const Puff> smoke) {
+  sight_ = sight;
+  place_.clear();
   list_.vertex.clear();
   list_.index.clear();
   list_.part.clear();
   origin_ = view.camera.position;
   toCamera_ = view.camera.orientation.normalized().conjugate().toRotationMatrix();
   form_.resize(view.surface.size());
-  for (std::size_t s = 0; s < view.surface.size(); ++s) addSurface(view.surface[s], form_[s]);
+  const std::vector<OpenEnd> open = openEnds(view);
+  for (std::size_t s = 0; s < view.surface.size(); ++s) addSurface(view.surface[s], form_[s], open);
   list_.referenceDistance = referenceDistance(list_.vertex);
   for (const ClipView& clip : view.clip) addMesh(makeClip(clip), Appearance::titanium, clip.pose, true);
+  for (const OpenEnd& end : open)
+    addMesh(makeDrop(end, view.time), end.bile ? Appearance::bile : Appearance::blood, {end.position, Quat::Identity()},
+            false);
   for (const InstrumentView& instrument : view.instrument) {
     if (instrument.kind == InstrumentKind::none) continue;
     for (const InstrumentPart& part : makeInstrument(instrument))
@@ -150,7 +172,7 @@ const DrawList& DrawListMaker::make(const SceneView& view, double aspect, bool c
   }
   // Scenes name the large organs first, which lie behind: what is hidden costs little where it comes later.
   std::reverse(list_.part.begin(), list_.part.end());
-  if (cavity) addCavity(view, aspect);
+  if (cavity) addCavity(view);
   list_.sheets = makeSheetList(view);
   list_.smoke = makeSmokeList(view.camera, smoke);
   return list_;

@@ -8,7 +8,9 @@
 
 #include "gui/render/cavity_mesh.h"
 #include "gui/render/mesh.h"
+#include "gui/render/ooze.h"
 #include "gui/render/sheet_list.h"
+#include "gui/render/sight.h"
 #include "gui/render/smoke.h"
 #include "gui/render/surface_form.h"
 #include "sim/scene/scene_view.h"
@@ -28,6 +30,8 @@ enum class Appearance : int {
   steel = 11,
   ceramic = 12,
   titanium = 13,  ///< clips
+  blood = 14,
+  bile = 15,
 };
 
 /// From SurfaceView::appearance; a word that is not known here is drawn as plain tissue.
@@ -40,7 +44,7 @@ struct DrawVertex {
   float rest[3];  ///< where textures stick: rest position in W, or position in the instrument's frame (m)
   float restNormal[3];
   float charred;  ///< SurfaceView::charred
-  float face;     ///< SurfaceView::face
+  float face;     ///< SurfaceView::face, or how much an open vessel stains: blood above 0, bile below
 };
 
 struct DrawPart {
@@ -66,27 +70,29 @@ struct DrawList {
 class DrawListMaker {
  public:
   /// The list is good until the next call. @pre checkView(view) has passed
-  /// @param aspect width over height of the picture
-  [[nodiscard]] const DrawList& make(const SceneView& view, double aspect, bool cavity,
+  [[nodiscard]] const DrawList& make(const SceneView& view, const Sight& sight, bool cavity,
                                      std::span<const Puff> smoke = {});
 
  private:
-  void addSurface(const SurfaceView& surface, SurfaceForm& form);
+  void addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open);
   void addMesh(const Mesh& mesh, Appearance appearance, const Pose& pose, bool lengthwise);
-  void addCavity(const SceneView& view, double aspect);
+  void addCavity(const SceneView& view);
 
   void begin() { base_ = static_cast<std::uint32_t>(list_.vertex.size()); }
   [[nodiscard]] Vec3 point(const Vec3& p_W) const { return toCamera_ * (p_W - origin_); }
   [[nodiscard]] Vec3 direction(const Vec3& d_W) const { return toCamera_ * d_W; }
   void addVertex(const Vec3& p_C, const Vec3& n_C, const Vec3& rest, const Vec3& restNormal, float charred = 0.0F,
                  float face = 0.0F);
+  /// What can't be seen is left out; what the picture's edge cuts comes last, as cutting takes longer.
   void addPart(DrawPart part, const std::vector<Index3>& triangles);
 
   DrawList list_;
   std::vector<SurfaceForm> form_;  ///< per surface of the view
   CavityShape cavityShape_;
   Mesh cavity_;
-  std::vector<Index3> seen_;  ///< triangles of the cavity in the field of view
+  Sight sight_;
+  std::vector<std::uint8_t> place_;  ///< per vertex: placeIn()
+  std::vector<std::uint32_t> cut_;   ///< triangles at the edge of the picture
   Vec3 origin_ = Vec3::Zero();
   Mat3 toCamera_ = Mat3::Identity();
   std::uint32_t base_ = 0;  ///< of the vertices that are being added

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double mm = 1e-3;
 constexpr double nominalRadius = 2.5 * mm;  // sizes below are those of a 5 mm instrument
-constexpr int around = 28;                  // points of a ring
+constexpr int around = 20;                  // points of a ring
 
 Quat aboutHinge(double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())); }
 

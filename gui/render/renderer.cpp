@@ -41,8 +41,8 @@ class Renderer::Worker {
   Image render(const SceneView& view, int width, int height, const RenderSettings& settings,
                std::span<const Puff> smoke) {
     std::packaged_task<Image(ScenePainter&)> task([&](ScenePainter& painter) {
-      const double aspect = static_cast<double>(width) / height;
-      return painter.paint(drawLists_.make(view, aspect, settings.cavity, smoke), view.verticalFieldOfView, width,
+      const Sight sight = sightOf(width, height, view.verticalFieldOfView, settings.endoscopeMask);
+      return painter.paint(drawLists_.make(view, sight, settings.cavity, smoke), sight, view.verticalFieldOfView, width,
                            height, settings);
     });
     std::future<Image> image = task.get_future();

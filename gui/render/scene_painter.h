@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
 
 #include "gui/render/draw_list.h"
 #include "gui/render/gl_functions.h"
-#include "gui/render/render_target.h"
+#include "gui/render/picture_targets.h"
 #include "gui/render/renderer.h"
 #include "gui/render/scene_programs.h"
-#include "gui/render/sheet_painter.h"
-#include "gui/render/smoke_painter.h"
+#include "gui/render/scene_textures.h"
+#include "gui/render/triangle_buffer.h"
 
 namespace calot::gui {
 
@@ -24,16 +24,15 @@ class ScenePainter {
   ScenePainter(const ScenePainter&) = delete;
   ScenePainter& operator=(const ScenePainter&) = delete;
 
+  /// @param sight that the list was made for, of this picture
   /// @pre checkPictureSize(width, height) and checkView() have passed
-  [[nodiscard]] Image paint(const DrawList& list, double verticalFieldOfView, int width, int height,
+  [[nodiscard]] Image paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
                             const RenderSettings& settings);
   [[nodiscard]] std::string description() const;
 
  private:
-  struct Targets;
   struct Frame;
 
-  void upload(const DrawList& list);
   void prepareTargets(int width, int height, Quality quality);
   void clear(const RenderTarget& target, GLbitfield what, float alpha = 0.0F, float grey = 0.0F) const;
   /// Binds the target and confines drawing to the endoscope's field.
@@ -50,18 +49,18 @@ class ScenePainter {
 
   void drawOcclusion(const DrawList& list, const Frame& frame) const;
   void drawSurfaces(const DrawList& list, const Frame& frame) const;
+  void drawBlended(const TriangleBuffer& triangles, std::size_t indices) const;
   void drawSheets(const SheetList& sheets, const Frame& frame);
-  void drawSmoke(const SmokeList& smoke, const Frame& frame);
+  void drawSmoke(const SmokeList& smoke, const Frame& frame) const;
   void compose(const Frame& frame) const;
   [[nodiscard]] Image read() const;
 
   GlFunctions gl_;
   std::unique_ptr<ScenePrograms> film_, interactive_;
-  std::unique_ptr<Targets> targets_;
-  std::unique_ptr<SheetPainter> sheets_;  ///< from the first picture with connective tissue on
-  std::unique_ptr<SmokePainter> smoke_;   ///< from the first picture with smoke on
-  GLuint vertexArray_ = 0, emptyArray_ = 0, vertexBuffer_ = 0, indexBuffer_ = 0;
-  std::array<GLuint, 2> noise_{};  ///< in half floats, for film; in bytes, for interactive quality
+  std::unique_ptr<PictureTargets> targets_;
+  SceneTextures textures_;
+  TriangleBuffer surfaces_, sheets_, smoke_;
+  GLuint emptyArray_ = 0;  ///< for triangles that shaders make
 };
 
 }  // namespace calot::gui

@@ -56,9 +56,9 @@ ScenePrograms::ScenePrograms(const GlFunctions& gl, const char* choices)
       prepass(gl, "prepass", {choices, glsl::common, glsl::surfaceVertex}, {glsl::prepassFragment}),
       surround(gl, "surround", {choices, glsl::common, glsl::surroundVertex}, {glsl::surroundFragment}),
       sheet(gl, "sheet", {choices, glsl::common, glsl::sheetVertex},
-            {choices, glsl::common, glsl::shadowLookup, glsl::display, glsl::sheetFragment}),
+            {choices, glsl::common, glsl::display, glsl::receiver, glsl::shadowLookup, glsl::sheetFragment}),
       smoke(gl, "smoke", {choices, glsl::common, glsl::smokeVertex},
-            {choices, glsl::common, glsl::shadowLookup, glsl::display, glsl::smokeFragment}),
+            {choices, glsl::common, glsl::display, glsl::receiver, glsl::smokeFragment}),
       occlusion(gl, "occlusion", {glsl::pictureVertex}, {choices, glsl::common, glsl::occlusionFragment}),
       backdrop(gl, "backdrop", {glsl::pictureVertex}, {glsl::backdropFragment}),
       blur(gl, "blur", {glsl::pictureVertex}, {choices, glsl::blurFragment}),
@@ -76,8 +76,8 @@ const ShaderProgram& ScenePrograms::surface(const DrawPart& part) {
         std::initializer_list<const char*>{choice.c_str(), choices_, glsl::common, glsl::surfaceBroad,
                                            glsl::surfaceVertex},
         std::initializer_list<const char*>{choice.c_str(), choices_, glsl::common, glsl::surfaceBroad,
-                                           glsl::surfaceMaterial, glsl::shadowLookup, glsl::softShadow, glsl::display,
-                                           glsl::surfaceFragment});
+                                           glsl::surfaceMaterial, glsl::display, glsl::receiver, glsl::shadowLookup,
+                                           glsl::softShadow, glsl::surfaceFragment});
   }
   return *program;
 }

@@ -11,9 +11,6 @@
 
 namespace calot::gui {
 
-/// The round field is drawn as a polygon of so many sides.
-inline constexpr int fieldSides = 96;
-
 /// The occlusion is worked out at every so many pixels of the prepass.
 inline constexpr int occlusionStride(Quality quality) { return quality == Quality::film ? 1 : 2; }
 

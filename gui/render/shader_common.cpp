@@ -34,15 +34,6 @@ mat2 rotation(float turn) {
   return mat2(c, s, -s, c);
 }
 
-// What the endoscope's light gives a surface that faces it, in direction l at squared distance d2: inverse square, in a
-// cone that fades, right at the reference distance.
-float lightAt(vec3 l, float d2, float referenceDistance) {
-  float ahead = clamp(-l.z, 0.0, 1.0);
-  float cone = ahead * ahead * sqrt(ahead);
-  float light = cone * referenceDistance * referenceDistance / max(d2, 0.0004);
-  return 1.25 * light / (1.0 + 0.35 * light);  // a camera's knee for what comes too close
-}
-
 vec4 project(vec3 p, vec2 f) {
   return vec4(f.x * p.x, -f.y * p.y,
               (p.z * (depthRange.y + depthRange.x) - 2.0 * depthRange.x * depthRange.y) / (depthRange.y - depthRange.x), p.z);

@@ -196,9 +196,11 @@ Material charredBy(Material m, float charred, vec3 mm) {
   return m;
 }
 
-// The face of a parted vessel, from rim (1) to middle (2): wall, inner lining, lumen. Below 1: skin stained by blood.
+// The face of a parted vessel, from rim (1) to middle (2): wall, inner lining, lumen. Below 1: skin stained by blood,
+// below 0 by bile.
 Material parted(Material m, float face) {
-  m.albedo = mix(m.albedo, vec3(0.200, 0.012, 0.010), 0.75 * smoothstep(0.0, 0.4, face));
+  vec3 stain = face < 0.0 ? vec3(0.190, 0.150, 0.012) : vec3(0.200, 0.012, 0.010);
+  m.albedo = mix(m.albedo, stain, 0.75 * smoothstep(0.0, 0.4, abs(face)));
   if (face < 0.5) return m;
   float inward = face - 1.0;
   m.albedo = vec3(0.330, 0.100, 0.075);
@@ -261,6 +263,8 @@ Material materialOf(int appearance, vec3 rest, vec2 harm, Broad broad) {
   if (appearance == 10) return solid(vec3(0.010, 0.010, 0.011), vec3(0.042), 0.33);
   if (appearance == 11) return brushed(mm, vec3(0.60, 0.585, 0.57), 0.27);
   if (appearance == 12) return solid(vec3(0.62, 0.58, 0.50), vec3(0.045), 0.30);
+  if (appearance == 14) return solid(vec3(0.150, 0.006, 0.005), vec3(0.040), 0.12);
+  if (appearance == 15) return solid(vec3(0.200, 0.170, 0.012), vec3(0.040), 0.12);
   return brushed(mm, vec3(0.56, 0.54, 0.60), 0.30);
 #else
 #if LOOK == 1

@@ -8,7 +8,7 @@ const char* const occlusionFragment = R"(
 uniform sampler2D normalMap;     // halved, around 0.5
 uniform sampler2D depthMap;      // z in C (m), 0: nothing
 uniform float reach;             // how far a surface darkens another (m)
-layout(location = 0) out float open;
+layout(location = 0) out vec4 halvedAndOpen;  // the normal, as it came; how open it is
 
 vec3 pointAt(vec2 pixel, float z, vec2 size) {
   vec2 clip = (pixel + 0.5) / size * 2.0 - 1.0;
@@ -21,10 +21,11 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy) * STRIDE;  // of the prepass
   ivec2 size = textureSize(depthMap, 0);
   float here = texelFetch(depthMap, pixel, 0).x;
-  open = 1.0;
+  halvedAndOpen = vec4(1.0);
   if (here <= 0.0) return;
   vec3 p = pointAt(vec2(pixel), here, vec2(size));
-  vec3 n = normalize(texelFetch(normalMap, pixel, 0).xyz - 0.5);
+  vec3 halved = texelFetch(normalMap, pixel, 0).xyz;
+  vec3 n = normalize(halved - 0.5);
   float disk = clamp(reach * abs(focal.y) * 0.5 * float(size.y) / here, 3.0, 0.35 * float(size.y));
   vec2 turn = hash(uvec2(gl_FragCoord.xy) & uint(PATTERN - 1));
   mat2 turned = rotation(turn.x);
@@ -40,13 +41,12 @@ void main() {
     float fall = clamp(1.0 - distance2 / (reach * reach), 0.0, 1.0);
     closed += max(0.0, dot(v, n) * inversesqrt(distance2 + 1e-9) - 0.10) * fall;
   }
-  open = clamp(1.0 - 2.1 * closed / float(OCCLUSION_SAMPLES), 0.0, 1.0);
+  halvedAndOpen = vec4(halved, clamp(1.0 - 2.1 * closed / float(OCCLUSION_SAMPLES), 0.0, 1.0));
 }
 )";
 
 const char* const blurFragment = R"(
-uniform sampler2D openMap;
-uniform sampler2D normalMap;
+uniform sampler2D openMap;   // normal, halved around 0.5; how open it is
 uniform sampler2D depthMap;
 layout(location = 0) out float open;
 // The sampling pattern repeats every PATTERN pixels: a mean over as many each way takes it away.
@@ -54,15 +54,16 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   ivec2 size = textureSize(openMap, 0);
   float here = texelFetch(depthMap, pixel * STRIDE, 0).x;
-  vec3 n = texelFetch(normalMap, pixel * STRIDE, 0).xyz - 0.5;
+  vec3 n = texelFetch(openMap, pixel, 0).xyz - 0.5;
   float sum = 0.0, weights = 0.0;
   for (int y = -PATTERN / 2; y < PATTERN / 2; ++y)
     for (int x = -PATTERN / 2; x < PATTERN / 2; ++x) {
       ivec2 there = clamp(pixel + ivec2(x, y), ivec2(0), size - 1);
+      vec4 other = texelFetch(openMap, there, 0);
       float away = abs(texelFetch(depthMap, there * STRIDE, 0).x - here) / (0.02 * here + 1e-5);
-      float alike = 4.0 * dot(texelFetch(normalMap, there * STRIDE, 0).xyz - 0.5, n);
+      float alike = 4.0 * dot(other.xyz - 0.5, n);
       float weight = 1e-4 + clamp(1.0 - away, 0.0, 1.0) * clamp(alike, 0.0, 1.0);
-      sum += weight * texelFetch(openMap, there, 0).x;
+      sum += weight * other.w;
       weights += weight;
     }
   open = sum / weights;

@@ -31,10 +31,7 @@ in vec3 vNormal;
 in vec3 vAlong;
 in vec4 vLook;
 in float vErosion;
-layout(location = 0) out vec4 radiance;  // multiplied by the opacity
 
-uniform float referenceDistance; // where the exposure is right (m)
-uniform vec2 pixels;             // size of this target
 uniform sampler2D fibreMap;
 uniform sampler2D occlusionMap;
 
@@ -66,11 +63,9 @@ void main() {
   float opacity = vLook.z * (1.0 - (1.0 - 0.38 * fibre) * (1.0 - film));
   if (opacity < 0.006) discard;
 
-  vec3 toLight = light - vPosition;
-  float d2 = dot(toLight, toLight);
-  vec3 l = toLight * inversesqrt(d2);
+  vec3 l;
+  float received = lightAt(vPosition, l);
   vec3 h = normalize(l + v);
-  float received = lightAt(l, d2, referenceDistance);
   float occlusion = mix(0.62, 1.0, texture(occlusionMap, gl_FragCoord.xy / pixels).x);
   float lit = received * mix(0.12, 1.0, shadow(vPosition));
 
@@ -95,11 +90,7 @@ void main() {
   float nh = abs(dot(n, h));
   float wet = pow(nh, 60.0);
   float gloss = (0.07 * silk + 0.5 * wet) * min(lit, 1.6) * occlusion * (1.0 - smoothstep(0.0, 0.6, burnt));
-  vec3 whole = diffuse * opacity + vec3(gloss * min(1.0, 1.6 * opacity));
-#if DIRECT
-  whole = shown(whole / opacity, gl_FragCoord.xy, pixels) * opacity;
-#endif
-  radiance = vec4(whole, opacity);
+  show(diffuse * opacity + vec3(gloss * min(1.0, 1.6 * opacity)), opacity);
 }
 )";
 

@@ -23,10 +23,6 @@ const char* const smokeFragment = R"(
 in vec3 vPosition;
 in vec2 vCorner;
 in vec2 vLook;
-layout(location = 0) out vec4 radiance;  // multiplied by the opacity
-
-uniform float referenceDistance; // where the exposure is right (m)
-uniform vec2 pixels;             // size of this target
 
 void main() {
   float away = dot(vCorner, vCorner);
@@ -35,15 +31,10 @@ void main() {
   float wisps = 0.75 + 0.8 * noise(place).w + 0.4 * noise(2.3 * place + 1.9).w;
   float opacity = vLook.x * shape * shape * clamp(wisps, 0.0, 1.4);
   if (opacity < 0.004) discard;
-  vec3 toLight = light - vPosition;
-  float d2 = dot(toLight, toLight);
   // Near the lens it would be blinding, as it is; but not to the camera's last bit.
-  float received = min(lightAt(toLight * inversesqrt(d2), d2, referenceDistance), 1.6);
-  vec3 whole = vec3(0.55, 0.55, 0.56) * (0.10 + 0.90 * received) * opacity;
-#if DIRECT
-  whole = shown(whole / opacity, gl_FragCoord.xy, pixels) * opacity;
-#endif
-  radiance = vec4(whole, opacity);
+  vec3 l;
+  float received = min(lightAt(vPosition, l), 1.6);
+  show(vec3(0.55, 0.55, 0.56) * (0.10 + 0.90 * received) * opacity, opacity);
 }
 )";
 

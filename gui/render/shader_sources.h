@@ -11,6 +11,7 @@ extern const char* const surroundFragment;   ///< what lies around the round fie
 extern const char* const prepassFragment;    ///< normal and depth, for the occlusion
 extern const char* const surfaceBroad;       ///< slow noises of the looks, for vertices or pixels
 extern const char* const surfaceMaterial;    ///< the looks: colour, gloss and bumps of every Appearance
+extern const char* const receiver;           ///< what a surface receives of the light, and how it is shown
 extern const char* const shadowLookup;       ///< asks the shadow map
 extern const char* const softShadow;         ///< the endoscope's shadow on a surface
 extern const char* const backdropFragment;   ///< the cavity, from a target of half the size

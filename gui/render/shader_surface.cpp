@@ -4,8 +4,34 @@
 
 namespace calot::gui::glsl {
 
+const char* const receiver = R"(
+uniform float referenceDistance;         // where the exposure is right (m)
+uniform vec2 pixels;                     // size of this target
+uniform vec3 light;                      // position in C (m)
+layout(location = 0) out vec4 radiance;  // multiplied by the opacity
+
+// What the endoscope's light gives a surface at p that faces it: inverse square, in a cone that fades, right at the
+// reference distance. l: the direction in which the light is.
+float lightAt(vec3 p, out vec3 l) {
+  vec3 toLight = light - p;
+  float d2 = dot(toLight, toLight);
+  l = toLight * inversesqrt(d2);
+  float ahead = clamp(-l.z, 0.0, 1.0);
+  float cone = ahead * ahead * sqrt(ahead);
+  float given = cone * referenceDistance * referenceDistance / max(d2, 0.0004);
+  return 1.25 * given / (1.0 + 0.35 * given);  // a camera's knee for what comes too close
+}
+
+// @param whole multiplied by the opacity
+void show(vec3 whole, float opacity) {
+#if DIRECT
+  whole = shown(whole / opacity, gl_FragCoord.xy, pixels) * opacity;
+#endif
+  radiance = vec4(whole, opacity);
+}
+)";
+
 const char* const shadowLookup = R"(
-uniform vec3 light;              // position in C (m)
 uniform vec2 shadowFocal;
 #if SOFT_SHADOWS
 uniform sampler2D shadowMap;
@@ -76,11 +102,8 @@ in vec2 vHarm;
 #if BROAD_PER_VERTEX
 in vec4 vBroadA, vBroadB, vBroadC, vBroadD;
 #endif
-layout(location = 0) out vec4 radiance;
 
 uniform int appearance;
-uniform float referenceDistance; // where the exposure is right (m)
-uniform vec2 pixels;             // size of this target
 uniform sampler2D occlusionMap;
 
 // The least rotation from the rest normal to the present one carries slopes from rest to now.
@@ -127,16 +150,14 @@ void main() {
   vec3 n = normalize(n0 - slope);
 
   vec3 v = -normalize(vPosition);
-  vec3 toLight = light - vPosition;
-  float d2 = dot(toLight, toLight);
-  vec3 l = toLight * inversesqrt(d2);
+  vec3 l;
+  float received = lightAt(vPosition, l);
   vec3 h = normalize(l + v);
   float nl = dot(n, l);
   float nv = clamp(dot(n, v), 0.02, 1.0);
   float nh = clamp(dot(n, h), 0.0, 1.0);
   float vh = clamp(dot(v, h), 0.0, 1.0);
 
-  float received = lightAt(l, d2, referenceDistance);
   float occlusion = texture(occlusionMap, gl_FragCoord.xy / pixels).x;
   float lit = received * shadow(vPosition, n0);
 
@@ -161,11 +182,7 @@ void main() {
   if (m.mirror.x > 0.3) around = 1.5 * mix(around, vec3(dot(around, vec3(0.4, 0.4, 0.2))), 0.72) + 0.10 * received * nv * nv * nv * (nv * nv * nv);
   vec3 rim = fresnel * around;
 
-  vec3 whole = diffuse + specular * mix(0.4, 1.0, occlusion) + rim;
-#if DIRECT
-  whole = shown(whole, gl_FragCoord.xy, pixels);
-#endif
-  radiance = vec4(whole, 1.0);
+  show(diffuse + specular * mix(0.4, 1.0, occlusion) + rim, 1.0);
 }
 )";
 

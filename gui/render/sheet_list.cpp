@@ -11,7 +11,7 @@
 namespace calot::gui {
 namespace {
 
-constexpr std::array<double, 6> rows{0.0, 0.12, 0.35, 0.65, 0.88, 1.0};  // along a strand
+constexpr std::array<double, 5> rows{0.0, 0.13, 0.5, 0.87, 1.0};  // along a strand
 constexpr double sag = 0.13;             // largest deviation of a strand from its chord, over its length
 constexpr double thinningLength = 4e-3;  // m; longer tissue is stretched, and thinner
 constexpr double tuftLength = 2.8e-3, tuftWidth = 2.2e-3;

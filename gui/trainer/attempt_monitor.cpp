@@ -26,7 +26,7 @@ std::size_t bedOf(const SceneDescription& scene) {
 
 AttemptMonitor::AttemptMonitor(const Model& model)
     : model_(model),
-      list_(structureNames(model), connectiveNames(model), model.stepSeconds()),
+      list_({structureNames(model), connectiveNames(model)}, model.stepSeconds()),
       bed_(bedOf(model.scene())) {
   for (std::size_t h = 0; h < handCount; ++h) {
     figures_.hand[h].instrument = model.scene().hands[h].instrument;

@@ -59,24 +59,6 @@ std::string viewHint(const SceneDescription& scene, const AttemptFigures& figure
 
 }  // namespace
 
-const char* nameOf(Phase phase) {
-  switch (phase) {
-    case Phase::none:
-      return "";
-    case Phase::identification:
-      return "identification";
-    case Phase::clipping:
-      return "clipping";
-    case Phase::cutting:
-      return "cutting";
-    case Phase::dissection:
-      return "dissection";
-    case Phase::done:
-      return "done";
-  }
-  return "";
-}
-
 const char* nameOf(InstrumentKind kind) {
   switch (kind) {
     case InstrumentKind::none:

@@ -17,8 +17,6 @@ namespace calot::gui {
 /// Is all done that the scene asks for? Always yes where it asks for nothing: then it is the trainee who says.
 [[nodiscard]] bool isDone(const SceneDescription& scene, const AttemptFigures& figures);
 
-/// "identification", "clipping", ...; empty for none.
-[[nodiscard]] const char* nameOf(Phase phase);
 /// "grasper", "clip applier", ...
 [[nodiscard]] const char* nameOf(InstrumentKind kind);
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scene/step_result.h"
+#include "gui/words/event_words.h"
 
 namespace calot::gui {
 
@@ -24,14 +24,10 @@ struct Mistake {
   [[nodiscard]] double branchTime(double stepSeconds) const;
 };
 
-/// The mistakes of an attempt in the order of time: clips that are dropped, half on, on one another or too near; cuts
-/// through a clip, with too few clips, or that leave a vessel open; vessels burned through or torn; perforations;
-/// tissue that slipped or tore out of the jaws; connective tissue that tore; and whatever is done to a vessel that must
-/// be spared.
+/// The mistakes of an attempt in the order of time: all events that should not happen (EventWords::fault).
 class MistakeList {
  public:
-  /// @param structures names by the events' subjects; @param connective names of connective tissues
-  MistakeList(std::vector<std::string> structures, std::vector<std::string> connective, double stepSeconds);
+  MistakeList(SubjectNames names, double stepSeconds);
 
   /// The events of one step. @returns whether something was added
   bool add(std::span<const Event> events);
@@ -39,15 +35,10 @@ class MistakeList {
   [[nodiscard]] const std::vector<Mistake>& all() const { return all_; }
 
  private:
-  [[nodiscard]] std::string nameOf(const Event& event) const;
-
-  std::vector<std::string> structures_, connective_;
+  SubjectNames names_;
   double stepSeconds_;
   std::vector<Mistake> all_;
   std::vector<double> last_;  ///< per mistake, when it last happened (s)
 };
-
-/// "cystic-duct" as people write it.
-[[nodiscard]] std::string spoken(std::string name);
 
 }  // namespace calot::gui

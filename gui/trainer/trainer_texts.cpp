@@ -103,7 +103,8 @@ PanelText panelText(const TrainingStatus& status, const SceneDescription& scene,
   out.time = clockText(figures.time);
   out.deadlines = deadlineText(figures);
   out.late = status.stage == Stage::running && figures.missedLately > 0;
-  if (figures.procedure.phase != Phase::none) out.phase = QString("Phase: ") + nameOf(figures.procedure.phase);
+  if (figures.procedure.phase != Phase::none)
+    out.phase = "Phase: " + QString::fromStdString(wordFor(figures.procedure.phase));
   if (practice) out.score = scoreText(scene, figures);
   if (practice && status.stage == Stage::running) out.hint = QString::fromStdString(hintFor(scene, summary, figures));
   for (std::size_t h = 0; h < handCount; ++h)

@@ -83,30 +83,25 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
 TrainerWindow::~TrainerWindow() { endSession(); }
 
 void TrainerWindow::buildMenus() {
-  const auto add = [this](QMenu* menu, const char* text, const QKeySequence& keys, auto action) {
-    QAction* const made = menu->addAction(text);
-    made->setShortcut(keys);
-    connect(made, &QAction::triggered, this, action);
-    return made;
-  };
   QMenu* const attempt = menuBar()->addMenu("&Attempt");
-  pauseAction_ = add(attempt, "&Pause or go on", QKeySequence(Qt::CTRL | Qt::Key_P), [this] { togglePause(); });
+  pauseAction_ =
+      attempt->addAction("&Pause or go on", QKeySequence(Qt::CTRL | Qt::Key_P), this, [this] { togglePause(); });
   pauseAction_->setVisible(setup_.settings.attempt.mode == recorder::Mode::practice);
-  finishAction_ = add(attempt, "&End", QKeySequence(Qt::CTRL | Qt::Key_E), [this] {
+  finishAction_ = attempt->addAction("&End", QKeySequence(Qt::CTRL | Qt::Key_E), this, [this] {
     if (session_) session_->finish();
     refresh();
   });
-  restartAction_ = add(attempt, "Start a&gain", QKeySequence(Qt::CTRL | Qt::Key_R), [this] {
+  restartAction_ = attempt->addAction("Start a&gain", QKeySequence(Qt::CTRL | Qt::Key_R), this, [this] {
     if (session_) session_->start();
     refresh();
     view_->setFocus();
   });
-  add(attempt, "&Other scene", QKeySequence::Open, [this] { chooseScene(); });
-  add(attempt, "&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), [this] { close(); });
+  attempt->addAction("&Other scene", QKeySequence(QKeySequence::Open), this, [this] { chooseScene(); });
+  attempt->addAction("&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), this, [this] { close(); });
   QMenu* const look = menuBar()->addMenu("&View");
-  add(look, "&Full screen", QKeySequence(Qt::Key_F11),
-      [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
-  add(look, "&Operation", QKeySequence(Qt::Key_F6), [this] { view_->setFocus(); });
+  look->addAction("&Full screen", QKeySequence(Qt::Key_F11), this,
+                  [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
+  look->addAction("&Operation", QKeySequence(Qt::Key_F6), this, [this] { view_->setFocus(); });
 }
 
 void TrainerWindow::begin(recorder::LoadedScene scene) {

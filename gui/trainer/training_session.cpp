@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "gui/trainer/fresh_file.h"
 #include "gui/trainer/hints.h"
 #include "recorder/blended_source.h"
 #include "recorder/branch.h"
@@ -180,24 +181,13 @@ void TrainingSession::prepare() {
   model_ = std::move(built.model);
 }
 
-std::filesystem::path TrainingSession::freshFile(const std::string& startUtc) const {
-  std::string when;
-  for (const char c : startUtc) {
-    if (c != '-' && c != ':') when += c;
-  }
-  const std::string stem = fmt::format("{}-{}", scene().name, when);
-  std::filesystem::path file = settings_.folder / (stem + ".h5");
-  for (int n = 2; std::filesystem::exists(file); ++n) file = settings_.folder / fmt::format("{}-{}.h5", stem, n);
-  return file;
-}
-
 void TrainingSession::attempt() {
   const std::unique_ptr<recorder::SampleSource> source = input_->open(scene());
   giveWay();
   recorder::ControlledSource controlled(*source);
   const recorder::AttemptHeader header =
       recorder::makeHeader(*model_, settings_.scene.assets, source->provenance(), settings_.attempt);
-  const std::filesystem::path file = freshFile(header.startUtc);
+  const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
   recorder::RecordingWriter writer(file, header, {false, settings_.key});
   recorder::WorkerPool pool(settings_.threads);
   recorder::Session session(*model_, header.seed, pool);
@@ -219,7 +209,7 @@ void TrainingSession::branch(double time) {
   recorder::refuseParent(parent, parent.verifyChain());
   const std::uint64_t fork = recorder::forkStepAt(parent, time);
   const recorder::AttemptHeader header = recorder::branchHeader(parent, *model_, fork, source->provenance());
-  const std::filesystem::path file = freshFile(header.startUtc);
+  const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
   recorder::BranchFile place(file, false);
   recorder::RecordingWriter writer(place.path(), header, {true, settings_.key});
   recorder::WorkerPool pool(settings_.threads);

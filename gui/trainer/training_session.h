@@ -106,7 +106,6 @@ class TrainingSession {
            recorder::RecordingWriter& writer, AttemptMonitor& monitor, const recorder::AttemptHeader& header,
            const std::filesystem::path& file);
   void keepResult(const recorder::RunReport& report, const recorder::SampleSource& source);
-  [[nodiscard]] std::filesystem::path freshFile(const std::string& startUtc) const;
   void enter(Stage stage);
   void giveWay() const;
 

@@ -171,8 +171,9 @@ Layout::Layout(const AttemptHeader& header)
   ticksPerBlock = stepsPerBlock * ticksPerStep;
   // About a second, and at the end of a block.
   const double blockSeconds = static_cast<double>(ticksPerBlock) * header.tickSeconds;
-  keyframeInterval =
-      stepsPerBlock * static_cast<std::uint64_t>(std::clamp(std::floor(1.0 / blockSeconds + 0.5), 1.0, 1e6));
+  const auto blocks = static_cast<std::uint64_t>(std::clamp(std::floor(1.0 / blockSeconds + 0.5), 1.0, 1e6));
+  keyframeInterval = stepsPerBlock * blocks;
+  shortInterval = stepsPerBlock * std::max<std::uint64_t>(1, blocks / 2);
 
   Collect collect{*this};
   TickSamples samples;

@@ -48,6 +48,7 @@ struct RecordingWriter::Impl {
   Block* filling = nullptr;
   std::uint64_t nextStep = 0;
   std::uint64_t keyframeWords = 0;
+  bool carved = false;  // since the last keyframe
   bool ended = false;
   RawSampleFeed* feed = nullptr;
   std::uint64_t feedFirstTick = 0;
@@ -118,6 +119,14 @@ struct RecordingWriter::Impl {
     writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
   }
 
+  /// Steps in which fat is carved take the longest to simulate again: there keyframes come twice as often.
+  bool keyframeDue(const StepResult& result) {
+    for (const FatResult& fat : result.fat) carved = carved || fat.carved > 0.0;
+    if (nextStep % (carved ? layout.shortInterval : layout.keyframeInterval) != 0) return false;
+    carved = false;
+    return true;
+  }
+
   /// Moves what the device measured up to the end of the last step into the block.
   void takeRaw() {
     if (feed == nullptr) return;
@@ -186,7 +195,7 @@ void RecordingWriter::onStep(const StepRecord& record) {
   Impl& impl = *impl_;
   assert(!impl.ended && record.step == impl.nextStep);
   ++impl.nextStep;
-  if (record.keyframe && !impl.layout.lean && impl.nextStep % impl.layout.keyframeInterval == 0) {
+  if (record.keyframe && !impl.layout.lean && impl.keyframeDue(record.result)) {
     const Keyframe keyframe = record.keyframe();
     appendStep(impl.layout, record, &keyframe, impl.keyframeWords, *impl.filling);
   } else {

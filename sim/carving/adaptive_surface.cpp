@@ -223,25 +223,31 @@ int AdaptiveSurface::middleVertex(const CarvedField& field, Part& part, std::uin
 }
 
 TriangleMesh AdaptiveSurface::mesh() const {
-  std::vector<std::pair<std::uint64_t, Vec3>> vertex;
-  for (const Part& part : part_) {
-    for (const Vertex& v : part.vertex) vertex.emplace_back(v.key, v.position);
-  }
-  const auto less = [](const auto& x, const auto& y) { return x.first < y.first; };
-  std::stable_sort(vertex.begin(), vertex.end(), less);
-  const auto same = [](const auto& x, const auto& y) { return x.first == y.first; };
-  vertex.erase(std::unique(vertex.begin(), vertex.end(), same), vertex.end());
+  std::size_t most = 0;
+  for (const Part& part : part_) most += part.vertex.size();
+  // Vertices that parts share, found by key: open addressing, multiplicative hashing (Knuth, TAOCP 3, 6.4).
+  struct Entry {
+    std::uint64_t key = 0;
+    int vertex = -1;
+  };
+  const int bits = static_cast<int>(std::bit_width(2 * most + 1));
+  std::vector<Entry> table(std::size_t{1} << static_cast<unsigned>(bits));
   TriangleMesh mesh;
-  for (const auto& v : vertex) mesh.vertex.push_back(v.second);
+  mesh.vertex.reserve(most);
+  mesh.triangle.reserve(triangles_);
+  std::vector<int> number;  // of a part's vertices in the mesh
   for (const Part& part : part_) {
-    for (const auto& t : part.triangle) {
-      Index3 v;
-      for (int k = 0; k < 3; ++k) {
-        const std::pair<std::uint64_t, Vec3> wanted{part.vertex[t[slot(k)]].key, Vec3::Zero()};
-        v[k] = static_cast<int>(std::lower_bound(vertex.begin(), vertex.end(), wanted, less) - vertex.begin());
+    number.clear();
+    for (const Vertex& v : part.vertex) {
+      std::size_t at = (v.key * 0x9E3779B97F4A7C15ULL) >> static_cast<unsigned>(64 - bits);
+      while (table[at].vertex >= 0 && table[at].key != v.key) at = (at + 1) & (table.size() - 1);
+      if (table[at].vertex < 0) {
+        table[at] = {v.key, static_cast<int>(mesh.vertex.size())};
+        mesh.vertex.push_back(v.position);
       }
-      mesh.triangle.push_back(v);
+      number.push_back(table[at].vertex);
     }
+    for (const auto& t : part.triangle) mesh.triangle.emplace_back(number[t[0]], number[t[1]], number[t[2]]);
   }
   return mesh;
 }

@@ -51,7 +51,7 @@ class AdaptiveSurface {
   [[nodiscard]] std::uint32_t blocks() const { return static_cast<std::uint32_t>(part_.size()); }
   [[nodiscard]] std::size_t triangles() const { return triangles_; }
 
-  /// The whole surface, vertices welded by key.
+  /// The whole surface, vertices welded by key and numbered as blocks have them.
   [[nodiscard]] TriangleMesh mesh() const;
   [[nodiscard]] bool operator==(const AdaptiveSurface& other) const;
 

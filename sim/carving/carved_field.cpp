@@ -81,6 +81,32 @@ bool CarvedField::restore(const CarvedBricks& bricks) {
   return good;
 }
 
+bool CarvedField::raiseTo(const CarvedBricks& bricks) {
+  if (bricks.brick.size() != bricks.value.size()) return false;
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < bricks.brick.size(); ++i) {
+    const std::uint32_t b = bricks.brick[i];
+    if (b >= inside_.size() || (place_[b] >= 0 && slot(place_[b]) != i)) return false;
+    known += place_[b] >= 0 ? 1 : 0;
+    const double* here = value_.data() + std::size_t{b} * brickNodes;
+    for (std::uint32_t k = 0; k < brickNodes; ++k) {
+      if (!(bricks.value[i][k] >= here[k] && bricks.value[i][k] <= band())) return false;
+    }
+  }
+  // None is missing that had been carved.
+  const auto placed = std::count_if(place_.begin(), place_.end(), [](std::int32_t p) { return p >= 0; });
+  if (known != static_cast<std::size_t>(placed)) return false;
+  begin();
+  for (std::size_t i = 0; i < bricks.brick.size(); ++i) {
+    const std::uint32_t b = bricks.brick[i];
+    place_[b] = static_cast<std::int32_t>(i);
+    for (std::uint32_t row = 0; row < brickNodes; row += BrickLattice::side)
+      raiseRow(b * brickNodes + row, std::span(bricks.value[i]).subspan(row, BrickLattice::side));
+  }
+  std::sort(changed_.begin(), changed_.end());
+  return true;
+}
+
 std::int64_t CarvedField::insideNodes() const {
   std::int64_t n = 0;
   for (const BrickBits& bits : inside_) n += countBits(bits);

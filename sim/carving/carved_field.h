@@ -70,6 +70,12 @@ class CarvedField {
   void raiseRow(std::uint32_t first, std::span<const double> candidate);
   /// Makes inside nodes of a brick outside, as far as the band goes.
   void remove(std::uint32_t brick, const BrickBits& nodes);
+  /// A stroke of which the outcome is known: the field becomes that of `bricks`, as restore() makes it, and changed()
+  /// tells where. No commit() follows.
+  /// @pre no brick is there twice
+  /// @return false, and nothing is changed, where something is less carved in `bricks` than here, or they do not go on
+  ///         from those that led here: then only restore() leads there
+  [[nodiscard]] bool raiseTo(const CarvedBricks& bricks);
   /// Ends a stroke: orders changed() and copies the changed bricks to State.
   void commit(CarvedBricks& bricks);
   /// Gives State its largest capacity, so that no stroke has to.

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "sim/geometry/embedding.h"
-#include "sim/geometry/surface_distance.h"
 
 namespace calot {
 
@@ -88,15 +87,20 @@ std::vector<std::array<std::uint32_t, 2>> edgesOf(const std::vector<Index3>& tri
 
 }  // namespace
 
+std::vector<Index3> bedTriangles(const TriangleMesh& first, const SurfaceDistance& second, double reach) {
+  std::vector<bool> near;
+  for (const Vec3& p : first.vertex) near.push_back(second.signedDistance(p) <= reach);
+  std::vector<Index3> bed;
+  for (const Index3& t : first.triangle) {
+    if (near[slot(t[0])] && near[slot(t[1])] && near[slot(t[2])]) bed.push_back(t);
+  }
+  return bed;
+}
+
 ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reach, std::size_t leastStrands) {
   ConnectiveBed out;
   const SurfaceDistance distance(second.surface);
-  std::vector<bool> near;
-  for (const Vec3& p : first.surface.vertex) near.push_back(distance.signedDistance(p) <= reach);
-  std::vector<Index3> bed;
-  for (const Index3& t : first.surface.triangle) {
-    if (near[slot(t[0])] && near[slot(t[1])] && near[slot(t[2])]) bed.push_back(t);
-  }
+  const std::vector<Index3> bed = bedTriangles(first.surface, distance, reach);
   if (bed.empty()) {
     out.error = "no triangle of the first organ lies within " + std::to_string(1000.0 * reach) +
                 " mm of the second: there is no bed for connective tissue";

@@ -7,6 +7,7 @@
 
 #include "sim/connective/connective_tissue.h"
 #include "sim/geometry/isosurface_stuffing.h"
+#include "sim/geometry/surface_distance.h"
 #include "sim/geometry/triangle_mesh.h"
 
 namespace calot {
@@ -25,7 +26,10 @@ struct ConnectiveBed {
   [[nodiscard]] bool ok() const { return error.empty(); }
 };
 
-/// The bed is every triangle of the first organ's surface whose corners all lie within `reach` of the second organ. Its
+/// The bed: every triangle of the first organ's surface whose corners all lie within `reach` of the second organ.
+std::vector<Index3> bedTriangles(const TriangleMesh& first, const SurfaceDistance& second, double reach);
+
+/// Strands over the whole bed, as bedTriangles() finds it. Its
 /// triangles are divided evenly, edge by n, with the least n that gives at least `leastStrands` strands: one at each
 /// vertex, to the nearest point of the second organ. Each strand stands for a third of the area of the divided
 /// triangles around it; neighbours along their edges are joined by sheets.

@@ -62,7 +62,6 @@ void FatBody::rebuildAll() {
   coarse_.rebuild(field_);
   volume_.rebuild(field_);
   takeFill(coarse_.changed());
-  adaptive_.reset();
   before_.clear();
 }
 
@@ -106,7 +105,6 @@ FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
   contact_.update(surface_);
   coarse_.update(field_);
   volume_.update(field_);
-  if (adaptive_ != nullptr) adaptive_->update(field_);
   takeFill(coarse_.changed());
   for (const std::uint32_t h : coarse_.changed()) {
     const int cube = model_.cubeOfHexahedron(h);
@@ -159,57 +157,6 @@ Mat3 FatBody::turn(const FatState& state, int node) const {
   const Quat q = size > 1e-6 ? Quat(sum[0] / size, sum[1] / size, sum[2] / size, sum[3] / size) : Quat::Identity();
   const double softening = left * mostSoftening > atRest ? atRest / left : mostSoftening;
   return std::sqrt(softening) * q.toRotationMatrix();
-}
-
-int FatBody::cubeNear(const Vec3& rest) const {
-  const BrickLattice& lattice = model_.lattice();
-  const double edge = lattice.cell() * model_.cellsPerCube();
-  const Vec3 at = (rest - lattice.origin()) / edge;
-  Index3 h;
-  for (int a = 0; a < 3; ++a)
-    h[a] = std::clamp(static_cast<int>(std::clamp(at[a], 0.0, 1e6)), 0, model_.hexahedra()[a] - 1);
-  const int own = model_.cubeAt(h);
-  if (own >= 0 && fill_[slot(own)] > 0.0) return own;
-  const auto distance = [&](const Index3& cube) {
-    Vec3 off;
-    for (int a = 0; a < 3; ++a) {
-      off[a] = std::max({0.0, static_cast<double>(cube[a]) - at[a], at[a] - static_cast<double>(cube[a] + 1)});
-    }
-    return off.squaredNorm();
-  };
-  int best = -1;
-  double least = 1e300;
-  const auto offer = [&](int cube) {
-    if (cube < 0 || !(fill_[slot(cube)] > 0.0)) return;
-    const double d = distance(model_.hexahedronOfCube(cube));
-    if (d < least) best = cube;
-    least = std::min(least, d);
-  };
-  for (int d = 0; d < 27; ++d) offer(model_.cubeAt(h + Index3(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1)));
-  if (best >= 0) return best;
-  for (std::size_t c = 0; c < fill_.size(); ++c) offer(static_cast<int>(c));
-  return std::max(best, 0);
-}
-
-void FatBody::picture(const FatState& state, FatPicture& out) {
-  const FloatingPointScope scope;
-  if (adaptive_ == nullptr) {
-    adaptive_ = std::make_unique<AdaptiveSurface>(model_.lattice());
-    adaptive_->rebuild(field_);
-  }
-  TriangleMesh mesh = adaptive_->mesh();
-  out.position.clear();
-  for (const Vec3& p : mesh.vertex) {
-    const int cube = cubeNear(p);
-    const std::array<double, 8> share =
-        model_.shares(cube, Vec3((p - model_.lattice().origin()) / model_.lattice().cell()));
-    const Index8& corner = model_.solid().cubes()[slot(cube)];
-    Vec3 x = Vec3::Zero();
-    for (std::size_t c = 0; c < 8; ++c) x += share[c] * state.solid.position[slot(corner[c])];
-    out.position.push_back(x);
-  }
-  out.rest = std::move(mesh.vertex);
-  out.triangle = std::move(mesh.triangle);
 }
 
 }  // namespace calot

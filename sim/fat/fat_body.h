@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "sim/carving/adaptive_surface.h"
 #include "sim/carving/carve.h"
 #include "sim/carving/carved_surface.h"
 #include "sim/carving/fill.h"
@@ -26,13 +24,6 @@ struct FatStroke {
   double islands = 0.0;       ///< of what came loose, to a cell (m^3)
   std::uint32_t nodes = 0;    ///< lattice nodes removed
   Vec3 where = Vec3::Zero();  ///< their mean place (m, W); meaningless without any
-};
-
-/// What is drawn.
-struct FatPicture {
-  std::vector<Vec3> rest;      ///< m
-  std::vector<Vec3> position;  ///< m, W
-  std::vector<Index3> triangle;
 };
 
 /// One for each State that is stepped. Nothing in it is State: after a restore rebuild() makes all of it anew, and then
@@ -72,11 +63,6 @@ class FatBody {
   [[nodiscard]] const CarvedField& field() const { return field_; }
   [[nodiscard]] const FatVolume& volume() const { return volume_; }
 
-  /// The cube that carries a point given at rest: the one it lies in, or the nearest that is there. @pre any is there
-  [[nodiscard]] int cubeNear(const Vec3& rest) const;
-  /// The adaptive surface, kept in step from the first call on.
-  void picture(const FatState& state, FatPicture& out);
-
   /// How often a stroke had to make room; zero in steady state.
   [[nodiscard]] std::size_t growths() const { return surface_.growths() + contact_.growths(); }
 
@@ -94,7 +80,6 @@ class FatBody {
   Fill coarse_;
   FatVolume volume_;
   CubeMotion motion_;
-  std::unique_ptr<AdaptiveSurface> adaptive_;  ///< empty until a picture is asked for
   std::vector<Vec3> before_;
   std::vector<double> fill_;
   std::vector<double> tieShare_;

@@ -18,6 +18,7 @@ namespace calot {
 
 using FourFloats = float __attribute__((vector_size(4 * sizeof(float))));
 using EightFloats = float __attribute__((vector_size(laneCount * sizeof(float))));
+using FourInts = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
 using EightInts = std::int32_t __attribute__((vector_size(laneCount * sizeof(std::int32_t))));
 /// As wide as most machines' registers: wider ones would be spilled.
 using FourDoubles = double __attribute__((vector_size(4 * sizeof(double))));

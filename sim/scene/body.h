@@ -53,6 +53,8 @@ class Body {
   /// turn(a) block(a, b) turn(b)^T.
   [[nodiscard]] virtual Mat3 turn(const State& state, int node) const = 0;
   [[nodiscard]] virtual Mat3 block(int a, int b) const = 0;
+  /// block() of some nodes and others, row-major, at 9 (i b.size() + j). @param out as many numbers or more
+  virtual void blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const;
   /// Goes where the step leads. @return false when some node had to be stopped
   virtual bool advance(State& state) = 0;
   /// The largest speed that the last advance() held back, for no tissue moves as fast (m/s); 0: none.
@@ -60,6 +62,17 @@ class Body {
   /// Stops it, to sleep.
   virtual void stop(State& state) const = 0;
 };
+
+inline void Body::blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const Mat3 own = block(a[i], b[j]);
+      for (std::size_t k = 0; k < 9; ++k) {
+        out[9 * (i * b.size() + j) + k] = own(static_cast<int>(k / 3), static_cast<int>(k % 3));
+      }
+    }
+  }
+}
 
 class Skin {
  public:

@@ -138,26 +138,32 @@ void Stepper::Workspace::assembleCompliance(const State& state) {
     std::size_t block, body;
     double sign;
     const SolidSolver::Impulse* place;
-    std::array<Mat3, SolidSolver::Impulse::mostNodes> turn;  // weight times rotation
-    std::size_t coupling = ContactBlock::nobody;             // that the body takes part in
-    std::vector<Mat3> ties;                                  // relative velocities there
+    std::size_t turns;                            // of its nodes: weight times rotation
+    std::size_t coupling = ContactBlock::nobody;  // that the body takes part in
+    std::vector<Mat3> ties;                       // relative velocities there
+    std::vector<Mat3> pulls;                      // with which they answer
+    [[nodiscard]] std::span<const int> nodes() const { return {place->node.data(), place->count}; }
   };
   std::vector<Part> parts;
+  std::array<Mat3, SolidSolver::Impulse::mostNodes> turn;
+  turns.clear();
   std::vector<bool> stiffened(coupling.size(), false);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto add = [&](std::size_t which, const SolidSolver::Impulse& place, double sign) {
       if (which == ContactBlock::nobody || !moved[which]) return;
-      parts.push_back({b, which, sign, &place, {}, ContactBlock::nobody, {}});
+      parts.push_back({b, which, sign, &place, turns.size(), ContactBlock::nobody, {}, {}});
       body[which]->require({place.node.data(), place.count});
       for (std::size_t k = 0; k < place.count; ++k) {
-        parts.back().turn[k] = place.weight[k] * body[which]->turn(state, place.node[k]);
+        turn[k] = place.weight[k] * body[which]->turn(state, place.node[k]);
+        turns.push_back(columnsOf(turn[k]));
       }
       for (std::size_t c = 0; c < coupling.size(); ++c) {
         if (!coupling[c].joins(which)) continue;
         if (!stiffened[c]) coupling[c].stiffen(state, body);
         stiffened[c] = true;
         parts.back().coupling = c;
-        coupling[c].answers(*body[which], which, place, parts.back().turn, parts.back().ties);
+        coupling[c].answers(*body[which], which, place, turn, parts.back().ties);
+        coupling[c].pulls(parts.back().ties, parts.back().pulls);
         break;
       }
     };
@@ -173,13 +179,11 @@ void Stepper::Workspace::assembleCompliance(const State& state) {
       if (a.body != b.body && !coupled) continue;
       Mat3 c = Mat3::Zero();
       if (a.body == b.body) {
-        for (std::size_t i = 0; i < a.place->count; ++i) {
-          for (std::size_t j = 0; j < b.place->count; ++j) {
-            c += a.turn[i] * body[a.body]->block(a.place->node[i], b.place->node[j]) * b.turn[j].transpose();
-          }
-        }
+        nodeBlocks.resize(9 * a.place->count * b.place->count + 1);
+        body[a.body]->blocks(a.nodes(), b.nodes(), nodeBlocks);
+        c = sumOfTurned({turns.data() + a.turns, a.place->count}, nodeBlocks, {turns.data() + b.turns, b.place->count});
       }
-      if (coupled) c -= coupling[a.coupling].taken(a.ties, b.ties);
+      if (coupled) c -= coupling[a.coupling].taken(a.ties, b.pulls);
       c *= h2 * a.sign * b.sign;
       const ContactBlock& one = blocks[a.block];
       const ContactBlock& two = blocks[b.block];

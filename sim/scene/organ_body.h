@@ -25,6 +25,9 @@ class OrganBody final : public Body {
   void require(std::span<const int> nodes) override { rest_.require(nodes); }
   [[nodiscard]] Mat3 turn(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return rest_.block(a, b); }
+  void blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const override {
+    rest_.blocks(a, b, out);
+  }
   bool advance(State& state) override;
   [[nodiscard]] double heldBack() const override { return solver_.heldBack(); }
   void stop(State& state) const override;

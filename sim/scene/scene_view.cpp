@@ -14,7 +14,14 @@ class SceneViewer::Fat : public FatViewer {
   using FatViewer::FatViewer;
 };
 
+class SceneViewer::Vessel : public VesselViewer {
+ public:
+  using VesselViewer::VesselViewer;
+};
+
 SceneViewer::SceneViewer(const Model& model) : model_(model) {
+  for (const StructureModel& structure : model.structures())
+    if (structure.kind == StructureKind::vessel) vessel_.push_back(std::make_unique<Vessel>(model, structure));
   for (const auto& fat : model.fat()) fat_.push_back(std::make_unique<Fat>(*fat));
 }
 
@@ -42,15 +49,19 @@ SceneView SceneViewer::view(const State& state) {
     }
     view.surface.push_back(std::move(surface));
   }
-  addVessels(model, state, view);
+  std::size_t vessel = 0;
   for (const StructureModel& structure : model.structures()) {
-    if (structure.kind != StructureKind::fat) continue;
+    if (structure.kind == StructureKind::organ) continue;
     SurfaceView surface;
     surface.organ = structure.name;
     surface.appearance = structure.appearance;
-    fat_[structure.index]->fill(state.fat[structure.index], surface);
+    if (structure.kind == StructureKind::vessel)
+      vessel_[vessel++]->fill(state, surface);
+    else
+      fat_[structure.index]->fill(state.fat[structure.index], surface);
     view.surface.push_back(std::move(surface));
   }
+  addClips(model, state, view);
   for (std::size_t c = 0; c < model.connective().size(); ++c) {
     const ConnectiveModel& tie = model.connective()[c];
     const ConnectiveState& tissue = state.connective[c];

@@ -20,7 +20,7 @@ struct SurfaceView {
   std::vector<Vec3> rest;        ///< the same vertices at rest, for textures that stick to the tissue
   std::vector<Index3> triangle;  ///< outward (counter-clockwise from outside)
   std::vector<float> charred;    ///< per vertex: 0 not at all, 1 as it counts as charred, more beyond; empty: nowhere
-  /// Per vertex: 0 on the skin; on the face where a vessel is parted 1 at its rim to 2 in its middle. Empty: no face.
+  /// Per vertex: 0 on the skin; where a vessel is parted 1 at the face's rim to 2 (open; 1.5 clipped) in its middle.
   std::vector<float> face;
 };
 

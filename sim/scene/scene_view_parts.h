@@ -2,19 +2,38 @@
 // What SceneViewer puts together. Internal to this folder.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <vector>
 
-#include "sim/fat/fat_body.h"
+#include "sim/fat/fat_picture.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
+#include "sim/vessel/tube_surface.h"
 
 namespace calot {
 
-/// Vessels as surfaces, and the clips on them.
-void addVessels(const Model& model, const State& state, SceneView& view);
+/// The clips on all vessels.
+void addClips(const Model& model, const State& state, SceneView& view);
+
+/// One vessel from view to view.
+class VesselViewer {
+ public:
+  /// @param structure of `model`, a vessel; both outlive this
+  VesselViewer(const Model& model, const StructureModel& structure);
+
+  /// Fills in all but name and appearance; places alone are worked out where nothing was parted since the last call.
+  void fill(const State& state, SurfaceView& surface);
+
+ private:
+  void layRest(const BeamState& vessels);
+  void addChar(const BeamState& vessels, SurfaceView& surface) const;
+
+  const Model& model_;
+  const StructureModel& structure_;
+  const VesselTree& tree_;
+  TubeSurface tube_;
+  std::vector<Vec3> rest_;  ///< of the tube, with its partings
+};
 
 /// One body of fat from view to view.
 class FatViewer {
@@ -26,22 +45,12 @@ class FatViewer {
   void fill(const FatState& state, SurfaceView& surface);
 
  private:
-  struct Carrier {
-    std::array<int, 8> node{};
-    std::array<double, 8> share{};
-  };
-
-  [[nodiscard]] bool sameAsLast(const CarvedBricks& carved) const;
-  void rebuild(const FatState& state);
+  void sear();
 
   const FatModel& model_;
-  FatBody body_;
   CarvedField uncarved_;
-  CarvedBricks last_;
-  bool made_ = false;
   FatPicture picture_;
-  std::vector<Carrier> carrier_;  ///< per vertex
-  std::vector<float> seared_;     ///< per vertex
+  std::vector<float> seared_;  ///< per vertex; empty: nothing is carved
 };
 
 }  // namespace calot

@@ -16,7 +16,7 @@ namespace calot {
 namespace {
 
 /// Rounder and smoother than contact has it.
-constexpr TubeSurface::Settings pictureTube{16, 2};
+constexpr TubeSurface::Settings pictureTube{12, 2};
 
 /// The rim of a cut draws together by this share of its radius, and is stained (SurfaceView::face).
 constexpr double inwards = 0.3;
@@ -95,8 +95,10 @@ void stain(const Vec3& middle, double rim, SurfaceView& surface) {
 
 /// The faces of cuts get vertices of their own, so that their edge is one: of each parted element the last 2 `sides`
 /// triangles are faces (tube_surface.h).
-void sharpenFaces(std::size_t partings, SurfaceView& surface) {
-  if (partings == 0) return;
+/// @param open does each face, in this order, bleed or leak?
+void sharpenFaces(const std::vector<bool>& open, SurfaceView& surface) {
+  if (open.empty()) return;
+  const std::size_t partings = open.size() / 2;
   constexpr std::size_t sides = pictureTube.sides;
   surface.face.assign(surface.position.size(), 0.0F);
   const std::size_t first = surface.triangle.size() - partings * 4 * sides;
@@ -106,7 +108,7 @@ void sharpenFaces(std::size_t partings, SurfaceView& surface) {
     int ring = face[0][1];
     for (const Index3& t : face) ring = std::min(ring, t[1]);
     const int middle = face[0][0];
-    surface.face[slot(middle)] = 2.0F;
+    surface.face[slot(middle)] = open[f] ? 2.0F : 1.5F;  // no lumen is seen where a clip keeps it shut
     const int copy = static_cast<int>(surface.position.size());
     for (int k = 0; k < static_cast<int>(sides); ++k) {
       for (std::vector<Vec3>* place : {&surface.position, &surface.rest}) {
@@ -133,32 +135,60 @@ bool crotchAhead(const Model& model, const Pose& rest, double roll) {
   return (ports - rest.position).dot(rest.orientation * aboutZ(roll) * Vec3::UnitY()) > 0.0;
 }
 
-SurfaceView vesselView(const Model& model, const State& state, const StructureModel& structure) {
-  const VesselTree& tree = model.vesselTrees()[structure.index];
-  const BeamState& vessels = state.vessel[structure.index];
-  TubeSurface tube(tree.beams, structure.branch, pictureTube);
-  tube.update(vessels);
-  SurfaceView surface;
-  surface.organ = structure.name;
-  surface.appearance = structure.appearance;
-  tube.place(vessels, surface.position);
-  BeamState rest = restState(tree.beams);
+/// Of each parting of a branch the face before and the face after it: open, judged as when it was parted, with the
+/// clips that are there now?
+std::vector<bool> openFaces(const BeamModel& beams, const BeamState& vessels, std::size_t which) {
+  std::vector<bool> open;
+  const auto& branch = beams.branches()[which];
+  for (std::size_t element = 0; element < branch.elements(); ++element) {
+    const std::size_t e = branch.firstElement + element;
+    if (vessels.parting[e] == Parting::none) continue;
+    BeamState whole = vessels;
+    whole.parting[e] = Parting::none;
+    const double share = vessels.partedAt[e];
+    const double place = branch.place[element] + share * (branch.place[element + 1] - branch.place[element]);
+    const CutJudgement judged = judgeCut(beams, whole, {which, e, share, place});
+    open.push_back(judged.opensBefore);
+    open.push_back(judged.opensAfter);
+  }
+  return open;
+}
+
+}  // namespace
+
+VesselViewer::VesselViewer(const Model& model, const StructureModel& structure)
+    : model_(model),
+      structure_(structure),
+      tree_(model.vesselTrees()[structure.index]),
+      tube_(tree_.beams, structure.branch, pictureTube) {
+  layRest(restState(tree_.beams));
+}
+
+void VesselViewer::layRest(const BeamState& vessels) {
+  BeamState rest = restState(tree_.beams);
   rest.parting = vessels.parting;
   rest.partedAt = vessels.partedAt;
-  tube.place(rest, surface.rest);
-  surface.triangle = tube.triangles();
-  const double through = model.scene().vessels[tree.vessel[structure.branch]].burnThrough;
-  for (std::size_t v = 0; v < tube.vertices(); ++v) {
-    const BeamPlace where = tube.where(static_cast<int>(v));
-    surface.charred.push_back(static_cast<float>(exposureAt(tree.beams, vessels, where) / through));
+  tube_.place(rest, rest_);
+}
+
+void VesselViewer::addChar(const BeamState& vessels, SurfaceView& surface) const {
+  const double through = model_.scene().vessels[tree_.vessel[structure_.branch]].burnThrough;
+  for (std::size_t v = 0; v < tube_.vertices(); ++v) {
+    const BeamPlace where = tube_.where(static_cast<int>(v));
+    surface.charred.push_back(static_cast<float>(exposureAt(tree_.beams, vessels, where) / through));
   }
-  std::size_t partings = 0;
-  const auto& branch = tree.beams.branches()[structure.branch];
-  for (std::size_t e = branch.firstElement; e < branch.firstElement + branch.elements(); ++e) {
-    if (vessels.parting[e] != Parting::none) ++partings;
-  }
-  sharpenFaces(partings, surface);
-  const VesselDescription& description = model.scene().vessels[tree.vessel[structure.branch]];
+}
+
+void VesselViewer::fill(const State& state, SurfaceView& surface) {
+  const BeamState& vessels = state.vessel[structure_.index];
+  if (tube_.update(vessels)) layRest(vessels);
+  tube_.place(vessels, surface.position);
+  surface.rest = rest_;
+  surface.triangle = tube_.triangles();
+  addChar(vessels, surface);
+  const auto& branch = tree_.beams.branches()[structure_.branch];
+  sharpenFaces(openFaces(tree_.beams, vessels, structure_.branch), surface);
+  const VesselDescription& description = model_.scene().vessels[tree_.vessel[structure_.branch]];
   const std::size_t last = pictureTube.ringsPerElement * branch.elements();  // ring
   const std::size_t caps = 2 * pictureTube.sides * last;
   const bool fromElsewhere = description.start.kind == VesselEndDescription::Kind::fixed;
@@ -167,15 +197,9 @@ SurfaceView vesselView(const Model& model, const State& state, const StructureMo
   if (!surface.face.empty()) surface.face.resize(surface.position.size(), 0.0F);
   if (std::none_of(surface.charred.begin(), surface.charred.end(), [](float c) { return c > 0.0F; }))
     surface.charred.clear();
-  return surface;
 }
 
-}  // namespace
-
-void addVessels(const Model& model, const State& state, SceneView& view) {
-  for (const StructureModel& structure : model.structures()) {
-    if (structure.kind == StructureKind::vessel) view.surface.push_back(vesselView(model, state, structure));
-  }
+void addClips(const Model& model, const State& state, SceneView& view) {
   for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
     const BeamModel& beams = model.vesselTrees()[t].beams;
     const BeamState& vessels = state.vessel[t];

@@ -12,8 +12,9 @@
 namespace calot {
 
 /// Makes views of one Model's States and keeps from one to the next what stays the same: the surface of fat, which is
-/// made anew only where something was carved since the last view (or anew in full where the State went back). What it
-/// returns depends on the State alone: viewOf() gives the same. Use it where frames follow each other.
+/// made anew only where something was carved since the last view (or anew in full where the State went back), and
+/// vessels at rest. What it returns depends on the State alone: viewOf() gives the same. Use it where frames follow
+/// each other.
 class SceneViewer {
  public:
   /// @param model outlives this
@@ -27,8 +28,10 @@ class SceneViewer {
 
  private:
   class Fat;
+  class Vessel;
   const Model& model_;
-  std::vector<std::unique_ptr<Fat>> fat_;  ///< per body of fat
+  std::vector<std::unique_ptr<Vessel>> vessel_;  ///< in the order of the structures
+  std::vector<std::unique_ptr<Fat>> fat_;        ///< per body of fat
 };
 
 }  // namespace calot

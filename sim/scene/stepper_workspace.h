@@ -19,6 +19,7 @@
 #include "sim/scene/stepper.h"
 #include "sim/scene/tie_coupling.h"
 #include "sim/scene/vessel_body.h"
+#include "sim/solid/turned_blocks.h"
 
 namespace calot {
 
@@ -251,6 +252,8 @@ struct Stepper::Workspace {
   ContactSolver contactSolver;
   std::vector<BlockKind> kinds;
   std::vector<double> limits;
+  std::vector<TurnColumns> turns;                     // of assembleCompliance()
+  std::vector<double> nodeBlocks;                     // the same
   std::vector<double> tissueCompliance;               // what carryOut() is expected to do to the gaps
   std::vector<double> couplingCompliance;             // of the virtual couplings
   std::vector<double> compliance;                     // of both

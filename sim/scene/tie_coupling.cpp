@@ -198,13 +198,16 @@ void TieCoupling::answers(const Body& body, std::size_t which, const SolidSolver
   }
 }
 
-Mat3 TieCoupling::taken(std::span<const Mat3> a, std::span<const Mat3> b) const {
-  Mat3 sum = Mat3::Zero();
+void TieCoupling::pulls(std::span<const Mat3> answers, std::vector<Mat3>& out) const {
+  out.assign(tie_.size(), Mat3::Zero());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
-    Mat3 row = Mat3::Zero();
-    for (std::size_t j = 0; j < tie_.size(); ++j) row += blockOf(tight_, tie_.size(), i, j) * b[j];
-    sum += a[i].transpose() * row;
+    for (std::size_t j = 0; j < tie_.size(); ++j) out[i] += blockOf(tight_, tie_.size(), i, j) * answers[j];
   }
+}
+
+Mat3 TieCoupling::taken(std::span<const Mat3> answers, std::span<const Mat3> pulls) const {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; i < tie_.size(); ++i) sum += answers[i].transpose() * pulls[i];
   return step_ * sum;
 }
 

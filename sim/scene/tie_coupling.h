@@ -47,8 +47,11 @@ class TieCoupling {
   /// as Body::block() is to be. @pre stiffen()
   void answers(const Body& body, std::size_t which, const SolidSolver::Impulse& place, std::span<const Mat3> turn,
                std::vector<Mat3>& out) const;
+  /// Impulses of the ties on the organ, with which they answer to answers().
+  void pulls(std::span<const Mat3> answers, std::vector<Mat3>& out) const;
   /// What the ties take away from the velocity at a place for an impulse at another.
-  [[nodiscard]] Mat3 taken(std::span<const Mat3> a, std::span<const Mat3> b) const;
+  /// @param answers at the one place @param pulls for the other
+  [[nodiscard]] Mat3 taken(std::span<const Mat3> answers, std::span<const Mat3> pulls) const;
 
   /// Forces on the vessels (N), by ties. @pre pull()
   [[nodiscard]] const std::vector<Vec3>& force() const { return force_; }

@@ -61,6 +61,9 @@ class BlockMatrix {
   }
   /// Where the values of a slice's diagonal blocks begin.
   [[nodiscard]] std::size_t diagonal(std::size_t slice) const { return diagonal_[slice] * 9 * laneCount; }
+  /// Per slice the block column that it begins with, and that of its diagonal, with which it ends.
+  [[nodiscard]] std::span<const std::size_t> firstColumns() const { return {sliceStart_.data(), slices()}; }
+  [[nodiscard]] std::span<const std::size_t> diagonalColumns() const { return diagonal_; }
   /// Where the column of each lane begins in a vector by rows, per block column.
   [[nodiscard]] const std::int32_t* column(std::size_t blockColumn) const {
     return column_.data() + blockColumn * laneCount;

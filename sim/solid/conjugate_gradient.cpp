@@ -19,43 +19,19 @@ double sumOf(const Eight& lanes) {
   return sum;
 }
 
-/// Inverse of a 3x3 block, each of whose entries stands eight numbers after the one before; zero where it is none,
-/// which is a row that only fills a slice up.
-void invertBlock(const float* in, float* out) {
-  const auto a = [in](std::size_t i, std::size_t j) { return static_cast<double>(in[(3 * i + j) * laneCount]); };
-  const double c00 = a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1);
-  const double c01 = a(0, 2) * a(2, 1) - a(0, 1) * a(2, 2);
-  const double c02 = a(0, 1) * a(1, 2) - a(0, 2) * a(1, 1);
-  const double c10 = a(1, 2) * a(2, 0) - a(1, 0) * a(2, 2);
-  const double c11 = a(0, 0) * a(2, 2) - a(0, 2) * a(2, 0);
-  const double c12 = a(0, 2) * a(1, 0) - a(0, 0) * a(1, 2);
-  const double c20 = a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0);
-  const double c21 = a(0, 1) * a(2, 0) - a(0, 0) * a(2, 1);
-  const double c22 = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
-  const double determinant = (a(0, 0) * c00 + a(0, 1) * c10) + a(0, 2) * c20;
-  const double inverse = determinant == 0.0 ? 0.0 : 1.0 / determinant;
-  const double c[9] = {c00, c01, c02, c10, c11, c12, c20, c21, c22};
-  for (std::size_t i = 0; i < 9; ++i) out[i * laneCount] = static_cast<float>(c[i] * inverse);
-}
-
-/// Blocks of a slice, or (lane above 0) of one of its rows on.
-sweeps::Blocks blocksOf(const BlockMatrix& matrix, std::span<const float> values, std::size_t slice,
-                        std::size_t lane = 0) {
-  const BlockMatrix::Part part = matrix.lower(slice);
-  return {values.data() + part.value() + lane, matrix.column(part.first) + lane, part.width};
-}
-
 }  // namespace
+
+sweeps::Slices ConjugateGradient::slicesOf(const BlockMatrix& matrix, std::span<const float> values) const {
+  return {
+      values.data(),  inverse_.data(), matrix.column(0), matrix.firstColumns().data(), matrix.diagonalColumns().data(),
+      matrix.slices()};
+}
 
 void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values,
                                 std::span<const ExtraBlock> extra) {
   extra_.assign(extra.begin(), extra.end());
   inverse_.resize(matrix.slices() * 9 * laneCount);
-  for (std::size_t slice = 0; slice < matrix.slices(); ++slice) {
-    for (std::size_t lane = 0; lane < laneCount; ++lane) {
-      invertBlock(values.data() + matrix.diagonal(slice) + lane, inverse_.data() + slice * 9 * laneCount + lane);
-    }
-  }
+  sweeps::invertDiagonal(slicesOf(matrix, values), inverse_.data());
 }
 
 /// u += E t.
@@ -88,7 +64,7 @@ void ConjugateGradient::clear(std::size_t size) {
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
                                      std::span<float> x, double tolerance, std::uint32_t cap) {
-  const std::size_t slices = matrix.slices();
+  const sweeps::Slices slices = slicesOf(matrix, values);
   clear(matrix.vectorSize());
   sRows_.assign(matrix.rows() * rowStride, 0.0F);
   u_.resize(matrix.rows() * rowStride);
@@ -100,20 +76,12 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
   std::fill(x.begin(), x.end(), 0.0F);
   const auto forward = [&](std::vector<float>& s) {
     Eight dot{};
-    for (std::size_t i = 0; i < slices; ++i) {
-      sweeps::forward(blocksOf(matrix, values, i), inverse_.data() + i * 9 * laneCount, u_.data(), s.data(),
-                      sRows_.data(), p_.data(), t_.data(), dot.data(), i * laneStride);
-    }
+    sweeps::forward(slices, u_.data(), s.data(), sRows_.data(), p_.data(), t_.data(), dot.data());
     return sumOf(dot);
   };
-  const auto update = [&](float by) {
-    Lanes alpha;
-    alpha.fill(by);
+  const auto update = [&](float alpha) {
     Eight dot{};
-    for (std::size_t i = 0; i < slices; ++i) {
-      sweeps::update(values.data() + matrix.diagonal(i), alpha.data(), t_.data(), s_.data(), x.data(), r_.data(),
-                     z_.data(), dot.data(), i * laneStride);
-    }
+    sweeps::update(slices, alpha, t_.data(), s_.data(), x.data(), r_.data(), z_.data(), dot.data());
     return sumOf(dot);
   };
 
@@ -126,18 +94,15 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
   }
   const double goal = tolerance * tolerance * start;
   double size = start;
-  Lanes beta{};
+  float beta = 0.0F;
   while (size > goal && report.iterations < cap) {
     std::fill(u_.begin(), u_.end(), 0.0F);
-    for (std::size_t i = slices; i-- > 0;) {
-      sweeps::backward(blocksOf(matrix, values, i), inverse_.data() + i * 9 * laneCount, z_.data(), beta.data(),
-                       p_.data(), t_.data(), u_.data(), i * laneStride);
-    }
+    sweeps::backward(slices, z_.data(), beta, p_.data(), t_.data(), u_.data());
     addExtra();
     const double curvature = forward(s_);
     if (!(curvature > 0.0)) break;  // not positive definite, or not a number: what is reached so far stands
     const double next = update(static_cast<float>(size / curvature));
-    beta.fill(static_cast<float>(next / size));
+    beta = static_cast<float>(next / size);
     size = next;
     ++report.iterations;
   }
@@ -149,26 +114,18 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
 SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<const float> values,
                                          std::span<const float> b, std::span<float> x, double tolerance,
                                          std::uint32_t cap) {
-  const std::size_t rows = matrix.rows();
+  const sweeps::Slices slices = slicesOf(matrix, values);
   clear(matrix.vectorSize() * laneCount);
   u_.assign(b.begin(), b.end());
   std::fill(x.begin(), x.end(), 0.0F);
-  const auto inverseOf = [&](std::size_t r) { return inverse_.data() + r / laneCount * 9 * laneCount + r % laneCount; };
-  const auto blocks = [&](std::size_t r) { return blocksOf(matrix, values, r / laneCount, r % laneCount); };
   const auto forward = [&](std::vector<float>& s) {
     Eight dot{};
-    for (std::size_t r = 0; r < rows; ++r) {
-      sweeps::forwardMany(blocks(r), inverseOf(r), u_.data(), s.data(), p_.data(), t_.data(), dot.data(),
-                          r * laneStride);
-    }
+    sweeps::forwardMany(slices, u_.data(), s.data(), p_.data(), t_.data(), dot.data());
     return dot;
   };
   const auto update = [&](const Lanes& alpha) {
     Eight dot{};
-    for (std::size_t r = 0; r < rows; ++r) {
-      sweeps::updateMany(values.data() + matrix.diagonal(r / laneCount) + r % laneCount, alpha.data(), t_.data(),
-                         s_.data(), x.data(), r_.data(), z_.data(), dot.data(), r * laneStride);
-    }
+    sweeps::updateMany(slices, alpha.data(), t_.data(), s_.data(), x.data(), r_.data(), z_.data(), dot.data());
     return dot;
   };
 
@@ -188,10 +145,7 @@ SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<co
   Lanes beta{};
   while (anyOpen() && report.iterations < cap) {
     std::fill(u_.begin(), u_.end(), 0.0F);
-    for (std::size_t r = rows; r-- > 0;) {
-      sweeps::backwardMany(blocks(r), inverseOf(r), z_.data(), beta.data(), p_.data(), t_.data(), u_.data(),
-                           r * laneStride);
-    }
+    sweeps::backwardMany(slices, z_.data(), beta.data(), p_.data(), t_.data(), u_.data());
     addExtraMany();
     const Eight curvature = forward(s_);
     Lanes alpha{};

@@ -11,6 +11,7 @@ RestCompliance::RestCompliance(const SolidModel& model, const SolidSolver::Setti
                                const Surroundings& surroundings)
     : model_(model), settings_(settings), column_(model.nodes()) {
   const FloatingPointScope scope;
+  settings_.lattice = false;  // which no solve of many right-hand sides takes
   SolidState rest = restState(model);
   solver_.freeMotion(model, rest, Vec3::Zero(), {}, settings_, executor, surroundings);
 }
@@ -60,6 +61,17 @@ Mat3 RestCompliance::block(int a, int b) const {
     for (int j = 0; j < 3; ++j) m(i, j) = static_cast<double>(c[3 * i + j]);
   }
   return m;
+}
+
+void RestCompliance::blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const {
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    const float* column = column_[static_cast<std::size_t>(b[j])].data();
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const float* from = column + 9 * static_cast<std::size_t>(a[i]);
+      double* to = out.data() + 9 * (i * b.size() + j);
+      for (std::size_t k = 0; k < 9; ++k) to[k] = static_cast<double>(from[k]);
+    }
+  }
 }
 
 Quat nodeRotation(const SolidModel& model, const SolidState& state, int node) {

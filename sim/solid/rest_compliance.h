@@ -31,6 +31,8 @@ class RestCompliance {
 
   /// C_ab: velocity of node a (m/s) for an impulse on node b (N s). @pre b was required
   [[nodiscard]] Mat3 block(int a, int b) const;
+  /// The blocks between some nodes and others, row-major, at 9 (i b.size() + j). @param out as many numbers or more
+  void blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const;
 
  private:
   const SolidModel& model_;

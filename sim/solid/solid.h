@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "sim/math/executor.h"
 #include "sim/math/linear.h"
+#include "sim/solid/coarse_lattice.h"
 #include "sim/solid/conjugate_gradient.h"
 #include "sim/solid/solid_model.h"
 #include "sim/solid/stiffness_assembly.h"
@@ -68,6 +70,7 @@ class SolidSolver {
     double tolerance = 1e-4;
     std::uint32_t cap = 200;
     int rotationSweeps = 2;
+    bool lattice = true;  ///< where CoarseLattice::isWorthIt()
   };
 
   /// Assembles at the state's position and computes the free velocity (without contact) into freeVelocity().
@@ -106,6 +109,9 @@ class SolidSolver {
   void chooseSystem(const SolidModel& model, std::span<const double> fill);
   void assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
                 const Surroundings& surroundings, Executor& executor);
+  void prepareLattice(const SolidModel& model, const SolidState& state, const StiffnessAssembly::Scale& scale,
+                      Executor& executor);
+  SolveReport solve(const Settings& settings);
   void addAttachments(const Settings& settings, std::span<const Attachment> attachments);
   void addJoint(const Settings& settings, const JointAttachment& joint);
   bool addToElement(const Attachment& attachment, double step);
@@ -126,6 +132,9 @@ class SolidSolver {
   std::vector<Vec3> freeVelocity_;
   double heldBack_ = 0.0;
   ConjugateGradient cg_;
+  std::optional<CoarseLattice> lattice_;
+  const SolidModel* latticeModel_ = nullptr;  ///< that it was made of
+  StiffnessAssembly::Scale latticeScale_;     ///< of the matrix that it was made of
 };
 
 }  // namespace calot

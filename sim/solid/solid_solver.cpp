@@ -15,6 +15,9 @@ constexpr std::size_t nodesPerTask = 128;
 /// does is a corner that only a nearly empty cube holds, thrown about by what holds that cube elsewhere, or contact in
 /// crumpled tissue, decided on a compliance that is not that of its shape.
 constexpr double fastestNode = 5.0;
+/// Beside a lattice the residual leaves no smooth error behind, which is what displaces most: ten times the tolerance
+/// errs as much as sweeps alone do (docs/simulation.md).
+constexpr double asSmooth = 10.0;
 constexpr double weightless = 0.1;  ///< of a node's mass at rest: what has less left is held back without a word
 
 }  // namespace
@@ -63,11 +66,37 @@ void SolidSolver::assemble(const SolidModel& model, const SolidState& state, con
   const double h = settings.step;
   const SolidModel::Material& m = model.material();
   const StiffnessAssembly::Scale scale{1.0 + m.massDamping * h, h * h + m.stiffnessDamping * h};
+  if (settings.lattice && CoarseLattice::isWorthIt(model)) {
+    prepareLattice(model, state, scale, executor);
+  } else {
+    lattice_.reset();  // an earlier step's
+    latticeModel_ = nullptr;
+  }
   const std::vector<double>& masses = surroundings.fill.empty() ? model.mass() : mass_;
   stiffness_.assemble(model, *system_, state.rotation, surroundings.fill, masses, scale, executor, values_);
   addAttachments(settings, surroundings.attachments);
   extra_.clear();
   for (const JointAttachment& joint : surroundings.joints) addJoint(settings, joint);
+}
+
+void SolidSolver::prepareLattice(const SolidModel& model, const SolidState& state,
+                                 const StiffnessAssembly::Scale& scale, Executor& executor) {
+  if (latticeModel_ != &model || latticeScale_.mass != scale.mass || latticeScale_.stiffness != scale.stiffness) {
+    std::vector<float> rest;
+    stiffness_.assemble(model, model.system(), restState(model).rotation, {}, model.mass(), scale, executor, rest);
+    lattice_.emplace(model, rest);
+    latticeModel_ = &model;
+    latticeScale_ = scale;
+  }
+  lattice_->turn(state.rotation);
+}
+
+/// x_ = A^-1 b_
+SolveReport SolidSolver::solve(const Settings& settings) {
+  if (lattice_) {
+    return cg_.solve(system_->matrix(), values_, *lattice_, b_, x_, asSmooth * settings.tolerance, settings.cap);
+  }
+  return cg_.solve(system_->matrix(), values_, b_, x_, settings.tolerance, settings.cap);
 }
 
 void SolidSolver::addAttachments(const Settings& settings, std::span<const Attachment> attachments) {
@@ -194,7 +223,7 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
     }
   });
   cg_.prepare(system_->matrix(), values_, extra_);
-  const SolveReport report = cg_.solve(system_->matrix(), values_, b_, x_, settings.tolerance, settings.cap);
+  const SolveReport report = solve(settings);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());
   for (const int f : model.freeNodes()) {
     freeVelocity_[static_cast<std::size_t>(f)] = state.velocity[static_cast<std::size_t>(f)];
@@ -244,7 +273,7 @@ SolveReport SolidSolver::push(std::span<const Vec3> impulse, const Settings& set
       b_[system_->offsetOf(node) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(impulse[node][i]);
     }
   }
-  const SolveReport report = cg_.solve(system_->matrix(), values_, b_, x_, settings.tolerance, settings.cap);
+  const SolveReport report = solve(settings);
   for (const int f : system_->nodes()) {
     const auto node = static_cast<std::size_t>(f);
     const std::size_t at = system_->offsetOf(node);

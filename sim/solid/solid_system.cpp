@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <limits>
+#include <utility>
 
 namespace calot {
 
@@ -121,23 +122,25 @@ SolidSystem::SolidSystem(const ElementCorners& elements, const std::vector<bool>
         elementSlot_[(e * corners_ + c.a) * corners_ + c.b] = static_cast<std::uint32_t>(slot_.size());
       }
       if (!elements.areCubes()) {
-        slot.first = contribution_.size();
-        contribution_.insert(contribution_.end(), perSlot[r][k].begin(), perSlot[r][k].end());
-        slot.last = slot.turned = contribution_.size();
+        slot.first = source_.size();
+        for (const Contribution& c : perSlot[r][k]) {
+          source_.push_back(static_cast<std::uint32_t>((static_cast<std::size_t>(c.element) * 4 + c.a) * 4 + c.b));
+        }
+        slot.last = slot.turned = source_.size();
         slot_.push_back(slot);
         continue;
       }
-      slot.first = cubeBlock_.size();
+      slot.first = source_.size();
       for (const bool transposed : {false, true}) {
         for (const Contribution& c : perSlot[r][k]) {
           if ((c.a > c.b) != transposed) continue;
-          cubeBlock_.push_back(
+          source_.push_back(
               static_cast<std::uint32_t>(36 * static_cast<std::size_t>(c.element) +
                                          HexahedralElements::pairOf(std::min(c.a, c.b), std::max(c.a, c.b))));
         }
-        if (!transposed) slot.turned = cubeBlock_.size();
+        if (!transposed) slot.turned = source_.size();
       }
-      slot.last = cubeBlock_.size();
+      slot.last = source_.size();
       slot_.push_back(slot);
     }
   }
@@ -148,7 +151,7 @@ SolidSystem::SolidSystem(const ElementCorners& elements, const std::vector<bool>
   }
   buildMatrix(columns);
   placeElements();
-  if (corners_ == 8) sumColumns();
+  sumColumns();
 }
 
 SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t> present) : corners_(whole.corners_) {
@@ -156,7 +159,7 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
   std::vector<std::uint32_t> keeps(whole.slot_.size(), 0);  // contributions
   for (std::size_t s = 0; s < keeps.size(); ++s) {
     for (std::size_t c = whole.slot_[s].first; c < whole.slot_[s].last; ++c) {
-      keeps[s] += isThere(whole.cubeBlock_[c]) ? 1U : 0U;
+      keeps[s] += isThere(whole.source_[c]) ? 1U : 0U;
     }
   }
   // A row's diagonal is the last of its slots.
@@ -201,12 +204,12 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
       const Slot& was = whole.slot_[s];
       Slot slot{};
       slot.node = was.node;
-      slot.first = cubeBlock_.size();
+      slot.first = source_.size();
       for (std::size_t c = was.first; c < was.last; ++c) {
-        if (c == was.turned) slot.turned = cubeBlock_.size();
-        if (isThere(whole.cubeBlock_[c])) cubeBlock_.push_back(whole.cubeBlock_[c]);
+        if (c == was.turned) slot.turned = source_.size();
+        if (isThere(whole.source_[c])) source_.push_back(whole.source_[c]);
       }
-      slot.last = cubeBlock_.size();
+      slot.last = source_.size();
       if (was.turned == was.last) slot.turned = slot.last;
       slot_.push_back(slot);
     }
@@ -225,7 +228,7 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
   }
   buildMatrix(columns);
   placeElements();
-  if (corners_ == 8) sumColumns();
+  sumColumns();
 }
 
 void SolidSystem::buildMatrix(const std::vector<std::vector<int>>& columns) {
@@ -247,15 +250,34 @@ void SolidSystem::placeElements() {
   }
 }
 
-void SolidSystem::sumColumns() {
-  const std::uint32_t noBlock = SolidSystem::noBlock(elementSlot_.size() / (corners_ * corners_));
-  std::array<const Slot*, laneCount> lane{};
+/// Slices by their least node: what a slice of one colour takes from elements, those of other colours take soon after.
+std::vector<std::size_t> SolidSystem::slicesByNodes() const {
+  std::vector<std::pair<std::int32_t, std::size_t>> order;
   for (std::size_t s = 0; s < matrix_.slices(); ++s) {
+    std::int32_t least = std::numeric_limits<std::int32_t>::max();
+    for (std::size_t r = s * laneCount; r < (s + 1) * laneCount; ++r) {
+      if (nodeOf_[r] >= 0) least = std::min(least, nodeOf_[r]);
+    }
+    order.emplace_back(least, s);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> slices;
+  slices.reserve(order.size());
+  for (const auto& [least, s] : order) slices.push_back(s);
+  return slices;
+}
+
+void SolidSystem::sumColumns() {
+  const bool areCubes = corners_ == 8;
+  const std::size_t nothing = noElement(elementSlot_.size() / (corners_ * corners_));
+  const auto noSource = static_cast<std::uint32_t>(areCubes ? 2 * 36 * nothing : 16 * nothing);
+  std::array<const Slot*, laneCount> lane{};
+  for (const std::size_t s : slicesByNodes()) {
     const std::size_t width = matrix_.lower(s).width;
     for (std::size_t k = 0; k <= width; ++k) {
-      CubeColumn column{};
+      Column column{};
       column.place = k == width ? matrix_.diagonal(s) : matrix_.lower(s).value() + k * 9 * laneCount;
-      column.first = columnBlock_.size();
+      column.first = columnSource_.size();
       for (std::size_t l = 0; l < laneCount; ++l) {
         const std::span<const Slot> row = ofRow(s * laneCount + l);
         const bool isThere = k == width ? !row.empty() : k + 1 < row.size();
@@ -264,14 +286,18 @@ void SolidSystem::sumColumns() {
       }
       for (std::size_t c = 0; c < column.count; ++c) {
         for (const Slot* slot : lane) {
-          const bool isThere = slot != nullptr && slot->first + c < slot->last;
-          const std::size_t at = isThere ? slot->first + c : 0;
-          columnBlock_.push_back(isThere ? 2 * cubeBlock_[at] + (at >= slot->turned ? 1U : 0U) : noBlock);
+          if (slot == nullptr || slot->first + c >= slot->last) {
+            columnSource_.push_back(noSource);
+            continue;
+          }
+          const std::size_t at = slot->first + c;
+          columnSource_.push_back(areCubes ? 2 * source_[at] + (at >= slot->turned ? 1U : 0U) : source_[at]);
         }
       }
-      cubeColumn_.push_back(column);
+      column_.push_back(column);
     }
   }
+  if (!areCubes) source_ = {};  // nothing is ever taken out of these
 }
 
 std::uint32_t SolidSystem::placeOf(int row, int column) const {

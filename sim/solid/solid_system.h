@@ -40,8 +40,8 @@ class SolidSystem {
   struct Slot {
     std::size_t place;        ///< in the matrix values
     std::int32_t node;        ///< of a diagonal block; else -1
-    std::size_t first, last;  ///< in contributions(); of cubes in cubeBlock_,
-    std::size_t turned;       ///< of which those from here on are transposed
+    std::size_t first, last;  ///< in source_
+    std::size_t turned;       ///< of cubes: those from here on are transposed
   };
 
   SolidSystem() = default;
@@ -66,21 +66,19 @@ class SolidSystem {
   [[nodiscard]] std::span<const Slot> ofRow(std::size_t row) const {
     return {slot_.data() + rowSlot_[row], rowSlot_[row + 1] - rowSlot_[row]};
   }
-  [[nodiscard]] const std::vector<Contribution>& contributions() const { return contribution_; }
-  /// A block column of a slice, of cubes: block l is the sum of cubeBlocks()[first + 8 c + l], c < count.
-  struct CubeColumn {
+  /// A block column of a slice: block l is the sum of what sources()[first + 8 c + l], c < count, say.
+  struct Column {
     std::size_t place;  ///< in the matrix values
     std::size_t first, count;
   };
-  /// Of the whole matrix, the diagonals too.
-  [[nodiscard]] const std::vector<CubeColumn>& cubeColumns() const { return cubeColumn_; }
-  /// 2 (36 block of a cube + HexahedralElements::pairOf()), and 1 more where it is transposed; noBlock() where a lane
-  /// has fewer than another: lanes that all sum as many leave nothing to guess to the processor.
-  [[nodiscard]] const std::vector<std::uint32_t>& cubeBlocks() const { return columnBlock_; }
-  /// Which of cubeBlocks() is none: the first behind those of all lanes.
-  [[nodiscard]] static std::uint32_t noBlock(std::size_t cubes) {
-    return static_cast<std::uint32_t>(2 * 36 * laneCount * laneGroups(cubes));
-  }
+  /// Of the whole matrix, the diagonals too; such that of elements that follow one another the blocks do, nearly.
+  [[nodiscard]] const std::vector<Column>& columns() const { return column_; }
+  /// Of tetrahedra 16 element + 4 a + b, for K_ab. Of cubes 2 (36 element + HexahedralElements::pairOf()), and 1 more
+  /// where it is transposed. Of noElement() where a lane has fewer than another: lanes that all sum as many leave
+  /// nothing to guess to the processor.
+  [[nodiscard]] const std::vector<std::uint32_t>& sources() const { return columnSource_; }
+  /// The first behind those of all lanes. @param elements how many there are
+  [[nodiscard]] static std::size_t noElement(std::size_t elements) { return laneCount * laneGroups(elements); }
   /// Where the blocks of an element's corners stand, row by row; noSlot where there is none or right of the diagonal.
   [[nodiscard]] const std::uint32_t* placesOf(std::size_t element) const {
     return elementPlace_.data() + element * corners_ * corners_;
@@ -95,6 +93,7 @@ class SolidSystem {
 
   void buildMatrix(const std::vector<std::vector<int>>& columns);
   void placeElements();
+  [[nodiscard]] std::vector<std::size_t> slicesByNodes() const;
   void sumColumns();
 
   std::size_t corners_ = 0;  ///< of an element
@@ -104,12 +103,11 @@ class SolidSystem {
   std::vector<std::size_t> colourStart_;  ///< rows
   BlockMatrix matrix_;
   std::vector<Slot> slot_;
-  std::vector<std::size_t> rowSlot_;  ///< per row: its first slot; and the end
-  std::vector<int> slotColumn_;       ///< per slot
-  std::vector<Contribution> contribution_;
-  std::vector<std::uint32_t> cubeBlock_;  ///< of the slots: 36 block of a cube + pair
-  std::vector<CubeColumn> cubeColumn_;
-  std::vector<std::uint32_t> columnBlock_;
+  std::vector<std::size_t> rowSlot_;   ///< per row: its first slot; and the end
+  std::vector<int> slotColumn_;        ///< per slot
+  std::vector<std::uint32_t> source_;  ///< of the slots of cubes: half of sources()
+  std::vector<Column> column_;
+  std::vector<std::uint32_t> columnSource_;
   std::vector<std::uint32_t> elementSlot_;  ///< numbers of slots, as elementPlace_; none
   std::vector<std::uint32_t> elementPlace_;
   std::vector<std::size_t> incidentStart_;

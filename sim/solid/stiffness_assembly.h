@@ -34,8 +34,8 @@ class StiffnessAssembly {
   void assembleCubes(const SolidModel& model, const SolidSystem& system, std::span<const RotationGroup> rotation,
                      std::span<const double> fill, float scale, Executor& executor, std::vector<float>& values);
 
-  std::vector<RotatedGradients> gradient_;  ///< of groups of tetrahedra
-  std::vector<HexahedronBlocks> cube_;      ///< of cubes, unused lanes too
+  std::vector<float> tetrahedron_;      ///< rotated gradients and volume of each
+  std::vector<HexahedronBlocks> cube_;  ///< of cubes, unused lanes too
 };
 
 }  // namespace calot

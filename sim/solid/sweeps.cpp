@@ -3,115 +3,16 @@
 
 #include <cstring>
 
-#include "sim/math/vectors.h"
+#include "sim/solid/sweep_lanes.h"
 
 namespace calot::sweeps {
 
 namespace {
 
-using Four = FourFloats;
-using Eight = EightFloats;
-
-/// Two rows of four numbers after one another in each half.
-CALOT_INLINE void join(const Four& low, const Four& high, Eight& out) {
-  out = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
-/// Eight rows, which begin row[l] numbers from x, as three components of eight lanes.
-CALOT_INLINE void turned(const float* x, const std::int32_t* row, Eight* out) {
-  Four first[4];  // of rows 2 l and 2 l + 1: x x y y
-  Four last[4];   // and z z and what fills up
-  for (std::size_t l = 0; l < 4; ++l) {
-    Four a;
-    Four b;
-    readVector(x + row[2 * l], a);
-    readVector(x + row[2 * l + 1], b);
-    first[l] = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-    last[l] = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-  }
-  Eight even;
-  Eight odd;
-  join(first[0], first[2], even);
-  join(first[1], first[3], odd);
-  out[0] = __builtin_shufflevector(even, odd, 0, 1, 8, 9, 4, 5, 12, 13);
-  out[1] = __builtin_shufflevector(even, odd, 2, 3, 10, 11, 6, 7, 14, 15);
-  join(last[0], last[2], even);
-  join(last[1], last[3], odd);
-  out[2] = __builtin_shufflevector(even, odd, 0, 1, 8, 9, 4, 5, 12, 13);
-}
-
-/// Three components of eight lanes as eight rows: row l in half l / 4 of out[l % 4].
-CALOT_INLINE void turnedBack(const Eight* lanes, Eight* out) {
-  const Eight none{};
-  const Eight low = __builtin_shufflevector(lanes[0], lanes[1], 0, 8, 1, 9, 4, 12, 5, 13);
-  const Eight high = __builtin_shufflevector(lanes[0], lanes[1], 2, 10, 3, 11, 6, 14, 7, 15);
-  const Eight lowLast = __builtin_shufflevector(lanes[2], none, 0, 8, 1, 9, 4, 12, 5, 13);
-  const Eight highLast = __builtin_shufflevector(lanes[2], none, 2, 10, 3, 11, 6, 14, 7, 15);
-  out[0] = __builtin_shufflevector(low, lowLast, 0, 1, 8, 9, 4, 5, 12, 13);
-  out[1] = __builtin_shufflevector(low, lowLast, 2, 3, 10, 11, 6, 7, 14, 15);
-  out[2] = __builtin_shufflevector(high, highLast, 0, 1, 8, 9, 4, 5, 12, 13);
-  out[3] = __builtin_shufflevector(high, highLast, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
-/// Adds four numbers.
-CALOT_INLINE void addTo(float* at, const Four& what) {
-  Four own;
-  readVector(at, own);
-  own += what;
-  writeVector(own, at);
-}
-
-/// Adds three components of eight lanes to rows, which begin row[l] numbers from x, in order of the lanes.
-CALOT_INLINE void addRows(const Eight* lanes, const std::int32_t* row, float* x) {
-  Eight rows[4];
-  turnedBack(lanes, rows);
-  for (std::size_t l = 0; l < 4; ++l) addTo(x + row[l], __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3));
-  for (std::size_t l = 0; l < 4; ++l) addTo(x + row[4 + l], __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7));
-}
-
-/// Rows that follow one another.
-constexpr std::int32_t inOrder[laneCount] = {0, 4, 8, 12, 16, 20, 24, 28};
-static_assert(rowStride == 4 && laneCount == 8);
-
-/// Keeps a slice's rows in the copy of the vector by rows.
-CALOT_INLINE void keepRows(const Eight* lanes, float* rows) {
-  Eight out[4];
-  turnedBack(lanes, out);
-  for (std::size_t l = 0; l < 4; ++l) {
-    writeVector(Four(__builtin_shufflevector(out[l], out[l], 0, 1, 2, 3)), rows + inOrder[l]);
-    writeVector(Four(__builtin_shufflevector(out[l], out[l], 4, 5, 6, 7)), rows + inOrder[4 + l]);
-  }
-}
-
-/// One row of a block times d. @param value its first entry: of all lanes each its own, or (many) of one row for all
-template <bool many>
-CALOT_INLINE void rowTimes(const float* value, const Eight* d, Eight& out) {
-  if constexpr (many) {
-    out = (value[0] * d[0] + value[laneCount] * d[1]) + value[2 * laneCount] * d[2];
-  } else {
-    Eight v[3];
-    readVector(value, v);
-    out = (v[0] * d[0] + v[1] * d[1]) + v[2] * d[2];
-  }
-}
-
-/// out = block d.
-template <bool many>
-CALOT_INLINE void product(const float* block, const Eight* d, Eight* out) {
-  for (std::size_t i = 0; i < 3; ++i) rowTimes<many>(block + 3 * i * laneCount, d, out[i]);
-}
-
-/// One column of a block, which is a row of its transpose, times d.
-template <bool many>
-CALOT_INLINE void columnTimes(const float* value, const Eight* d, Eight& out) {
-  if constexpr (many) {
-    out = (value[0] * d[0] + value[3 * laneCount] * d[1]) + value[6 * laneCount] * d[2];
-  } else {
-    Eight v[3];
-    for (std::size_t i = 0; i < 3; ++i) readVector(value + 3 * i * laneCount, v[i]);
-    out = (v[0] * d[0] + v[1] * d[1]) + v[2] * d[2];
-  }
-}
+using rows::addRows;
+using rows::Eight;
+using rows::keepRows;
+using rows::turned;
 
 /// Of a row of a matrix of eight right-hand sides: where it begins.
 CALOT_INLINE std::size_t manyAt(std::int32_t column) {
@@ -129,33 +30,17 @@ CALOT_INLINE void readRows(const float* rows, std::size_t at, Eight* out) {
   if constexpr (many) {
     std::memcpy(out, rows + at, 3 * sizeof *out);
   } else {
-    turned(rows + rowsAt<many>(at), inOrder, out);
+    rows::lanesOf(rows + rowsAt<many>(at), out);
   }
 }
 
+/// u += block^T t where the blocks' columns are.
 template <bool many>
-CALOT_INLINE void backwardLanes(const Blocks& lower, const float* inverse, const float* z, const float* beta, float* p,
-                                float* t, float* u, std::size_t at) {
-  Eight y[3];
-  readRows<many>(u, at, y);
-  Eight b;
-  readVector(beta, b);
-  for (std::size_t i = 0; i < 3; ++i) {
-    Eight own;
-    Eight before;
-    readVector(z + at + i * laneCount, own);
-    readVector(p + at + i * laneCount, before);
-    own += b * before;
-    writeVector(own, p + at + i * laneCount);
-    y[i] = own - y[i];
-  }
-  Eight out[3];
-  product<many>(inverse, y, out);
-  std::memcpy(t + at, out, sizeof out);
+CALOT_INLINE void handOn(const Blocks& lower, const Eight* t, float* u) {
   for (std::size_t k = 0; k < lower.width; ++k) {
     const std::int32_t* column = lower.column + k * laneCount;
     Eight part[3];
-    for (std::size_t i = 0; i < 3; ++i) columnTimes<many>(lower.value + (9 * k + i) * laneCount, out, part[i]);
+    for (std::size_t i = 0; i < 3; ++i) columnTimes<many>(lower.value + (9 * k + i) * laneCount, t, part[i]);
     if constexpr (many) {
       Eight own[3];
       float* place = u + manyAt(column[0]);
@@ -169,8 +54,29 @@ CALOT_INLINE void backwardLanes(const Blocks& lower, const float* inverse, const
 }
 
 template <bool many>
-CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const float* u, float* s, float* sRows,
-                               const float* p, const float* t, double* dot, std::size_t at) {
+CALOT_INLINE void backwardLanes(const Blocks& lower, const float* inverse, const float* z, const Eight& beta, float* p,
+                                float* t, float* u, std::size_t at) {
+  Eight y[3];
+  readRows<many>(u, at, y);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Eight own;
+    Eight before;
+    readVector(z + at + i * laneCount, own);
+    readVector(p + at + i * laneCount, before);
+    own += beta * before;
+    writeVector(own, p + at + i * laneCount);
+    y[i] = own - y[i];
+  }
+  Eight out[3];
+  product<many>(inverse, y, out);
+  std::memcpy(t + at, out, sizeof out);
+  handOn<many>(lower, out, u);
+}
+
+/// out = inverse (u - sum of lower s). @param s by rows (many: it is the same)
+template <bool many>
+CALOT_INLINE void lowerLanes(const Blocks& lower, const float* inverse, const float* u, const float* s, std::size_t at,
+                             Eight* out) {
   Eight y[3] = {};
   for (std::size_t k = 0; k < lower.width; ++k) {
     const std::int32_t* column = lower.column + k * laneCount;
@@ -178,7 +84,7 @@ CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const 
     if constexpr (many) {
       std::memcpy(d, s + manyAt(column[0]), sizeof d);
     } else {
-      turned(sRows, column, d);
+      turned(s, column, d);
     }
     Eight part[3];
     product<many>(lower.value + k * 9 * laneCount, d, part);
@@ -187,12 +93,16 @@ CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const 
   Eight own[3];
   readRows<many>(u, at, own);
   for (std::size_t i = 0; i < 3; ++i) y[i] = own[i] - y[i];
-  Eight out[3];
   product<many>(inverse, y, out);
+}
+
+template <bool many>
+CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const float* u, float* s, float* sRows,
+                               const float* p, const float* t, EightDoubles& sum, std::size_t at) {
+  Eight out[3];
+  lowerLanes<many>(lower, inverse, u, many ? s : sRows, at, out);
   std::memcpy(s + at, out, sizeof out);
   if constexpr (!many) keepRows(out, sRows + rowsAt<many>(at));
-  EightDoubles sum;
-  readVector(dot, sum);
   for (std::size_t i = 0; i < 3; ++i) {
     Eight direction;
     Eight before;
@@ -200,14 +110,11 @@ CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const 
     readVector(t + at + i * laneCount, before);
     sum += __builtin_convertvector(direction, EightDoubles) * __builtin_convertvector(before + out[i], EightDoubles);
   }
-  writeVector(sum, dot);
 }
 
 template <bool many>
-CALOT_INLINE void updateLanes(const float* diagonal, const float* alpha, const float* t, const float* s, float* x,
-                              float* r, float* z, double* dot, std::size_t at) {
-  Eight by;
-  readVector(alpha, by);
+CALOT_INLINE void updateLanes(const float* diagonal, const Eight& by, const float* t, const float* s, float* x,
+                              float* r, float* z, EightDoubles& sum, std::size_t at) {
   Eight next[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t a = at + i * laneCount;
@@ -224,46 +131,112 @@ CALOT_INLINE void updateLanes(const float* diagonal, const float* alpha, const f
   }
   Eight scaled[3];
   product<many>(diagonal, next, scaled);
-  EightDoubles sum;
-  readVector(dot, sum);
   for (std::size_t i = 0; i < 3; ++i) {
     sum += __builtin_convertvector(next[i], EightDoubles) * __builtin_convertvector(scaled[i], EightDoubles);
   }
-  writeVector(sum, dot);
   std::memcpy(r + at, next, sizeof next);
   std::memcpy(z + at, scaled, sizeof scaled);
 }
 
+/// Inverses of the diagonal blocks of lanes `from` to `from` + 3, in double.
+CALOT_INLINE void invertFour(const float* in, std::size_t from, float* out) {
+  FourDoubles a[3][3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      FourFloats own;
+      readVector(in + (3 * i + j) * laneCount + from, own);
+      a[i][j] = __builtin_convertvector(own, FourDoubles);
+    }
+  }
+  const FourDoubles c[9] = {a[1][1] * a[2][2] - a[1][2] * a[2][1], a[0][2] * a[2][1] - a[0][1] * a[2][2],
+                            a[0][1] * a[1][2] - a[0][2] * a[1][1], a[1][2] * a[2][0] - a[1][0] * a[2][2],
+                            a[0][0] * a[2][2] - a[0][2] * a[2][0], a[0][2] * a[1][0] - a[0][0] * a[1][2],
+                            a[1][0] * a[2][1] - a[1][1] * a[2][0], a[0][1] * a[2][0] - a[0][0] * a[2][1],
+                            a[0][0] * a[1][1] - a[0][1] * a[1][0]};
+  const FourDoubles none{};
+  const FourDoubles determinant = (a[0][0] * c[0] + a[0][1] * c[3]) + a[0][2] * c[6];
+  const FourDoubles inverse = determinant == none ? none : 1.0 / determinant;
+  for (std::size_t i = 0; i < 9; ++i) {
+    writeVector(__builtin_convertvector(c[i] * inverse, FourFloats), out + i * laneCount + from);
+  }
+}
+
 }  // namespace
 
-CALOT_LANE_KERNEL void backward(const Blocks& lower, const float* inverse, const float* z, const float* beta, float* p,
-                                float* t, float* u, std::size_t at) {
-  backwardLanes<false>(lower, inverse, z, beta, p, t, u, at);
+CALOT_LANE_KERNEL void invertDiagonal(const Slices& matrix, float* inverse) {
+  for (std::size_t s = 0; s < matrix.count; ++s) {
+    for (const std::size_t from : {std::size_t{0}, std::size_t{4}})
+      invertFour(diagonalOf(matrix, s), from, inverse + s * 9 * laneCount);
+  }
 }
 
-CALOT_LANE_KERNEL void backwardMany(const Blocks& lower, const float* inverse, const float* z, const float* beta,
-                                    float* p, float* t, float* u, std::size_t at) {
-  backwardLanes<true>(lower, inverse, z, beta, p, t, u, at);
+CALOT_LANE_KERNEL void backward(const Slices& matrix, const float* z, float beta, float* p, float* t, float* u) {
+  const Eight by = {beta, beta, beta, beta, beta, beta, beta, beta};
+  for (std::size_t s = matrix.count; s-- > 0;) {
+    Blocks lower;
+    blocksOf(matrix, s, 0, lower);
+    backwardLanes<false>(lower, inverseOf(matrix, s), z, by, p, t, u, s * laneStride);
+  }
 }
 
-CALOT_LANE_KERNEL void forward(const Blocks& lower, const float* inverse, const float* u, float* s, float* sRows,
-                               const float* p, const float* t, double* dot, std::size_t at) {
-  forwardLanes<false>(lower, inverse, u, s, sRows, p, t, dot, at);
+CALOT_LANE_KERNEL void backwardMany(const Slices& matrix, const float* z, const float* beta, float* p, float* t,
+                                    float* u) {
+  Eight by;
+  readVector(beta, by);
+  for (std::size_t r = matrix.count * laneCount; r-- > 0;) {
+    const std::size_t lane = r % laneCount;
+    Blocks lower;
+    blocksOf(matrix, r / laneCount, lane, lower);
+    backwardLanes<true>(lower, inverseOf(matrix, r / laneCount) + lane, z, by, p, t, u, r * laneStride);
+  }
 }
 
-CALOT_LANE_KERNEL void forwardMany(const Blocks& lower, const float* inverse, const float* u, float* s, const float* p,
-                                   const float* t, double* dot, std::size_t at) {
-  forwardLanes<true>(lower, inverse, u, s, nullptr, p, t, dot, at);
+CALOT_LANE_KERNEL void forward(const Slices& matrix, const float* u, float* s, float* sRows, const float* p,
+                               const float* t, double* dot) {
+  EightDoubles sum;
+  readVector(dot, sum);
+  for (std::size_t i = 0; i < matrix.count; ++i) {
+    Blocks lower;
+    blocksOf(matrix, i, 0, lower);
+    forwardLanes<false>(lower, inverseOf(matrix, i), u, s, sRows, p, t, sum, i * laneStride);
+  }
+  writeVector(sum, dot);
 }
 
-CALOT_LANE_KERNEL void update(const float* diagonal, const float* alpha, const float* t, const float* s, float* x,
-                              float* r, float* z, double* dot, std::size_t at) {
-  updateLanes<false>(diagonal, alpha, t, s, x, r, z, dot, at);
+CALOT_LANE_KERNEL void forwardMany(const Slices& matrix, const float* u, float* s, const float* p, const float* t,
+                                   double* dot) {
+  EightDoubles sum;
+  readVector(dot, sum);
+  for (std::size_t r = 0; r < matrix.count * laneCount; ++r) {
+    const std::size_t lane = r % laneCount;
+    Blocks lower;
+    blocksOf(matrix, r / laneCount, lane, lower);
+    forwardLanes<true>(lower, inverseOf(matrix, r / laneCount) + lane, u, s, nullptr, p, t, sum, r * laneStride);
+  }
+  writeVector(sum, dot);
 }
 
-CALOT_LANE_KERNEL void updateMany(const float* diagonal, const float* alpha, const float* t, const float* s, float* x,
-                                  float* r, float* z, double* dot, std::size_t at) {
-  updateLanes<true>(diagonal, alpha, t, s, x, r, z, dot, at);
+CALOT_LANE_KERNEL void update(const Slices& matrix, float alpha, const float* t, const float* s, float* x, float* r,
+                              float* z, double* dot) {
+  const Eight by = {alpha, alpha, alpha, alpha, alpha, alpha, alpha, alpha};
+  EightDoubles sum;
+  readVector(dot, sum);
+  for (std::size_t i = 0; i < matrix.count; ++i) {
+    updateLanes<false>(diagonalOf(matrix, i), by, t, s, x, r, z, sum, i * laneStride);
+  }
+  writeVector(sum, dot);
+}
+
+CALOT_LANE_KERNEL void updateMany(const Slices& matrix, const float* alpha, const float* t, const float* s, float* x,
+                                  float* r, float* z, double* dot) {
+  Eight by;
+  readVector(alpha, by);
+  EightDoubles sum;
+  readVector(dot, sum);
+  for (std::size_t row = 0; row < matrix.count * laneCount; ++row) {
+    updateLanes<true>(diagonalOf(matrix, row / laneCount) + row % laneCount, by, t, s, x, r, z, sum, row * laneStride);
+  }
+  writeVector(sum, dot);
 }
 
 }  // namespace calot::sweeps

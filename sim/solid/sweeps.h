@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernels of ConjugateGradient. Internal to this folder. Each takes eight lanes: the rows of one slice, or (Many)
-// of one row eight right-hand sides. Vectors have three components of eight lanes, which begin `at` for these rows; but
-// what the blocks are multiplied with or added to, u and s, also or only goes by rows: rowStride numbers for each
-// (Many: it is the same). Gathering lanes one by one would take three times as long.
+// The kernels of ConjugateGradient. Internal to this folder. Each goes over a whole matrix and takes eight lanes at a
+// time: the rows of one slice, or (Many) of one row eight right-hand sides. Vectors have three components of eight
+// lanes for each of them; but what the blocks are multiplied with or added to, u and s, also or only goes by rows:
+// rowStride numbers for each (Many: it is the same). Gathering lanes one by one would take three times as long.
 #pragma once
 
 #include <cstddef>
@@ -12,30 +12,47 @@
 
 namespace calot::sweeps {
 
-/// Blocks left of the diagonal. Many: advanced to the lane of the row.
-struct Blocks {
+/// A matrix with the inverses of its diagonal blocks: of each slice 9 x 8 lanes.
+struct Slices {
   const float* value;
+  const float* inverse;
   const std::int32_t* column;
-  std::size_t width;
+  const std::size_t* first;     ///< per slice: the block column that it begins with
+  const std::size_t* diagonal;  ///< per slice: the block column of its diagonal
+  std::size_t count;
 };
 
-/// p = z + beta p,  t = inverse (p - u), and where the blocks' columns are, u += block^T t.
-/// @param beta per lane @param u by rows: what rows further down added to it
-void backward(const Blocks& lower, const float* inverse, const float* z, const float* beta, float* p, float* t,
-              float* u, std::size_t at);
-void backwardMany(const Blocks& lower, const float* inverse, const float* z, const float* beta, float* p, float* t,
-                  float* u, std::size_t at);
+/// Inverts the diagonal blocks; zero where one is singular, which is a row that only fills a slice up.
+void invertDiagonal(const Slices& matrix, float* inverse);
+
+/// From the last row to the first: p = z + beta p,  t = inverse (p - u), and where the blocks' columns are,
+/// u += block^T t. @param u by rows: what rows further down added to it
+void backward(const Slices& matrix, const float* z, float beta, float* p, float* t, float* u);
+/// @param beta per lane
+void backwardMany(const Slices& matrix, const float* z, const float* beta, float* p, float* t, float* u);
 
 /// s = inverse (u - sum of lower s); adds p . (t + s) to dot, per lane. @param u by rows @param sRows copy of s by rows
-void forward(const Blocks& lower, const float* inverse, const float* u, float* s, float* sRows, const float* p,
-             const float* t, double* dot, std::size_t at);
-void forwardMany(const Blocks& lower, const float* inverse, const float* u, float* s, const float* p, const float* t,
-                 double* dot, std::size_t at);
+void forward(const Slices& matrix, const float* u, float* s, float* sRows, const float* p, const float* t, double* dot);
+void forwardMany(const Slices& matrix, const float* u, float* s, const float* p, const float* t, double* dot);
 
-/// x += alpha t,  r -= alpha (t + s),  z = diagonal r; adds r . z to dot, per lane. @param alpha per lane
-void update(const float* diagonal, const float* alpha, const float* t, const float* s, float* x, float* r, float* z,
-            double* dot, std::size_t at);
-void updateMany(const float* diagonal, const float* alpha, const float* t, const float* s, float* x, float* r, float* z,
-                double* dot, std::size_t at);
+/// x += alpha t,  r -= alpha (t + s),  z = diagonal r; adds r . z to dot, per lane.
+void update(const Slices& matrix, float alpha, const float* t, const float* s, float* x, float* r, float* z,
+            double* dot);
+/// @param alpha per lane
+void updateMany(const Slices& matrix, const float* alpha, const float* t, const float* s, float* x, float* r, float* z,
+                double* dot);
+
+/// With a lattice (lattice_gradient.cpp): from the last row to the first t = inverse (z - u),  p = t + c + beta p, and
+/// where the blocks' columns are, u += block^T t and w += block^T p.
+/// @param uw u and w, pairs of rows @param pq p in the first of pairs of rows
+void backwardPairs(const Slices& matrix, const float* z, const float* c, float beta, float* p, float* uw, float* pq);
+
+/// q = sum of lower p + diagonal p + w,  s = inverse (q - sum of lower s); adds p . q to dot, per lane.
+/// @param uw w in the second of pairs of rows @param pq p and s, pairs of rows: p given, s found
+void forwardPairs(const Slices& matrix, const float* p, const float* uw, float* pq, float* q, float* s, double* dot);
+
+/// x += alpha p,  r -= alpha q,  y -= alpha s,  z = diagonal y; adds y . z to dot, per lane.
+void updatePairs(const Slices& matrix, float alpha, const float* p, const float* q, const float* s, float* x, float* r,
+                 float* y, float* z, double* dot);
 
 }  // namespace calot::sweeps

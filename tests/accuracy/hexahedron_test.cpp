@@ -9,6 +9,7 @@
 #include "sim/math/random.h"
 #include "sim/solid/solid.h"
 #include "tests/accuracy/support/cube_box.h"
+#include "tests/accuracy/support/settle.h"
 
 namespace calot {
 namespace {
@@ -21,23 +22,9 @@ constexpr SolidModel::Material soft(double poisson = 0.3) {
       {5e3 * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), 5e3 / (2.0 * (1.0 + poisson))}, 1000.0, 0.0, 0.05};
 }
 
-/// Steps until nothing moves.
 void settle(const SolidModel& model, SolidState& state, std::span<const Vec3> external, const Surroundings& around = {},
             double step = 0.05) {
-  SerialExecutor executor;
-  SolidSolver solver;
-  SolidSolver::Settings settings;
-  settings.step = step;
-  settings.tolerance = 1e-6;
-  settings.cap = 4000;
-  double speed = 1.0;
-  for (int i = 0; i < 4000 && speed > 1e-10; ++i) {
-    solver.freeMotion(model, state, Vec3::Zero(), external, settings, executor, around);
-    ASSERT_TRUE(solver.advance(model, state, {}, settings.step));
-    speed = 0.0;
-    for (const Vec3& v : state.velocity) speed = std::max(speed, v.norm());
-  }
-  ASSERT_LT(speed, 1e-7);
+  ASSERT_LT(test::settle(model, state, {Vec3::Zero(), external, around, step, 4000, 1e-10}), 1e-7);
 }
 
 struct Forces {

@@ -37,11 +37,7 @@ struct Carved {
   std::vector<bool> fixed;
   std::vector<double> fill;
 
-  Carved() : fixed(box.node.size(), false), fill(box.cube.size(), 1.0) {
-    for (int k = 0; k <= box.nz; ++k) {
-      for (int j = 0; j <= box.ny; ++j) fixed[static_cast<std::size_t>(box.index(0, j, k))] = true;
-    }
-  }
+  Carved() : fixed(box.firstFace()), fill(box.cube.size(), 1.0) {}
   [[nodiscard]] SolidModel model() const { return {box.node, box.cube, box.edge, fixed, soft}; }
 };
 

@@ -22,6 +22,10 @@ void registerMeshGrowth();  ///< mesh: deformation alone, to 200,000 tetrahedra
 void registerBoxes();       ///< boxes, precision: deformation alone against Bullet's, time against error
 void registerRecordings();  ///< recording: what it costs the loop; replay and seek
 
+void registerAttemptGrowth();  ///< growth/attempt: to 45 minutes of it
+void registerPrice();          ///< price, memory: the boxes without the determinism contract; what they take
+void registerRoofline();       ///< roofline: the solver's kernels against what the machine can do
+
 inline void registerAll() {
   registerContactStep();
   registerContactBudget();
@@ -38,6 +42,9 @@ inline void registerAll() {
   registerMeshGrowth();
   registerBoxes();
   registerRecordings();
+  registerAttemptGrowth();
+  registerPrice();
+  registerRoofline();
 }
 
 }  // namespace calot::bench

@@ -17,6 +17,8 @@ struct HangingBody {
   double youngModulus = 5e3, poissonRatio = 0.45, density = 1000.0;
   double step = 0.02;                     ///< s
   std::function<Vec3(int step)> gravity;  ///< m/s^2
+  /// What pulls on the nodes besides (N, per node); none where it is not set.
+  std::function<std::vector<Vec3>(int step)> load = nullptr;
 };
 
 /// Where its nodes end, and what a step took.

@@ -263,6 +263,7 @@ void growth(benchmark::State& bench) {
   }
   bench.counters["exponent_bricks"] = growthExponent(bricks, byTool);
   bench.counters["exponent_lattice_nodes"] = growthExponent(sizes, bySize);
+  figures().add("growth.bricks.exponent", growthExponent(bricks, byTool));
 }
 
 }  // namespace

@@ -110,6 +110,7 @@ void contactGrowth(benchmark::State& bench) {
     }
     bench.counters["most"] = quantile(places, 1.0);
     bench.counters["exponent"] = growthExponent(places, seconds);
+    figures().add("growth.contacts.exponent", growthExponent(places, seconds));
     bench.SetIterationTime(largest);
   }
 }

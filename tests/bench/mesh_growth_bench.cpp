@@ -11,6 +11,7 @@
 
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/numbers.h"
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 #include "tests/bench/touch_motion.h"
@@ -92,9 +93,34 @@ void meshSize(benchmark::State& bench, std::uint32_t size) {
   if (size == 200000) figures().add("deformation.200k.steps_per_s", 1.0 / own.seconds);
 }
 
+/// Time of a step over tetrahedra, fitted over all sizes to fifty thousand; and what of it is more iterations.
+void elementGrowth(benchmark::State& bench) {
+  std::vector<double> tetrahedra;
+  std::vector<std::unique_ptr<const Model>> models;
+  for (const std::uint32_t size : sizes) {
+    if (size > 50000) continue;
+    models.push_back(liverOf(size));
+    tetrahedra.push_back(static_cast<double>(models.back()->organs()[0].solid.tetrahedra().size()));
+  }
+  for (auto _ : bench) {
+    std::vector<double> seconds;
+    std::vector<double> iterations;
+    for (const auto& model : models) {
+      const Swing own = swing(*model, model->organs()[0].solid.tetrahedra().size() > 20000 ? 10 : 60);
+      seconds.push_back(own.seconds);
+      iterations.push_back(own.iterations);
+    }
+    bench.SetIterationTime(seconds.back());
+    bench.counters["exponent"] = growthExponent(tetrahedra, seconds);
+    bench.counters["exponent_iterations"] = growthExponent(tetrahedra, iterations);
+    figures().add("growth.elements.exponent", growthExponent(tetrahedra, seconds));
+  }
+}
+
 }  // namespace
 
 void registerMeshGrowth() {
+  repeated(benchmark::RegisterBenchmark("growth/elements", elementGrowth), 3);
   for (const std::uint32_t size : sizes) {
     repeated(benchmark::RegisterBenchmark(("mesh/liver/" + std::to_string(size)).c_str(), meshSize, size), 3);
   }

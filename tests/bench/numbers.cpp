@@ -21,23 +21,6 @@ double quantile(std::vector<double> values, double q) {
   return values[at];
 }
 
-double growthExponent(std::span<const double> x, std::span<const double> y) {
-  double meanX = 0.0;
-  double meanY = 0.0;
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    meanX += std::log(x[i]) / n;
-    meanY += std::log(y[i]) / n;
-  }
-  double xy = 0.0;
-  double xx = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xy += (std::log(x[i]) - meanX) * (std::log(y[i]) - meanY);
-    xx += (std::log(x[i]) - meanX) * (std::log(x[i]) - meanX);
-  }
-  return xy / xx;
-}
-
 double clockOverhead() {
   std::vector<double> between(10001);
   for (double& b : between) {

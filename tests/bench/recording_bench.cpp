@@ -2,7 +2,6 @@
 // What recording costs the thread of the loop; how fast a recording is verified; how long a seek takes. Peers: the same
 // steps without a writer; the time that the attempt took; a step.
 #include <benchmark/benchmark.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <ctime>
@@ -20,6 +19,7 @@
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/folder.h"
 #include "tests/bench/numbers.h"
 #include "tests/bench/performed.h"
 #include "tests/bench/repeated.h"
@@ -31,24 +31,6 @@ namespace {
 
 constexpr std::uint64_t seed = 1;
 const std::string assets = CALOT_ASSETS;
-
-/// A folder of its own under the system's one for temporary files, gone with the object.
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("calot-bench-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 double processSeconds() {
   timespec now{};
@@ -97,7 +79,7 @@ double run(const Work& work, const std::filesystem::path& to) {
 }
 
 void overhead(benchmark::State& bench, const std::string& scene) {
-  static const Folder folder;
+  static const Folder folder("overhead");
   const Work work = workIn(scene, 20.0);
   const auto steps = static_cast<double>(work.motion.step.size());
   double without = 0.0;
@@ -139,7 +121,7 @@ void replay(benchmark::State& bench) {
 }
 
 void seek(benchmark::State& bench) {
-  static const Folder folder;
+  static const Folder folder("seek");
   const Work work = workIn("cholecystectomy", 40.0);
   const std::filesystem::path file = folder / "seek.h5";
   const double step = run(work, file) / static_cast<double>(work.motion.step.size());

@@ -136,7 +136,17 @@ class Ratings(Assessment):
         self.well(*self.rate(self.attempts()[0], "R1", ["-", 3, 3, 3, 3], "--force"))
         said = json.loads(self.well("rate", self.database, "--json").out)
         self.assertEqual(said[0]["incomplete"], 1)
-        self.assertIn("Agreement between raters on goals", self.well("rate", self.database).out)
+        shown = self.well("rate", self.database).out
+        self.assertIn("Agreement between raters on goals", shown)
+        self.assertIn("agreement over the attempts that every rater rated (1 were not)", " ".join(shown.split()))
+
+    def test_answers_in_one_option(self):
+        attempt = self.attempts()[0]
+        answers = ",".join(f"{item}={score}" for item, score in zip(GOALS, (1, 2, 3, 4, "-")))
+        self.well("rate", self.database, "--form", "goals", "--attempt", attempt, "--rater", "R1", "--answer", answers)
+        items = json.loads(self.well("rate", self.database, "--json").out)[0]["items"]
+        given = [(sum(g["n"] for g in i["groups"]), sum(g["blank"] for g in i["groups"])) for i in items]
+        self.assertEqual(given, [(1, 0)] * 4 + [(0, 1)])
 
     def test_what_is_refused(self):
         attempt = self.attempts()[0]

@@ -35,6 +35,11 @@ class Golden(program.ProgramTest):
         text = json.dumps({"simulation_version": version, "reason": "first", "recordings": recordings})
         (self.golden / "golden.json").write_text(text)
 
+    def list_values(self, values):
+        listed = self.listed()
+        listed["recordings"][0]["checkpoints"] = values
+        (self.golden / "golden.json").write_text(json.dumps(listed))
+
     def listed(self):
         return json.loads((self.golden / "golden.json").read_text())
 
@@ -69,13 +74,32 @@ class Golden(program.ProgramTest):
         self.refused(2, "golden", "update", "--folder", self.golden, "--reason", "again", names=["raises simulationVersion"])
         self.assertEqual((self.golden / "touch.h5").read_bytes(), before)
 
+        # A value that is not in the list, and one that the list alone has.
+        values = listed["recordings"][0]["checkpoints"]
+        for kept in ([v for v in values if v["name"] != "sparc"], [*values, {"name": "path-length", "subject": "third", "version": 1, "value": 1.0}]):
+            self.assertNotEqual(len(kept), len(values))
+            self.list_values(kept)
+            answer = program.calot("golden", "check", "--folder", self.golden)
+            self.assertEqual(answer.code, 3, answer)
+            self.assertIn("none", answer.out)
+
         # A checkpoint that is computed in another way.
-        value = next(v for v in listed["recordings"][0]["checkpoints"] if v["name"] == "path-length")
-        value["value"] *= 1 + 1e-15
-        (self.golden / "golden.json").write_text(json.dumps(listed))
+        self.list_values([{**v, "value": v["value"] * (1 + 1e-15)} if v["name"] == "path-length" else v for v in values])
         answer = program.calot("golden", "check", "--folder", self.golden)
         self.assertEqual(answer.code, 3, answer)
         self.assertIn("path-length", answer.err + answer.out)
+
+        # The list takes it over only where the definition's version says that it is another; new ones always.
+        self.refused(3, "golden", "values", "--folder", self.golden, "--reason", "x", names=["path-length", "raise the version"])
+        self.refused(2, "golden", "values", "--folder", self.golden, "--reason", " ", names=["--reason"])
+        older = [{**v, "value": v["value"] * 2, "version": 1} if v["name"] == "path-length" else v for v in values]
+        self.assertNotEqual([v["version"] for v in older], [v["version"] for v in values], "the definition has no version before this one")
+        self.list_values([v for v in older if v["name"] != "sparc"])
+        taken = self.well("golden", "values", "--folder", self.golden, "--reason", "a finer filter")
+        self.assertIn("definition version", taken.out)
+        self.assertIn("sparc left: none -> ", taken.out)
+        self.assertEqual(self.listed(), {**listed, "values_reason": "a finer filter"})
+        self.well("golden", "check", "--folder", self.golden)
 
         # A force that differs, and nothing else: its digest tells.
         with h5py.File(self.golden / "touch.h5", "r+") as file:
@@ -85,6 +109,10 @@ class Golden(program.ProgramTest):
         answer = program.calot("golden", "check", "--folder", self.golden)
         self.assertEqual(answer.code, 3, answer)
         self.assertIn("step 200: force digest of the step's forces", answer.err + answer.out)
+        before = self.listed()
+        answer = program.calot("golden", "values", "--folder", self.golden, "--reason", "x")
+        self.assertEqual(answer.code, 3, answer)
+        self.assertEqual(self.listed(), before, "values of another simulation were taken over")
 
     def test_an_update_belongs_to_a_revision(self):
         (self.tree / "source.txt").write_text("changed\n")

@@ -12,6 +12,7 @@
 #include "sim/scene/flat.h"
 #include "sim/scene/stepper.h"
 #include "sim/scene/version.h"
+#include "tests/determinism/large_solid.h"
 #include "tests/determinism/thread_executor.h"
 
 #if defined(__x86_64__)
@@ -84,14 +85,25 @@ int run(const char* path, unsigned threads) {
   return 0;
 }
 
+int runLargeSolid(unsigned threads) {
+  calot::ThreadExecutor executor(threads);
+  for (const std::uint64_t digest : calot::test::largeSolid(executor)) {
+    std::printf("%016llx\n", static_cast<unsigned long long>(digest));
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const char* path = nullptr;
   unsigned threads = 1;
+  bool largeSolid = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--flush-to-zero") == 0) {
       setFlushToZero();
+    } else if (std::strcmp(argv[i], "--large-solid") == 0) {
+      largeSolid = true;
     } else if (std::strcmp(argv[i], "--threads") == 0 && i + 1 < argc) {
       threads = static_cast<unsigned>(std::strtoul(argv[++i], nullptr, 10));
     } else if (path == nullptr && argv[i][0] != '-') {
@@ -101,9 +113,9 @@ int main(int argc, char** argv) {
       break;
     }
   }
-  if (path == nullptr || threads == 0) {
-    std::fprintf(stderr, "usage: calot-matrix FLAT [--threads N] [--flush-to-zero]\n");
+  if ((path != nullptr) == largeSolid || threads == 0) {
+    std::fprintf(stderr, "usage: calot-matrix FLAT|--large-solid [--threads N] [--flush-to-zero]\n");
     return 2;
   }
-  return run(path, threads);
+  return largeSolid ? runLargeSolid(threads) : run(path, threads);
 }

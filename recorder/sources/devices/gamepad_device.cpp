@@ -123,7 +123,7 @@ bool GamepadDevice::connected() const { return sdl_ && sdl_->controller != nullp
 
 void GamepadDevice::close() { sdl_.reset(); }
 
-void GamepadDevice::emit(std::int64_t now, double seconds, DeviceInput& out) {
+void GamepadDevice::put(std::int64_t now, double seconds, DeviceInput& out) {
   const Sdl& pad = *sdl_;
   const auto pressed = [&](SDL_GameControllerButton b) { return pad.pressed(b) ? 1.0 : 0.0; };
   const bool switches = pad.pressed(SDL_CONTROLLER_BUTTON_START);
@@ -189,7 +189,7 @@ void GamepadDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
     out.events.push_back({DeviceEvent::Kind::disconnected, now, info_.identity + ": unplugged"});
     return;
   }
-  emit(now, std::min(largestStep, 1e-9 * static_cast<double>(now - last_)), out);
+  put(now, std::min(largestStep, 1e-9 * static_cast<double>(now - last_)), out);
   last_ = now;
 }
 

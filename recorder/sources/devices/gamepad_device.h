@@ -34,7 +34,7 @@ class GamepadDevice final : public Device {
     Vec3 position = Vec3::Zero();
     double roll = 0.0, jaw = 0.0;
   };
-  void emit(std::int64_t now, double seconds, DeviceInput& out);
+  void put(std::int64_t now, double seconds, DeviceInput& out);
 
   std::unique_ptr<Sdl> sdl_;
   DeviceInfo info_;

@@ -71,8 +71,8 @@ void MouseDevice::advance(Pointer& p, const MouseInput::Wish& wish, double secon
                      largestJaw);
 }
 
-void MouseDevice::emit(Hand hand, const MouseInput::Wish& wish, std::uint8_t momentary, std::int64_t now,
-                       DeviceInput& out) {
+void MouseDevice::put(Hand hand, const MouseInput::Wish& wish, std::uint8_t momentary, std::int64_t now,
+                      DeviceInput& out) {
   Pointer& p = pointer_[static_cast<std::size_t>(hand)];
   DeviceSample sample;
   sample.hostTime = now;
@@ -94,7 +94,7 @@ void MouseDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
     greeted_ = true;
     out.events.push_back({DeviceEvent::Kind::connected, now, "mouse and keyboard: there"});
     const MouseInput::Wish wish = input_->take();
-    for (const Hand hand : {Hand::left, Hand::right}) emit(hand, wish, 0, now, out);
+    for (const Hand hand : {Hand::left, Hand::right}) put(hand, wish, 0, now, out);
     last_ = lastResting_ = now;
     return;
   }
@@ -116,13 +116,13 @@ void MouseDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
   bit(MouseControl::cut, button::cutPedal);
   bit(MouseControl::coagulate, button::coagulatePedal);
   bit(MouseControl::fire, button::fire);
-  emit(wish.hand, wish, momentary, now, out);
+  put(wish.hand, wish, momentary, now, out);
   last_ = now;
   // At once where it has just been left.
   if (wish.hand == hand_ && now < lastResting_ + restingPeriod) return;
   hand_ = wish.hand;
   lastResting_ = now;
-  emit(other, wish, 0, now, out);
+  put(other, wish, 0, now, out);
 }
 
 }  // namespace calot::recorder

@@ -35,7 +35,7 @@ class MouseDevice final : public Device {
     std::uint64_t sequence = 0;
   };
   void advance(Pointer& pointer, const MouseInput::Wish& wish, double seconds);
-  void emit(Hand hand, const MouseInput::Wish& wish, std::uint8_t momentary, std::int64_t now, DeviceInput& out);
+  void put(Hand hand, const MouseInput::Wish& wish, std::uint8_t momentary, std::int64_t now, DeviceInput& out);
 
   std::shared_ptr<MouseInput> input_;
   DeviceInfo info_;

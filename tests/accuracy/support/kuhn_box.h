@@ -15,6 +15,14 @@ struct KuhnBox {
   int nx, ny, nz;
 
   [[nodiscard]] int index(int i, int j, int k) const { return (k * (ny + 1) + j) * (nx + 1) + i; }
+  /// Per node: is it of the face where x is least?
+  [[nodiscard]] std::vector<bool> firstFace() const {
+    std::vector<bool> on(node.size(), false);
+    for (int k = 0; k <= nz; ++k) {
+      for (int j = 0; j <= ny; ++j) on[static_cast<std::size_t>(index(0, j, k))] = true;
+    }
+    return on;
+  }
 };
 
 inline KuhnBox kuhnBox(int nx, int ny, int nz, const Vec3& lower, const Vec3& upper) {

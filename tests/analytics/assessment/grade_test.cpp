@@ -111,6 +111,28 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   expectRefusal(ExitCode::usage, "a mean of attempts is no attempt", [&] { made(); });
 }
 
+TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {
+  for (unsigned i = 0; i < 16; ++i) {
+    const unsigned n = i < 8 ? i : i + 2;  // as they were added
+    auto values = cohort_.values(uuidOf(n));
+    values.push_back(makeValue(*findCheckpoint("phase-path-length"), "left clipping", Origin::resimulated,
+                               (i < 8 ? 1.0 : 5.0) + 0.1 * i));
+    cohort_.storeValues(uuidOf(n), values);
+  }
+  EXPECT_EQ(made().checkpoints.size(), 2U);
+  request_.checkpoints = {"path-length left", "phase-path-length left clipping"};
+  EXPECT_EQ(neededPasses(made()), 2U);
+  request_.checkpoints.clear();
+  request_.who.includePhases = true;
+  EXPECT_EQ(made().checkpoints.size(), 3U);
+}
+
+TEST_F(Grades, aNormOfFewSaysThatItsIntervalsCoverTooLittle) {
+  EXPECT_EQ(passMarkWarning(made()),
+            "Warning: pass mark: with 10 a group an interval at 95 % covers 90.7 % (population: normal, 70 (5) and 50 "
+            "(10)).");
+}
+
 TEST_F(Grades, ratersJudgeWhereThereAreRatings) {
   request_.judgedBy = "competence";
   expectRefusal(ExitCode::no, "no attempt was rated with form competence", [&] { made(); });

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <clocale>
 #include <cmath>
 #include <fstream>
@@ -262,6 +263,45 @@ TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
   EXPECT_NE(narrower.family.find("1 rank test of elapsed-time"), std::string::npos);
   one.family = {"elapsed"};
   expectRefusal(ExitCode::usage, "--family elapsed", [&] { (void)makeStudy(database, one); });
+}
+
+/// Figures of phases would quadruple the family of whoever did not ask for them.
+TEST(Study, phasesAreInWhereTheyAreAskedFor) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  for (unsigned n = 0; n < 8; ++n) {
+    const std::string person = fmt::format("P{}", n);
+    database.addParticipant({person, n % 2 == 0 ? "expert" : "novice", "", "", {}, {}});
+    auto values = valuesOf(5.0 + (n * 5) % 8, 8.0 - n);
+    values.push_back(makeValue(*findCheckpoint("phase-duration"), "clipping", Origin::resimulated, 1.0 + n));
+    for (const char* name : {"phase-sparc", "phase-force-p99"})
+      values.push_back(makeValue(*findCheckpoint(name), "left clipping", Origin::resimulated, 2.0 + n % 3));
+    database.storeAttempt(humanAttempt(n, person), values);
+  }
+  const auto rowsOf = [](const Study& study) {
+    std::vector<std::string> names;
+    for (const StudyRow& row : study.rows) {
+      if (row.checkpoint.starts_with("phase-")) names.push_back(row.checkpoint);
+    }
+    return names;
+  };
+  const auto says = [](const Study& study) {
+    return std::any_of(study.remarks.begin(), study.remarks.end(),
+                       [](const std::string& r) { return r.find("--phases") != std::string::npos; });
+  };
+  const Study plain = makeStudy(database, {});
+  EXPECT_EQ(rowsOf(plain), std::vector<std::string>{"phase-duration"});
+  EXPECT_TRUE(says(plain));
+  StudyOptions one;
+  one.family = {"elapsed-time", "phase-sparc"};
+  EXPECT_EQ(rowsOf(makeStudy(database, one)), (std::vector<std::string>{"phase-duration", "phase-sparc"}));
+  StudyOptions all;
+  all.includePhases = true;
+  const Study every = makeStudy(database, all);
+  EXPECT_EQ(rowsOf(every), (std::vector<std::string>{"phase-duration", "phase-sparc", "phase-force-p99"}));
+  EXPECT_FALSE(says(every));
+  // From the database or from values at hand.
+  EXPECT_EQ(studyJson(makeStudy(database.listAttempts(), database.allValues(), {}, database.path())), studyJson(plain));
 }
 
 TEST(Study, takesTheParticipantsOfANamedCohortAlone) {

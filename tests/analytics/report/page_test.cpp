@@ -153,5 +153,46 @@ TEST(TextTable, isCutWhereItMustFit) {
   EXPECT_NE(narrow.str().find("1.5"), std::string::npos) << "numbers are never cut";
 }
 
+TEST(TextTable, goesOnInTheNextLineBeforeItCuts) {
+  TextTable table({{"name", TextTable::Align::left}, {"v", TextTable::Align::right}});
+  table.add({"movement-straightness left", "1"});
+  table.add({"movement-straightness right", "2"});
+  table.add({"  of an-unbroken-word-of-many-letters", "3"});
+  std::ostringstream out;
+  table.print(out, 24);
+  EXPECT_EQ(out.str(),
+            "name                   v\n"
+            "---------------------  -\n"
+            "movement-straightness  1\n"
+            "  left\n"
+            "movement-straightness  2\n"
+            "  right\n"
+            "  of                   3\n"
+            "  an-unbroken-word...\n");
+  TextTable pairs({{"name", TextTable::Align::left}, {"v", TextTable::Align::right}});
+  pairs.add({"movement-straightness left", "1"});
+  pairs.add({"", "2"});
+  std::ostringstream below;
+  pairs.print(below, 24);
+  EXPECT_EQ(below.str(),
+            "name                   v\n"
+            "---------------------  -\n"
+            "movement-straightness  1\n"
+            "  left                 2\n")
+      << "in the next row's empty cell";
+  TextTable reasons({{"name", TextTable::Align::left}, {"reason", TextTable::Align::left}});
+  reasons.add({"first", "some long text"});
+  reasons.add({"second", ""});
+  std::ostringstream own;
+  reasons.print(own, 18);
+  EXPECT_EQ(own.str(),
+            "name    reason\n"
+            "------  ----------\n"
+            "first   some long\n"
+            "          text\n"
+            "second\n")
+      << "never in another's row";
+}
+
 }  // namespace
 }  // namespace calot::analytics

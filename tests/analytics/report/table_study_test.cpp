@@ -11,6 +11,7 @@
 #include <span>
 #include <sstream>
 
+#include "analytics/report/coverage_warning.h"
 #include "analytics/report/page_html.h"
 #include "analytics/report/study_output.h"
 #include "analytics/statistics/published_coverage.h"
@@ -103,16 +104,38 @@ TEST(TableStudy, warnsWhereACoverageIsLow) {
   EXPECT_NE(few.remarks.back().find("Warning (1 of 1 rows)"), std::string::npos);
 }
 
+/// A clock that is the same but for its last bits has no group in which it is the faster one.
+TEST(TableStudy, roundingIsNoDifference) {
+  std::string text = "id,drug,clock,other\n";
+  for (int i = 0; i < 12; ++i)
+    text += fmt::format("{},{},{},{}\n", i, i < 6 ? "one" : "two", 1000.0 * (1.0 + (i < 6 ? 1e-13 : 2e-13) * i),
+                        1000.0 * (1.0 + (i < 6 ? 1e-10 : 2e-10) * i));
+  TableStudyOptions options = optionsFor("clock");
+  options.outcomes.push_back("other");
+  const Study study = studyOf(text, options);
+  EXPECT_EQ(study.rows[0].test.reason(), "all values are equal");
+  EXPECT_EQ(study.rows[0].group[0].standardDeviation, 0.0);
+  EXPECT_FALSE(study.rows[0].hedges);
+  EXPECT_TRUE(study.rows[1].test) << "ten digits are a difference";
+}
+
 TEST(PublishedCoverage, isThatOfThePage) {
   std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/statistics.md");
   std::ostringstream text;
   text << file.rdbuf();
   const std::string page = text.str();
   for (const PublishedCoverage& row : publishedCoverage()) {
-    std::string line = fmt::format("| {} | {} |", row.name, row.population);
-    for (const double percent : row.percent)
-      line += percent < coverageWanted ? fmt::format(" **{:.1f}** |", percent) : fmt::format(" {:.1f} |", percent);
-    EXPECT_NE(page.find(line), std::string::npos) << line;
+    const std::string head = fmt::format("| {} | {} |", row.name, row.population);
+    std::size_t at = page.find(head);
+    ASSERT_NE(at, std::string::npos) << head;
+    at += head.size();
+    for (const double percent : row.percent) {
+      // "**92.3** (of 93 %)": how many samples have an interval at all stands behind.
+      const std::string cell =
+          percent < coverageWanted ? fmt::format(" **{:.1f}** ", percent) : fmt::format(" {:.1f} ", percent);
+      EXPECT_EQ(page.substr(at, cell.size()), cell) << head;
+      at = page.find('|', at) + 1;
+    }
   }
 }
 
@@ -126,6 +149,11 @@ TEST(PublishedCoverage, takesTheWorseOfTheSizesAround) {
     EXPECT_EQ(doubt.size, 40U);
   }
   EXPECT_FALSE(doubtful(CoveredInterval::shift, 40, 40, doubt));
+  EXPECT_EQ(coverageWarning(CoveredInterval::baseline, "difference", 5, 40), "");
+  EXPECT_EQ(coverageWarning(CoveredInterval::cut, "pass mark", 12, 40),
+            "pass mark: with 10 a group an interval at 95 % covers 90.7 % (population: normal, 70 (5) and 50 (10))");
+  EXPECT_EQ(coverageWarning(CoveredInterval::iccSingle, "ICC(2,1)", 4, 4, "attempts"),
+            "ICC(2,1): coverage is not known for fewer than 5 attempts");
   EXPECT_TRUE(doubtful(CoveredInterval::areaScore, 4, 40, doubt));
   EXPECT_FALSE(doubt.known);
 }

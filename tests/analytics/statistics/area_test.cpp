@@ -16,6 +16,33 @@ using Values = std::vector<double>;
 
 const Values low{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, high{11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
 
+/// The components are those of every pair, to the last bit.
+TEST(DeLong, componentsAreCountsOfPairs) {
+  const unsigned seed = 5;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (int round = 0; round < 100; ++round) {
+    Values x(2 + random() % 30), y(2 + random() % 30);
+    const unsigned span = round % 2 == 0 ? 8 : 100000;  // many ties, or hardly any
+    for (double& v : x) v = static_cast<double>(random() % span);
+    for (double& v : y) v = static_cast<double>(random() % span);
+    Values ofX(x.size(), 0.0), ofY(y.size(), 0.0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      for (std::size_t j = 0; j < y.size(); ++j) {
+        const double psi = x[i] > y[j] ? 1.0 : x[i] == y[j] ? 0.5 : 0.0;
+        ofX[i] += psi;
+        ofY[j] += psi;
+      }
+    }
+    for (double& v : ofX) v /= static_cast<double>(y.size());
+    for (double& v : ofY) v /= static_cast<double>(x.size());
+    const auto d = deLong(x, y);
+    ASSERT_TRUE(d) << d.reason();
+    EXPECT_EQ(d->ofX, ofX);
+    EXPECT_EQ(d->ofY, ofY);
+  }
+}
+
 TEST(DeLong, aSah) {
   // pROC 1.18.0: auc, var, ci.auc of roc(aSAH$outcome, aSAH$s100b, direction = "<").
   const auto d = deLong(data::s100bPoor, data::s100bGood);

@@ -4,6 +4,7 @@
 // ten with 400.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,9 +18,12 @@
 
 #include "analytics/statistics/bootstrap.h"
 #include "analytics/statistics/contrasting_groups.h"
+#include "analytics/statistics/covariance_analysis.h"
+#include "analytics/statistics/cronbach_alpha.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/hedges.h"
+#include "analytics/statistics/intraclass_correlation.h"
 #include "analytics/statistics/random_stream.h"
 #include "analytics/statistics/superiority_interval.h"
 #include "analytics/statistics/welch.h"
@@ -80,6 +84,57 @@ std::optional<Ends> ofBootstrap(const Answer<Bootstrap>& b) {
   return Ends{b->interval.lower, b->interval.upper};
 }
 
+/// Outcomes that lean on a baseline by .6: what is drawn for a group are the errors, its baselines come by the seed.
+void addBaselines(std::vector<Case>& list) {
+  const auto difference = [](const Values& x, const Values& y, std::uint64_t seed) -> std::optional<Ends> {
+    RandomStream random(~seed);  // another one than the errors come from
+    std::array<Values, 2> baseline{Values(x.size()), Values(y.size())}, outcome{x, y};
+    for (std::size_t g = 0; g < 2; ++g) {
+      for (std::size_t i = 0; i < baseline[g].size(); ++i) {
+        baseline[g][i] = random.normal();
+        outcome[g][i] += 0.6 * baseline[g][i];
+      }
+    }
+    const auto a = covarianceAnalysis({baseline[0], outcome[0]}, {baseline[1], outcome[1]});
+    if (!a) return std::nullopt;
+    return Ends{a->interval.lower, a->interval.upper};
+  };
+  const char* name = "difference at one baseline, HC3";
+  list.push_back({name, "normal, 1", 1.0, normal(1.0, 0.8), normal(0.0, 0.8), difference});
+  list.push_back({name, "exponential, 1", 1.0, exponential(1.0), exponential(0.0), difference});
+}
+
+/// What is drawn are attempts (or people) of true worth, deviation 1; leniency of raters and errors come by the seed.
+RatingTable rated(const Values& worth, std::size_t columns, double leniency, std::uint64_t seed) {
+  RandomStream random(~seed);
+  Values lenient(columns);
+  for (double& v : lenient) v = leniency * random.normal();
+  RatingTable table{worth.size(), columns, {}};
+  for (const double w : worth) {
+    for (const double l : lenient) table.values.push_back(w + l + random.normal());
+  }
+  return table;
+}
+
+void addRatings(std::vector<Case>& list) {
+  const auto icc = [](IccForm form) {
+    return [form](const Values& x, const Values&, std::uint64_t seed) -> std::optional<Ends> {
+      const auto i = intraclassCorrelation(rated(x, 3, 0.5, seed), form);
+      return i ? endsOf(i->interval) : std::nullopt;
+    };
+  };
+  // Variances: attempts 1, leniency 1/4, errors 1.
+  const char* raters = "normal, 3 raters";
+  list.push_back({"ICC(2,1)", raters, 1.0 / 2.25, normal(0.0), normal(0.0), icc(IccForm::twoSingle)});
+  list.push_back({"ICC(2,k)", raters, 1.0 / (1.0 + 1.25 / 3.0), normal(0.0), normal(0.0), icc(IccForm::twoAverage)});
+  const auto alpha = [](const Values& x, const Values&, std::uint64_t seed) -> std::optional<Ends> {
+    const auto a = cronbachAlpha(rated(x, 5, 0.0, seed));
+    return a ? endsOf(a->interval) : std::nullopt;
+  };
+  list.push_back({"Cronbach's alpha", "normal, 5 items", 5.0 / 6.0, normal(0.0), normal(0.0), alpha});
+  list.push_back({"Cronbach's alpha", "exponential, 5 items", 5.0 / 6.0, exponential(0.0), normal(0.0), alpha});
+}
+
 std::vector<Case> cases() {
   std::vector<Case> list;
   for (const auto& [method, name] : {std::pair{AreaMethod::score, "A, score"}, std::pair{AreaMethod::logit, "A, logit"},
@@ -138,6 +193,8 @@ std::vector<Case> cases() {
                     const auto g = contrastingGroups(x, y, Better::higher, options);
                     return g ? endsOf(g->interval) : std::nullopt;
                   }});
+  addBaselines(list);
+  addRatings(list);
   return list;
 }
 

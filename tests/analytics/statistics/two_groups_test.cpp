@@ -192,6 +192,43 @@ TEST(MannWhitney, degenerateInputAnswersWithAReason) {
   EXPECT_DOUBLE_EQ(superiority(same, same)->delta, 0.0);
 }
 
+/// Median and ends of the interval are differences of the enumeration, to the last bit: with and without ties, of any
+/// sign.
+TEST(HodgesLehmann, isTheMedianOfAllDifferences) {
+  const unsigned seed = 11;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (int round = 0; round < 300; ++round) {
+    const int nx = 1 + static_cast<int>(random() % 60), ny = 1 + static_cast<int>(random() % 60);
+    const double step = round % 3 == 0 ? 1.0 : 1e-3 * static_cast<double>(1 + random() % 1000);
+    Values x, y, all;
+    for (int i = 0; i < nx; ++i) x.push_back(step * (static_cast<double>(random() % 41) - 20.0));
+    for (int i = 0; i < ny; ++i)
+      y.push_back(step * (static_cast<double>(random() % 41) - (round % 2 == 0 ? 20.0 : 45.0)));
+    for (const double a : x) {
+      for (const double b : y) all.push_back(a - b);
+    }
+    std::sort(all.begin(), all.end());
+    const double upper = all[all.size() / 2], lower = all[(all.size() - 1) / 2];
+    EXPECT_EQ(*hodgesLehmann(x, y), all.size() % 2 == 1 ? upper : lower + 0.5 * (upper - lower));
+    // The ends are order statistics as far from either end: some rank u has both.
+    if (const auto interval = hodgesLehmannInterval(x, y)) {
+      bool found = false;
+      for (std::size_t u = 0; 2 * u < all.size(); ++u)
+        found = found || (all[u] == interval->lower && all[all.size() - 1 - u] == interval->upper);
+      EXPECT_TRUE(found);
+    }
+  }
+  EXPECT_FALSE(std::signbit(*hodgesLehmann(Values{1.0}, Values{1.0})));
+  // As many as a cohort may hold: 25 million differences that nobody makes.
+  Values many(5000), others(5000);
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    many[i] = static_cast<double>(i);
+    others[i] = static_cast<double>(i) + 0.25;
+  }
+  EXPECT_EQ(*hodgesLehmann(many, others), -0.25);
+}
+
 TEST(HodgesLehmannInterval, attainedLevelIsThatOfTheEnumeration) {
   // 5 v 4: U's quantile at 2.5 % is 2 (P(U <= 1) = 2/126), so the attained level is 1 - 4/126.
   const Values x{19, 22, 16, 29, 24}, y{20, 11, 17, 12};

@@ -176,6 +176,26 @@ TEST_F(Dashboard, SelectingAnAttemptShowsItsCheckpoints) {
   EXPECT_EQ(cell(details, 0, CheckpointTableModel::versionColumn), QString::number(definition.version));
 }
 
+TEST_F(Dashboard, WordsThatAColumnIsTooNarrowForGoOnInTheNextLine) {
+  DashboardWindow window;
+  window.show();
+  ASSERT_TRUE(window.openDatabase(cohort()));
+  QTableView& details = *child<QTableView>(window, "checkpoints");
+  QTest::qWait(1);  // columns take their widths
+  const int column = CheckpointTableModel::nameColumn, width = details.columnWidth(column),
+            height = details.rowHeight(0);
+  constexpr int narrow = 80;  // pixels
+  const QRect words =
+      details.fontMetrics().boundingRect(QRect(0, 0, narrow, 1000), Qt::TextWordWrap, cell(details, 0, column));
+  ASSERT_GT(words.height(), height) << "of a name that needs several lines";
+  details.setColumnWidth(column, narrow);
+  EXPECT_TRUE(QTest::qWaitFor([&] { return details.rowHeight(0) >= words.height(); }));
+  QTest::keyClick(child<QTableView>(window, "attempts"), Qt::Key_Down);
+  EXPECT_GE(details.rowHeight(0), words.height()) << "of another attempt";
+  details.setColumnWidth(column, width);
+  EXPECT_TRUE(QTest::qWaitFor([&] { return details.rowHeight(0) == height; }));
+}
+
 TEST_F(Dashboard, AnEmptyDatabaseGreetsAndExplains) {
   { const CohortDatabase made(file("empty.db").toStdString(), CohortDatabase::Access::create); }
   DashboardWindow window;

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "gui/film/event_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -109,7 +108,7 @@ TEST(Overlays, StandInTheirCorners) {
   moment.time = 83.456;
   moment.phase = "clipping";
   moment.checkpoints = {"path-length left  152 mm"};
-  moment.events = {{"clip on cystic-duct", false, 1.0}, {"long ago", false, AttemptTrack::eventSeconds}};
+  moment.events = {{"clip on cystic-duct", false, 1.0}, {"long ago", false, MomentTrack::eventSeconds}};
   struct Case {
     const char* overlay;
     bool right, below;
@@ -123,23 +122,6 @@ TEST(Overlays, StandInTheirCorners) {
     EXPECT_GT(there, 20) << c.overlay;
     EXPECT_EQ(there, changed(image, 0, 0, width, height)) << c.overlay;
   }
-}
-
-TEST(EventWords, SayWhatHappenedToWhat) {
-  const std::vector<std::string> structures{"liver", "gallbladder", "cystic-duct"};
-  Event event;
-  event.kind = EventKind::clipSet;
-  event.subject = 2;
-  EXPECT_EQ(wordsFor(event, structures), "clip on cystic-duct");
-  EXPECT_FALSE(isFault(event.kind));
-  event.kind = EventKind::organPerforated;
-  event.subject = 1;
-  EXPECT_EQ(wordsFor(event, structures), "gallbladder perforated");
-  EXPECT_TRUE(isFault(event.kind));
-  event.subject = 77;  // no structure of this scene
-  EXPECT_EQ(wordsFor(event, structures), "tissue perforated");
-  event.kind = EventKind::solverMiss;
-  EXPECT_EQ(wordsFor(event, structures), "");
 }
 
 }  // namespace

@@ -4,40 +4,21 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <numbers>
 #include <vector>
 
 #include "gui/render/renderer.h"
 #include "sim/math/random.h"
+#include "tests/gui/render/support/shapes.h"
 
 namespace calot::gui {
 namespace {
 
-constexpr std::uint64_t seed = 17;
-constexpr double aspect = 16.0 / 9.0;
+using test::sphere;
 
-SurfaceView sphere(const Vec3& centre, double radius, int rings = 12) {
-  SurfaceView surface;
-  surface.organ = "ball";
-  surface.appearance = "liver";
-  const int segments = 2 * rings;
-  for (int i = 0; i <= rings; ++i)
-    for (int j = 0; j < segments; ++j) {
-      const double polar = std::numbers::pi * i / rings, around = 2.0 * std::numbers::pi * j / segments;
-      surface.position.push_back(centre + radius * Vec3(std::sin(polar) * std::cos(around),
-                                                        std::sin(polar) * std::sin(around), std::cos(polar)));
-    }
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < segments; ++j) {
-      const int a = i * segments + j, b = i * segments + (j + 1) % segments;
-      surface.triangle.emplace_back(a, b + segments, b);
-      surface.triangle.emplace_back(a, a + segments, b + segments);
-    }
-  surface.rest = surface.position;
-  return surface;
-}
+constexpr std::uint64_t seed = 17;
+/// All of a wide picture, without a round field.
+Sight wide(const SceneView& view) { return sightOf(160, 90, view.verticalFieldOfView, false); }
 
 /// Four triangles around a point.
 std::vector<Index3> tetrahedron() { return {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}; }
@@ -83,7 +64,7 @@ TEST(DrawListMaker, ForgetsNothingAndKeepsNothingWrong) {
     if (what == 4) surface.charred[v] = 0.7F;
     if (what == 5) view.camera.position.x() += step;
     DrawListMaker fresh;
-    EXPECT_TRUE(sameList(kept.make(view, aspect, true), fresh.make(view, aspect, true)));
+    EXPECT_TRUE(sameList(kept.make(view, wide(view), true), fresh.make(view, wide(view), true)));
   }
 }
 
@@ -97,7 +78,7 @@ TEST(DrawListMaker, SplitsWhatIsCharredFromWhatIsNot) {
   std::size_t around = 0;
   for (const Index3& t : ball.triangle) around += t[0] == 100 || t[1] == 100 || t[2] == 100 ? 1 : 0;
   DrawListMaker maker;
-  const DrawList& list = maker.make(view, aspect, false);
+  const DrawList& list = maker.make(view, wide(view), false);
   ASSERT_EQ(list.part.size(), 2U);
   std::size_t harmed = 0, all = 0;
   for (const DrawPart& part : list.part) {
@@ -106,6 +87,26 @@ TEST(DrawListMaker, SplitsWhatIsCharredFromWhatIsNot) {
   }
   EXPECT_EQ(harmed, 3 * around);
   EXPECT_EQ(all, 3 * ball.triangle.size());
+}
+
+/// Of a closed body the far side is left out, and of any surface what lies beside the picture.
+TEST(DrawListMaker, LeavesOutWhatTurnsAwayAndWhatIsBeside) {
+  SceneView view;
+  SurfaceView body;
+  body.organ = body.appearance = "liver";
+  body.position = {Vec3(0.0, 0.0, 0.08), Vec3(0.02, 0.0, 0.1), Vec3(-0.01, 0.02, 0.1), Vec3(-0.01, -0.02, 0.1)};
+  body.rest = body.position;
+  body.triangle = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};  // three sides of a pyramid, and its base behind them
+  ASSERT_TRUE(isClosed(body.triangle));
+  view.surface = {body};
+  DrawListMaker maker;
+  EXPECT_EQ(maker.make(view, wide(view), false).index.size(), 9U);
+  view.surface[0].triangle.pop_back();  // open: both sides of what is left may be seen
+  EXPECT_EQ(maker.make(view, wide(view), false).index.size(), 9U);
+  view.surface[0].triangle = {{1, 2, 3}};
+  EXPECT_EQ(maker.make(view, wide(view), false).index.size(), 3U);
+  for (Vec3& p : view.surface[0].position) p.x() += 0.2;
+  EXPECT_TRUE(maker.make(view, wide(view), false).index.empty());
 }
 
 /// Of the cavity only what the camera can see is drawn, and it is all that it can see.
@@ -121,7 +122,7 @@ TEST(DrawListMaker, LeavesOutOnlyTheCavityBesideThePicture) {
     const double angle = random.uniform(0.0, 6.0);
     const double x = random.uniform(-1.0, 1.0), y = random.uniform(-1.0, 1.0), z = random.uniform(-1.0, 1.0);
     view.camera.orientation = Quat(Eigen::AngleAxisd(angle, Vec3(x, y, z + 2.0).normalized()));
-    const DrawList& list = maker.make(view, aspect, true);
+    const DrawList& list = maker.make(view, wide(view), true);
     ASSERT_EQ(list.part.back().appearance, Appearance::cavity);
     EXPECT_LT(list.part.back().indexCount, 3 * whole / 2);
     RenderSettings open;

@@ -16,6 +16,7 @@
 #include "gui/render/picture.h"
 #include "gui/render/png_file.h"
 #include "recorder/errors.h"
+#include "tests/gui/render/support/shapes.h"
 
 namespace calot::gui {
 namespace {
@@ -47,24 +48,7 @@ SurfaceView triangleAt(double z, double side) {
 }
 
 SurfaceView sphere(const Vec3& centre, double radius, const std::string& appearance) {
-  SurfaceView surface;
-  surface.organ = appearance;
-  surface.appearance = appearance;
-  constexpr int rings = 64, segments = 128;
-  for (int i = 0; i <= rings; ++i)
-    for (int j = 0; j < segments; ++j) {
-      const double polar = std::numbers::pi * i / rings, around = 2.0 * std::numbers::pi * j / segments;
-      surface.position.push_back(centre + radius * Vec3(std::sin(polar) * std::cos(around),
-                                                        std::sin(polar) * std::sin(around), std::cos(polar)));
-    }
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < segments; ++j) {
-      const int a = i * segments + j, b = i * segments + (j + 1) % segments;
-      surface.triangle.emplace_back(a, b + segments, b);
-      surface.triangle.emplace_back(a, a + segments, b + segments);
-    }
-  surface.rest = surface.position;
-  return surface;
+  return test::sphere(centre, radius, 64, appearance);
 }
 
 SceneView organsAndInstruments() {

@@ -23,7 +23,7 @@ Event event(std::uint64_t step, EventKind kind, std::uint16_t subject, double va
   return e;
 }
 
-MistakeList list() { return MistakeList({"liver", "cystic-duct", "hepatic_artery"}, {"bed"}, 0.01); }
+MistakeList list() { return MistakeList({{"liver", "cystic-duct", "hepatic_artery"}, {"bed"}}, 0.01); }
 
 TEST(Mistakes, OneForEachStructureOfAStep) {
   MistakeList mistakes = list();
@@ -43,8 +43,8 @@ TEST(Mistakes, WhatMustBeSparedIsCritical) {
   mistakes.add(std::vector{event(500, EventKind::clipSet, 2), event(500, EventKind::criticalError, 2, 21.0)});
   ASSERT_EQ(mistakes.all().size(), 1U);
   EXPECT_TRUE(mistakes.all()[0].critical);
-  EXPECT_EQ(mistakes.all()[0].text, "hepatic artery: must be spared");
-  EXPECT_EQ(mistakeText(mistakes.all()[0]), "0:05.0  critical: hepatic artery: must be spared");
+  EXPECT_EQ(mistakes.all()[0].text, "hepatic artery: harmed though it must be spared");
+  EXPECT_EQ(mistakeText(mistakes.all()[0]), "0:05.0  critical: hepatic artery: harmed though it must be spared");
 }
 
 TEST(Mistakes, WhatGoesOnIsOne) {

@@ -210,6 +210,23 @@ TEST(Keyframes, AreKeptAboutEverySecond) {
   EXPECT_EQ(r.keyframeAtOrBefore(10000), 3U);
 }
 
+TEST(Keyframes, AreKeptTwiceAsOftenWhereFatIsCarved) {
+  const Folder folder;
+  const AttemptHeader header = test::withStructures(makeHeader(), 0, 1);
+  const auto step = [&](std::uint64_t n) {
+    Step made = randomStep(header, n, 1);
+    const bool carving = n == 130 || (n >= 210 && n < 320);
+    made.result.fat[0].carved = carving ? 1e-9 : 0.0;
+    return made;
+  };
+  RecordingWriter writer(folder / "r.h5", header, {true});
+  test::feed(writer, header, 550, step, 3001);
+  writer.onEnd(Outcome::completed);
+  writer.finish();
+  const Recording r(folder / "r.h5");
+  EXPECT_EQ(r.keyframeSteps(), (std::vector<std::uint64_t>{99, 149, 199, 249, 299, 349, 399, 499}));
+}
+
 TEST(Chain, SameContentSameChain) {
   const Folder folder;
   test::writeRecording(folder / "a.h5", makeHeader(), 77);

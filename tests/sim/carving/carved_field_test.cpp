@@ -52,6 +52,37 @@ TEST(CarvedField, StateIsEnoughToGetItBack) {
   EXPECT_EQ(read.value, state.value);
 }
 
+TEST(CarvedField, IsRaisedToWhatWasCarvedSince) {
+  const FieldModel model = test::lump(41);
+  CarvedField field(model);
+  CarvedBricks early;
+  carveSome(field, early, 4);
+  CarvedBricks late = early;
+  carveSome(field, late, 20);
+  CarvedField follower(model);
+  ASSERT_TRUE(follower.raiseTo(early));
+  ASSERT_TRUE(follower.raiseTo(late));
+  EXPECT_EQ(follower.values(), field.values());
+  EXPECT_EQ(follower.insideNodes(), field.insideNodes());
+  EXPECT_FALSE(follower.changed().empty());
+  ASSERT_TRUE(follower.raiseTo(late));
+  EXPECT_TRUE(follower.changed().empty());
+  // It does not fall.
+  EXPECT_FALSE(follower.raiseTo(early));
+  EXPECT_FALSE(follower.raiseTo({}));
+  EXPECT_EQ(follower.values(), field.values());
+  CarvedBricks bad = late;
+  bad.value[1][77] = std::nan("");
+  EXPECT_FALSE(follower.raiseTo(bad));
+  bad = late;
+  bad.value[1][77] = 2.0 * model.band;
+  EXPECT_FALSE(follower.raiseTo(bad));
+  bad = late;
+  bad.brick.back() = static_cast<std::uint32_t>(model.lattice.brickCount());
+  EXPECT_FALSE(follower.raiseTo(bad));
+  EXPECT_EQ(follower.values(), field.values());
+}
+
 TEST(CarvedField, RefusesForeignBricksAndStaysUncarved) {
   const FieldModel model = test::lump(41);
   CarvedField field(model);

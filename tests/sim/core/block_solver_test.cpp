@@ -114,6 +114,12 @@ struct System {
     return out;
   }
 
+  [[nodiscard]] sweeps::Slices slices(const std::vector<float>& inverse) const {
+    return {
+        values.data(),  inverse.data(), matrix.column(0), matrix.firstColumns().data(), matrix.diagonalColumns().data(),
+        matrix.slices()};
+  }
+
   [[nodiscard]] Eigen::VectorXd randomVector(Random& random) const {
     Eigen::VectorXd v = Eigen::VectorXd::Zero(size());
     for (int i = 0; i < size(); ++i) {
@@ -267,9 +273,12 @@ TEST(Sweeps, SolveTheTriangles) {
   for (const int nodes : sizes) {
     const System system = randomSystem(nodes, 3 * nodes, random);
     const std::vector<float> inverse = system.inverses();
-    const auto blocks = [&](const BlockMatrix::Part& part) {
-      return sweeps::Blocks{system.values.data() + part.value(), system.matrix.column(part.first), part.width};
-    };
+    const sweeps::Slices slices = system.slices(inverse);
+    std::vector<float> found(inverse.size(), 7.0F);
+    sweeps::invertDiagonal(slices, found.data());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_NEAR(found[k], inverse[k], 1e-6F * (1.0F + std::abs(inverse[k])));
+    }
     const Eigen::VectorXd b = system.randomVector(random);
     const std::vector<float> packed = system.packed(b);
     const std::vector<float> zero(packed.size(), 0.0F);
@@ -277,10 +286,7 @@ TEST(Sweeps, SolveTheTriangles) {
     std::vector<float> s(packed.size(), 0.0F);
     std::vector<float> sRows(rows.size(), 0.0F);
     std::array<double, laneCount> dot{};
-    for (std::size_t i = 0; i < system.matrix.slices(); ++i) {
-      sweeps::forward(blocks(system.matrix.lower(i)), inverse.data() + 72 * i, rows.data(), s.data(), sRows.data(),
-                      packed.data(), zero.data(), dot.data(), i * laneStride);
-    }
+    sweeps::forward(slices, rows.data(), s.data(), sRows.data(), packed.data(), zero.data(), dot.data());
     const Eigen::VectorXd wanted = system.lower().partialPivLu().solve(b);
     EXPECT_LT((system.unpacked(s) - wanted).norm(), 1e-5 * wanted.norm()) << nodes << " nodes";
     EXPECT_EQ(sRows, system.byRows(system.unpacked(s)));
@@ -291,11 +297,7 @@ TEST(Sweeps, SolveTheTriangles) {
     std::vector<float> p(packed.size(), 0.0F);
     std::vector<float> t(packed.size(), 0.0F);
     std::vector<float> u(rows.size(), 0.0F);
-    const std::array<float, laneCount> beta{};
-    for (std::size_t i = system.matrix.slices(); i-- > 0;) {
-      sweeps::backward(blocks(system.matrix.lower(i)), inverse.data() + 72 * i, packed.data(), beta.data(), p.data(),
-                       t.data(), u.data(), i * laneStride);
-    }
+    sweeps::backward(slices, packed.data(), 0.0F, p.data(), t.data(), u.data());
     EXPECT_EQ(p, packed);
     const Eigen::VectorXd up = system.lower().transpose().partialPivLu().solve(b);
     EXPECT_LT((system.unpacked(t) - up).norm(), 1e-5 * up.norm()) << nodes << " nodes";
@@ -306,6 +308,40 @@ TEST(Sweeps, SolveTheTriangles) {
       worst = std::max(worst, std::abs(static_cast<double>(u[i]) - static_cast<double>(wantedRows[i])));
     }
     EXPECT_LT(worst, 1e-5 * (off.norm() + up.norm())) << nodes << " nodes";
+  }
+}
+
+/// A sweep back and one forth together multiply by the matrix and solve both triangles.
+TEST(Sweeps, InPairsMultiplyAndSolve) {
+  SCOPED_TRACE("seed 34");
+  Random random(34);
+  for (const int nodes : sizes) {
+    const System system = randomSystem(nodes, 3 * nodes, random);
+    const std::vector<float> inverse = system.inverses();
+    const sweeps::Slices slices = system.slices(inverse);
+    const Eigen::VectorXd z = system.randomVector(random);
+    const Eigen::VectorXd c = system.randomVector(random);
+    const Eigen::VectorXd before = system.randomVector(random);
+    constexpr float beta = 0.75F;
+    const Eigen::VectorXd p = system.lower().transpose().partialPivLu().solve(z) + c + 0.75 * before;
+    const Eigen::VectorXd q = system.dense * p;
+    const Eigen::VectorXd s = system.lower().partialPivLu().solve(q);
+
+    std::vector<float> direction = system.packed(before);
+    std::vector<float> uw(2 * system.matrix.rows() * rowStride, 0.0F);
+    std::vector<float> pq(uw.size(), 0.0F);
+    std::vector<float> product(direction.size(), 7.0F);
+    std::vector<float> solved(direction.size(), 7.0F);
+    std::array<double, laneCount> dot{};
+    sweeps::backwardPairs(slices, system.packed(z).data(), system.packed(c).data(), beta, direction.data(), uw.data(),
+                          pq.data());
+    sweeps::forwardPairs(slices, direction.data(), uw.data(), pq.data(), product.data(), solved.data(), dot.data());
+    EXPECT_LT((system.unpacked(direction) - p).norm(), 1e-5 * p.norm()) << nodes << " nodes";
+    EXPECT_LT((system.unpacked(product) - q).norm(), 1e-5 * q.norm()) << nodes << " nodes";
+    EXPECT_LT((system.unpacked(solved) - s).norm(), 3e-5 * s.norm()) << nodes << " nodes";
+    double total = 0.0;
+    for (const double d : dot) total += d;
+    EXPECT_NEAR(total, p.dot(q), 1e-5 * p.norm() * q.norm());
   }
 }
 

@@ -272,26 +272,5 @@ TEST(FatContact, BodiesThatCameToTheSameStateFindTheSame) {
   EXPECT_GT(found, 200U);
 }
 
-TEST(FatContact, PicturesFollowTheTissue) {
-  const auto model = lump();
-  test::FatRig rig(*model);
-  FatPicture picture;
-  rig.body.picture(rig.state, picture);
-  for (int i = 0; i < 20; ++i) harshStep(rig, i);
-  rig.body.picture(rig.state, picture);
-  FatBody fresh(*model);
-  ASSERT_TRUE(fresh.rebuild(rig.state));
-  FatPicture again;
-  fresh.picture(rig.state, again);
-  ASSERT_EQ(picture.triangle, again.triangle);
-  ASSERT_EQ(picture.position, again.position);
-  // At rest it lies at rest.
-  const FatState rest = restState(*model);
-  rig.body.picture(rest, picture);
-  for (std::size_t v = 0; v < picture.rest.size(); ++v) {
-    ASSERT_LT((picture.rest[v] - picture.position[v]).norm(), 1e-14);
-  }
-}
-
 }  // namespace
 }  // namespace calot

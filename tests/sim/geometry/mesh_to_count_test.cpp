@@ -79,7 +79,8 @@ TEST(StuffToCount, UnitDoesNotMatter) {
 
 TEST(StuffToCount, LiverFromElsewhere) {
   const char* set = std::getenv("CALOT_SHARED_DATA");
-  const std::filesystem::path folder = set != nullptr ? set : std::string(CALOT_SOURCE_DIR) + "/../shared/data";
+  const std::filesystem::path folder =
+      set != nullptr ? std::filesystem::path(set) : std::filesystem::path(CALOT_SOURCE_DIR) / "../shared/data";
   const std::filesystem::path file = folder / "meshes" / "liver-smooth.obj";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "needs meshes/liver-smooth.obj; set CALOT_SHARED_DATA";
   const TriangleMesh liver = recorder::readObj(file, recorder::LengthUnit::centimetre);

@@ -12,6 +12,7 @@
 
 #include "analytics/checkpoints/collector.h"
 #include "gui/render/smoke.h"
+#include "gui/words/event_words.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::gui {
@@ -37,7 +38,7 @@ struct Moment {
 
 /// Reads what a recording's steps recorded of themselves, and sums up: from its first step on where checkpoints are
 /// asked for, else from as long before the first moment as what is told lasts.
-class AttemptTrack {
+class MomentTrack {
  public:
   static constexpr double eventSeconds = 5.0;
   static constexpr double pathSeconds = 3.0;
@@ -45,10 +46,10 @@ class AttemptTrack {
   /// @param checkpoints are asked for: they are computed as the track goes on
   /// @throws Error (usage) for a golden recording, which holds no results of its steps; (damaged) where it can't be
   /// read
-  AttemptTrack(const std::filesystem::path& recording, bool checkpoints);
-  ~AttemptTrack();
-  AttemptTrack(const AttemptTrack&) = delete;
-  AttemptTrack& operator=(const AttemptTrack&) = delete;
+  MomentTrack(const std::filesystem::path& recording, bool checkpoints);
+  ~MomentTrack();
+  MomentTrack(const MomentTrack&) = delete;
+  MomentTrack& operator=(const MomentTrack&) = delete;
 
   /// After step n. Only forward. @pre n is not before that of the last call, and below the recording's stepCount()
   [[nodiscard]] Moment at(std::uint64_t n);
@@ -59,7 +60,7 @@ class AttemptTrack {
 
   recorder::Recording recording_;
   double stepSeconds_ = 0.01;
-  std::vector<std::string> structures_;
+  SubjectNames names_;
   std::unique_ptr<analytics::CheckpointCollector> collector_;
   std::uint64_t next_ = 0;  ///< step to read
   Phase phase_ = Phase::none;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/film/attempt_track.h"
+#include "gui/film/moment_track.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 
 #include "analytics/checkpoints/phases.h"
 #include "analytics/checkpoints/registry.h"
-#include "gui/film/event_words.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recording/layout.h"
@@ -37,24 +36,24 @@ void refuseLean(const recorder::Recording& recording) {
 
 bool hasResults(const recorder::Recording& recording) { return !recorder::isLean(recording.header()); }
 
-AttemptTrack::AttemptTrack(const std::filesystem::path& recording, bool checkpoints) : recording_(recording) {
+MomentTrack::MomentTrack(const std::filesystem::path& recording, bool checkpoints) : recording_(recording) {
   refuseLean(recording_);
   const recorder::AttemptHeader& header = recording_.header();
   stepSeconds_ = header.tickSeconds * header.ticksPerStep;
-  structures_ = header.structures();
+  names_.structures = header.structures();
   if (checkpoints)
     collector_ = std::make_unique<analytics::CheckpointCollector>(
         header, recorder::sceneFromAssets(header.assets).description, analytics::Origin::observables);
 }
 
-AttemptTrack::~AttemptTrack() = default;
+MomentTrack::~MomentTrack() = default;
 
-void AttemptTrack::add(const recorder::RecordedStep& step) {
+void MomentTrack::add(const recorder::RecordedStep& step) {
   const double time = static_cast<double>(step.step + 1) * stepSeconds_;
   phase_ = step.result.procedure.phase;
   for (const Event& event : step.result.events) {
-    std::string text = wordsFor(event, structures_);
-    if (!text.empty()) told_.push_back({time, std::move(text), isFault(event.kind)});
+    const EventWords* const words = wordsOf(event.kind);
+    if (words != nullptr) told_.push_back({time, textOf(event, names_), words->fault});
   }
   smoke_.add(time, step.result.events);
   for (std::size_t h = 0; h < handCount; ++h) {
@@ -68,7 +67,7 @@ void AttemptTrack::add(const recorder::RecordedStep& step) {
     collector_->onStep({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}});
 }
 
-void AttemptTrack::refreshCheckpoints(double time) {
+void MomentTrack::refreshCheckpoints(double time) {
   if (!collector_ || (checkpointsAt_ >= 0.0 && time < checkpointsAt_ + refreshSeconds)) return;
   checkpointsAt_ = time;
   checkpoints_.clear();
@@ -86,14 +85,14 @@ void AttemptTrack::refreshCheckpoints(double time) {
   }
 }
 
-Moment AttemptTrack::at(std::uint64_t n) {
+Moment MomentTrack::at(std::uint64_t n) {
   constexpr double lasting = std::max({eventSeconds, pathSeconds, smokeSeconds});
   const auto before = static_cast<std::uint64_t>(lasting / stepSeconds_) + 1;
   if (!collector_ && next_ + before < n) next_ = n - before;
   while (next_ <= n) add(recording_.step(next_++));
   Moment moment;
   moment.time = static_cast<double>(next_) * stepSeconds_;
-  if (phase_ != Phase::none) moment.phase = phase_ == Phase::done ? "done" : analytics::nameOf(phase_);
+  moment.phase = wordFor(phase_);
   while (!told_.empty() && told_.front().time < moment.time - eventSeconds) told_.pop_front();
   for (const Told& told : told_) moment.events.push_back({told.text, told.fault, moment.time - told.time});
   for (std::size_t h = 0; h < handCount; ++h) {

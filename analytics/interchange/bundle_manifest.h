@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "analytics/interchange/cohort_bundle.h"
+
+namespace calot::analytics {
+
+/// manifest.json of a bundle: what is in it, what was withheld and how names and dates were changed, for whoever gets
+/// it. @param bundle with all of its files but this one. @param scope to which the participants have consented.
+std::string bundleManifest(const Bundle& bundle, const std::string& scope);
+
+}  // namespace calot::analytics

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What forms say as tables and sentences.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analytics/report/coverage_warning.h"
+#include "analytics/report/ratings.h"
+
+namespace calot::analytics {
+namespace {
+
+using Align = TextTable::Align;
+
+std::string number(const std::optional<double>& value) { return value ? significant(*value, 3) : "-"; }
+
+std::string withInterval(double value, const Answer<Interval>& interval) {
+  if (!interval) return fmt::format("{:.3f}", value);
+  return fmt::format("{:.3f} [{:.3f}, {:.3f}]", value, interval->lower, interval->upper);
+}
+
+std::string iccText(const Answer<IntraclassCorrelation>& icc) {
+  return icc ? withInterval(icc->value, icc->interval) : "- (" + icc.reason() + ")";
+}
+
+/// A group of which nobody filled in this form has no rows.
+std::vector<std::size_t> groupsThatAnswered(const FormReport& report) {
+  std::vector<std::size_t> answered;
+  for (std::size_t g = 0; g < report.groups.size(); ++g) {
+    if (std::any_of(report.items.begin(), report.items.end(),
+                    [&](const ItemReport& item) { return item.groups[g].n + item.groups[g].blank > 0; }))
+      answered.push_back(g);
+  }
+  return answered;
+}
+
+ReportTable answersTable(const FormReport& report) {
+  ReportTable table{fmt::format("{} ({} {})", report.title, report.name, report.version),
+                    {{"item", Align::left},
+                     {"group", Align::left},
+                     {"", Align::left},
+                     {"n", Align::right},
+                     {"blank", Align::right},
+                     {"median", Align::right},
+                     {"quartile 1", Align::right},
+                     {"quartile 3", Align::right},
+                     {"mean", Align::right},
+                     {"paper", Align::right},
+                     {"answers", Align::left}},
+                    {}};
+  const std::vector<std::size_t> answered = groupsThatAnswered(report);
+  for (const ItemReport& item : report.items) {
+    for (const std::size_t g : answered) {
+      const ItemSummary& s = item.groups[g];
+      std::string counts;
+      for (const auto& [score, count] : s.counts)
+        counts += fmt::format("{}{}: {}", counts.empty() ? "" : ", ", score, count);
+      table.rows.push_back({g == answered.front() ? item.text : "",
+                            report.groups[g].empty() ? "(no group)" : report.groups[g],
+                            report.groups[g] == item.primaryGroup && !item.primaryGroup.empty() ? "primary" : "",
+                            fmt::format("{}", s.n), s.blank == 0 ? "" : fmt::format("{}", s.blank), number(s.median),
+                            number(s.lowerQuartile), number(s.upperQuartile), number(s.mean),
+                            item.published[g] ? fmt::format("{}", *item.published[g]) : "", counts});
+    }
+  }
+  return table;
+}
+
+ReportTable consistencyTable(const FormReport& report) {
+  ReportTable table{fmt::format("Internal consistency of {}", report.name),
+                    {{"subscale", Align::left}, {"n", Align::right}, {"Cronbach's alpha", Align::left}},
+                    {}};
+  for (const SectionConsistency& s : report.sections) {
+    table.rows.push_back({s.section, fmt::format("{}", s.n),
+                          s.alpha ? withInterval(s.alpha->value, s.alpha->interval) : "- (" + s.alpha.reason() + ")"});
+  }
+  return table;
+}
+
+ReportTable agreementTable(const FormReport& report) {
+  ReportTable table{fmt::format("Agreement between raters on {}", report.name),
+                    {{"figure", Align::left},
+                     {"attempts", Align::right},
+                     {"raters", Align::right},
+                     {"ICC(2,1), one rater", Align::left},
+                     {"ICC(2,k), their mean", Align::left}},
+                    {}};
+  for (const Agreement& a : report.agreement) {
+    table.rows.push_back(
+        {a.figure, fmt::format("{}", a.attempts), fmt::format("{}", a.raters), iccText(a.single), iccText(a.average)});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<std::string> ratingNotes(const FormReport& report) {
+  std::vector<std::string> notes;
+  if (report.filled == 0) return notes;
+  notes.push_back(fmt::format("{}: {} forms, {} of people or attempts that are not analysed left out. {}Items: {}.",
+                              report.name, report.filled, report.leftOut,
+                              report.ofAttempts ? fmt::format("Of an attempt the mean of its raters; agreement over "
+                                                              "the attempts that every rater rated ({} were not). ",
+                                                              report.incomplete)
+                                                : "primary: the group whose judgement counts first. ",
+                              report.source));
+  const auto warn = [&](CoveredInterval interval, const std::string& name, std::uint64_t n, const char* unit) {
+    if (const std::string text = coverageWarning(interval, name, n, n, unit); !text.empty())
+      notes.push_back("Warning: " + text + ".");
+  };
+  // Figures of one size share their warning.
+  std::uint64_t attempts = 0;
+  for (const Agreement& a : report.agreement) {
+    const bool single = a.single && a.single->interval, average = a.average && a.average->interval;
+    if (a.attempts == attempts) continue;
+    attempts = a.attempts;
+    if (single) warn(CoveredInterval::iccSingle, "ICC(2,1)", a.attempts, "attempts");
+    if (average) warn(CoveredInterval::iccAverage, "ICC(2,k)", a.attempts, "attempts");
+  }
+  std::uint64_t people = 0;
+  for (const SectionConsistency& s : report.sections) {
+    if (s.n == people || !s.alpha || !s.alpha->interval) continue;
+    people = s.n;
+    warn(CoveredInterval::alpha, "Cronbach's alpha", s.n, "people");
+  }
+  return notes;
+}
+
+std::vector<ReportTable> ratingTables(const FormReport& report) {
+  std::vector<ReportTable> tables;
+  if (report.filled == 0) return tables;
+  for (ReportTable table : {answersTable(report), consistencyTable(report), agreementTable(report)}) {
+    if (!table.rows.empty()) tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace calot::analytics

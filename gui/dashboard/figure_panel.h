@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <QWidget>
+
+#include "gui/dashboard/checkpoint_table_model.h"
+#include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/event_table_model.h"
+#include "gui/dashboard/moment_cycle.h"
+
+class QComboBox;
+class QLabel;
+class QTableView;
+
+namespace calot::gui {
+
+/// The checkpoints of one attempt, held against a norm, and its events, as lists: choosing a row asks for its moment.
+class FigurePanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit FigurePanel(QWidget* parent = nullptr);
+
+  /// Reads and shows the figures; their moments and the events are still to come. @pre not null
+  void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);
+  void clear();
+  void setEvents(std::vector<TrackEvent> events) { events_.setEvents(std::move(events)); }
+  /// In place of all moments, as long as there are none: "looking …".
+  void setMomentsText(const QString& text) { figures_.setMomentsText(text); }
+  void setMoments(const std::vector<analytics::FigureMoments>& moments);
+
+  [[nodiscard]] const std::vector<analytics::CheckpointValue>& values() const { return values_; }
+  /// Goes to the moments of a figure as soon as they are known.
+  void goToFigure(const std::string& checkpoint, const std::string& subject);
+  /// Goes to the moments of the first figure that falls short of the norm, else of the first that has any.
+  void showWorst();
+
+ signals:
+  void problem(const QString& message);
+  void timeChosen(double seconds);
+  /// Where a figure arose: beginnings and ends (s).
+  void windowsChosen(const std::vector<std::pair<double, double>>& windows);
+
+ private:
+  void showStanding();
+  void showFigure(int row);
+
+  std::shared_ptr<const CohortDocument> document_;
+  std::optional<analytics::AttemptRow> attempt_;
+  std::vector<analytics::CheckpointValue> values_;
+  std::optional<std::pair<std::string, std::string>> wanted_;  ///< figure to go to when its moments are known
+  CheckpointTableModel figures_;
+  EventTableModel events_;
+  MomentCycle cycle_;
+  QComboBox* norm_;
+  QLabel* verdict_;
+  QTableView* figureTable_;
+  QTableView* eventTable_;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <QWidget>
+
+#include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/recording_reader.h"
+#include "gui/dashboard/replay.h"
+
+class QComboBox;
+
+namespace calot::gui {
+
+class AttemptBanner;
+class ScenePictureWidget;
+class TimelineBar;
+
+/// One of two recordings side by side: which attempt, its verification, its replay and its timeline.
+class PairSide : public QWidget {
+  Q_OBJECT
+ public:
+  /// @param name of the choice: "left" or "right"
+  explicit PairSide(const QString& name, QWidget* parent = nullptr);
+  ~PairSide() override;
+
+  /// Lists the document's attempts, the newest first, keeps the one that is chosen, and opens it.
+  /// @pre not null
+  void setDocument(std::shared_ptr<const CohortDocument> document);
+  /// Chooses an attempt; while this is hidden, at the next setDocument().
+  void choose(const std::string& uuid);
+  /// Where none is chosen: the n-th of the list, from 1 on.
+  void chooseAnother(int n);
+
+  [[nodiscard]] Replay& replay() const { return *replay_; }
+  [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
+  [[nodiscard]] double seconds() const { return seconds_; }  ///< length of the recording, once it is open
+  [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }
+  [[nodiscard]] bool settled() const;
+
+ signals:
+  void changing();                  ///< another attempt is chosen, or none
+  void ready();                     ///< the recording is open, or its track has been read
+  void timeChosen(double seconds);  ///< on the timeline, of this recording
+
+ private:
+  void openChosen();
+  void showTrack(const AttemptTrack& track);
+
+  std::shared_ptr<const CohortDocument> document_;
+  QComboBox* choice_;
+  AttemptBanner* banner_;
+  ScenePictureWidget* picture_;
+  TimelineBar* timeline_;
+  std::filesystem::path file_;
+  std::string uuid_;    ///< that is chosen
+  std::string wanted_;  ///< to be chosen at the next setDocument()
+  std::string opened_;  ///< whose recording was opened
+  std::optional<AttemptTrack> track_;
+  double seconds_ = 0.0;
+  std::unique_ptr<Replay> replay_;
+  std::unique_ptr<RecordingReader> reader_;
+};
+
+}  // namespace calot::gui

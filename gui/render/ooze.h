@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What comes out of a vessel that was parted and not closed: a hint, not a simulation. State knows neither blood nor
+// bile nor since when they flow: drop and stain follow from the view alone.
+#pragma once
+
+#include <vector>
+
+#include "gui/render/mesh.h"
+#include "sim/scene/scene_view.h"
+
+namespace calot::gui {
+
+/// The face of a parted vessel that no clip closes.
+struct OpenEnd {
+  Vec3 position = Vec3::Zero();   ///< middle of the face in W (m)
+  Vec3 outwards = Vec3::UnitZ();  ///< unit, away from the stump
+  double radius = 0.0;            ///< of the face (m)
+  bool bile = false;              ///< leaves a duct; blood leaves any other vessel
+};
+
+/// All open faces, by SurfaceView::face. @pre checkView(view) has passed
+[[nodiscard]] std::vector<OpenEnd> openEnds(const SceneView& view);
+
+/// A drop that hangs at the face, swells for a few seconds, falls, and begins anew. In the axes of W, about the middle
+/// of the face. Down is against z of W.
+/// @param time of the view (s)
+[[nodiscard]] Mesh makeDrop(const OpenEnd& end, double time);
+
+/// How much of it has run over a point below the face: 0 nothing to 1.
+/// @param p_W the point (m)
+[[nodiscard]] double stainAt(const OpenEnd& end, const Vec3& p_W);
+
+}  // namespace calot::gui

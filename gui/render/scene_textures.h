@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "gui/render/gl_functions.h"
+#include "gui/render/renderer.h"
+
+namespace calot::gui {
+
+/// What each texture unit is for.
+enum TextureUnit : int {
+  noiseUnit = 0,
+  occlusionUnit = 1,
+  shadowUnit = 2,
+  depthUnit = 3,
+  fibreUnit = 4,
+  normalUnit = 5,
+  backdropUnit = 6
+};
+
+/// The textures that do not change: the noise volume of both qualities, and the fibres of connective tissue.
+class SceneTextures {
+ public:
+  /// @pre the context of `gl` is current, here and in every call; `gl` outlives this
+  explicit SceneTextures(const GlFunctions& gl);
+  ~SceneTextures();
+  SceneTextures(const SceneTextures&) = delete;
+  SceneTextures& operator=(const SceneTextures&) = delete;
+
+  void bindNoise(Quality quality) const;
+  /// Makes them at the first call.
+  void bindFibres();
+
+ private:
+  const GlFunctions& gl_;
+  GLuint filmNoise_ = 0;         ///< half floats, with smaller copies for the distance
+  GLuint interactiveNoise_ = 0;  ///< bytes
+  GLuint fibres_ = 0;
+};
+
+}  // namespace calot::gui
