@@ -18,10 +18,10 @@ using recorder::JsonPlace;
 using recorder::ObjectRule;
 using recorder::shown;
 
-constexpr std::size_t mostBytes = 1U << 20U;
+constexpr std::size_t mostFormBytes = 1U << 20U;
 constexpr std::size_t mostSections = 20, mostItems = 60;
 
-const ObjectRule rootRule{"",
+const ObjectRule formRule{"",
                           {{"format"},
                            {"formatVersion", true, 1, 1},
                            {"name"},
@@ -67,18 +67,18 @@ std::vector<FormItem> RatingForm::items() const {
 }
 
 const std::vector<ObjectRule>& ratingFormRules() {
-  static const std::vector<ObjectRule> rules{rootRule, scaleRule, sectionRule, itemRule, publishedRule};
+  static const std::vector<ObjectRule> rules{formRule, scaleRule, sectionRule, itemRule, publishedRule};
   return rules;
 }
 
 RatingForm readRatingForm(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseRatingForm(recorder::readFileBytes(file, name, mostBytes), name);
+  return parseRatingForm(recorder::readFileBytes(file, name, mostFormBytes), name);
 }
 
 RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json json = recorder::parseStrictJson(bytes, file);
-  const JsonObject o = JsonPlace(json, file).object(rootRule);
+  const JsonObject o = JsonPlace(json, file).object(formRule);
   RatingForm form;
   readHead(o, "calot-form", bytes, file, form);
   o.read("source", form.source, longestText);

@@ -12,7 +12,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& angularPathDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition angle =
         motionDefinition("angular-path", "Angular path of the instrument", "rad", Direction::lower,
@@ -34,7 +34,7 @@ double angleBetween(const Quat& a, const Quat& b) {
   return 2.0 * arctangent2(std::sqrt(x * x + y * y + z * z), std::abs(w));
 }
 
-Measured measure(const Motion& motion) {
+Measured angularPathOf(const Motion& motion) {
   double path = 0.0;
   for (const MotionSegment& segment : motion.segments) {
     if (segment.orientation.empty()) return Measured::notAvailable("the orientation was not recorded");
@@ -47,9 +47,10 @@ Measured measure(const Motion& motion) {
 }  // namespace
 
 CheckpointEntry angularPathEntry() {
-  return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
+  return {angularPathDefinition(),
+          [](const AttemptContext&) { return perHand(angularPathDefinition(), angularPathOf); }};
 }
 
-CheckpointEntry phaseAngularPathEntry() { return phaseMotionEntry<definition, measure>(); }
+CheckpointEntry phaseAngularPathEntry() { return phaseMotionEntry<angularPathDefinition, angularPathOf>(); }
 
 }  // namespace calot::analytics

@@ -5,7 +5,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& attemptDurationDefinition() {
   static const CheckpointDefinition d{
       .name = "attempt-duration",
       .title = "Duration of the attempt",
@@ -32,8 +32,8 @@ class AttemptDuration final : public Checkpoint {
       : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {}
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    return {makeValue(definition(), "", end.origin, static_cast<double>(end.steps * ticksPerStep_) * tickSeconds_,
-                      stretchNote(end))};
+    return {makeValue(attemptDurationDefinition(), "", end.origin,
+                      static_cast<double>(end.steps * ticksPerStep_) * tickSeconds_, stretchNote(end))};
   }
 
  private:
@@ -44,7 +44,7 @@ class AttemptDuration final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry attemptDurationEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {attemptDurationDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<AttemptDuration>(context);
           }};
 }

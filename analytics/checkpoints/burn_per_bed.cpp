@@ -11,7 +11,7 @@ namespace {
 /// Share of the bed that is work enough for a ratio.
 constexpr double leastWork = 0.01;
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& burnPerBedDefinition() {
   static const CheckpointDefinition d{
       .name = "burn-per-bed",
       .title = "Area charred for a whole bed freed",
@@ -47,12 +47,12 @@ class BurnPerBed final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     const auto missing = [&](const std::string& why) {
-      return makeMissing(definition(), "", end.origin, Availability::notApplicable, why);
+      return makeMissing(burnPerBedDefinition(), "", end.origin, Availability::notApplicable, why);
     };
     if (!notApplicable_.empty()) return {missing(notApplicable_)};
     const double freed = bed_.any() ? 1.0 - bed_.attached() : 0.0;
     if (freed < leastWork) return {missing("less than 1 % of the bed came free")};
-    return {makeValue(definition(), "", end.origin, charred_ / freed)};
+    return {makeValue(burnPerBedDefinition(), "", end.origin, charred_ / freed)};
   }
 
  private:
@@ -64,7 +64,7 @@ class BurnPerBed final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry burnPerBedEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {burnPerBedDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<BurnPerBed>(context);
           }};
 }

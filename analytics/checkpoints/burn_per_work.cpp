@@ -12,7 +12,7 @@ namespace calot::analytics {
 namespace {
 
 /// Share of all the fat, or of the bed, that is work enough for a ratio.
-constexpr double leastWork = 0.01;
+constexpr double leastShare = 0.01;
 
 CheckpointDefinition member(const char* name, const char* title, const char* window, const char* formula) {
   return {
@@ -73,7 +73,7 @@ class BurnPerFat final : public Checkpoint {
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    const bool enough = whole_ && *whole_ > 0.0 && taken_.growth() >= leastWork * *whole_;
+    const bool enough = whole_ && *whole_ > 0.0 && taken_.growth() >= leastShare * *whole_;
     const std::string why = !notApplicable_.empty() ? notApplicable_
                             : enough                ? ""
                                                     : "less than 1 % of the fat went in this phase";
@@ -103,7 +103,7 @@ class BurnPerDissection final : public Checkpoint {
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    const bool enough = freed_.growth() >= leastWork * bed_.area();
+    const bool enough = freed_.growth() >= leastShare * bed_.area();
     const std::string why = !notApplicable_.empty() ? notApplicable_
                             : enough                ? ""
                                                     : "less than 1 % of the bed came free in this phase";

@@ -9,7 +9,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& cauteryWithoutContactDefinition() {
   static const CheckpointDefinition d{
       .name = "cautery-without-contact",
       .title = "Cautery without contact",
@@ -94,9 +94,9 @@ class CauteryWithoutContact final : public Checkpoint {
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     std::vector<CheckpointValue> result;
     for (std::size_t h = 0; h < hand_.size(); ++h) {
-      result.push_back(tooOld_.empty()
-                           ? valueOf(definition(), handNames[h], hand_[h], end)
-                           : makeMissing(definition(), handNames[h], end.origin, Availability::notApplicable, tooOld_));
+      result.push_back(tooOld_.empty() ? valueOf(cauteryWithoutContactDefinition(), handNames[h], hand_[h], end)
+                                       : makeMissing(cauteryWithoutContactDefinition(), handNames[h], end.origin,
+                                                     Availability::notApplicable, tooOld_));
     }
     return result;
   }
@@ -107,7 +107,7 @@ class CauteryWithoutContact final : public Checkpoint {
 };
 
 const CheckpointDefinition& inPhases() {
-  static const CheckpointDefinition d = phaseDefinition(definition(), "steps");
+  static const CheckpointDefinition d = phaseDefinition(cauteryWithoutContactDefinition(), "steps");
   return d;
 }
 
@@ -155,7 +155,7 @@ class PhaseCauteryWithoutContact final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry cauteryWithoutContactEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {cauteryWithoutContactDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<CauteryWithoutContact>(context);
           }};
 }

@@ -9,7 +9,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& clipErrorsDefinition() {
   static const CheckpointDefinition d{
       .name = "clip-errors",
       .title = "Clips misplaced or lost",
@@ -64,12 +64,13 @@ class ClipErrors final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     const auto missing = [&](const std::string& why) {
-      return std::vector<CheckpointValue>{makeMissing(definition(), "", end.origin, Availability::notApplicable, why)};
+      return std::vector<CheckpointValue>{
+          makeMissing(clipErrorsDefinition(), "", end.origin, Availability::notApplicable, why)};
     };
     if (!notApplicable_.empty()) return missing(notApplicable_);
     if (set_ + dropped_ == 0) return missing("no clip was set or dropped");
     return {
-        makeValue(definition(), "", end.origin, static_cast<double>(faulty_ + dropped_),
+        makeValue(clipErrorsDefinition(), "", end.origin, static_cast<double>(faulty_ + dropped_),
                   fmt::format("{} set; half on {}, on another clip {}, too near {}, on another vessel {}, dropped {}",
                               set_, halfOn_, onClip_, tooNear_, elsewhere_, dropped_))};
   }
@@ -89,7 +90,7 @@ class ClipErrors final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry clipErrorsEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {clipErrorsDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<ClipErrors>(context);
           }};
 }

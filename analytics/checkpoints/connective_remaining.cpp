@@ -9,7 +9,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& connectiveRemainingDefinition() {
   static const CheckpointDefinition d{
       .name = "connective-remaining",
       .title = "Connective tissue left after the gallbladder's removal",
@@ -45,14 +45,15 @@ class ConnectiveRemaining final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!bed_.notApplicable().empty()) {
-      return {makeMissing(definition(), "", end.origin, Availability::notApplicable, bed_.notApplicable())};
+      return {makeMissing(connectiveRemainingDefinition(), "", end.origin, Availability::notApplicable,
+                          bed_.notApplicable())};
     }
     if (bed_.attached() > noShare) {
       return {makeMissing(
-          definition(), "", end.origin, Availability::notAvailable,
+          connectiveRemainingDefinition(), "", end.origin, Availability::notAvailable,
           fmt::format("the gallbladder was not freed: {:.1f} % of its bed attached", bed_.attached() * 100.0))};
     }
-    return {makeValue(definition(), "", end.origin, bed_.torn())};
+    return {makeValue(connectiveRemainingDefinition(), "", end.origin, bed_.torn())};
   }
 
  private:
@@ -62,7 +63,7 @@ class ConnectiveRemaining final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry connectiveRemainingEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {connectiveRemainingDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<ConnectiveRemaining>(context);
           }};
 }

@@ -6,7 +6,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& connectiveTornDefinition() {
   static const CheckpointDefinition d{
       .name = "connective-torn",
       .title = "Connective tissue torn so far",
@@ -35,9 +35,10 @@ class ConnectiveTorn final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!bed_.notApplicable().empty()) {
-      return {makeMissing(definition(), "", end.origin, Availability::notApplicable, bed_.notApplicable())};
+      return {
+          makeMissing(connectiveTornDefinition(), "", end.origin, Availability::notApplicable, bed_.notApplicable())};
     }
-    return {makeValue(definition(), "", end.origin, bed_.torn())};
+    return {makeValue(connectiveTornDefinition(), "", end.origin, bed_.torn())};
   }
 
  private:
@@ -47,7 +48,7 @@ class ConnectiveTorn final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry connectiveTornEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {connectiveTornDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<ConnectiveTorn>(context);
           }};
 }

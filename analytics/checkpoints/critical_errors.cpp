@@ -5,7 +5,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& criticalErrorsDefinition() {
   static const CheckpointDefinition d{
       .name = "critical-errors",
       .title = "Critical errors",
@@ -37,10 +37,10 @@ class CriticalErrors final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty()) {
-      return {makeMissing(definition(), "", end.origin, Availability::notApplicable, notApplicable_)};
+      return {makeMissing(criticalErrorsDefinition(), "", end.origin, Availability::notApplicable, notApplicable_)};
     }
-    return {
-        makeValue(definition(), "", end.origin, static_cast<double>(errors_), errors_ > 0 ? "fails the attempt" : "")};
+    return {makeValue(criticalErrorsDefinition(), "", end.origin, static_cast<double>(errors_),
+                      errors_ > 0 ? "fails the attempt" : "")};
   }
 
  private:
@@ -51,7 +51,7 @@ class CriticalErrors final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry criticalErrorsEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {criticalErrorsDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<CriticalErrors>(context);
           }};
 }

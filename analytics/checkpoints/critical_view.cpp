@@ -7,7 +7,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& criticalViewDefinition() {
   static const CheckpointDefinition d{
       .name = "critical-view",
       .title = "Critical view of safety",
@@ -41,14 +41,14 @@ class CriticalView final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty()) {
-      return {makeMissing(definition(), "", end.origin, Availability::notApplicable, notApplicable_)};
+      return {makeMissing(criticalViewDefinition(), "", end.origin, Availability::notApplicable, notApplicable_)};
     }
     const unsigned points = unsigned{view_.triangleCleared} + view_.lowerThirdFreed + view_.twoStructures;
     if (!view_.criticalViewFrozen && end.outcome != recorder::Outcome::running) {
-      return {makeMissing(definition(), "", end.origin, Availability::notAvailable,
+      return {makeMissing(criticalViewDefinition(), "", end.origin, Availability::notAvailable,
                           fmt::format("no clip was set: {} of 6 points at the end", points))};
     }
-    return {makeValue(definition(), "", end.origin, static_cast<double>(points),
+    return {makeValue(criticalViewDefinition(), "", end.origin, static_cast<double>(points),
                       fmt::format("triangle {}, lower third {}, two structures {}", view_.triangleCleared,
                                   view_.lowerThirdFreed, view_.twoStructures))};
   }
@@ -61,7 +61,7 @@ class CriticalView final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry criticalViewEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {criticalViewDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<CriticalView>(context);
           }};
 }

@@ -10,7 +10,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& cysticContactTimeDefinition() {
   static const CheckpointDefinition d{
       .name = "cystic-contact-time",
       .title = "Time colliding with cystic duct and artery",
@@ -58,8 +58,8 @@ class CysticContactTime final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty())
-      return {makeMissing(definition(), "", end.origin, Availability::notApplicable, notApplicable_)};
-    return {valueOf(definition(), "", contact_, end)};
+      return {makeMissing(cysticContactTimeDefinition(), "", end.origin, Availability::notApplicable, notApplicable_)};
+    return {valueOf(cysticContactTimeDefinition(), "", contact_, end)};
   }
 
  private:
@@ -68,7 +68,7 @@ class CysticContactTime final : public Checkpoint {
 };
 
 const CheckpointDefinition& inPhases() {
-  static const CheckpointDefinition d = phaseDefinition(definition(), "steps");
+  static const CheckpointDefinition d = phaseDefinition(cysticContactTimeDefinition(), "steps");
   return d;
 }
 
@@ -105,7 +105,7 @@ class PhaseCysticContactTime final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry cysticContactTimeEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {cysticContactTimeDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<CysticContactTime>(context);
           }};
 }

@@ -10,7 +10,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& depthPathDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition depth = motionDefinition(
         "depth-path", "Path along the instrument's axis", "m", Direction::lower,
@@ -29,7 +29,7 @@ Vec3 axisOf(const Quat& q) {
           1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())};
 }
 
-Measured measure(const Motion& motion) {
+Measured depthPathOf(const Motion& motion) {
   double path = 0.0;
   for (const MotionSegment& segment : motion.segments) {
     if (segment.orientation.empty()) return Measured::notAvailable("the orientation was not recorded");
@@ -49,9 +49,9 @@ Measured measure(const Motion& motion) {
 }  // namespace
 
 CheckpointEntry depthPathEntry() {
-  return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
+  return {depthPathDefinition(), [](const AttemptContext&) { return perHand(depthPathDefinition(), depthPathOf); }};
 }
 
-CheckpointEntry phaseDepthPathEntry() { return phaseMotionEntry<definition, measure>(); }
+CheckpointEntry phaseDepthPathEntry() { return phaseMotionEntry<depthPathDefinition, depthPathOf>(); }
 
 }  // namespace calot::analytics

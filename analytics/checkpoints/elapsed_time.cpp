@@ -7,7 +7,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& elapsedTimeDefinition() {
   static const CheckpointDefinition d{
       .name = "elapsed-time",
       .title = "Elapsed time to completion",
@@ -36,11 +36,12 @@ class ElapsedTime final : public Checkpoint {
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     const double seconds = static_cast<double>(end.steps * ticksPerStep_) * tickSeconds_;
     const auto missing = [&](Availability availability, const char* what) {
-      return makeMissing(definition(), "", end.origin, availability, fmt::format("{} at {:.3f} s", what, seconds));
+      return makeMissing(elapsedTimeDefinition(), "", end.origin, availability,
+                         fmt::format("{} at {:.3f} s", what, seconds));
     };
     switch (end.outcome) {
       case recorder::Outcome::completed:
-        return {makeValue(definition(), "", end.origin, seconds, stretchNote(end))};
+        return {makeValue(elapsedTimeDefinition(), "", end.origin, seconds, stretchNote(end))};
       case recorder::Outcome::timeLimit:
         return {missing(Availability::notAvailable, "not completed: time limit reached")};
       case recorder::Outcome::abandoned:
@@ -63,7 +64,7 @@ class ElapsedTime final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry elapsedTimeEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {elapsedTimeDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<ElapsedTime>(context);
           }};
 }

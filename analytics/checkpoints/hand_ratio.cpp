@@ -12,7 +12,7 @@ namespace {
 
 constexpr double leastPath = 1e-3;  ///< m
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& handRatioDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition ratio =
         motionDefinition("hand-ratio", "Right hand's share of both paths", "1", Direction::none,
@@ -26,7 +26,7 @@ const CheckpointDefinition& definition() {
   return d;
 }
 
-Measured measure(const Motion& left, const Motion& right, const AttemptContext& context) {
+Measured handRatioOf(const Motion& left, const Motion& right, const AttemptContext& context) {
   const double l = pathLength(left), r = pathLength(right);
   if (!(l + r >= leastPath)) return Measured::notApplicable("neither hand moved: both paths together are below 1 mm");
   return Measured::of(r / (l + r), fmt::format("handedness {}", context.handedness));
@@ -35,7 +35,8 @@ Measured measure(const Motion& left, const Motion& right, const AttemptContext& 
 }  // namespace
 
 CheckpointEntry handRatioEntry() {
-  return {definition(), [](const AttemptContext& context) { return ofBothHands(definition(), measure, context); }};
+  return {handRatioDefinition(),
+          [](const AttemptContext& context) { return ofBothHands(handRatioDefinition(), handRatioOf, context); }};
 }
 
 }  // namespace calot::analytics

@@ -9,7 +9,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& idleTimeDefinition() {
   static const CheckpointDefinition d =
       motionDefinition("idle-time", "Time at rest", "s", Direction::lower,
                        "sum of the lengths of the maximal stretches of points with v(k) < 5 mm/s that last 0.5 s or "
@@ -59,10 +59,10 @@ Measured idleOfBoth(const Motion& left, const Motion& right, const AttemptContex
 }  // namespace
 
 CheckpointEntry idleTimeEntry() {
-  return {definition(), [](const AttemptContext&) { return perHand(definition(), idle); }};
+  return {idleTimeDefinition(), [](const AttemptContext&) { return perHand(idleTimeDefinition(), idle); }};
 }
 
-CheckpointEntry phaseIdleTimeEntry() { return phaseMotionEntry<definition, idle>(); }
+CheckpointEntry phaseIdleTimeEntry() { return phaseMotionEntry<idleTimeDefinition, idle>(); }
 
 CheckpointEntry idleTimeBothEntry() {
   return {bothDefinition(),

@@ -7,7 +7,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& motionRateDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition rate =
         motionDefinition("motion-rate", "Effective rate of the tracker", "Hz", Direction::none,
@@ -21,7 +21,7 @@ const CheckpointDefinition& definition() {
   return d;
 }
 
-Measured measure(const Motion& motion) {
+Measured motionRateOf(const Motion& motion) {
   if (motion.rate == 0.0) return Measured::notApplicable("the pose never changed");
   return Measured::of(motion.rate);
 }
@@ -29,7 +29,7 @@ Measured measure(const Motion& motion) {
 }  // namespace
 
 CheckpointEntry motionRateEntry() {
-  return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
+  return {motionRateDefinition(), [](const AttemptContext&) { return perHand(motionRateDefinition(), motionRateOf); }};
 }
 
 }  // namespace calot::analytics

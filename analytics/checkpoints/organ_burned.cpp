@@ -9,7 +9,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& organBurnedDefinition() {
   static const CheckpointDefinition d{
       .name = "organ-burned",
       .title = "Share of the organ burned",
@@ -50,14 +50,14 @@ class OrganBurned final : public Checkpoint {
     for (std::size_t o = 0; o < organ_.size(); ++o) {
       result.push_back(
           tooOld_.empty()
-              ? makeValue(definition(), organ_[o].name, end.origin, charred_[o] / organ_[o].skinArea)
-              : makeMissing(definition(), organ_[o].name, end.origin, Availability::notApplicable, tooOld_));
+              ? makeValue(organBurnedDefinition(), organ_[o].name, end.origin, charred_[o] / organ_[o].skinArea)
+              : makeMissing(organBurnedDefinition(), organ_[o].name, end.origin, Availability::notApplicable, tooOld_));
     }
     for (const char* name : askedFor) {
       const bool there =
           std::any_of(organ_.begin(), organ_.end(), [&](const SceneFacts::Organ& organ) { return organ.name == name; });
       if (there) continue;
-      result.push_back(makeMissing(definition(), name, end.origin, Availability::notApplicable,
+      result.push_back(makeMissing(organBurnedDefinition(), name, end.origin, Availability::notApplicable,
                                    fmt::format("the scene has no {}", name)));
     }
     return result;
@@ -72,7 +72,7 @@ class OrganBurned final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry organBurnedEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {organBurnedDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<OrganBurned>(context);
           }};
 }

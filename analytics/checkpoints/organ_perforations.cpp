@@ -5,7 +5,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& organPerforationsDefinition() {
   static const CheckpointDefinition d{
       .name = "organ-perforations",
       .title = "Perforations of the organ",
@@ -41,9 +41,10 @@ class OrganPerforations final : public Checkpoint {
     std::vector<CheckpointValue> result;
     for (std::size_t o = 0; o < organ_.size(); ++o) {
       const std::string why = organ_[o].hasWall ? tooOld_ : "the scene gives this organ no wall that could be opened";
-      result.push_back(why.empty()
-                           ? makeValue(definition(), organ_[o].name, end.origin, static_cast<double>(count_[o]))
-                           : makeMissing(definition(), organ_[o].name, end.origin, Availability::notApplicable, why));
+      result.push_back(why.empty() ? makeValue(organPerforationsDefinition(), organ_[o].name, end.origin,
+                                               static_cast<double>(count_[o]))
+                                   : makeMissing(organPerforationsDefinition(), organ_[o].name, end.origin,
+                                                 Availability::notApplicable, why));
     }
     return result;
   }
@@ -57,7 +58,7 @@ class OrganPerforations final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry organPerforationsEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {organPerforationsDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<OrganPerforations>(context);
           }};
 }

@@ -7,7 +7,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& pathLengthDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition whole =
         motionDefinition("path-length", "Path length of the instrument's tip", "m", Direction::lower,
@@ -23,14 +23,14 @@ const CheckpointDefinition& definition() {
   return d;
 }
 
-Measured measure(const Motion& motion) { return Measured::of(pathLength(motion)); }
+Measured pathLengthOf(const Motion& motion) { return Measured::of(pathLength(motion)); }
 
 }  // namespace
 
 CheckpointEntry pathLengthEntry() {
-  return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
+  return {pathLengthDefinition(), [](const AttemptContext&) { return perHand(pathLengthDefinition(), pathLengthOf); }};
 }
 
-CheckpointEntry phasePathLengthEntry() { return phaseMotionEntry<definition, measure>(); }
+CheckpointEntry phasePathLengthEntry() { return phaseMotionEntry<pathLengthDefinition, pathLengthOf>(); }
 
 }  // namespace calot::analytics

@@ -6,7 +6,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& phaseCharredAreaDefinition() {
   static const CheckpointDefinition d{
       .name = "phase-charred-area",
       .title = "Area charred in the phase",
@@ -41,13 +41,14 @@ class PhaseCharredArea final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty())
-      return {makeMissing(definition(), "", end.origin, Availability::notApplicable, notApplicable_)};
+      return {makeMissing(phaseCharredAreaDefinition(), "", end.origin, Availability::notApplicable, notApplicable_)};
     std::vector<CheckpointValue> result;
     for (std::size_t w = 0; w < windowPhases.size(); ++w) {
       const char* subject = nameOf(windowPhases[w]);
       result.push_back((*end.phases)[w].seconds > 0.0
-                           ? makeValue(definition(), subject, end.origin, charred_[w].growth())
-                           : makeMissing(definition(), subject, end.origin, Availability::notApplicable, noSuchPhase));
+                           ? makeValue(phaseCharredAreaDefinition(), subject, end.origin, charred_[w].growth())
+                           : makeMissing(phaseCharredAreaDefinition(), subject, end.origin, Availability::notApplicable,
+                                         noSuchPhase));
     }
     return result;
   }
@@ -60,7 +61,7 @@ class PhaseCharredArea final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry phaseCharredAreaEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {phaseCharredAreaDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<PhaseCharredArea>(context);
           }};
 }

@@ -9,7 +9,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& phaseDurationDefinition() {
   static const CheckpointDefinition d{
       .name = "phase-duration",
       .title = "Duration of the phase",
@@ -42,10 +42,10 @@ class PhaseDuration final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty())
-      return {makeMissing(definition(), "", end.origin, Availability::notApplicable, notApplicable_)};
+      return {makeMissing(phaseDurationDefinition(), "", end.origin, Availability::notApplicable, notApplicable_)};
     std::vector<CheckpointValue> result;
     for (std::size_t i = 0; i < windowPhases.size(); ++i) {
-      result.push_back(makeValue(definition(), nameOf(windowPhases[i]), end.origin,
+      result.push_back(makeValue(phaseDurationDefinition(), nameOf(windowPhases[i]), end.origin,
                                  static_cast<double>(steps_[i] * ticksPerStep_) * tickSeconds_, stretchNote(end)));
     }
     return result;
@@ -61,7 +61,7 @@ class PhaseDuration final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry phaseDurationEntry() {
-  return {definition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
+  return {phaseDurationDefinition(), [](const AttemptContext& context) -> std::unique_ptr<Checkpoint> {
             return std::make_unique<PhaseDuration>(context);
           }};
 }

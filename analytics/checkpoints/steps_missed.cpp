@@ -6,7 +6,7 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& stepsMissedDefinition() {
   static const CheckpointDefinition d{
       .name = "steps-missed",
       .title = "Steps that missed a tolerance",
@@ -35,9 +35,9 @@ class StepsMissed final : public Checkpoint {
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (misses_.steps == 0) {
-      return {makeMissing(definition(), "", end.origin, Availability::notAvailable, "no step was done")};
+      return {makeMissing(stepsMissedDefinition(), "", end.origin, Availability::notAvailable, "no step was done")};
     }
-    return {makeValue(definition(), "", end.origin,
+    return {makeValue(stepsMissedDefinition(), "", end.origin,
                       static_cast<double>(misses_.any) / static_cast<double>(misses_.steps), describe(misses_))};
   }
 
@@ -48,7 +48,7 @@ class StepsMissed final : public Checkpoint {
 }  // namespace
 
 CheckpointEntry stepsMissedEntry() {
-  return {definition(),
+  return {stepsMissedDefinition(),
           [](const AttemptContext&) -> std::unique_ptr<Checkpoint> { return std::make_unique<StepsMissed>(); }};
 }
 

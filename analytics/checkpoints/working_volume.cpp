@@ -16,7 +16,7 @@ namespace {
 /// 95 % quantile of the chi-squared distribution with 3 degrees of freedom.
 constexpr double chiSquared = 7.814727903251179;
 
-const CheckpointDefinition& definition() {
+const CheckpointDefinition& workingVolumeDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition volume = motionDefinition(
         "working-volume", "Working volume of the instrument's tip", "m^3", Direction::lower,
@@ -29,7 +29,7 @@ const CheckpointDefinition& definition() {
   return d;
 }
 
-Measured measure(const Motion& motion) {
+Measured workingVolumeOf(const Motion& motion) {
   // A piece of a phase may be a single point, which has no covariance.
   if (motion.points() < 2) return Measured::notAvailable("fewer than two points of motion");
   const auto n = static_cast<double>(motion.points());
@@ -61,9 +61,10 @@ Measured measure(const Motion& motion) {
 }  // namespace
 
 CheckpointEntry workingVolumeEntry() {
-  return {definition(), [](const AttemptContext&) { return perHand(definition(), measure); }};
+  return {workingVolumeDefinition(),
+          [](const AttemptContext&) { return perHand(workingVolumeDefinition(), workingVolumeOf); }};
 }
 
-CheckpointEntry phaseWorkingVolumeEntry() { return phaseMotionEntry<definition, measure>(); }
+CheckpointEntry phaseWorkingVolumeEntry() { return phaseMotionEntry<workingVolumeDefinition, workingVolumeOf>(); }
 
 }  // namespace calot::analytics

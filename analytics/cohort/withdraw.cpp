@@ -17,7 +17,7 @@ namespace {
 
 using namespace tables;
 
-constexpr auto patience = std::chrono::seconds(10);
+constexpr auto withdrawalPatience = std::chrono::seconds(10);
 
 bool wordLetter(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-' ||
@@ -136,7 +136,7 @@ void rebuild(SQLite::Database& db, const std::string& path) {
 }
 
 std::unique_ptr<SQLite::Database> openForDeletion(const std::string& path) {
-  auto db = openCohort(path, CohortDatabase::Access::write, patience);
+  auto db = openCohort(path, CohortDatabase::Access::write, withdrawalPatience);
   db->exec("PRAGMA secure_delete = ON");
   return db;
 }
@@ -210,7 +210,7 @@ void scrub(const std::string& path) {
 
 std::vector<std::string> placesNaming(const std::string& path, const std::vector<std::string>& words) {
   return guarded(path, [&] {
-    const auto handle = openCohort(path, CohortDatabase::Access::read, patience);
+    const auto handle = openCohort(path, CohortDatabase::Access::read, withdrawalPatience);
     SQLite::Database& db = *handle;
     std::vector<std::string> places;
     for (const TableFacts& table : readTables(db)) {
@@ -232,7 +232,7 @@ std::vector<std::string> placesNaming(const std::string& path, const std::vector
 
 bool wasWithdrawn(const std::string& path, const std::string& uuid) {
   return guarded(path, [&] {
-    const auto db = openCohort(path, CohortDatabase::Access::read, patience);
+    const auto db = openCohort(path, CohortDatabase::Access::read, withdrawalPatience);
     return isWithdrawn(*db, uuid);
   });
 }

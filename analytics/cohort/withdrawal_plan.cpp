@@ -16,7 +16,7 @@ namespace {
 
 using namespace tables;
 
-constexpr auto patience = std::chrono::seconds(10);
+constexpr auto planPatience = std::chrono::seconds(10);
 
 /// Attempts that branch from one of these, from those, and so on, behind them.
 void addBranches(SQLite::Database& db, std::vector<std::string>& uuids) {
@@ -37,7 +37,7 @@ void addBranches(SQLite::Database& db, std::vector<std::string>& uuids) {
 void recordExport(const std::string& path, const std::string& kind, const std::string& target,
                   const std::vector<std::string>& attempts) {
   guarded(path, [&] {
-    const auto handle = openCohort(path, CohortDatabase::Access::write, patience);
+    const auto handle = openCohort(path, CohortDatabase::Access::write, planPatience);
     SQLite::Database& db = *handle;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     std::error_code ignored;
@@ -60,7 +60,7 @@ void recordExport(const std::string& path, const std::string& kind, const std::s
 
 Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym, WithdrawalScope scope) {
   return guarded(path, [&] {
-    const auto handle = openCohort(path, CohortDatabase::Access::write, patience);
+    const auto handle = openCohort(path, CohortDatabase::Access::write, planPatience);
     SQLite::Database& db = *handle;
     Withdrawal w;
     w.pseudonym = pseudonym;

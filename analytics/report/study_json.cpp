@@ -125,7 +125,9 @@ Json rowJson(const Study& study, const StudyRow& row) {
                 {"method", nameOf(i.method)}};
   });
   j["hedges"] = answerJson(row.hedges, [](const HedgesG& h) {
-    return Json{{"g", h.g}, {"d", h.d}, {"j", h.j}, {"interval", answerJson(h.interval, intervalJson)}};
+    return Json{{"g", h.g}, {"d", h.d}, {"j", h.j}, {"interval", answerJson(h.interval, [](const Interval& i) {
+                                                       return intervalJson(i);
+                                                     })}};
   });
   j["spearman_with_duration"] = answerJson(row.withDuration, [&](const Spearman& s) {
     return Json{{"rho", s.rho},

@@ -13,13 +13,13 @@ namespace calot::analytics {
 namespace {
 
 template <class Test>
-bool any(const Study& study, Test test) {
+bool anyRow(const Study& study, Test test) {
   return std::any_of(study.rows.begin(), study.rows.end(), test);
 }
 
 std::string comparisons(const Study& study) {
-  const bool exact = any(study, [](const StudyRow& r) { return r.test && r.test->exact; });
-  const bool normal = any(study, [](const StudyRow& r) { return r.test && !r.test->exact; });
+  const bool exact = anyRow(study, [](const StudyRow& r) { return r.test && r.test->exact; });
+  const bool normal = anyRow(study, [](const StudyRow& r) { return r.test && !r.test->exact; });
   if (!exact && !normal) return "No figure could be tested. ";
   return fmt::format("Groups were compared by the two-sided Mann-Whitney test, {}. ",
                      exact && normal ? "exact with ties up to 80 values and by normal approximation beyond"
@@ -29,17 +29,17 @@ std::string comparisons(const Study& study) {
 
 std::string effects(const Study& study) {
   std::string text;
-  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.area); }))
+  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.area); }))
     text +=
         "The effect is the probability of superiority (A, the area under the ROC curve) with Newcombe's score interval "
         "at 95 %. ";
-  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.shiftInterval); }))
+  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.shiftInterval); }))
     text += "The shift is that of Hodges and Lehmann with a distribution-free interval. ";
-  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.hedges); }))
+  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.hedges); }))
     text += "Hedges' g has an interval from the non-central t distribution. ";
-  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.withDuration); }))
+  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.withDuration); }))
     text += "Correlation with the attempt's duration is Spearman's. ";
-  if (any(study, [](const StudyRow& r) { return r.adjusted && r.adjusted->analysis; }))
+  if (anyRow(study, [](const StudyRow& r) { return r.adjusted && r.adjusted->analysis; }))
     text += "Outcomes were compared at one baseline by analysis of covariance with HC3 errors. ";
   return text;
 }

@@ -20,7 +20,7 @@ namespace calot::apps {
 
 namespace {
 
-struct Options {
+struct AssessOptions {
   std::vector<std::string> files;
   std::string cohort;
   unsigned threads = 1;
@@ -52,7 +52,7 @@ std::string keyFaultOf(const analytics::AssessedAttempt& attempt, const std::str
 }
 
 /// Assesses one recording and stores the result, where there is a database. A damaged file is no attempt of the cohort.
-recorder::ReplayReport assessOne(const std::string& file, const Options& o, analytics::CohortDatabase* database,
+recorder::ReplayReport assessOne(const std::string& file, const AssessOptions& o, analytics::CohortDatabase* database,
                                  Stored& stored) {
   analytics::Assessment assessment =
       analytics::assessRecording(file, o.threads, o.cutoff > 0.0 ? o.cutoff : analytics::motionCutoff);
@@ -65,7 +65,7 @@ recorder::ReplayReport assessOne(const std::string& file, const Options& o, anal
   return assessment.report;
 }
 
-int assess(const Options& o) {
+int assess(const AssessOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::optional<analytics::CohortDatabase> database;
   if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
@@ -115,7 +115,7 @@ int assess(const Options& o) {
 }  // namespace
 
 void addAssess(CLI::App& app, Run& run) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<AssessOptions>();
   CLI::App* command =
       app.add_subcommand("assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.");
   command->add_option("recordings", o->files, "recordings")->required();

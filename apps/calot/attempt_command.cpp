@@ -13,12 +13,12 @@
 namespace calot::apps {
 namespace {
 
-struct Options {
+struct AttemptOptions {
   std::string attempt, cohort, reason, by;
 };
 
 void addDecision(CLI::App& parent, Run& run, bool exclude) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<AttemptOptions>();
   CLI::App* command = exclude ? parent.add_subcommand("exclude", "Keep an attempt out of studies and norms")
                               : parent.add_subcommand("include", "Take an exclusion back");
   command->add_option("attempt", o->attempt, "Its uuid, or what it begins with")->required();

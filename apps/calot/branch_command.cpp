@@ -21,7 +21,7 @@ namespace calot::apps {
 
 namespace {
 
-struct Options {
+struct BranchOptions {
   SourceOptions source;
   std::string parent, at, stationKey, output;
   std::uint64_t seed = 1;
@@ -45,7 +45,7 @@ class LastPose final : public recorder::Observer {
   TickSamples last;
 };
 
-int branch(const Options& o) {
+int branch(const BranchOptions& o) {
   if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
   stopOnSignals();
   const double at = parseTime(o.at);
@@ -105,7 +105,7 @@ int branch(const Options& o) {
 }  // namespace
 
 void addBranch(CLI::App& app, Run& run) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<BranchOptions>();
   CLI::App* command = app.add_subcommand("branch", "Goes back to a moment of a recording and on from there, recorded.");
   command->add_option("recording", o->parent, "the parent")->required();
   command->add_option("--at", o->at, "where the branch leaves it: seconds (12.5) or minutes and seconds (1:02.5)")

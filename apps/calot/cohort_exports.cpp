@@ -17,13 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CohortExportsOptions {
   std::string cohort, folder;
   analytics::BundleOptions bundle;
   bool json = false;
 };
 
-int exportTables(const Options& o) {
+int exportTables(const CohortExportsOptions& o) {
   const std::vector<analytics::ExportedTable> tables = analytics::exportCohort(o.cohort, o.folder);
   Json list = Json::array();
   for (const analytics::ExportedTable& t : tables) {
@@ -37,7 +37,7 @@ int exportTables(const Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int handOut(const Options& o) {
+int handOut(const CohortExportsOptions& o) {
   const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle);
   if (o.json) {
     Json left = Json::array(), files = Json::array();
@@ -64,8 +64,8 @@ int handOut(const Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-CLI::App* addOne(CLI::App& parent, Run& run, const char* name, const char* help, const std::shared_ptr<Options>& o,
-                 int (*work)(const Options&)) {
+CLI::App* addOne(CLI::App& parent, Run& run, const char* name, const char* help,
+                 const std::shared_ptr<CohortExportsOptions>& o, int (*work)(const CohortExportsOptions&)) {
   CLI::App* command = parent.add_subcommand(name, help);
   command->add_option("cohort", o->cohort, "Cohort database")->required();
   command->add_option("-o,--output", o->folder, "Folder to make; it must not be there yet")->required();
@@ -78,8 +78,8 @@ CLI::App* addOne(CLI::App& parent, Run& run, const char* name, const char* help,
 
 void addCohortExports(CLI::App& parent, Run& run) {
   addOne(parent, run, "export", "Write every table as CSV and JSON, with a codebook; names and dates as they are",
-         std::make_shared<Options>(), exportTables);
-  const auto o = std::make_shared<Options>();
+         std::make_shared<CohortExportsOptions>(), exportTables);
+  const auto o = std::make_shared<CohortExportsOptions>();
   CLI::App* bundle =
       addOne(parent, run, "bundle", "Write what was measured for others, de-identified, with a manifest", o, handOut);
   bundle->add_option("--scope", o->bundle.scope, "Purpose to which participants have consented; others stay out")

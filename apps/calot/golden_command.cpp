@@ -20,13 +20,13 @@ namespace calot::apps {
 
 namespace {
 
-struct Options {
+struct GoldenOptions {
   std::string folder, reason, only;
   unsigned threads = 1;
   bool json = false;
 };
 
-std::filesystem::path folderOf(const Options& o) {
+std::filesystem::path folderOf(const GoldenOptions& o) {
   if (!o.folder.empty()) return o.folder;
   for (const std::filesystem::path& root : assetFolders()) {
     if (std::filesystem::exists(root / "golden" / "golden.json")) return root / "golden";
@@ -34,7 +34,7 @@ std::filesystem::path folderOf(const Options& o) {
   throw Error(ExitCode::damaged, "golden: no asset folder holds golden/golden.json: name one with --folder");
 }
 
-int check(const Options& o) {
+int check(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / "golden.json");
   std::vector<recorder::ReplayReport> reports;
@@ -59,7 +59,7 @@ int check(const Options& o) {
   return static_cast<int>(worstOf(reports));
 }
 
-int takeValues(const Options& o) {
+int takeValues(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   GoldenList list = readGoldenList(folder / "golden.json");
   list.valuesReason = requiredReason(o.reason);
@@ -82,7 +82,7 @@ int takeValues(const Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int update(const Options& o) {
+int update(const GoldenOptions& o) {
   stopOnSignals();
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / "golden.json");
@@ -99,7 +99,7 @@ int update(const Options& o) {
 }  // namespace
 
 void addGolden(CLI::App& app, Run& run) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<GoldenOptions>();
   CLI::App* command = app.add_subcommand("golden", "Recordings that every build must replay bit for bit.");
   command->require_subcommand(1);
   CLI::App* checking = command->add_subcommand("check", "Replays them; compares checkpoints with those of the list.");

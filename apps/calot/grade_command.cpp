@@ -26,14 +26,14 @@ namespace {
 namespace fs = std::filesystem;
 using Access = analytics::CohortDatabase::Access;
 
-struct Options {
+struct GradeOptions {
   std::string database, attempt, norm, recording, html, pdf;
   unsigned version = 0;
   bool mixKeys = false, json = false, force = false;
 };
 
 /// The attempt of this uuid, or the only one whose uuid begins so.
-analytics::AttemptRow attemptOf(const std::vector<analytics::AttemptRow>& attempts, const Options& o) {
+analytics::AttemptRow attemptOf(const std::vector<analytics::AttemptRow>& attempts, const GradeOptions& o) {
   const analytics::AttemptRow* found = nullptr;
   for (const analytics::AttemptRow& a : attempts) {
     if (a.uuid.rfind(o.attempt, 0) != 0) continue;
@@ -48,7 +48,7 @@ analytics::AttemptRow attemptOf(const std::vector<analytics::AttemptRow>& attemp
 }
 
 /// The named norm, or the only one that there is.
-analytics::Norm normOf(const analytics::AssessmentDatabase& database, const Options& o) {
+analytics::Norm normOf(const analytics::AssessmentDatabase& database, const GradeOptions& o) {
   if (!o.norm.empty()) return database.norm(o.norm, o.version);
   std::vector<analytics::Norm> norms = database.norms();
   if (norms.empty())
@@ -59,14 +59,14 @@ analytics::Norm normOf(const analytics::AssessmentDatabase& database, const Opti
 }
 
 /// The recording that was named, or the one beside the database; empty where there is none.
-fs::path recordingOf(const analytics::AttemptRow& attempt, const Options& o) {
+fs::path recordingOf(const analytics::AttemptRow& attempt, const GradeOptions& o) {
   if (!o.recording.empty()) return o.recording;
   std::error_code ignored;
   const fs::path beside = fs::path(o.database).parent_path() / attempt.fileName;
   return fs::is_regular_file(beside, ignored) && beside.extension() == ".h5" ? beside : fs::path();
 }
 
-void lookAtRecording(analytics::Grade& grade, const fs::path& file, const Options& o) {
+void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeOptions& o) {
   const auto figures = analytics::weakFigures(grade);
   if (figures.empty()) return;
   if (file.empty()) {
@@ -90,7 +90,7 @@ void lookAtRecording(analytics::Grade& grade, const fs::path& file, const Option
                         }));
 }
 
-int grade(const Options& o) {
+int grade(const GradeOptions& o) {
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
@@ -113,7 +113,7 @@ int grade(const Options& o) {
 }  // namespace
 
 void addGrade(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<GradeOptions>();
   CLI::App* command = app.add_subcommand("grade", "Hold an attempt against a norm");
   command->add_option("cohort", o->database, "Cohort database")->required();
   command->add_option("--attempt", o->attempt, "Its uuid, or how that begins")->required();

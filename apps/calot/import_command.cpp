@@ -24,7 +24,7 @@ namespace calot::apps {
 
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::vector<std::string> files;
   std::string cohort, columns, mode = "practice", outcome = "stopped";
   analytics::MotionDeclaration declaration;
@@ -49,7 +49,7 @@ recorder::TrackedMotion read(const std::string& file, const std::optional<record
 }
 
 /// Reads first, so that a file that cannot be read makes no database.
-Result importOne(const std::string& file, const Options& o, const std::optional<recorder::ColumnMap>& map,
+Result importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
                  std::optional<analytics::CohortDatabase>& database) {
   Result result;
   try {
@@ -89,7 +89,7 @@ nlohmann::ordered_json jsonOf(const std::string& file, const Result& result) {
   return row;
 }
 
-int import(const Options& o) {
+int import(const ImportOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
@@ -132,7 +132,7 @@ std::string isWord(const std::string& text) {
 }  // namespace
 
 void addImport(CLI::App& app, Run& run) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ImportOptions>();
   CLI::App* command = app.add_subcommand(
       "import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.");
   command->add_option("files", o->files, "two-handed motion, 76 columns at 30 Hz; or CSV files with --columns")

@@ -14,11 +14,11 @@
 namespace calot::apps {
 namespace {
 
-struct Options {
+struct KeyOptions {
   std::string file, passphraseFile, pseudonym, name;
 };
 
-CLI::App* addOne(CLI::App& parent, const char* word, const char* help, const std::shared_ptr<Options>& o) {
+CLI::App* addOne(CLI::App& parent, const char* word, const char* help, const std::shared_ptr<KeyOptions>& o) {
   CLI::App* command = parent.add_subcommand(word, help);
   command->add_option("--file", o->file, "Key file")->required();
   command->add_option("--passphrase-file", o->passphraseFile, "File whose first line is the passphrase");
@@ -26,7 +26,7 @@ CLI::App* addOne(CLI::App& parent, const char* word, const char* help, const std
 }
 
 /// Not a command's argument, where shells keep it: read from stdin unless it was given.
-std::string nameOf(const Options& o) {
+std::string nameOf(const KeyOptions& o) {
   if (!o.name.empty()) return o.name;
   std::string line;
   std::getline(std::cin, line);
@@ -42,7 +42,7 @@ void addKey(CLI::App& participant, Run& run) {
   CLI::App* key = participant.add_subcommand("key", "Who is behind a pseudonym, in an encrypted file of its own");
   key->require_subcommand(1);
 
-  const auto added = std::make_shared<Options>();
+  const auto added = std::make_shared<KeyOptions>();
   CLI::App* add = addOne(*key, "add", "Add a pseudonym and the name behind it; makes the file if there is none", added);
   add->add_option("participant", added->pseudonym, "Pseudonym")->required();
   add->add_option("--name", added->name, "Name; without it, a line of stdin");
@@ -56,7 +56,7 @@ void addKey(CLI::App& participant, Run& run) {
     };
   });
 
-  const auto shown = std::make_shared<Options>();
+  const auto shown = std::make_shared<KeyOptions>();
   CLI::App* show = addOne(*key, "show", "Print the name behind a pseudonym, or all", shown);
   show->add_option("participant", shown->pseudonym, "Pseudonym");
   show->callback([shown, &run] {
@@ -72,7 +72,7 @@ void addKey(CLI::App& participant, Run& run) {
     };
   });
 
-  const auto removed = std::make_shared<Options>();
+  const auto removed = std::make_shared<KeyOptions>();
   CLI::App* remove = addOne(*key, "remove", "Remove a pseudonym's entry", removed);
   remove->add_option("participant", removed->pseudonym, "Pseudonym")->required();
   remove->callback([removed, &run] {

@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t mostEvidence = std::size_t{1} << 30U;
 
-struct Options {
+struct NormOptions {
   std::string database, name, by, groupBy = "group", attemptRule, rule, seed = "1", statement, file;
   analytics::NormRequest request;
   unsigned version = 0;
@@ -128,7 +128,7 @@ void print(const analytics::Norm& norm) {
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
 }
 
-int create(Options& o) {
+int create(NormOptions& o) {
   o.request.name = o.name;
   o.request.by = o.by;
   o.request.leastPassed = leastOf(o.rule);
@@ -144,7 +144,7 @@ int create(Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int list(Options& o) {
+int list(NormOptions& o) {
   Json rows = Json::array();
   std::string text;
   for (const analytics::Norm& norm : analytics::AssessmentDatabase(o.database, Access::read).norms()) {
@@ -161,7 +161,7 @@ int list(Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int show(Options& o) {
+int show(NormOptions& o) {
   const analytics::Norm norm = analytics::AssessmentDatabase(o.database, Access::read).norm(o.name, o.version);
   if (o.json) {
     std::cout << jsonOf(norm).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
@@ -171,7 +171,7 @@ int show(Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int attach(Options& o) {
+int attach(NormOptions& o) {
   const std::filesystem::path file(o.file);
   const std::string name = file.filename().string();
   const std::string hash = recorder::sha256Hex(recorder::readFileBytes(file, name, mostEvidence));
@@ -182,7 +182,7 @@ int attach(Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-void addCreateOptions(CLI::App& command, Options& o) {
+void addCreateOptions(CLI::App& command, NormOptions& o) {
   analytics::StudyOptions& who = o.request.who;
   command.add_option("--by", o.by, "Who makes it")->required();
   command.add_option("--rule", o.rule, "How figures combine: all, or at-least:K of them")->required();
@@ -212,10 +212,10 @@ void addCreateOptions(CLI::App& command, Options& o) {
 }  // namespace
 
 void addNorm(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<NormOptions>();
   CLI::App* command = app.add_subcommand("norm", "Make and show the norms that attempts are graded against");
   command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, int (*call)(Options&)) {
+  const auto add = [&](const char* name, const char* what, int (*call)(NormOptions&)) {
     CLI::App* sub = command->add_subcommand(name, what);
     sub->add_option("cohort", o->database, "Cohort database")->required();
     sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });

@@ -16,7 +16,7 @@
 namespace calot::apps {
 namespace {
 
-struct Options {
+struct ParticipantOptions {
   std::string pseudonym, database, group, arm, site;
   std::vector<std::string> experience, consent;
 };
@@ -37,14 +37,14 @@ std::map<std::string, std::string> pairs(const std::vector<std::string>& items, 
   return result;
 }
 
-std::map<std::string, std::string> experienceOf(const Options& o) {
+std::map<std::string, std::string> experienceOf(const ParticipantOptions& o) {
   return pairs(o.experience, '=', "--experience", "CRITERION=VALUE");
 }
-std::map<std::string, std::string> consentOf(const Options& o) {
+std::map<std::string, std::string> consentOf(const ParticipantOptions& o) {
   return pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD");
 }
 
-void addOptions(CLI::App* command, const std::shared_ptr<Options>& options) {
+void addOptions(CLI::App* command, const std::shared_ptr<ParticipantOptions>& options) {
   command->add_option("participant", options->pseudonym, "Pseudonym, never a name")->required();
   command->add_option("--cohort", options->database, "Cohort database")->required();
   command->add_option("--group", options->group, "Study group");
@@ -64,7 +64,7 @@ void addParticipant(CLI::App& app, Run& run) {
   addWithdraw(*command, run);
   addKey(*command, run);
 
-  const auto added = std::make_shared<Options>();
+  const auto added = std::make_shared<ParticipantOptions>();
   CLI::App* add = command->add_subcommand("add", "Add a participant; makes the cohort database if there is none");
   addOptions(add, added);
   add->callback([added, &run] {
@@ -77,7 +77,7 @@ void addParticipant(CLI::App& app, Run& run) {
     };
   });
 
-  const auto changed = std::make_shared<Options>();
+  const auto changed = std::make_shared<ParticipantOptions>();
   CLI::App* set = command->add_subcommand("set", "Change what is given of a participant");
   addOptions(set, changed);
   set->callback([set, changed, &run] {

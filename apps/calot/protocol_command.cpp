@@ -19,12 +19,12 @@ namespace {
 
 using Access = analytics::CohortDatabase::Access;
 
-struct Options {
+struct ProtocolOptions {
   std::string protocol, database, by;
   bool json = false;
 };
 
-int check(const Options& o) {
+int check(const ProtocolOptions& o) {
   const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
   const auto primary = std::count_if(p.hypotheses.begin(), p.hypotheses.end(), [](const auto& h) { return h.primary; });
   std::cout << fmt::format("{}: protocol {} version {}, {} hypotheses, {} of them primary, SHA-256 {}\n", p.file,
@@ -32,7 +32,7 @@ int check(const Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int registerIt(const Options& o) {
+int registerIt(const ProtocolOptions& o) {
   const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
   analytics::AssessmentDatabase database(o.database, Access::create);
   bool added = false;
@@ -44,7 +44,7 @@ int registerIt(const Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int list(const Options& o) {
+int list(const ProtocolOptions& o) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   std::string text;
   for (const auto& p : analytics::AssessmentDatabase(o.database, Access::read).protocols()) {
@@ -67,10 +67,10 @@ int list(const Options& o) {
 }  // namespace
 
 void addProtocol(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ProtocolOptions>();
   CLI::App* command = app.add_subcommand("protocol", "Check, register and list the protocols of studies");
   command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, int (*call)(const Options&)) {
+  const auto add = [&](const char* name, const char* what, int (*call)(const ProtocolOptions&)) {
     CLI::App* sub = command->add_subcommand(name, what);
     sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
     return sub;

@@ -27,7 +27,7 @@ using Access = analytics::CohortDatabase::Access;
 using Json = nlohmann::ordered_json;
 using Given = std::vector<std::pair<std::string, std::string>>;
 
-struct Options {
+struct RateOptions {
   std::string database, form, attempt, rater, participant, answersFile;
   std::vector<std::string> answers;
   bool forms = false, json = false, force = false;
@@ -35,7 +35,7 @@ struct Options {
 
 [[noreturn]] void fail(const std::string& what) { throw Error(ExitCode::usage, "rate: " + what); }
 
-int listForms(const Options& o) {
+int listForms(const RateOptions& o) {
   Json rows = Json::array();
   for (const std::filesystem::path& file : listAssets("forms")) {
     const analytics::RatingForm form = analytics::readRatingForm(file);
@@ -88,7 +88,7 @@ Given readAnswers(const std::vector<std::string>& items) {
   return given;
 }
 
-int store(const Options& o) {
+int store(const RateOptions& o) {
   const analytics::RatingForm form = analytics::readRatingForm(findAsset(o.form, "forms", "form"));
   if (form.ofAttempts && (o.attempt.empty() || o.rater.empty() || !o.participant.empty()))
     fail(fmt::format("form {} is about an attempt: name --attempt and --rater", form.name));
@@ -109,7 +109,7 @@ int store(const Options& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-int show(const Options& o) {
+int show(const RateOptions& o) {
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const analytics::AssessmentDatabase database(o.database, Access::read);
   std::map<std::string, std::string> groupOf;
@@ -138,7 +138,7 @@ int show(const Options& o) {
 }  // namespace
 
 void addRate(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<RateOptions>();
   CLI::App* command = app.add_subcommand("rate", "Store and summarise what raters and participants judge, by forms");
   command->add_option("cohort", o->database, "Cohort database");
   command->add_flag("--forms", o->forms, "List the forms that come with the program");

@@ -20,7 +20,7 @@ namespace calot::apps {
 
 namespace {
 
-struct Options {
+struct RecordOptions {
   SourceOptions source;
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", output;
   std::string mode = "practice";
@@ -30,7 +30,7 @@ struct Options {
   bool paced = false, live = false, force = false, json = false;
 };
 
-int record(const Options& o) {
+int record(const RecordOptions& o) {
   if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
   stopOnSignals();
   refuseExisting(o.output, o.force);
@@ -79,7 +79,7 @@ int record(const Options& o) {
 }  // namespace
 
 void addRecord(CLI::App& app, Run& run) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RecordOptions>();
   CLI::App* command = app.add_subcommand("record", "Runs an attempt and records it.");
   command->add_option("--scene", o->scene, "name of a scene (calot scenes), or a scene file")->required();
   addSource(*command, o->source);

@@ -23,7 +23,7 @@ namespace {
 using analytics::Regraded;
 using nlohmann::ordered_json;
 
-struct Options {
+struct RegradeOptions {
   std::string cohort;
   std::vector<std::string> places;
   unsigned jobs = 0;
@@ -129,7 +129,7 @@ void print(const analytics::Regrade& regrade) {
   std::cout << std::flush;
 }
 
-int regrade(const Options& o) {
+int regrade(const RegradeOptions& o) {
   std::vector<std::filesystem::path> places(o.places.begin(), o.places.end());
   if (places.empty()) {
     const std::filesystem::path folder = std::filesystem::path(o.cohort).parent_path();
@@ -153,7 +153,7 @@ int regrade(const Options& o) {
 }  // namespace
 
 void addRegrade(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<RegradeOptions>();
   CLI::App* command =
       app.add_subcommand("regrade", "Compute the derived values of a cohort anew, and show what changed");
   command->add_option("cohort", o->cohort, "Cohort database")->required();

@@ -17,7 +17,7 @@ namespace calot::apps {
 
 namespace {
 
-struct Options {
+struct RenderOptions {
   std::string recording, output, cohort, size = "1280x720", quality, align;
   std::optional<std::string> at, from, to, overlay, beside;
   double speed = 1.0;
@@ -31,14 +31,14 @@ gui::Quality qualityOf(const std::string& word, bool film) {
 }
 
 /// A picture has one moment, a film two. @throws Error (usage)
-void refuseMixed(const Options& o, bool film) {
+void refuseMixed(const RenderOptions& o, bool film) {
   if (film && o.at) throw Error(ExitCode::usage, "--at is for pictures; a film has --from and --to");
   if (!film && (o.from || o.to))
     throw Error(ExitCode::usage, "--from and --to are for films (.mp4, .mkv); a picture has --at");
   if (!o.beside && !o.align.empty()) throw Error(ExitCode::usage, "--align needs --beside");
 }
 
-int render(const Options& o) {
+int render(const RenderOptions& o) {
   const std::filesystem::path output(o.output);
   const bool film = output.extension() == ".mp4" || output.extension() == ".mkv";
   if (!film && output.extension() != ".png") {
@@ -88,7 +88,7 @@ int render(const Options& o) {
 }  // namespace
 
 void addRender(CLI::App& app, Run& run) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand("render", "Draws a moment of a recording, or makes a film of it.");
   command->add_option("recording", o->recording, "recording")->required();
   command->add_option("-o,--output", o->output, "picture (.png) or film (.mp4, .mkv)")->required();

@@ -19,14 +19,14 @@ namespace calot::apps {
 
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::vector<std::string> files;
   std::string junit;
   unsigned threads = 1, jobs = 1;
   bool anyway = false, json = false;
 };
 
-int replay(const Options& o) {
+int replay(const ReplayOptions& o) {
   if (!o.junit.empty()) recorder::refuseOutput(o.junit, true);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
@@ -79,7 +79,7 @@ int replay(const Options& o) {
 }  // namespace
 
 void addReplay(CLI::App& app, Run& run) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay", "Re-simulates recordings and compares every digest and force.");
   command->add_option("recordings", o->files, "recordings")->required();
   command->add_option("--threads", o->threads, "of each simulation; 0: all")

@@ -19,14 +19,14 @@
 namespace calot::apps {
 namespace {
 
-struct Options {
+struct ParsedStudyOptions {
   StudySource source;
   std::string csv, html, pdf;
   bool json = false, force = false;
 };
 
 /// Notes in the cohort whose attempts went into files: a withdrawal lists them.
-void noteExports(const Options& options, const analytics::Study& study) {
+void noteExports(const ParsedStudyOptions& options, const analytics::Study& study) {
   const std::vector<std::pair<std::string, std::string>> written{
       {"study-csv", options.csv}, {"study-html", options.html}, {"study-pdf", options.pdf}};
   const auto named = [](const auto& file) { return !file.second.empty(); };
@@ -52,7 +52,7 @@ void noteExports(const Options& options, const analytics::Study& study) {
 }  // namespace
 
 void addStudy(CLI::App& app, Run& run) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ParsedStudyOptions>();
   CLI::App* command = app.add_subcommand("study", "Compare two groups of a cohort, or of a table from elsewhere");
   addStudySource(*command, options->source);
   command->add_flag("--json", options->json, "Print JSON");

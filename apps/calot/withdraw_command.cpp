@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct WithdrawOptions {
   std::string pseudonym, cohort, scope, key, passphraseFile;
   std::vector<std::string> folders;
   bool noFolders = false, noKey = false, dryRun = false;
 };
 
-void checkStores(const Options& o) {
+void checkStores(const WithdrawOptions& o) {
   if (o.folders.empty() != o.noFolders)
     throw Error(ExitCode::usage, "withdraw: name the folders of recordings (--recordings), or say --no-recordings");
   if (o.scope == "all" && o.key.empty() != o.noKey)
@@ -64,7 +64,7 @@ void tell(const analytics::Withdrawal& w, const analytics::WithdrawalFiles& file
   for (const fs::path& file : files.remove) std::cout << "file " << file.string() << '\n';
 }
 
-int withdraw(const Options& o) {
+int withdraw(const WithdrawOptions& o) {
   checkStores(o);
   const auto scope = o.scope == "all" ? analytics::WithdrawalScope::all : analytics::WithdrawalScope::research;
   analytics::Withdrawal w = analytics::planWithdrawal(o.cohort, o.pseudonym, scope);
@@ -117,7 +117,7 @@ int withdraw(const Options& o) {
 }  // namespace
 
 void addWithdraw(CLI::App& participant, Run& run) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<WithdrawOptions>();
   CLI::App* command = participant.add_subcommand("withdraw", "Remove what there is of a participant, for good");
   command->add_option("participant", o->pseudonym, "Pseudonym")->required();
   command->add_option("--cohort", o->cohort, "Cohort database")->required();

@@ -20,7 +20,7 @@ Nanoseconds read(clockid_t clock) {
   return std::chrono::seconds(t.tv_sec) + Nanoseconds(t.tv_nsec);
 }
 
-float seconds(Nanoseconds t) { return static_cast<float>(std::chrono::duration<double>(t).count()); }
+float lagSeconds(Nanoseconds t) { return static_cast<float>(std::chrono::duration<double>(t).count()); }
 
 }  // namespace
 
@@ -54,7 +54,7 @@ float PacedClock::finish(std::uint64_t t, Nanoseconds ready) {
   largest_ = std::max(largest_, late);
   stretchedHere_ = Nanoseconds(0);
   // Only a tick before which the clock was stretched may say so.
-  const float lateness = waited ? seconds(late) : std::min(seconds(late), longestLag);
+  const float lateness = waited ? lagSeconds(late) : std::min(lagSeconds(late), longestLag);
   if (lateness > tickDeadline) ++missed_;
   return lateness;
 }

@@ -15,7 +15,7 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr const char* formatName = "calot-state";
+constexpr const char* stateFormatName = "calot-state";
 
 void writeAttribute(hid_t at, const char* name, std::uint64_t value) {
   const hdf5::Id space = hdf5::space(H5Screate(H5S_SCALAR));
@@ -72,7 +72,7 @@ StateFile readHere(const std::filesystem::path& path) {
   const hdf5::Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (!file.valid()) throw hdf5::damaged(path, "/", "is no state file that can be opened (" + hdf5::reason() + ")");
   StateFile state;
-  readAttribute(path, file.get(), formatName);
+  readAttribute(path, file.get(), stateFormatName);
   state.step = readAttribute(path, file.get(), "step");
   state.simulationVersion = static_cast<std::uint32_t>(readAttribute(path, file.get(), "simulation_version"));
   const std::uint64_t count = readAttribute(path, file.get(), "fields");
@@ -125,7 +125,7 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
     H5Pset_fapl_core(access.get(), std::size_t{1} << 20U, false);
     hdf5::Id out = hdf5::file(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
     need(out.valid());
-    writeAttribute(out.get(), formatName, 1);
+    writeAttribute(out.get(), stateFormatName, 1);
     writeAttribute(out.get(), "simulation_version", simulationVersion);
     writeAttribute(out.get(), "step", step);
     writeAttribute(out.get(), "fields", fields.size());

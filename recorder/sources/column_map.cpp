@@ -15,7 +15,7 @@ namespace calot::recorder {
 namespace {
 
 constexpr std::size_t mostMapBytes = 1U << 20U;
-constexpr std::size_t mostBytes = std::size_t{1} << 30U;
+constexpr std::size_t mostMotionBytes = std::size_t{1} << 30U;
 constexpr std::size_t longestName = 200;
 constexpr double longestMotion = 1e6;  // s
 constexpr double unitLength = 1e-2;
@@ -153,7 +153,7 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
 
 TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& map) {
   const std::string name = file.filename().string();
-  return parseCsvMotion(readFileBytes(file, name, mostBytes), name, map);
+  return parseCsvMotion(readFileBytes(file, name, mostMotionBytes), name, map);
 }
 
 TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map) {

@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::uint64_t approachTicks = 1000;
 constexpr std::uint64_t ticksPerSecond = 1000;
-constexpr double largestJaw = 1.2;  // rad
+constexpr double widestJaw = 1.2;  // rad
 
 // Half sides of the task region in the camera's frame (m): what the hands of one task fill around the gallbladder.
 const Vec3 taskRegion(0.030, 0.020, 0.030);
 constexpr double smallestScale = 0.1;
 constexpr double largestScale = 2.0;
-constexpr double sight = 1.0;           // m
+constexpr double lineOfSight = 1.0;     // m
 constexpr double touchShare = 0.95;     // this share of the rows is no deeper ...
 constexpr double touchDepth = 0.003;    // ... than this (m)
 constexpr double largestDepth = 0.012;  // and none is deeper than this (m)
@@ -88,7 +88,7 @@ KinematicsMapping mapIntoScene(const KinematicsMotion& motion, const SceneDescri
   m.axes = scene.camera.orientation;
   const Vec3 view = m.axes * Vec3::UnitZ();
   const SceneSurfaces surfaces(scene);
-  const auto hit = surfaces.firstHit(scene.camera.position, scene.camera.position + sight * view);
+  const auto hit = surfaces.firstHit(scene.camera.position, scene.camera.position + lineOfSight * view);
   if (!hit) {
     throw Error(
         ExitCode::usage,
@@ -123,7 +123,7 @@ KinematicsSource::KinematicsSource(KinematicsMotion motion, const SceneDescripti
       Row& row = rows_[i][h];
       row.position = placed(mapping_, from.position) + mapping_.slide[h] * view;
       row.orientation = mapping_.axes * from.orientation;
-      row.jaw = std::clamp(from.gripper, 0.0, largestJaw);
+      row.jaw = std::clamp(from.gripper, 0.0, widestJaw);
     }
   }
 }

@@ -9,7 +9,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double toe = 0.0023;          // from the hook's heel to the middle of its toe (m)
+constexpr double hookToe = 0.0023;      // from the hook's heel to the middle of its toe (m)
 constexpr double wire = 0.0006;         // radius of the hook's wire (m)
 constexpr double film = 0.0006;         // of fat on a vessel that counts as none (m)
 constexpr double laneLength = 0.014;    // of a stroke along a vessel (m)
@@ -121,7 +121,7 @@ void WorkingMind::runStroke(const FatStroke& stroke, const SeenVessel& vessel, d
     const std::size_t s = stroke.first + stations * (back ? legs - k : k) / legs;
     const bool end = k == 0 || k == legs;
     if (stroke.lane != over && k == 0) way.push_back(at(s, sign * (off + comeFrom)));
-    way.push_back(at(s, stroke.lane == over ? -toe : sign * off));
+    way.push_back(at(s, stroke.lane == over ? -hookToe : sign * off));
     if (stroke.lane != over && end && k > 0) way.push_back(at(s, sign * (off + comeFrom)));
   }
   const std::size_t middle = (stroke.first + stroke.last) / 2;

@@ -9,14 +9,14 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double toeEnd = 0.0046;       // from the hook's heel (m)
-constexpr double wire = 0.0006;         // its radius (m)
-constexpr double wireLength = 0.009;    // of it along the shaft, that burns (m)
-constexpr double clearance = 0.002;     // above the fat, on the way from one stroke to the next (m)
-constexpr double thin = 0.0010;         // fat thinner than this is not gone for (m)
-constexpr std::size_t shortest = 2;     // columns of a stroke, at least
-constexpr std::size_t longest = 8;      // and at most
-constexpr std::uint32_t mostTried = 3;  // strokes through one column
+constexpr double toeEnd = 0.0046;               // from the hook's heel (m)
+constexpr double windowWire = 0.0006;           // its radius (m)
+constexpr double windowWireLength = 0.009;      // of it along the shaft, that burns (m)
+constexpr double windowClearance = 0.002;       // above the fat, on the way from one stroke to the next (m)
+constexpr double thin = 0.0010;                 // fat thinner than this is not gone for (m)
+constexpr std::size_t shortest = 2;             // columns of a stroke, at least
+constexpr std::size_t longest = 8;              // and at most
+constexpr std::uint32_t mostTriedOfColumn = 3;  // strokes through one column
 
 /// The lowest that the hook may go at a place with its toe along `toe`, towards the port, so that it keeps off vessels.
 double lowestAt(const Vec3& place, const Vec3& shaft, const Vec3& toe, double off,
@@ -43,7 +43,7 @@ bool WorkingMind::thickestRow(const Sight& sight, std::size_t& first, std::size_
     for (std::size_t to = from; to < sight.column.size() && to - from < longest && plan[to].row == plan[from].row;
          ++to) {
       const double fat = sight.column[to].fat();
-      if (fat < thin || columnTried_[to] >= mostTried) break;
+      if (fat < thin || columnTried_[to] >= mostTriedOfColumn) break;
       worth += fat / (1.0 + 3.0 * static_cast<double>(columnTried_[to]));
       if (to - from + 1 < shortest || !(worth > most)) continue;
       most = worth;
@@ -62,7 +62,7 @@ void WorkingMind::window(Sight sight) {
   for (std::size_t v = 0; v < sight.vessel.size(); ++v) {
     for (const Vec3& centre : sight.vessel[v].centre) vessels.emplace_back(centre, tools_.anatomy.vessels()[v].radius);
   }
-  const double off = wire + operation.keepOff;
+  const double off = windowWire + operation.keepOff;
   // What cannot be taken without harm to a vessel does not count.
   for (std::size_t c = 0; c < plan.size() && c < sight.column.size(); ++c) {
     SeenColumn& column = sight.column[c];
@@ -93,14 +93,14 @@ void WorkingMind::window(Sight sight) {
       SeenColumn& column = sight.column[c];
       ++columnTried_[c];
       top = std::max(top, column.top);
-      const double height = std::max(column.bottom, column.top - wireLength);
+      const double height = std::max(column.bottom, column.top - windowWireLength);
       if (k % 2U == 0 || k == last - first) {
         way.emplace_back(column.place - height * shaft + error_);
         ended = height;
       }
       column.top = column.bottom;
     }
-    strokeThrough(way, side, std::max(top - ended, 0.0) + clearance);
+    strokeThrough(way, side, std::max(top - ended, 0.0) + windowClearance);
   }
   if (made > 0) return;
   strokes_ = 0;

@@ -16,9 +16,9 @@ constexpr double travelClearance = 0.003;  // m
 constexpr double openJaw = 0.5;            // rad
 constexpr double settle = 0.5;             // at home before the start and after the end (s)
 constexpr double bimanualLag = 0.3;        // the second hand starts this much later (s)
-constexpr double fadeIn = 0.5;             // unsteadiness grows from nothing: the tip starts at home (s)
-constexpr double wanderLower = 0.1;        // Hz
-constexpr double wanderUpper = 0.8;
+constexpr double tremorFadeIn = 0.5;       // unsteadiness grows from nothing: the tip starts at home (s)
+constexpr double wanderFrom = 0.1;         // Hz
+constexpr double wanderTo = 0.8;
 constexpr int mostDraws = 400;
 
 }  // namespace
@@ -137,7 +137,7 @@ PerformerSource::PerformerSource(const PerformerProfile& profile, const SceneDes
     strokes_[h] = plans[h].strokes();
     Random random(seed, 101 + h);
     tremor_.emplace_back(profile.motor.tremorAmplitude, profile.motor.tremorLower, profile.motor.tremorUpper, random);
-    wander_.emplace_back(profile.motor.wanderAmplitude, wanderLower, wanderUpper, random);
+    wander_.emplace_back(profile.motor.wanderAmplitude, wanderFrom, wanderTo, random);
   }
   ticks_ = static_cast<std::uint64_t>(std::ceil(std::min(end + settle, 1e6) / tickLength));
 }
@@ -149,7 +149,7 @@ InstrumentSample PerformerSource::sampleOf(std::size_t hand, double time) const 
                                       [](double t, const Stroke& stroke) { return t < stroke.start; });
   const Stroke& stroke = after == strokes.begin() ? strokes.front() : *(after - 1);
   const double s = minimumJerk((time - stroke.start) / stroke.duration);
-  const double fade = minimumJerk(time / fadeIn);
+  const double fade = minimumJerk(time / tremorFadeIn);
 
   InstrumentSample sample;
   sample.instrument = hands_[hand].instrument;

@@ -10,7 +10,7 @@ namespace calot::recorder {
 namespace {
 
 constexpr double facing = 0.34202014332566873;  // sine of 20 degrees
-constexpr double margin = 0.010;                // m
+constexpr double skinMargin = 0.010;            // m
 constexpr double lift = 0.001;                  // lines of sight end this far off the surface (m)
 constexpr double approachClearance = 0.005;     // m
 constexpr double pathSpacing = 0.002;           // m
@@ -23,8 +23,8 @@ bool isInPicture(const SceneDescription& scene, const Vec3& p, double tangent) {
 }
 
 bool isInWorkspace(const SceneDescription& scene, const Vec3& p) {
-  return (p.array() > scene.workspace[0].array() + margin).all() &&
-         (p.array() < scene.workspace[1].array() - margin).all();
+  return (p.array() > scene.workspace[0].array() + skinMargin).all() &&
+         (p.array() < scene.workspace[1].array() - skinMargin).all();
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ std::vector<TouchTarget> touchTargets(const SceneDescription& scene, const Scene
       target.approach = target.point - pullBack * shaft;
       if (!isInWorkspace(scene, target.point) || !isInWorkspace(scene, target.approach)) continue;
       if (!isInPicture(scene, target.point, tangent)) continue;
-      if ((target.point - port).norm() < pullBack + margin) continue;
+      if ((target.point - port).norm() < pullBack + skinMargin) continue;
       if (surfaces.signedDistance(target.approach) < approachClearance) continue;
       const Vec3 off = target.point + lift * target.normal;
       if (surfaces.firstHit(eye, off) || surfaces.firstHit(port, off)) continue;

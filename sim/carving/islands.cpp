@@ -6,7 +6,7 @@
 namespace calot {
 namespace {
 
-constexpr std::uint32_t brickNodes = BrickLattice::brickNodes;
+constexpr std::uint32_t nodesOfBrick = BrickLattice::brickNodes;
 constexpr std::size_t mostComponents = 256;  // of a brick: every other node
 
 /// What hangs together with the lowest node of `open`.
@@ -45,12 +45,12 @@ Islands::Islands(const BrickLattice& lattice, std::span<const std::uint32_t> anc
   std::vector<std::uint32_t> sorted(anchors.begin(), anchors.end());
   std::sort(sorted.begin(), sorted.end());
   for (const std::uint32_t node : sorted) {
-    const std::uint32_t brick = node / brickNodes;
+    const std::uint32_t brick = node / nodesOfBrick;
     if (anchor_.empty() || anchor_.back().first != brick) {
       anchorOf_[brick] = static_cast<std::int32_t>(anchor_.size());
       anchor_.push_back({brick, BrickBits{}});
     }
-    const std::uint32_t local = node % brickNodes;
+    const std::uint32_t local = node % nodesOfBrick;
     anchor_.back().second[local >> 6U] |= std::uint64_t{1} << (local & 63U);
   }
   parent_.reserve(mostComponents * lattice.brickCount());
@@ -69,7 +69,7 @@ bool Islands::neighbour(std::uint32_t brick, int axis, int step, std::uint32_t& 
 void Islands::label(const CarvedField& field, std::uint32_t brick) {
   BrickBits open = field.bits(brick);
   std::uint16_t count = 0;
-  std::uint8_t* label = label_.data() + std::size_t{brick} * brickNodes;
+  std::uint8_t* label = label_.data() + std::size_t{brick} * nodesOfBrick;
   while (anyBit(open)) {
     const BrickBits part = lowestComponent(open);
     for (std::size_t z = 0; z < 8; ++z) open[z] &= ~part[z];
@@ -129,7 +129,7 @@ void Islands::rebuild(const CarvedField& field) {
 }
 
 std::size_t Islands::component(std::uint32_t brick, std::uint32_t local) const {
-  return base_[brick] + (count_[brick] > 1 ? label_[std::size_t{brick} * brickNodes + local] : 0U);
+  return base_[brick] + (count_[brick] > 1 ? label_[std::size_t{brick} * nodesOfBrick + local] : 0U);
 }
 
 std::uint32_t Islands::root(std::size_t component) {

@@ -12,7 +12,7 @@ namespace calot {
 
 namespace {
 
-constexpr double onSurface = 1e-9;  // m: nearer than this, the direction of the distance is noise
+constexpr double noDirection = 1e-9;  // m: nearer than this, the direction of the distance is noise
 
 /// Is a triangle so flat (sine of its angle below 1e-3) that rounding moves the foot of a perpendicular on it?
 bool isSliver(const TriangleLanes& group, std::size_t l) {
@@ -212,7 +212,7 @@ void SurfaceSearch::measure(const Vec3& p, Near& near) const {
   const double distance = std::sqrt(near.point.squaredDistance);
   const bool inside = away.dot(outward) < 0.0;
   near.distance = inside ? -distance : distance;
-  if (distance > onSurface) {
+  if (distance > noDirection) {
     near.normal = inside ? Vec3(-away / distance) : Vec3(away / distance);
   } else {
     const double length = outward.norm();

@@ -11,7 +11,7 @@
 namespace calot {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double halfTurn = 3.14159265358979323846;
 
 bool before(const Vec3& x, const Vec3& y) {
   for (int k = 0; k < 3; ++k) {
@@ -83,7 +83,7 @@ double componentWinding(const TriangleMesh& mesh, const std::vector<int>& triang
     const double lz = z.norm();
     sum += 2.0 * arctangent2(x.dot(y.cross(z)), lx * ly * lz + x.dot(y) * lz + y.dot(z) * lx + z.dot(x) * ly);
   }
-  return sum / (4.0 * pi);
+  return sum / (4.0 * halfTurn);
 }
 
 struct Component {

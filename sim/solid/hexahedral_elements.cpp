@@ -11,7 +11,7 @@ namespace calot {
 
 namespace {
 
-constexpr std::size_t groupsPerTask = 4;
+constexpr std::size_t cubeGroupsPerTask = 4;
 
 using CornerLanes = std::array<std::array<std::array<double, laneCount>, 3>, 8>;
 using Stiffness = std::array<std::array<double, 24>, 24>;
@@ -229,10 +229,10 @@ void HexahedralElements::blocks(const RotationGroup& rotation, const std::array<
 void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                                   int sweeps, std::span<const double> fill, std::span<RotationGroup> rotation,
                                   std::span<HexahedronResult> result, Executor& executor) const {
-  executor.run((groups_.size() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
+  executor.run((groups_.size() + cubeGroupsPerTask - 1) / cubeGroupsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
-    const std::size_t end = std::min(groups_.size(), (task + 1) * groupsPerTask);
-    for (std::size_t g = task * groupsPerTask; g < end; ++g) {
+    const std::size_t end = std::min(groups_.size(), (task + 1) * cubeGroupsPerTask);
+    for (std::size_t g = task * cubeGroupsPerTask; g < end; ++g) {
       const std::array<double, laneCount> share = fillOf(g, fill);
       if (std::all_of(share.begin(), share.end(), [](double f) { return f == 0.0; })) continue;
       CornerLanes x;

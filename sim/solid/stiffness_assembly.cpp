@@ -11,7 +11,7 @@ namespace calot {
 
 namespace {
 
-constexpr std::size_t groupsPerTask = 16;
+constexpr std::size_t assembledGroupsPerTask = 16;
 constexpr std::size_t columnsPerTask = 192;
 
 using Block = std::array<float, 9>;
@@ -160,10 +160,10 @@ void StiffnessAssembly::assembleCubes(const SolidModel& model, const SolidSystem
                                       float scale, Executor& executor, std::vector<float>& values) {
   cube_.resize(model.groups() * laneCount + 1);
   cube_.back() = HexahedronBlocks{};  // SolidSystem::noElement()
-  executor.run((model.groups() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
+  executor.run((model.groups() + assembledGroupsPerTask - 1) / assembledGroupsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
-    const std::size_t last = std::min(model.groups(), (task + 1) * groupsPerTask);
-    for (std::size_t g = task * groupsPerTask; g < last; ++g) {
+    const std::size_t last = std::min(model.groups(), (task + 1) * assembledGroupsPerTask);
+    for (std::size_t g = task * assembledGroupsPerTask; g < last; ++g) {
       const std::array<double, laneCount> share = model.hexahedra().fillOf(g, fill);
       if (std::all_of(share.begin(), share.end(), [](double f) { return f == 0.0; })) continue;
       model.hexahedra().blocks(rotation[g], share,
@@ -188,11 +188,11 @@ void StiffnessAssembly::assembleTetrahedra(const SolidModel& model, const SolidS
   std::fill(tetrahedron_.end() - elementStride, tetrahedron_.end(), 0.0F);  // SolidSystem::noElement()
   const float lambda = scale * static_cast<float>(model.material().lame.lambda);
   const float mu = scale * static_cast<float>(model.material().lame.mu);
-  executor.run((model.groups() + groupsPerTask - 1) / groupsPerTask, [&](std::size_t task) {
+  executor.run((model.groups() + assembledGroupsPerTask - 1) / assembledGroupsPerTask, [&](std::size_t task) {
     const FloatingPointScope scope;
     RotatedGradients gradient;
-    const std::size_t last = std::min(model.groups(), (task + 1) * groupsPerTask);
-    for (std::size_t g = task * groupsPerTask; g < last; ++g) {
+    const std::size_t last = std::min(model.groups(), (task + 1) * assembledGroupsPerTask);
+    for (std::size_t g = task * assembledGroupsPerTask; g < last; ++g) {
       model.elements().gradients(g, rotation[g], gradient);
       byElements(gradient, model.elements().groups()[g].volume.data(),
                  tetrahedron_.data() + g * laneCount * elementStride);

@@ -11,7 +11,7 @@ namespace calot {
 
 namespace {
 
-constexpr std::size_t groupsPerTask = 16;
+constexpr std::size_t elementGroupsPerTask = 16;
 
 /// Node values of one group, lane-wise.
 using NodeLanes = std::array<std::array<std::array<double, laneCount>, 3>, 4>;
@@ -156,11 +156,11 @@ TetrahedralElements::TetrahedralElements(std::span<const Vec3> rest, std::span<c
 void TetrahedralElements::evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                                    LameConstants material, int sweeps, std::span<RotationGroup> rotation,
                                    std::span<ElementResult> result, Executor& executor) const {
-  const std::size_t tasks = (groups_.size() + groupsPerTask - 1) / groupsPerTask;
+  const std::size_t tasks = (groups_.size() + elementGroupsPerTask - 1) / elementGroupsPerTask;
   executor.run(tasks, [&](std::size_t task) {
     const FloatingPointScope scope;
-    const std::size_t end = std::min(groups_.size(), (task + 1) * groupsPerTask);
-    for (std::size_t g = task * groupsPerTask; g < end; ++g) {
+    const std::size_t end = std::min(groups_.size(), (task + 1) * elementGroupsPerTask);
+    for (std::size_t g = task * elementGroupsPerTask; g < end; ++g) {
       NodeLanes x;
       NodeLanes v;
       DeformationLanes f;
