@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """clang-tidy over the project's sources, several at a time, by the checks of .clang-tidy.
 
-A source is looked at again only when it, a header or .clang-tidy changed since it was last found clean.
+What a build compiles together is looked at together. It is looked at again only when one of its sources, a header or
+.clang-tidy changed since it was last found clean.
 """
 import argparse
 import concurrent.futures
@@ -33,15 +34,23 @@ def main():
     arguments = parser.parse_args()
 
     commands = json.loads((arguments.build / "compile_commands.json").read_text())
-    files = sorted({pathlib.Path(c["file"]) for c in commands})
-    files = [f for f in files if f.is_relative_to(ROOT) and f.relative_to(ROOT).parts[0] in arguments.rooms]
+    build = arguments.build.resolve()
+    # Sources compiled together are a file of the build tree, in a folder named like the room, that includes them.
+    files = []
+    for file in sorted({pathlib.Path(c["file"]) for c in commands}):
+        base = build if file.is_relative_to(build) else ROOT
+        if file.is_relative_to(base) and file.relative_to(base).parts[0] in arguments.rooms:
+            files.append(file)
     cache = arguments.build / "tidy"
     cache.mkdir(exist_ok=True)
     common = headers_digest()
 
     def check(file):
         digest = common.copy()
-        digest.update(file.read_bytes())
+        text = file.read_text()
+        digest.update(text.encode())
+        for source in re.findall(r'^#include "(/.*\.cpp)"', text, re.MULTILINE):
+            digest.update(pathlib.Path(source).read_bytes())
         mark = cache / (re.sub(r"\W", "_", str(file.relative_to(ROOT))) + ".clean")
         if mark.exists() and mark.read_text() == digest.hexdigest():
             return file, ""
