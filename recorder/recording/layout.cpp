@@ -173,7 +173,7 @@ Layout::Layout(const AttemptHeader& header)
   const double blockSeconds = static_cast<double>(ticksPerBlock) * header.tickSeconds;
   const auto blocks = static_cast<std::uint64_t>(std::clamp(std::floor(1.0 / blockSeconds + 0.5), 1.0, 1e6));
   keyframeInterval = stepsPerBlock * blocks;
-  shortInterval = stepsPerBlock * std::max<std::uint64_t>(1, blocks / 2);
+  shortInterval = stepsPerBlock * std::max<std::uint64_t>(1, blocks / 4);
 
   Collect collect{*this};
   TickSamples samples;

@@ -70,7 +70,7 @@ struct Layout {
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;
   std::uint64_t keyframeInterval = 100;  ///< steps: about a second, whole blocks
-  std::uint64_t shortInterval = 50;      ///< about half of it, whole blocks
+  std::uint64_t shortInterval = 25;      ///< about a quarter of it, whole blocks
   std::size_t organs = 0, tissues = 0, components = 0, fields = 0;
   std::size_t vessels = 0, fat = 0;  ///< 0 before version 3 of StepResult
   std::size_t structures = 0;        ///< organs, vessels and fat

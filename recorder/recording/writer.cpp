@@ -119,7 +119,7 @@ struct RecordingWriter::Impl {
     writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
   }
 
-  /// Steps in which fat is carved take the longest to simulate again: there keyframes come twice as often.
+  /// Steps in which fat is carved take the longest to simulate again: there keyframes come four times as often.
   bool keyframeDue(const StepResult& result) {
     for (const FatResult& fat : result.fat) carved = carved || fat.carved > 0.0;
     if (nextStep % (carved ? layout.shortInterval : layout.keyframeInterval) != 0) return false;
