@@ -210,7 +210,7 @@ TEST(Keyframes, AreKeptAboutEverySecond) {
   EXPECT_EQ(r.keyframeAtOrBefore(10000), 3U);
 }
 
-TEST(Keyframes, AreKeptTwiceAsOftenWhereFatIsCarved) {
+TEST(Keyframes, AreKeptFourTimesAsOftenWhereFatIsCarved) {
   const Folder folder;
   const AttemptHeader header = test::withStructures(makeHeader(), 0, 1);
   const auto step = [&](std::uint64_t n) {
@@ -224,7 +224,7 @@ TEST(Keyframes, AreKeptTwiceAsOftenWhereFatIsCarved) {
   writer.onEnd(Outcome::completed);
   writer.finish();
   const Recording r(folder / "r.h5");
-  EXPECT_EQ(r.keyframeSteps(), (std::vector<std::uint64_t>{99, 149, 199, 249, 299, 349, 399, 499}));
+  EXPECT_EQ(r.keyframeSteps(), (std::vector<std::uint64_t>{99, 149, 199, 224, 249, 274, 299, 324, 399, 499}));
 }
 
 TEST(Chain, SameContentSameChain) {
