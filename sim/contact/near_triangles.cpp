@@ -7,6 +7,7 @@
 
 #include "sim/contact/float_bounds.h"
 #include "sim/contact/triangle_lanes.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -14,6 +15,26 @@ namespace {
 
 constexpr std::size_t fewest = 3;  ///< triangles that are worth the lanes
 constexpr double rounding = 1e-8;  // m, far above that of all distances here
+
+/// Widens a box to hold the motions of some nodes. @param now of each node, was of each in `node`: four numbers
+CALOT_LANE_KERNEL void includeMotions(std::span<const int> node, const double* now, const double* was, double* lower,
+                                      double* upper) {
+  FourDoubles low;
+  FourDoubles high;
+  readVector(lower, low);
+  readVector(upper, high);
+  for (std::size_t k = 0; k < node.size(); ++k) {
+    FourDoubles moved;
+    FourDoubles before;
+    readVector(now + 4 * static_cast<std::size_t>(node[k]), moved);
+    readVector(was + 4 * k, before);
+    moved -= before;
+    low = moved < low ? moved : low;
+    high = moved > high ? moved : high;
+  }
+  writeVector(low, lower);
+  writeVector(high, upper);
+}
 
 }  // namespace
 
@@ -25,6 +46,12 @@ void NearTriangles::reset() {
 void NearTriangles::begin(const SurfaceSearch& search) {
   list_.resize(search.a().patches().size());
   bounds_.clear();
+  now_.resize(search.positionB().size());
+  for (std::size_t n = 0; n < now_.size(); ++n) {
+    const Vec3& p = search.positionB()[n];
+    now_[n] = {p[0], p[1], p[2], 0.0};
+  }
+  triangles_.begin(search.b(), search.positionB());
 }
 
 void NearTriangles::follow(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
@@ -38,15 +65,18 @@ bool NearTriangles::holds(const SurfaceSearch& search, std::uint32_t patch, std:
                           double reach) {
   const List& list = list_[patch];
   if (!list.made || list.reach != reach) return false;
-  Box moved;  // holds the displacements of all corners near
+  Padded lower;  // of a box that holds the displacements of all corners near
+  Padded upper;
+  lower.fill(1e300);
+  upper.fill(-1e300);
   auto known = list.patch.begin();
   for (const std::uint32_t q : near) {
     known = std::lower_bound(known, list.patch.end(), q);
     if (known == list.patch.end() || *known != q) return false;
-    const Vec3* was = list.corner.data() + list.start[static_cast<std::size_t>(known - list.patch.begin())];
-    for (const int n : search.b().patchCorners(q))
-      moved.include(search.positionB()[static_cast<std::size_t>(n)] - *was++);
+    const Padded* was = list.corner.data() + list.start[static_cast<std::size_t>(known - list.patch.begin())];
+    includeMotions(search.b().patchCorners(q), now_.data()->data(), was->data(), lower.data(), upper.data());
   }
+  const Box moved{Vec3(lower[0], lower[1], lower[2]), Vec3(upper[0], upper[1], upper[2])};
   const std::span<const int> node = search.a().patchNodes(patch);
   displaced_.resize(node.size());
   for (const std::size_t k : search.room().open) {
@@ -66,21 +96,23 @@ void NearTriangles::readBounds(const SurfaceSearch& search) {
   }
 }
 
-/// SurfacePair::excluded(), worked out once.
-bool NearTriangles::excluded(const SurfaceSearch& search, int vertex, std::size_t triangle) {
-  if (!search.pair().self()) return false;
-  const std::size_t words = (search.b().triangles().size() + 63) / 64;
-  if (asked_.empty()) {
-    asked_.assign(search.positionA().size() * words, 0);
-    excluded_.assign(asked_.size(), 0);
+/// Which of eight triangles of a patch are ever held against the vertex, a bit for each.
+std::uint32_t NearTriangles::counting(const SurfaceSearch& search, int vertex, std::uint32_t patch, std::size_t group) {
+  const ContactSurface::Patch& of = search.b().patches()[patch];
+  const std::size_t first = of.first + group * laneCount;
+  const std::size_t count = std::min<std::size_t>(laneCount, of.last - first);
+  if (!search.pair().self()) return (1U << count) - 1U;
+  if (counting_.empty()) counting_.resize(search.positionA().size());
+  std::vector<Counting>& own = counting_[static_cast<std::size_t>(vertex)];
+  if (own.empty()) own.resize(search.b().patches().size() * PatchTriangles::groups);
+  Counting& known = own[patch * PatchTriangles::groups + group];
+  if (!known.known) {
+    known.known = true;
+    for (std::size_t l = 0; l < count; ++l) {
+      if (!search.pair().excluded(vertex, first + l)) known.lanes |= static_cast<std::uint8_t>(1U << l);
+    }
   }
-  const std::size_t word = static_cast<std::size_t>(vertex) * words + triangle / 64;
-  const std::uint64_t bit = std::uint64_t{1} << (triangle % 64);
-  if ((asked_[word] & bit) == 0) {
-    asked_[word] |= bit;
-    if (search.pair().excluded(vertex, triangle)) excluded_[word] |= bit;
-  }
-  return (excluded_[word] & bit) != 0;
+  return known.lanes;
 }
 
 void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
@@ -98,12 +130,9 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
   for (std::uint32_t q = 0; q < bounds_.size(); ++q) {
     if (!bounds_[q].overlaps(box) && !std::binary_search(near.begin(), near.end(), q)) continue;
     list.patch.push_back(q);
-    for (const int n : search.b().patchCorners(q))
-      list.corner.push_back(search.positionB()[static_cast<std::size_t>(n)]);
+    for (const int n : search.b().patchCorners(q)) list.corner.push_back(now_[static_cast<std::size_t>(n)]);
     list.start.push_back(list.corner.size());
   }
-  Candidates& candidates = room_.candidates;
-  candidates.gather(search.b(), search.positionB(), list.patch, box);
   const std::span<const int> node = search.a().patchNodes(patch);
   list.vertex.clear();
   list.entry.clear();
@@ -112,11 +141,13 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
     const auto v = static_cast<std::size_t>(n);
     const Vec3& p = search.positionA()[v];
     const std::size_t first = list.entry.size();
-    candidates.forEachWithin(
-        p, search.limitOf(v, reach) + margin, [&](std::size_t t) { return excluded(search, n, t); },
-        [&](std::size_t t, double squared) {
-          list.entry.push_back({floatBelow(std::sqrt(squared) - rounding), static_cast<std::uint32_t>(t)});
-        });
+    for (const std::uint32_t q : list.patch) {
+      triangles_.forEachWithin(
+          q, p, search.limitOf(v, reach) + margin, [&](std::size_t g) { return counting(search, n, q, g); },
+          [&](std::size_t t, double squared) {
+            list.entry.push_back({floatBelow(std::sqrt(squared) - rounding), static_cast<std::uint32_t>(t)});
+          });
+    }
     std::sort(list.entry.begin() + static_cast<std::ptrdiff_t>(first), list.entry.end());
     list.entryEnd.push_back(list.entry.size());
     list.vertex.push_back(p);

@@ -11,12 +11,14 @@
 // present alone. So the answer is the same with lists of any age and without, and nothing of this is part of State.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "sim/contact/patch_triangles.h"
 #include "sim/contact/surface_patches.h"
 #include "sim/contact/surface_search.h"
 #include "sim/math/linear.h"
@@ -56,13 +58,15 @@ class NearTriangles {
     std::uint32_t triangle = 0;
     auto operator<=>(const Entry&) const = default;  // NOLINT(modernize-use-nullptr): the check's own fault
   };
+  using Padded = std::array<double, 4>;  ///< a place (m) and nothing: a vector's worth
+
   /// Of one patch of vertices.
   struct List {
     bool made = false;
     double reach = 0.0;                 ///< with which it was made (m)
     std::vector<std::uint32_t> patch;   ///< of triangles, whose corners were written down; ascending
     std::vector<std::size_t> start;     ///< of each in `corner`, and the end
-    std::vector<Vec3> corner;           ///< where they were (m)
+    std::vector<Padded> corner;         ///< where they were (m)
     std::vector<Vec3> vertex;           ///< where the patch's own vertices were (m)
     std::vector<std::size_t> entryEnd;  ///< per vertex
     std::vector<Entry> entry;           ///< nearest first
@@ -71,13 +75,19 @@ class NearTriangles {
   bool holds(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
   void renew(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
   void readBounds(const SurfaceSearch& search);
-  bool excluded(const SurfaceSearch& search, int vertex, std::size_t triangle);
+  std::uint32_t counting(const SurfaceSearch& search, int vertex, std::uint32_t patch, std::size_t group);
 
   SearchRoom room_;
   std::vector<List> list_;  ///< per patch of vertices
-  // Of a surface with itself, a bit for each vertex and triangle: asked SurfacePair::excluded() before, and its answer.
-  std::vector<std::uint64_t> asked_;
-  std::vector<std::uint64_t> excluded_;
+  PatchTriangles triangles_;
+  /// Of a surface with itself: for each vertex (empty until asked for) and group of eight triangles which of them
+  /// SurfacePair does not exclude, a bit each, and whether that was worked out.
+  struct Counting {
+    std::uint8_t lanes = 0;
+    bool known = false;
+  };
+  std::vector<std::vector<Counting>> counting_;
+  std::vector<Padded> now_;        ///< where the nodes of the triangles' surface are (m)
   std::vector<Box> bounds_;        ///< of the patches of triangles now; empty until asked for
   std::vector<double> displaced_;  ///< of the patch at hand, per vertex: against the triangles near it, at most (m)
   std::uint32_t patch_ = 0;        ///< at hand

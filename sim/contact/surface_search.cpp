@@ -14,35 +14,6 @@ namespace {
 
 constexpr double noDirection = 1e-9;  // m: nearer than this, the direction of the distance is noise
 
-/// Is a triangle so flat (sine of its angle below 1e-3) that rounding moves the foot of a perpendicular on it?
-bool isSliver(const TriangleLanes& group, std::size_t l) {
-  const auto corner = [&](std::size_t k) {
-    return Vec3(group.corner[k][0][l], group.corner[k][1][l], group.corner[k][2][l]);
-  };
-  const Vec3 ab = corner(1) - corner(0);
-  const Vec3 ac = corner(2) - corner(0);
-  return !(ab.cross(ac).squaredNorm() > 1e-6 * ab.squaredNorm() * ac.squaredNorm());
-}
-
-CALOT_LANE_KERNEL void boxKernel(const double (*lower)[laneCount], const double (*upper)[laneCount], const double* p,
-                                 double* squared) {
-  for (std::size_t from = 0; from < laneCount; from += 4) {
-    FourDoubles sum{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      FourDoubles below;
-      FourDoubles above;
-      readVector(lower[a] + from, below);
-      readVector(upper[a] + from, above);
-      below -= p[a];
-      above = p[a] - above;
-      FourDoubles d = below < above ? above : below;
-      d = d < 0.0 ? FourDoubles{} : d;
-      sum += d * d * (1.0 - 1e-12);
-    }
-    writeVector(sum, squared + from);
-  }
-}
-
 }  // namespace
 
 void Candidates::gather(const ContactSurface& surface, std::span<const Vec3> position,
@@ -62,28 +33,18 @@ void Candidates::gather(const ContactSurface& surface, std::span<const Vec3> pos
   }
 }
 
-void Candidates::boundsOf(const TriangleLanes& group, Bounds& bounds, Box& whole) {
+void Candidates::boundsOf(const TriangleLanes& group, BoundsLanes& bounds, Box& whole) {
+  boxesOf(group, bounds);
   whole = Box{};
-  for (std::size_t a = 0; a < 3; ++a) {
+  for (int a = 0; a < 3; ++a) {
     for (std::size_t l = 0; l < laneCount; ++l) {
-      const double x = group.corner[0][a][l];
-      const double y = group.corner[1][a][l];
-      const double z = group.corner[2][a][l];
-      bounds.lower[a][l] = std::min(std::min(x, y), z);
-      bounds.upper[a][l] = std::max(std::max(x, y), z);
-      whole.lower[static_cast<int>(a)] = std::min(whole.lower[static_cast<int>(a)], bounds.lower[a][l]);
-      whole.upper[static_cast<int>(a)] = std::max(whole.upper[static_cast<int>(a)], bounds.upper[a][l]);
+      whole.lower[a] = std::min(whole.lower[a], bounds.lower[a][l]);
+      whole.upper[a] = std::max(whole.upper[a], bounds.upper[a][l]);
     }
   }
-  for (std::size_t l = 0; l < laneCount; ++l) bounds.sliver[l] = isSliver(group, l);
 }
 
-/// A little less than the squared distance of p from each box, so that rounding loses no triangle.
-void Candidates::boxDistances(const Bounds& bounds, const Vec3& p, LaneValues& squared) {
-  boxKernel(bounds.lower, bounds.upper, p.data(), squared.data());
-}
-
-/// The same for the box of a whole group: not above that of any of its triangles, as rounding is monotonic.
+/// boxDistances() for the box of a whole group: not above that of any of its triangles, as rounding is monotonic.
 double Candidates::boxDistance(const Box& box, const Vec3& p) {
   double squared = 0.0;
   for (int a = 0; a < 3; ++a) {

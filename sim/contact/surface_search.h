@@ -46,42 +46,8 @@ class Candidates {
     return lowered;
   }
 
-  /// Calls f(triangle, squared) for every triangle that may be within the distance and is not left out, with a lower
-  /// bound of its squared distance (m^2), good to 1e-9 m: that of the box for a sliver, whose computed foot may be off.
-  /// @param leftOut asked first: whether a triangle does not matter
-  template <class L, class F>
-  void forEachWithin(const Vec3& p, double distance, L&& leftOut, F&& f) const {
-    const double most = distance * distance;
-    for (std::size_t g = 0; g < group_.size(); ++g) {
-      if (boxDistance(whole_[g], p) > most) continue;
-      LaneValues box;
-      boxDistances(bounds_[g], p, box);
-      const std::span<const std::uint32_t> lanes = lanesOf(g);
-      std::array<bool, laneCount> asked{};
-      bool any = false;
-      for (std::size_t l = 0; l < lanes.size(); ++l) {
-        asked[l] = !(box[l] > most) && !leftOut(lanes[l]);
-        any = any || asked[l];
-      }
-      if (!any) continue;
-      LaneValues squared;
-      pointTriangleDistances(group_[g], p, squared);
-      for (std::size_t l = 0; l < lanes.size(); ++l) {
-        const double least = bounds_[g].sliver[l] ? box[l] : squared[l];
-        if (asked[l] && !(least > most)) f(lanes[l], least);
-      }
-    }
-  }
-
  private:
-  struct Bounds {
-    alignas(64) double lower[3][laneCount];
-    alignas(64) double upper[3][laneCount];
-    std::array<bool, laneCount> sliver;
-  };
-
-  static void boundsOf(const TriangleLanes& group, Bounds& bounds, Box& whole);
-  static void boxDistances(const Bounds& bounds, const Vec3& p, LaneValues& squared);
+  static void boundsOf(const TriangleLanes& group, BoundsLanes& bounds, Box& whole);
   static double boxDistance(const Box& box, const Vec3& p);
   static bool anyWithin(const LaneValues& squared, double best);
 
@@ -92,7 +58,7 @@ class Candidates {
 
   std::vector<std::uint32_t> triangle_;
   std::vector<TriangleLanes> group_;
-  std::vector<Bounds> bounds_;
+  std::vector<BoundsLanes> bounds_;
   std::vector<Box> whole_;  ///< of each group
 };
 

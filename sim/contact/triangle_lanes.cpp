@@ -137,6 +137,25 @@ CALOT_LANE_KERNEL void pointKernel(const TriangleLanes& triangles, const V& p, d
 
 V laneVector(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
+CALOT_LANE_KERNEL void boxKernel(const double (*lower)[laneCount], const double (*upper)[laneCount], const double* p,
+                                 double* squared) {
+  for (std::size_t from = 0; from < laneCount; from += 4) {
+    FourDoubles sum{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      FourDoubles below;
+      FourDoubles above;
+      readVector(lower[a] + from, below);
+      readVector(upper[a] + from, above);
+      below -= p[a];
+      above = p[a] - above;
+      FourDoubles d = below < above ? above : below;
+      d = d < 0.0 ? FourDoubles{} : d;
+      sum += d * d * (1.0 - 1e-12);
+    }
+    writeVector(sum, squared + from);
+  }
+}
+
 }  // namespace
 
 std::size_t trianglesInBox(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch,
@@ -178,6 +197,31 @@ void segmentTriangleDistances(const TriangleLanes& triangles, const Vec3& p0, co
 
 void pointTriangleDistances(const TriangleLanes& triangles, const Vec3& p, LaneValues& squared) {
   pointKernel(triangles, laneVector(p), squared.data());
+}
+
+void boxesOf(const TriangleLanes& triangles, BoundsLanes& out) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t l = 0; l < laneCount; ++l) {
+      const double x = triangles.corner[0][a][l];
+      const double y = triangles.corner[1][a][l];
+      const double z = triangles.corner[2][a][l];
+      out.lower[a][l] = std::min(std::min(x, y), z);
+      out.upper[a][l] = std::max(std::max(x, y), z);
+    }
+  }
+}
+
+void boxDistances(const BoundsLanes& boxes, const Vec3& p, LaneValues& squared) {
+  boxKernel(boxes.lower, boxes.upper, p.data(), squared.data());
+}
+
+bool isSliver(const TriangleLanes& triangles, std::size_t lane) {
+  const auto corner = [&](std::size_t k) {
+    return Vec3(triangles.corner[k][0][lane], triangles.corner[k][1][lane], triangles.corner[k][2][lane]);
+  };
+  const Vec3 ab = corner(1) - corner(0);
+  const Vec3 ac = corner(2) - corner(0);
+  return !(ab.cross(ac).squaredNorm() > 1e-6 * ab.squaredNorm() * ac.squaredNorm());
 }
 
 }  // namespace calot

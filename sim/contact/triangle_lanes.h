@@ -22,6 +22,12 @@ struct TriangleLanes {
   alignas(64) double corner[3][3][laneCount];
 };
 
+/// Eight boxes: coordinate, lane (m).
+struct BoundsLanes {
+  alignas(64) double lower[3][laneCount];
+  alignas(64) double upper[3][laneCount];
+};
+
 /// Triangles of a patch whose boxes overlap `box`, ascending, written to `near`. @return how many
 std::size_t trianglesInBox(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch,
                            const Box& box, std::array<std::uint32_t, ContactSurface::largestPatch>& near);
@@ -29,6 +35,16 @@ std::size_t trianglesInBox(const ContactSurface& surface, std::span<const Vec3> 
 /// Takes in up to eight triangles; lanes that are left over repeat the last. @pre triangles is not empty
 void gatherTriangles(const ContactSurface& surface, std::span<const Vec3> position,
                      std::span<const std::uint32_t> triangles, TriangleLanes& out);
+
+/// The box of each triangle.
+void boxesOf(const TriangleLanes& triangles, BoundsLanes& out);
+
+/// Is the triangle of a lane so flat (sine of its angle below 1e-3) that rounding moves the foot of a perpendicular on
+/// it?
+bool isSliver(const TriangleLanes& triangles, std::size_t lane);
+
+/// A little less than the squared distance of p from each box, so that rounding loses no triangle (m^2).
+void boxDistances(const BoundsLanes& boxes, const Vec3& p, LaneValues& squared);
 
 /// closestSegmentTriangle(p0, p1, triangle).squaredDistance of each lane (m^2).
 void segmentTriangleDistances(const TriangleLanes& triangles, const Vec3& p0, const Vec3& p1, LaneValues& squared);

@@ -49,6 +49,8 @@ class Body {
   virtual SolveReport push(std::span<const Vec3> impulse) = 0;
   /// Works out what block() needs for these nodes. @pre freeMotion() of this step
   virtual void require(std::span<const int> nodes) = 0;
+  /// Works out ahead, besides, what the first step would have to.
+  virtual void prepare() {}
   /// The compliance on which contact is decided: velocity of node a for an impulse on node b is about
   /// turn(a) block(a, b) turn(b)^T.
   [[nodiscard]] virtual Mat3 turn(const State& state, int node) const = 0;

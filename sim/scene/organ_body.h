@@ -23,6 +23,7 @@ class OrganBody final : public Body {
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
   SolveReport push(std::span<const Vec3> impulse) override;
   void require(std::span<const int> nodes) override { rest_.require(nodes); }
+  void prepare() override { solver_.prepare(solid_, settings_, executor_); }
   [[nodiscard]] Mat3 turn(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return rest_.block(a, b); }
   void blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const override {

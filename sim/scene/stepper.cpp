@@ -51,6 +51,11 @@ std::uint64_t cameraInputs(std::span<const TickSamples> samples) {
 
 constexpr std::size_t mostPrepared = std::size_t{256} << 20U;  ///< of compliances of one body (bytes)
 
+/// Do the compliances of so many of a body's nodes have room?
+bool canPrepare(std::size_t prepared, std::size_t nodes) {
+  return nodes == 0 || prepared <= mostPrepared / (9 * sizeof(float)) / nodes;
+}
+
 Vec3 clampedToWorkspace(const SceneDescription& scene, const Vec3& p) {
   return p.cwiseMax(scene.workspace[0]).cwiseMin(scene.workspace[1]);
 }
@@ -228,18 +233,18 @@ void Stepper::prepare() {
   for (std::size_t pair = 0; pair < w.model.tissuePairs().size(); ++pair) w.restOf(pair);
   for (std::size_t o = 0; o < w.model.organs().size(); ++o) {
     const OrganModel& organ = w.model.organs()[o];
-    if (organ.solid.nodes() > mostPrepared / (9 * sizeof(float)) / organ.solid.nodes()) continue;
     std::vector<int> nodes;
     for (const Embedding::Anchor& anchor : organ.embedding.anchors()) {
       nodes.insert(nodes.end(), anchor.node.begin(), anchor.node.end());
     }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    w.body[o]->require(nodes);
+    if (canPrepare(nodes.size(), organ.solid.nodes())) w.body[o]->require(nodes);
+    w.body[o]->prepare();
   }
   for (std::size_t f = 0; f < w.model.fat().size(); ++f) {
     Body& fat = *w.body[w.firstFat() + f];
-    if (fat.nodes() > mostPrepared / (9 * sizeof(float)) / fat.nodes()) continue;
+    if (!canPrepare(fat.nodes(), fat.nodes())) continue;
     std::vector<int> nodes(fat.nodes());
     for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = static_cast<int>(n);
     fat.require(nodes);

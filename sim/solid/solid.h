@@ -73,6 +73,9 @@ class SolidSolver {
     bool lattice = true;  ///< where CoarseLattice::isWorthIt()
   };
 
+  /// Works out what the first step of a large model would have to: its coarse lattice.
+  void prepare(const SolidModel& model, const Settings& settings, Executor& executor);
+
   /// Assembles at the state's position and computes the free velocity (without contact) into freeVelocity().
   /// @param external forces on the nodes besides gravity (N), or empty.
   SolveReport freeMotion(const SolidModel& model, SolidState& state, const Vec3& gravity,
@@ -109,8 +112,6 @@ class SolidSolver {
   void chooseSystem(const SolidModel& model, std::span<const double> fill);
   void assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
                 const Surroundings& surroundings, Executor& executor);
-  void prepareLattice(const SolidModel& model, const SolidState& state, const StiffnessAssembly::Scale& scale,
-                      Executor& executor);
   SolveReport solve(const Settings& settings);
   void addAttachments(const Settings& settings, std::span<const Attachment> attachments);
   void addJoint(const Settings& settings, const JointAttachment& joint);

@@ -20,6 +20,12 @@ constexpr double fastestNode = 5.0;
 constexpr double asSmooth = 10.0;
 constexpr double weightless = 0.1;  ///< of a node's mass at rest: what has less left is held back without a word
 
+/// What mass and stiffness weigh in the matrix of a step.
+StiffnessAssembly::Scale scaleOf(const SolidModel& model, double step) {
+  const SolidModel::Material& m = model.material();
+  return {1.0 + m.massDamping * step, step * step + m.stiffnessDamping * step};
+}
+
 }  // namespace
 
 Vec3 SolidPlace::of(std::span<const Vec3> values) const {
@@ -63,11 +69,10 @@ void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> 
 
 void SolidSolver::assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
                            const Surroundings& surroundings, Executor& executor) {
-  const double h = settings.step;
-  const SolidModel::Material& m = model.material();
-  const StiffnessAssembly::Scale scale{1.0 + m.massDamping * h, h * h + m.stiffnessDamping * h};
+  const StiffnessAssembly::Scale scale = scaleOf(model, settings.step);
+  prepare(model, settings, executor);
   if (settings.lattice && CoarseLattice::isWorthIt(model)) {
-    prepareLattice(model, state, scale, executor);
+    lattice_->turn(state.rotation);
   } else {
     lattice_.reset();  // an earlier step's
     latticeModel_ = nullptr;
@@ -79,16 +84,15 @@ void SolidSolver::assemble(const SolidModel& model, const SolidState& state, con
   for (const JointAttachment& joint : surroundings.joints) addJoint(settings, joint);
 }
 
-void SolidSolver::prepareLattice(const SolidModel& model, const SolidState& state,
-                                 const StiffnessAssembly::Scale& scale, Executor& executor) {
-  if (latticeModel_ != &model || latticeScale_.mass != scale.mass || latticeScale_.stiffness != scale.stiffness) {
-    std::vector<float> rest;
-    stiffness_.assemble(model, model.system(), restState(model).rotation, {}, model.mass(), scale, executor, rest);
-    lattice_.emplace(model, rest);
-    latticeModel_ = &model;
-    latticeScale_ = scale;
-  }
-  lattice_->turn(state.rotation);
+void SolidSolver::prepare(const SolidModel& model, const Settings& settings, Executor& executor) {
+  if (!settings.lattice || !CoarseLattice::isWorthIt(model)) return;
+  const StiffnessAssembly::Scale scale = scaleOf(model, settings.step);
+  if (latticeModel_ == &model && latticeScale_.mass == scale.mass && latticeScale_.stiffness == scale.stiffness) return;
+  std::vector<float> rest;
+  stiffness_.assemble(model, model.system(), restState(model).rotation, {}, model.mass(), scale, executor, rest);
+  lattice_.emplace(model, rest);
+  latticeModel_ = &model;
+  latticeScale_ = scale;
 }
 
 /// x_ = A^-1 b_
