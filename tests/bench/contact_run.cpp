@@ -2,8 +2,6 @@
 #include "tests/bench/contact_run.h"
 
 #include <benchmark/benchmark.h>
-#include <cstdio>
-#include <cstdlib>
 
 #include "tests/bench/thread_clock.h"
 
@@ -45,18 +43,6 @@ std::vector<StepCost> ContactRun::run(const Motion& motion) {
   std::vector<SolidState> before;
   for (std::size_t n = 0; n < motion.step.size(); ++n) {
     before = state.organ;
-    if (n == 1965 && std::getenv("LOOP") != nullptr) {
-      const State kept = state;
-      double t = threadSeconds();
-      for (int k = 0; k < 60; ++k) {
-        state = kept;
-        stepper_.invalidate();
-        for (std::size_t m = n; m < n + 20; ++m) stepper_.step(state, motion.step[m]);
-      }
-      fprintf(stderr, "loop %.3f ms a step\n", (threadSeconds() - t) / 60 / 20 * 1e3);
-      state = kept;
-      stepper_.invalidate();
-    }
     const double start = threadSeconds();
     for (const TickSamples& tick : motion.step[n]) {
       for (std::size_t h = 0; h < handCount; ++h) {

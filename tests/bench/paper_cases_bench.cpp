@@ -69,29 +69,6 @@ void paperCase(benchmark::State& bench, const PaperCase& which, const std::strin
   for (const double w : whole) sum += w;
   double rows = 0.0;
   for (const StepCost& cost : costs) rows += cost.contact.rows;
-  {
-    std::vector<StepCost> c = costs;
-    double td = 0, tt = 0, tp = 0;
-    for (auto& x : c) {
-      td += x.deformation;
-      tt += x.ticks;
-      tp += x.contact.passes;
-    }
-    fprintf(stderr, "mean whole %.3f deform %.3f ticks %.3f passes %.2f\n", 1e3 * sum / steps, 1e3 * td / steps,
-            1e3 * tt / steps, tp / steps);
-    std::vector<std::size_t> id(c.size());
-    for (std::size_t i = 0; i < id.size(); ++i) id[i] = i;
-    std::sort(id.begin(), id.end(), [&](std::size_t a, std::size_t b) { return c[a].whole > c[b].whole; });
-    for (std::size_t k = 0; k < id.size(); k += k < 16 ? 1 : id.size() / 24) {
-      auto& x = c[id[k]];
-      fprintf(stderr,
-              "step %zu whole %.2f deform %.2f ticks %.2f it %u peer %u blocks %u rows %u passes %u sweeps %u newton "
-              "%u err %.2g viol %.2g tissue %.2g\n",
-              id[k], 1e3 * x.whole, 1e3 * x.deformation, 1e3 * x.ticks, x.iterations, x.peerIterations,
-              x.contact.blocks, x.contact.rows, x.contact.passes, x.contact.iterations, x.contact.newtonSteps,
-              x.contact.error, x.contact.violation, x.contact.tissueDepth);
-    }
-  }
   auto& counters = bench.counters;
   for (const OrganModel& organ : model->organs()) {
     counters["tetrahedra_" + organ.name] = static_cast<double>(organ.solid.tetrahedra().size());
