@@ -15,6 +15,7 @@ void registerFat();            ///< fat/step, fat/stroke
 void registerCheckpoints();    ///< checkpoints/motion
 void registerCohort();         ///< cohort/import, cohort/study, cohort/list
 void registerScenes();         ///< scene/step, scene/operation: whole steps of every scene
+void registerSkipping();       ///< skip: what rests is not worked out
 void registerRender();         ///< render/cholecystectomy: pictures of the whole operation
 
 void registerPaperCases();  ///< paper: the meshes of the paper's Table 1
@@ -37,6 +38,7 @@ inline void registerAll() {
   registerCheckpoints();
   registerCohort();
   registerScenes();
+  registerSkipping();
   registerRender();
   registerPaperCases();
   registerMeshGrowth();
