@@ -176,7 +176,6 @@ void ScenePainter::setLighting(const ShaderProgram& program, const Frame& frame,
 void ScenePainter::drawLit(const DrawPart& part, const Frame& frame, const RenderTarget& target) const {
   const ShaderProgram& program = frame.programs.surface(part);
   setLighting(program, frame, target);
-  program.set("appearance", static_cast<int>(part.appearance));
   drawPart(part);
 }
 

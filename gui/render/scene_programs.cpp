@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <initializer_list>
 
 #include "gui/render/shader_sources.h"
@@ -67,7 +66,7 @@ ScenePrograms::ScenePrograms(const GlFunctions& gl, const char* choices)
       choices_(choices) {}
 
 const ShaderProgram& ScenePrograms::surface(const DrawPart& part) {
-  const int look = std::min(static_cast<int>(part.appearance), static_cast<int>(Appearance::insulation));
+  const int look = static_cast<int>(part.appearance);
   std::unique_ptr<ShaderProgram>& program = surface_[{look, part.harmed}];
   if (!program) {
     const std::string choice = fmt::format("#define LOOK {}\n#define HARMED {}\n", look, part.harmed ? 1 : 0);

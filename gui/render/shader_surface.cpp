@@ -103,7 +103,6 @@ in vec2 vHarm;
 in vec4 vBroadA, vBroadB, vBroadC, vBroadD;
 #endif
 
-uniform int appearance;
 uniform sampler2D occlusionMap;
 
 // The least rotation from the rest normal to the present one carries slopes from rest to now.
@@ -139,7 +138,7 @@ void main() {
 #else
   Broad broad = broadOf(vRest);
 #endif
-  Material m = materialOf(appearance, vRest, vHarm, broad);
+  Material m = materialOf(vRest, vHarm, broad);
   vec3 n0 = normalize(vNormal);
   if (!gl_FrontFacing) n0 = -n0;
 #if EXACT
