@@ -244,22 +244,14 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
   return report;
 }
 
-namespace {
-
-/// To read and unpack a keyframe of the whole operation takes longer than so many steps of it.
-constexpr std::uint64_t stepsAsKeyframe = 4;
-
-}  // namespace
-
 Seeker::Seeker(Recording& recording, Executor& executor)
     : recording_(recording), model_(modelOf(recording)), executor_(executor) {}
 
 void Seeker::seek(std::uint64_t step) {
   const auto nearest = recording_.keyframeAtOrBefore(step);
   const std::uint64_t done = session_ ? session_->steps() : 0;
-  // Going on from here is as good as a keyframe that lies behind, and better than one that is a few steps ahead.
-  const bool goOn =
-      session_ && done <= step + 1 && (!nearest || recording_.keyframeSteps()[*nearest] < done + stepsAsKeyframe);
+  // Going on from here is as good as a keyframe that lies behind.
+  const bool goOn = session_ && done <= step + 1 && (!nearest || recording_.keyframeSteps()[*nearest] < done);
   if (!goOn) {
     // A session that has been there keeps what it worked out of the model, above all compliances.
     if (!session_ || !nearest) session_ = std::make_unique<Session>(*model_, recording_.header().seed, executor_);
