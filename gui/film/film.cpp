@@ -86,10 +86,8 @@ class Cutter {
     Image whole;
     for (std::size_t s = 0; s < scenes.size(); ++s) {
       Image image = renderer_.render(scenes[s].view, width, height, quality, scenes[s].moment.smoke);
-      letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view);
-      if (!marks_[s].empty()) letters_.mark(image, marks_[s]);
+      letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view, captions_[s]);
       if (scenes.size() == 1) return image;
-      letters_.title(image, titles_[s]);
       if (s == 0) {
         whole.width = settings_.size.width;
         whole.height = height;
@@ -103,13 +101,13 @@ class Cutter {
  private:
   void add(const std::filesystem::path& recording) {
     sources_.push_back(std::make_unique<FilmSource>(recording, settings_.overlays));
-    marks_.push_back(sources_.back()->mark());
-    titles_.push_back(sources_.back()->title());
+    const FilmSource& source = *sources_.back();
+    captions_.push_back({settings_.beside ? source.title() : "", source.mark()});
   }
 
   FilmSettings settings_;
   std::vector<std::unique_ptr<FilmSource>> sources_;  ///< of at()'s thread
-  std::vector<std::string> marks_, titles_;           ///< FilmSource's, for draw()'s thread
+  std::vector<Captions> captions_;                    ///< for draw()'s thread
   Course course_;                                     ///< empty: both from their starts
   Renderer renderer_;
   OverlayPainter letters_{settings_.size.height};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string_view>
 
@@ -22,6 +23,13 @@ constexpr std::array<std::string_view, 8> shownCheckpoints{
     "path-length",  "fat-remaining", "connective-remaining", "connective-torn",
     "organ-burned", "clip-errors",   "critical-errors",      "organ-perforations"};
 constexpr double refreshSeconds = 1.0;  // they cost time, and nobody reads faster
+
+/// Counts as they are, other figures with three digits: nobody reads powers of ten in passing.
+std::string readable(double value) {
+  const double size = std::abs(value);
+  if (size >= 100.0 || value == std::round(value)) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.{}f}", value, size >= 10.0 ? 1 : size >= 1.0 ? 2 : 3);
+}
 
 /// Every step's result is needed.
 void refuseLean(const recorder::Recording& recording) {
@@ -80,7 +88,7 @@ void MomentTrack::refreshCheckpoints(double time) {
       const double shown = *value.value * definition->displayFactor;
       const std::string unit = definition->displayUnit == "1" ? "" : " " + definition->displayUnit;
       checkpoints_.push_back(
-          fmt::format("{}{}{}  {:.3g}{}", name, value.subject.empty() ? "" : " ", value.subject, shown, unit));
+          fmt::format("{}{}{}  {}{}", name, value.subject.empty() ? "" : " ", value.subject, readable(shown), unit));
     }
   }
 }

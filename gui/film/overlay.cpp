@@ -87,7 +87,31 @@ Overlays parseOverlays(const std::string& text) {
 
 OverlayPainter::OverlayPainter(int pictureHeight) : letters_(pictureHeight / 36), margin_(pictureHeight / 45) {}
 
-void OverlayPainter::paint(Image& image, const Overlays& overlays, const Moment& moment, const SceneView& view) const {
+void OverlayPainter::paintTitle(Image& image, std::string title) const {
+  const int besideIt = 2 * (letters_.widthOf("00:00.0") + 2 * margin_);  // the time, and as much on the right
+  if (letters_.widthOf(title) > image.width - besideIt) {
+    while (!title.empty() && letters_.widthOf(title + "…") > image.width - besideIt) {
+      while (title.size() > 1 && (static_cast<unsigned char>(title.back()) & 0xC0U) == 0x80U) title.pop_back();
+      title.pop_back();
+    }
+    title += "…";
+  }
+  letters_.write(image, title, image.width / 2, margin_, Anchor::middle, white);
+}
+
+void OverlayPainter::paintEvents(Image& image, const Moment& moment, int bottom) const {
+  int y = bottom;
+  for (auto line = moment.events.rbegin(); line != moment.events.rend(); ++line) {
+    y -= letters_.lineHeight();
+    if (y < image.height / 2) break;
+    const double fading = std::clamp(MomentTrack::eventSeconds - line->age, 0.0, 1.0);
+    letters_.write(image, line->text, margin_, y, Anchor::left, line->fault ? amber : white, fading);
+  }
+}
+
+void OverlayPainter::paint(Image& image, const Overlays& overlays, const Moment& moment, const SceneView& view,
+                           const Captions& captions) const {
+  const int bottom = image.height - margin_;
   if (overlays.tools) drawPaths(image, moment, view);
   int y = margin_;
   if (overlays.time) {
@@ -96,30 +120,18 @@ void OverlayPainter::paint(Image& image, const Overlays& overlays, const Moment&
   }
   if (overlays.phase && !moment.phase.empty()) letters_.write(image, moment.phase, margin_, y, Anchor::left, white);
   if (overlays.checkpoints) {
-    y = margin_;
+    y = margin_ + (captions.title.empty() ? 0 : letters_.lineHeight());
     for (const std::string& line : moment.checkpoints) {
       letters_.write(image, line, image.width - margin_, y, Anchor::right, grey);
       y += letters_.lineHeight();
     }
   }
-  if (overlays.events) {
-    y = image.height - margin_;
-    for (auto line = moment.events.rbegin(); line != moment.events.rend(); ++line) {
-      y -= letters_.lineHeight();
-      if (y < image.height / 2) break;
-      const double fading = std::clamp(MomentTrack::eventSeconds - line->age, 0.0, 1.0);
-      letters_.write(image, line->text, margin_, y, Anchor::left, line->fault ? amber : white, fading);
-    }
-  }
-}
-
-void OverlayPainter::mark(Image& image, const std::string& text) const {
-  letters_.write(image, text, image.width - margin_, image.height - margin_ - letters_.lineHeight(), Anchor::right,
-                 grey, 0.85);
-}
-
-void OverlayPainter::title(Image& image, const std::string& text) const {
-  letters_.write(image, text, image.width / 2, margin_, Anchor::middle, white);
+  const bool narrow = 3 * letters_.widthOf(captions.mark) > image.width;
+  if (overlays.events) paintEvents(image, moment, bottom - (narrow ? letters_.lineHeight() : 0));
+  if (!captions.mark.empty())
+    letters_.write(image, captions.mark, image.width - margin_, bottom - letters_.lineHeight(), Anchor::right, grey,
+                   0.85);
+  if (!captions.title.empty()) paintTitle(image, captions.title);
 }
 
 }  // namespace calot::gui

@@ -21,20 +21,27 @@ struct Overlays {
 /// "time,phase". @throws calot::Error (usage) naming what is not known
 [[nodiscard]] Overlays parseOverlays(const std::string& text);
 
+/// What stands on a picture throughout.
+struct Captions {
+  std::string title;  ///< above it; one that is too long is cut
+  std::string mark;   ///< at its lower edge: who acted, where that is no person ("synthetic")
+};
+
 /// Draws overlays in sizes that fit the picture's height: time and phase in the upper left corner, checkpoints in the
-/// upper right, events in the lower left; the path of each tool's tip over the last seconds as the camera sees it.
+/// upper right, below a title, events in the lower left, above a mark that leaves no room beside it; the path of each
+/// tool's tip over the last seconds as the camera sees it.
 class OverlayPainter {
  public:
   explicit OverlayPainter(int pictureHeight);
 
   /// @param view what the picture shows: its camera places the paths
-  void paint(Image& image, const Overlays& overlays, const Moment& moment, const SceneView& view) const;
-  /// A mark across the lower edge that says who acted where that is no person ("synthetic").
-  void mark(Image& image, const std::string& text) const;
-  /// A title above a picture.
-  void title(Image& image, const std::string& text) const;
+  void paint(Image& image, const Overlays& overlays, const Moment& moment, const SceneView& view,
+             const Captions& captions = {}) const;
 
  private:
+  void paintTitle(Image& image, std::string title) const;
+  void paintEvents(Image& image, const Moment& moment, int bottom) const;
+
   Lettering letters_;
   int margin_;
 };

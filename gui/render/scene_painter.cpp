@@ -13,6 +13,13 @@ namespace {
 constexpr float nearPlane = 0.002F, farPlane = 2.0F;  // m
 constexpr float occlusionReach = 0.016F;              // m
 
+/// @param scale of the target's pixels over the picture's
+void setField(const ShaderProgram& program, const Sight& sight, float scale) {
+  const float rim = scale * sight.rim, feather = scale * sight.feather;
+  program.set("fieldRim", rim, feather);
+  if (rim > 0.0F) program.set("fieldShare", 1.0F / rim, 0.5F / feather);
+}
+
 }  // namespace
 
 /// What the passes of one picture share.
@@ -160,15 +167,15 @@ void ScenePainter::setLighting(const ShaderProgram& program, const Frame& frame,
   program.set("light", lightX, lightY, 0.0F);
   program.set("occlusionMap", static_cast<int>(occlusionUnit));
   program.set("referenceDistance", frame.referenceDistance);
-  program.set("pixels", static_cast<float>(target.width()), static_cast<float>(target.height()));
-  const float scale = static_cast<float>(target.width()) / static_cast<float>(targets_->width);
-  program.set("fieldRim", scale * frame.sight.rim, scale * frame.sight.feather);
+  const auto width = static_cast<float>(target.width()), height = static_cast<float>(target.height());
+  program.set("pixels", width, height);
+  program.set("pixelShare", 1.0F / width, 1.0F / height);
+  setField(program, frame.sight, width / static_cast<float>(targets_->width));
 }
 
 void ScenePainter::drawLit(const DrawPart& part, const Frame& frame, const RenderTarget& target) const {
   const ShaderProgram& program = frame.programs.surface(part);
   setLighting(program, frame, target);
-  program.set("appearance", static_cast<int>(part.appearance));
   drawPart(part);
 }
 
@@ -199,7 +206,8 @@ void ScenePainter::drawSurfaces(const DrawList& list, const Frame& frame) const 
   copy.use();
   targets.backdrop->sampleColour(backdropUnit);
   copy.set("backdropMap", static_cast<int>(backdropUnit));
-  copy.set("pixels", static_cast<float>(targets.radiance.width()), static_cast<float>(targets.radiance.height()));
+  copy.set("pixelShare", 1.0F / static_cast<float>(targets.radiance.width()),
+           1.0F / static_cast<float>(targets.radiance.height()));
   gl_.DepthFunc(GL_LEQUAL);  // behind everything
   drawPicture();
   gl_.DepthFunc(GL_LESS);
@@ -239,7 +247,7 @@ void ScenePainter::compose(const Frame& frame) const {
   program.use();
   targets.radiance.sampleColour(depthUnit);
   program.set("radianceMap", static_cast<int>(depthUnit));
-  program.set("fieldRim", frame.sight.rim, frame.sight.feather);
+  setField(program, frame.sight, 1.0F);
   drawPicture();
 }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <initializer_list>
 
 #include "gui/render/shader_sources.h"
@@ -22,11 +21,11 @@ const char* const filmChoices = R"(
 #define PATTERN 4
 #define STRIDE 1
 #define SAMPLES_ASIDE 2
-#define ROOTS 0
 #define DIRECT 0
 #define NOISE_BYTES 0
 #define BROAD_PER_VERTEX 0
 #define FINE 1
+#define EXACT 1
 #define SOFT_SHADOWS 1
 #define SHADOW_OFFSET 0.0006
 )";
@@ -37,11 +36,11 @@ const char* const interactiveChoices = R"(
 #define PATTERN 2
 #define STRIDE 2
 #define SAMPLES_ASIDE 1
-#define ROOTS 1
 #define DIRECT 1
 #define NOISE_BYTES 1
 #define BROAD_PER_VERTEX 1
 #define FINE 0
+#define EXACT 0
 #define SOFT_SHADOWS 0
 #define SHADOW_OFFSET 0.0016
 )";
@@ -67,7 +66,7 @@ ScenePrograms::ScenePrograms(const GlFunctions& gl, const char* choices)
       choices_(choices) {}
 
 const ShaderProgram& ScenePrograms::surface(const DrawPart& part) {
-  const int look = std::min(static_cast<int>(part.appearance), static_cast<int>(Appearance::insulation));
+  const int look = static_cast<int>(part.appearance);
   std::unique_ptr<ShaderProgram>& program = surface_[{look, part.harmed}];
   if (!program) {
     const std::string choice = fmt::format("#define LOOK {}\n#define HARMED {}\n", look, part.harmed ? 1 : 0);

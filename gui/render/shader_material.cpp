@@ -255,17 +255,22 @@ Material brushed(vec3 mm, vec3 mirror, float roughness) {
 }
 
 // One look a program (LOOK, HARMED): a software rasterizer works out every branch for every pixel.
-Material materialOf(int appearance, vec3 rest, vec2 harm, Broad broad) {
+Material materialOf(vec3 rest, vec2 harm, Broad broad) {
   vec3 mm = rest * 1000.0;
 #if LOOK == 3
   return cavityWall(mm, broad);
-#elif LOOK == 10
-  if (appearance == 10) return solid(vec3(0.010, 0.010, 0.011), vec3(0.042), 0.33);
-  if (appearance == 11) return brushed(mm, vec3(0.60, 0.585, 0.57), 0.27);
-  if (appearance == 12) return solid(vec3(0.62, 0.58, 0.50), vec3(0.045), 0.30);
-  if (appearance == 14) return solid(vec3(0.150, 0.006, 0.005), vec3(0.040), 0.12);
-  if (appearance == 15) return solid(vec3(0.200, 0.170, 0.012), vec3(0.040), 0.12);
+#elif LOOK == 10 // insulation
+  return solid(vec3(0.010, 0.010, 0.011), vec3(0.042), 0.33);
+#elif LOOK == 11 // steel
+  return brushed(mm, vec3(0.60, 0.585, 0.57), 0.27);
+#elif LOOK == 12 // ceramic
+  return solid(vec3(0.62, 0.58, 0.50), vec3(0.045), 0.30);
+#elif LOOK == 13 // titanium
   return brushed(mm, vec3(0.56, 0.54, 0.60), 0.30);
+#elif LOOK == 14 // blood
+  return solid(vec3(0.150, 0.006, 0.005), vec3(0.040), 0.12);
+#elif LOOK == 15 // bile
+  return solid(vec3(0.200, 0.170, 0.012), vec3(0.040), 0.12);
 #else
 #if LOOK == 1
   Material m = liver(mm, broad);

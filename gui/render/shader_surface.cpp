@@ -7,6 +7,7 @@ namespace calot::gui::glsl {
 const char* const receiver = R"(
 uniform float referenceDistance;         // where the exposure is right (m)
 uniform vec2 pixels;                     // size of this target
+uniform vec2 pixelShare;                 // one over it
 uniform vec3 light;                      // position in C (m)
 layout(location = 0) out vec4 radiance;  // multiplied by the opacity
 
@@ -14,12 +15,11 @@ layout(location = 0) out vec4 radiance;  // multiplied by the opacity
 // reference distance. l: the direction in which the light is.
 float lightAt(vec3 p, out vec3 l) {
   vec3 toLight = light - p;
-  float d2 = dot(toLight, toLight);
-  l = toLight * inversesqrt(d2);
+  float d2 = max(dot(toLight, toLight), 0.0004);
+  l = normalize(toLight);
   float ahead = clamp(-l.z, 0.0, 1.0);
-  float cone = ahead * ahead * sqrt(ahead);
-  float given = cone * referenceDistance * referenceDistance / max(d2, 0.0004);
-  return 1.25 * given / (1.0 + 0.35 * given);  // a camera's knee for what comes too close
+  float given = ahead * ahead * sqrt(ahead) * referenceDistance * referenceDistance;
+  return 1.25 * given / (d2 + 0.35 * given);  // a camera's knee for what comes too close
 }
 
 // @param whole multiplied by the opacity
@@ -44,7 +44,7 @@ float litAt(vec3 place) { return texture(shadowMap, place); }
 // Where in the shadow map q, seen from the light, is: texture coordinates and depth.
 vec3 shadowPlace(vec3 q) {
   vec4 clip = project(q, shadowFocal);
-  return clip.xyz / clip.w * 0.5 + 0.5;
+  return clip.xyz * (0.5 / clip.w) + 0.5;
 }
 )";
 
@@ -83,13 +83,13 @@ float shadow(vec3 p, vec3 n) {
 )";
 
 const char* const backdropFragment = R"(
-uniform vec2 pixels;             // size of this target
+uniform vec2 pixelShare;         // one over the size of this target
 uniform sampler2D backdropMap;   // of half the size; alpha 0 where it was hidden
 layout(location = 0) out vec4 radiance;
 void main() {
-  vec4 s = texture(backdropMap, gl_FragCoord.xy / pixels);
+  vec4 s = texture(backdropMap, gl_FragCoord.xy * pixelShare);
   // A gap that is too narrow for half the size is as dark as gaps are.
-  radiance = vec4(s.a > 0.02 ? s.rgb / s.a : vec3(0.070, 0.020, 0.016), 1.0);
+  radiance = vec4(s.a > 0.02 ? s.rgb * (1.0 / s.a) : vec3(0.070, 0.020, 0.016), 1.0);
 }
 )";
 
@@ -103,7 +103,6 @@ in vec2 vHarm;
 in vec4 vBroadA, vBroadB, vBroadC, vBroadD;
 #endif
 
-uniform int appearance;
 uniform sampler2D occlusionMap;
 
 // The least rotation from the rest normal to the present one carries slopes from rest to now.
@@ -121,9 +120,9 @@ vec3 gloss(float nl, float nv, float nh, float vh, float roughness, vec3 mirror)
   float a2 = roughness * roughness; a2 *= a2;
   float d = nh * nh * (a2 - 1.0) + 1.0;
   float k = 0.5 * roughness * roughness;
-  float visibility = 0.25 / ((nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
+  float hidden = (nl * (1.0 - k) + k) * (nv * (1.0 - k) + k);
   vec3 fresnel = mirror + (1.0 - mirror) * fifth(1.0 - vh);
-  return fresnel * (a2 / (pi * d * d) * visibility * nl);
+  return fresnel * (0.25 * a2 * nl / (pi * d * d * hidden));
 }
 
 // What a mirror would see in the cavity: lit tissue ahead, dimmer to the sides, dark behind the lens.
@@ -139,14 +138,18 @@ void main() {
 #else
   Broad broad = broadOf(vRest);
 #endif
-  Material m = materialOf(appearance, vRest, vHarm, broad);
+  Material m = materialOf(vRest, vHarm, broad);
   vec3 n0 = normalize(vNormal);
   if (!gl_FrontFacing) n0 = -n0;
+#if EXACT
   vec3 nr = normalize(vRestNormal);
+#else
+  vec3 nr = vRestNormal;
+#endif
   vec3 slope = carried(m.slope - nr * dot(m.slope, nr), nr, n0);
   // Farther away a pixel covers many bumps; its gloss widens instead of glittering.
-  float footprint = length(fwidth(vPosition)) * 1000.0;
-  slope *= 1.0 / (1.0 + 0.8 * footprint * footprint);
+  vec3 across = fwidth(vPosition);
+  slope *= 1.0 / (1.0 + 0.8e6 * dot(across, across));
   vec3 n = normalize(n0 - slope);
 
   vec3 v = -normalize(vPosition);
@@ -158,10 +161,10 @@ void main() {
   float nh = clamp(dot(n, h), 0.0, 1.0);
   float vh = clamp(dot(v, h), 0.0, 1.0);
 
-  float occlusion = texture(occlusionMap, gl_FragCoord.xy / pixels).x;
+  float occlusion = texture(occlusionMap, gl_FragCoord.xy * pixelShare).x;
   float lit = received * shadow(vPosition, n0);
 
-  vec3 wrapped = clamp((vec3(nl) + m.scatter) / (1.0 + m.scatter), 0.0, 1.0);
+  vec3 wrapped = clamp((vec3(nl) + m.scatter) * (1.0 / (1.0 + m.scatter)), 0.0, 1.0);
   wrapped *= wrapped * 0.35 + 0.65;
   // Light between walls of tissue is red: occlusion darkens blue and green first.
   vec3 ambientOpen = vec3(occlusion, occlusion * occlusion, occlusion * occlusion);

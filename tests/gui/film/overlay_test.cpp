@@ -124,5 +124,35 @@ TEST(Overlays, StandInTheirCorners) {
   }
 }
 
+/// In half a picture, words must not lie over one another.
+TEST(Overlays, MakeRoomForCaptions) {
+  const OverlayPainter painter(height);
+  const auto painted = [&](const char* overlay, const Moment& moment, const Captions& captions) {
+    Image image = grey();
+    painter.paint(image, parseOverlays(overlay), moment, SceneView{}, captions);
+    return image;
+  };
+  Moment moment;
+  moment.checkpoints = {"path-length right  1390 mm"};
+  moment.events = {{"clip on cystic-duct", false, 1.0}};
+  const int line = Lettering(height / 36).lineHeight(), margin = height / 45;
+
+  const Image titled =
+      painted("time", moment, {"a participant with a name that goes on and on and on, and on again", ""});
+  EXPECT_GT(changed(titled, width / 2 - 40, 0, width / 2 + 40, margin + line), 40);
+  EXPECT_EQ(changed(titled, 0, 0, width, height), changed(titled, 0, 0, width, margin + line + 1));
+  const Image timeAlone = painted("time", moment, {});
+  const int timeEnds = margin + Lettering(height / 36).widthOf("0:00.0") + 1;
+  EXPECT_EQ(changed(titled, 0, 0, timeEnds, height), changed(timeAlone, 0, 0, timeEnds, height));
+  EXPECT_GT(changed(painted("checkpoints", moment, {}), width / 2, 0, width, margin + line - 2), 0);
+  const Image below = painted("checkpoints", moment, {"s1", ""});
+  EXPECT_EQ(changed(below, width / 2 + 20, 0, width, margin + line - 1), 0);
+  EXPECT_GT(changed(below, width / 2 + 20, margin + line, width, height), 20);
+
+  const Image apart = painted("events", moment, {"", "synthetic: performer unskilled, and more of it"});
+  EXPECT_LT(changed(apart, 0, height - margin - line, width / 4, height), 10);  // no more than an outline
+  EXPECT_GT(changed(apart, 0, height - margin - 2 * line, width / 4, height - margin - line), 20);
+}
+
 }  // namespace
 }  // namespace calot::gui
