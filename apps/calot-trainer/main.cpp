@@ -30,6 +30,7 @@ struct Options {
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
   std::string mode = "practice", pictures;
   std::uint64_t seed = 1;
+  double seconds = 0.0;
   unsigned threads = 1;
 };
 
@@ -63,6 +64,8 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--threads", o.threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();
+  app.add_option("--seconds", o.seconds, "end when an attempt has run so long, and print how smooth it was")
+      ->check(CLI::PositiveNumber);
   app.add_option("-o,--output", o.folder, "folder for the recordings")->capture_default_str();
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
@@ -144,8 +147,10 @@ int run(int argc, char** argv) {
   }
   if (scene) window.begin(std::move(*scene));
   QTimer asking;
-  QObject::connect(&asking, &QTimer::timeout, &window, [&window] {
-    if (stopRequested()) window.close();
+  QObject::connect(&asking, &QTimer::timeout, &window, [&window, seconds = o.seconds] {
+    const bool over =
+        seconds > 0.0 && window.session() != nullptr && window.session()->status().figures.time >= seconds;
+    if (over || stopRequested()) window.close();
   });
   asking.start(100);
   const int code = QApplication::exec();

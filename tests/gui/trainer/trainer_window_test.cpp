@@ -190,9 +190,10 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   QTest::mouseClick(child<QPushButton>("restart"), Qt::LeftButton);
   ASSERT_TRUE(runs(0.1));
   const std::vector<std::string> lines = window.endAndReport();
-  ASSERT_EQ(lines.size(), 4U);
-  EXPECT_NE(lines[2].find("stopped"), std::string::npos);
-  EXPECT_NE(lines[3].find(" pictures of "), std::string::npos);
+  ASSERT_EQ(lines.size(), 7U);
+  EXPECT_NE(lines[4].find("stopped"), std::string::npos);
+  EXPECT_NE(lines[5].find(" forces late ("), std::string::npos);
+  EXPECT_NE(lines[6].find(" pictures a second of "), std::string::npos);
 }
 
 TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
