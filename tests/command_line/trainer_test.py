@@ -40,7 +40,11 @@ class Trainer(ProgramTest):
         self.assertIn("/nowhere", self.declined(2, "--scene", SCENE, "-o", "/nowhere"))
         self.declined(2, "--scene", SCENE, "--mode", "play", *out)
         self.declined(2, "--device", "null", "--performer", "skilled", *out)
-        self.declined(2, "--scene", SCENE, "--seconds", "0", *out)
+        for seconds in ("0", "-1", "nan", "inf", "1x", ""):
+            self.assertIn("--seconds", self.declined(2, "--scene", SCENE, "--seconds", seconds, *out))
+        self.declined(2, "--scene", SCENE, "--pictures", self.folder / "missing", *out)
+        # Nobody makes files there, not even an administrator.
+        self.assertIn("cannot be written", self.declined(1, "--scene", SCENE, "-o", "/proc"))
         self.declined(2, "--no-such-option")
 
     def test_damaged_input(self):
