@@ -35,7 +35,7 @@ void Background::forget() {
 }
 
 void Background::loop() {
-  stepBack();
+  stepBack(behindInterface);
   for (;;) {
     Job job;
     quint64 mine = 0;

@@ -76,7 +76,7 @@ QStringList recordingsIn(const QStringList& paths) {
 }
 
 ImportQueue::ImportQueue(QObject* parent) : QObject(parent) {
-  process_.setChildProcessModifier(stepBack);
+  process_.setChildProcessModifier([] { stepBack(behindInterface); });
   connect(&process_, &QProcess::readyReadStandardOutput, this, [this] { collect(); });
   connect(&process_, &QProcess::readyReadStandardError, this, [this] { collect(); });
   connect(&process_, &QProcess::finished, this, [this](int code, QProcess::ExitStatus status) {

@@ -43,7 +43,7 @@ void RecordingReader::stop() {
 }
 
 void RecordingReader::run(const Back& back, const std::filesystem::path& file, const Figures& figures) {
-  stepBack();
+  stepBack(behindInterface);
   int told = -1;
   const auto progressFrom = [&](int from) {
     return [&, from](std::uint64_t done, std::uint64_t of) {

@@ -228,7 +228,7 @@ void ReplayPlayer::setSpeed(double speed) {
 }
 
 void ReplayPlayer::run() {
-  stepBack();
+  stepBack(behindInterface);
   try {
     Run(*this).loop();
   } catch (const std::exception& error) {

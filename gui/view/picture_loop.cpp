@@ -48,7 +48,7 @@ void PictureLoop::clear() {
 
 void PictureLoop::run() {
   // Before what draws starts threads of its own.
-  stepBack();
+  stepBack(behindEverything);
   Draw draw;
   for (;;) {
     ScenePicture picture;

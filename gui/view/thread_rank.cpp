@@ -6,11 +6,9 @@
 
 namespace calot::gui {
 
-void stepBack() {
+void stepBack(int behind) {
   // Linux keeps a nice value for each thread, and passes it on to those the thread starts; a larger one needs no
-  // privilege. About a ninth of the share of a thread of value 0.
-  constexpr int behind = 10;
-  // Of a program that runs behind others as a whole, the same distance again.
+  // privilege. Of a program that runs behind others as a whole, the same distance again.
   const int program = ::getpriority(PRIO_PROCESS, static_cast<id_t>(::getpid()));
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), program + behind);
 }

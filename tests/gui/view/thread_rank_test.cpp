@@ -17,7 +17,7 @@ TEST(ThreadRank, OneThreadAndThoseItStartsStepBackAndNoOther) {
   if (before >= 19) GTEST_SKIP() << "this thread is the last already";
   int itself = 0, started = 0;
   std::thread([&] {
-    stepBack();
+    stepBack(behindEverything);
     itself = niceness();
     std::thread([&] { started = niceness(); }).join();
   }).join();
