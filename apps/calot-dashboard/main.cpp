@@ -10,6 +10,7 @@
 #include <QApplication>
 #include <string>
 
+#include "apps/window/start_checks.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
@@ -20,7 +21,8 @@ int run(int argc, char** argv) {
   CLI::App options{"Shows the attempts and checkpoints of a cohort database."};
   std::string database, pictures;
   options.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
-  options.add_option("database", database, "Cohort database, as `calot assess --cohort` writes it");
+  const CLI::Option* const given =
+      options.add_option("database", database, "Cohort database, as `calot assess --cohort` writes it");
   options.add_option("--pictures", pictures, "Write a PNG of each page into this folder, and end");
   try {
     options.parse(argc, argv);
@@ -32,7 +34,9 @@ int run(int argc, char** argv) {
 
   // A file that cannot be opened is told before there is a window, and needs none.
   std::shared_ptr<const calot::gui::CohortDocument> document;
-  if (!database.empty()) document = std::make_shared<const calot::gui::CohortDocument>(database);
+  if (given->count() > 0) document = std::make_shared<const calot::gui::CohortDocument>(database);
+  if (!pictures.empty()) calot::apps::requireFolder(pictures, "pictures");
+  calot::apps::requireScreen();
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");

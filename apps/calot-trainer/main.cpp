@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <QApplication>
@@ -18,6 +17,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
+#include "apps/window/start_checks.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/trainer_window.h"
 #include "recorder/errors.h"
@@ -30,6 +30,7 @@ struct Options {
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
   std::string mode = "practice", pictures;
   std::uint64_t seed = 1;
+  double seconds = 0.0;
   unsigned threads = 1;
 };
 
@@ -63,19 +64,16 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--threads", o.threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();
+  app.add_option("--seconds", o.seconds, "end when an attempt has run so long, and print how smooth it was")
+      ->check(positiveSeconds);
   app.add_option("-o,--output", o.folder, "folder for the recordings")->capture_default_str();
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
 
-void checkFolder(const std::string& folder) {
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(folder, ignored))
-    throw Error(ExitCode::usage, fmt::format("{}: is no folder; recordings go into one that exists", folder));
-}
-
 /// Everything that can be wrong is told here, before there is a window.
 gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedScene>& scene) {
-  checkFolder(o.folder);
+  requireFolder(o.folder, "recordings");
+  if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
   gui::TrainerSetup setup;
   recorder::AttemptSettings& attempt = setup.settings.attempt;
   setup.settings.key = stationKeyOf(o.stationKey);
@@ -133,6 +131,7 @@ int run(int argc, char** argv) {
   for (const std::string& fault : faults) fmt::print(stderr, "calot-trainer: {}\n", fault);
   if (!scene && setup.scenes.empty())
     throw Error(ExitCode::usage, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
+  requireScreen();
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
@@ -144,8 +143,10 @@ int run(int argc, char** argv) {
   }
   if (scene) window.begin(std::move(*scene));
   QTimer asking;
-  QObject::connect(&asking, &QTimer::timeout, &window, [&window] {
-    if (stopRequested()) window.close();
+  QObject::connect(&asking, &QTimer::timeout, &window, [&window, seconds = o.seconds] {
+    const bool over =
+        seconds > 0.0 && window.session() != nullptr && window.session()->status().figures.time >= seconds;
+    if (over || stopRequested()) window.close();
   });
   asking.start(100);
   const int code = QApplication::exec();

@@ -39,6 +39,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
   waitFor([&] { return !status().figures.mistakes->empty(); }, 60);
   waitFor([] { return false; }, 1);  // what comes of it
   if (window.session()->pause()) {
+    waitFor([] { return false; }, 1);  // the last pictures are still being drawn
     save("paused");
     window.session()->resume();
   }

@@ -4,6 +4,8 @@
 #include <QMetaObject>
 #include <utility>
 
+#include "gui/view/thread_rank.h"
+
 namespace calot::gui {
 
 Background::Background(QObject* parent) : QObject(parent), thread_([this] { loop(); }) {}
@@ -33,6 +35,7 @@ void Background::forget() {
 }
 
 void Background::loop() {
+  stepBack(behindInterface);
   for (;;) {
     Job job;
     quint64 mine = 0;

@@ -16,8 +16,9 @@ namespace calot::gui {
 
 ComparePage::ComparePage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
-  auto* row = new QHBoxLayout;
-  const auto addBox = [&](const char* name, const char* text, int stretch) {
+  auto* upper = new QHBoxLayout;
+  auto* lower = new QHBoxLayout;  // keys are long: they have a line of their own
+  const auto addBox = [this](QHBoxLayout* row, const char* name, const char* text, int stretch) {
     auto* box = new QComboBox;
     box->setObjectName(name);
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -29,9 +30,9 @@ ComparePage::ComparePage(QWidget* parent) : QWidget(parent) {
     connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
     return box;
   };
-  figure_ = addBox("figure", "&Checkpoint", 3);
-  groupBy_ = addBox("group-by", "&By", 1);
-  key_ = addBox("key", "Comparable &within", 3);
+  figure_ = addBox(upper, "figure", "&Checkpoint", 3);
+  groupBy_ = addBox(upper, "group-by", "&By", 1);
+  key_ = addBox(lower, "key", "Comparable &within", 3);
   {
     const QSignalBlocker quiet(groupBy_);
     groupBy_->addItems({"group", "performer's profile", "participant"});
@@ -40,8 +41,9 @@ ComparePage::ComparePage(QWidget* parent) : QWidget(parent) {
   synthetic_->setObjectName("synthetic");
   synthetic_->setChecked(true);
   connect(synthetic_, &QCheckBox::toggled, this, [this] { redraw(); });
-  row->addWidget(synthetic_);
-  layout->addLayout(row);
+  lower->addWidget(synthetic_);
+  layout->addLayout(upper);
+  layout->addLayout(lower);
   chart_ = new ComparisonChart;
   layout->addWidget(chart_, 1);
   caption_ = new QLabel;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <QFont>
 #include <QGraphicsScene>
-#include <QGraphicsSimpleTextItem>
 #include <QtCharts/QBarCategoryAxis>
 #include <QtCharts/QBoxPlotSeries>
 #include <QtCharts/QBoxSet>
@@ -62,21 +61,11 @@ QScatterSeries* pointsOf(const Comparison& comparison, bool synthetic) {
 
 }  // namespace
 
-ComparisonChart::ComparisonChart(QWidget* parent)
-    : QChartView(parent), watermark_(new QGraphicsSimpleTextItem("SYNTHETIC")) {
+ComparisonChart::ComparisonChart(QWidget* parent) : QChartView(parent), watermark_(*scene()) {
   setRenderHint(QPainter::Antialiasing);
   setObjectName("comparison-chart");
   chart()->setMargins(QMargins(8, 8, 8, 8));
   chart()->legend()->setAlignment(Qt::AlignBottom);
-  QFont font;
-  font.setBold(true);
-  font.setPixelSize(84);
-  watermark_->setFont(font);
-  watermark_->setBrush(QColor(0, 0, 0, 34));
-  watermark_->setRotation(-22.0);
-  watermark_->setZValue(100.0);
-  watermark_->setVisible(false);
-  scene()->addItem(watermark_);
 }
 
 void ComparisonChart::showComparison(const Comparison& comparison, const QString& title) {
@@ -86,8 +75,7 @@ void ComparisonChart::showComparison(const Comparison& comparison, const QString
     delete axis;
   }
   chart()->setTitle(comparison.group.empty() ? title + ": nothing to show" : title);
-  watermark_->setVisible(comparison.synthetic);
-  placeWatermark();
+  watermark_.setVisible(comparison.synthetic);
   if (comparison.group.empty()) return;
 
   auto* groups = new QBarCategoryAxis;
@@ -126,13 +114,7 @@ void ComparisonChart::showComparison(const Comparison& comparison, const QString
 
 void ComparisonChart::resizeEvent(QResizeEvent* event) {
   QChartView::resizeEvent(event);
-  placeWatermark();
-}
-
-void ComparisonChart::placeWatermark() {
-  const QRectF box = watermark_->boundingRect();
-  watermark_->setTransformOriginPoint(box.center());
-  watermark_->setPos(QPointF(width() / 2.0, height() / 2.0) - box.center());
+  watermark_.place(size());
 }
 
 }  // namespace calot::gui

@@ -4,6 +4,7 @@
 #include <QtCharts/QChartView>
 
 #include "gui/dashboard/comparison.h"
+#include "gui/dashboard/watermark.h"
 
 namespace calot::gui {
 
@@ -16,14 +17,13 @@ class ComparisonChart : public QChartView {
  public:
   explicit ComparisonChart(QWidget* parent = nullptr);
   void showComparison(const Comparison& comparison, const QString& title);
-  [[nodiscard]] bool hasWatermark() const { return watermark_->isVisible(); }
+  [[nodiscard]] bool hasWatermark() const { return watermark_.isVisible(); }
 
  protected:
   void resizeEvent(QResizeEvent* event) override;
 
  private:
-  void placeWatermark();
-  QGraphicsSimpleTextItem* watermark_;
+  Watermark watermark_;
 };
 
 }  // namespace calot::gui

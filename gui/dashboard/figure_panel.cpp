@@ -24,7 +24,7 @@ FigurePanel::FigurePanel(QWidget* parent)
       figureTable_(makeTable(figures_, "attempt-checkpoints", "Checkpoints of the attempt")),
       eventTable_(makeTable(events_, "events", "Events of the attempt")) {
   figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
-  setWidths(*figureTable_, {200, 80, 100, 236, 100, 130, 290, 100, 60});
+  setWidths(*figureTable_, {188, 76, 96, 226, 110, 130, 460, 100, 60});
   wrapWords(*figureTable_);
   setWidths(*eventTable_, {80});
   auto* tabs = new QTabWidget;
@@ -106,6 +106,7 @@ void FigurePanel::setMoments(const std::vector<analytics::FigureMoments>& moment
 
 void FigurePanel::showStanding() {
   const auto norms = attempt_ ? normsFor(*attempt_, document_->norms()) : std::vector<const analytics::Norm*>();
+  figureTable_->setColumnHidden(CheckpointTableModel::normColumn, norms.empty());
   const int at = norm_->currentIndex();
   if (at < 0 || static_cast<std::size_t>(at) >= norms.size()) {
     verdict_->setText("There is no norm for attempts of this kind (calot norm create).");

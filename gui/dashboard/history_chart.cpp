@@ -36,7 +36,7 @@ QLineSeries* lineOf(const QString& name, const QPen& pen) {
 
 }  // namespace
 
-HistoryChart::HistoryChart(QWidget* parent) : QChartView(parent) {
+HistoryChart::HistoryChart(QWidget* parent) : QChartView(parent), watermark_(*scene()) {
   setObjectName("history-chart");
   setRenderHint(QPainter::Antialiasing);
   chart()->setMargins(QMargins(8, 8, 8, 8));
@@ -49,6 +49,8 @@ void HistoryChart::showHistory(const TraineeHistory& history, const QString& tit
     chart()->removeAxis(axis);
     delete axis;
   }
+  watermark_.setVisible(std::any_of(history.attempts.begin(), history.attempts.end(),
+                                    [](const HistoryAttempt& entry) { return entry.attempt->synthetic; }));
   const double last = static_cast<double>(std::max<std::size_t>(1, history.attempts.size()));
   std::vector<QXYSeries*> series;
   if (history.curve) {
@@ -101,6 +103,11 @@ void HistoryChart::showHistory(const TraineeHistory& history, const QString& tit
     s->attachAxis(number);
     s->attachAxis(value);
   }
+}
+
+void HistoryChart::resizeEvent(QResizeEvent* event) {
+  QChartView::resizeEvent(event);
+  watermark_.place(size());
 }
 
 }  // namespace calot::gui

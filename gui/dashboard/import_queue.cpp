@@ -8,6 +8,7 @@
 #include <QJsonObject>
 #include <utility>
 
+#include "gui/view/thread_rank.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -75,6 +76,7 @@ QStringList recordingsIn(const QStringList& paths) {
 }
 
 ImportQueue::ImportQueue(QObject* parent) : QObject(parent) {
+  process_.setChildProcessModifier([] { stepBack(behindInterface); });
   connect(&process_, &QProcess::readyReadStandardOutput, this, [this] { collect(); });
   connect(&process_, &QProcess::readyReadStandardError, this, [this] { collect(); });
   connect(&process_, &QProcess::finished, this, [this](int code, QProcess::ExitStatus status) {

@@ -5,6 +5,8 @@
 #include <exception>
 #include <QMetaObject>
 
+#include "gui/view/thread_rank.h"
+
 namespace calot::gui {
 namespace {
 
@@ -41,6 +43,7 @@ void RecordingReader::stop() {
 }
 
 void RecordingReader::run(const Back& back, const std::filesystem::path& file, const Figures& figures) {
+  stepBack(behindInterface);
   int told = -1;
   const auto progressFrom = [&](int from) {
     return [&, from](std::uint64_t done, std::uint64_t of) {

@@ -9,6 +9,7 @@
 
 #include "gui/dashboard/open_recording.h"
 #include "gui/dashboard/replay_plan.h"
+#include "gui/view/thread_rank.h"
 #include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/replay.h"
@@ -227,6 +228,7 @@ void ReplayPlayer::setSpeed(double speed) {
 }
 
 void ReplayPlayer::run() {
+  stepBack(behindInterface);
   try {
     Run(*this).loop();
   } catch (const std::exception& error) {

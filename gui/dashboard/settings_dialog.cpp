@@ -5,6 +5,7 @@
 #include <QDialogButtonBox>
 #include <QFileDialog>
 #include <QFormLayout>
+#include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPushButton>
@@ -36,7 +37,8 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   program_->setObjectName("settings-program");
   program_->setText(settings::chosenCalotProgram());
   const QString found = settings::calotProgram();
-  program_->setPlaceholderText(found.isEmpty() ? QString("not found: name it here") : found);
+  program_->setPlaceholderText(found.isEmpty() ? "not found: name it here" : "the calot that was found");
+  program_->setToolTip(found);
   threads_->setObjectName("settings-threads");
   threads_->setRange(1, 64);
   threads_->setValue(settings::importThreads());
@@ -46,7 +48,10 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   person_->setPlaceholderText("pseudonym of who rates and excludes");
   auto* decision = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
   auto* form = new QFormLayout(this);
-  form->addRow("&Folders with recordings", folderRow);
+  // A row of several widgets has no buddy by itself.
+  auto* foldersLabel = new QLabel("&Folders with recordings");
+  foldersLabel->setBuddy(folders_);
+  form->addRow(foldersLabel, folderRow);
   form->addRow("&Program that imports", program_);
   form->addRow("&Threads of an import", threads_);
   form->addRow("&You", person_);

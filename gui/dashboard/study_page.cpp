@@ -28,8 +28,10 @@ QString effectText(const analytics::StudyRow& row) {
                  .arg(numberText(row.area->value.a), numberText(row.area->a.lower), numberText(row.area->a.upper));
   if (row.hedges) parts += QString("Hedges' g = %1").arg(numberText(row.hedges->g));
   if (row.test) parts += QString("p = %1").arg(numberText(row.test->p));
-  if (row.holm) parts += QString("Holm-adjusted p = %1").arg(numberText(*row.holm));
+  if (row.holm) parts += QString::fromUtf8("Holm‑adjusted p = %1").arg(numberText(*row.holm));
   if (parts.isEmpty()) return "No effect size: " + QString::fromStdString(row.area.reason()) + '.';
+  // A line ends between figures, not within one (nor at the hyphen above).
+  for (QString& part : parts) part.replace(' ', QChar(QChar::Nbsp));
   return parts.join(QString::fromUtf8(" · "));
 }
 

@@ -136,6 +136,7 @@ RocCurve rocOf(const std::vector<double>& first, const std::vector<double>& seco
     bool first;
   };
   std::vector<Value> values;
+  values.reserve(first.size() + second.size());
   const double sign = lowerIsPositive ? -1.0 : 1.0;
   for (const double v : first) values.push_back({sign * v, true});
   for (const double v : second) values.push_back({sign * v, false});

@@ -2,11 +2,11 @@
 #include "gui/dashboard/trace_chart.h"
 
 #include <algorithm>
-#include <QGraphicsLineItem>
+#include <cmath>
+#include <QLocale>
 #include <QMouseEvent>
-#include <QtCharts/QLegend>
-#include <QtCharts/QLineSeries>
-#include <QtCharts/QValueAxis>
+#include <QPainter>
+#include <utility>
 
 #include "gui/dashboard/palette.h"
 
@@ -14,99 +14,124 @@ namespace calot::gui {
 namespace {
 
 constexpr double topMargin = 22.0, bottomMargin = 20.0;
+constexpr double headroom = 1.15;  // of the highest number, so that a line along it is seen
+
+double timeInterval(double seconds) {
+  if (seconds > 240.0) return 60.0;
+  if (seconds > 60.0) return 20.0;
+  return seconds > 20.0 ? 5.0 : 1.0;
+}
 
 }  // namespace
 
-TraceChart::TraceChart(const QString& name, const QString& title, QWidget* parent)
-    : QChartView(parent), time_(new QValueAxis), value_(new QValueAxis), cursor_(new QGraphicsLineItem) {
+double axisTop(double largest) {
+  if (largest <= 0.0) return 1.0;
+  const double power = std::pow(10.0, std::floor(std::log10(largest)));
+  for (const double factor : {1.0, 2.0, 4.0, 5.0, 8.0}) {
+    if (largest <= factor * power * (1.0 + 1e-9)) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+TraceChart::TraceChart(const QString& name, QString title, QWidget* parent)
+    : QWidget(parent), title_(std::move(title)) {
   setObjectName(name);
-  setAccessibleName(title);
-  setRenderHint(QPainter::Antialiasing);
-  setFrameShape(QFrame::NoFrame);
+  setAccessibleName(title_);
+  setAttribute(Qt::WA_OpaquePaintEvent);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-  chart()->setMargins(QMargins(0, 0, 0, 0));
-  chart()->setBackgroundVisible(false);
-  setBackgroundBrush(Qt::white);
-  chart()->setTitle(title);
-  chart()->legend()->hide();
-  chart()->addAxis(time_, Qt::AlignBottom);
-  chart()->addAxis(value_, Qt::AlignLeft);
   QFont small = font();
   small.setPointSizeF(0.85 * small.pointSizeF());
-  chart()->setTitleFont(small);
-  for (QValueAxis* axis : {time_, value_}) {
-    axis->setLabelsFont(small);
-    axis->setGridLineColor(QColor(0xe4, 0xe4, 0xe4));
-  }
-  value_->setTickCount(3);
-  time_->setLabelFormat("%.0f");
-  for (std::size_t h = 0; h < handCount; ++h) {
-    series_[h] = new QLineSeries;
-    QPen pen(h == 0 ? palette::blue : palette::vermillion, 1.4);
-    if (h == 1) pen.setStyle(Qt::DashLine);
-    pen.setCosmetic(true);
-    series_[h]->setPen(pen);
-    chart()->addSeries(series_[h]);
-    series_[h]->attachAxis(time_);
-    series_[h]->attachAxis(value_);
-  }
-  cursor_->setPen(QPen(Qt::black, 1.5));
-  cursor_->setZValue(50.0);
-  scene()->addItem(cursor_);
-  clear();
+  setFont(small);
 }
 
-void TraceChart::setTraces(double seconds, double bin, const std::array<std::vector<double>, handCount>& values) {
+void TraceChart::setTraces(double seconds, double bin, std::array<std::vector<double>, handCount> values) {
   seconds_ = seconds;
+  bin_ = bin;
+  values_ = std::move(values);
   double largest = 0.0;
-  for (std::size_t h = 0; h < handCount; ++h) {
-    QList<QPointF> points;
-    points.reserve(static_cast<qsizetype>(values[h].size()));
-    for (std::size_t i = 0; i < values[h].size(); ++i) {
-      points.append({std::min(seconds, (static_cast<double>(i) + 0.5) * bin), values[h][i]});
-      largest = std::max(largest, values[h][i]);
-    }
-    series_[h]->replace(points);
+  for (const std::vector<double>& trace : values_) {
+    for (const double value : trace) largest = std::max(largest, value);
   }
-  time_->setRange(0.0, std::max(seconds, 0.1));
-  time_->setTickType(QValueAxis::TicksDynamic);
-  time_->setTickInterval(seconds > 240.0 ? 60.0 : seconds > 60.0 ? 20.0 : seconds > 20.0 ? 5.0 : 1.0);
-  value_->setTickType(QValueAxis::TicksFixed);
-  value_->setRange(0.0, largest > 0.0 ? largest : 1.0);
-  value_->applyNiceNumbers();
-  // Room above the highest tick: the chart leaves out a label that touches its border.
-  const double top = value_->max();
-  value_->setTickType(QValueAxis::TicksDynamic);
-  value_->setTickInterval(0.5 * top);
-  value_->setRange(0.0, 1.15 * top);
-  value_->setLabelFormat(top < 1.0 ? "%.2f" : top < 10.0 ? "%.1f" : "%.0f");
-  place();
-}
-
-void TraceChart::clear() {
-  setTraces(0.0, 1.0, {});
-  cursor_->hide();
+  top_ = axisTop(largest);
+  painted_ = {};
+  update();
 }
 
 void TraceChart::setPosition(double time) {
+  if (time == position_) return;
   position_ = time;
-  place();
+  update();
 }
 
-void TraceChart::place() {
-  const TimeScale s = scale();
-  const double height = viewport()->height() - topMargin - bottomMargin;
-  cursor_->setVisible(seconds_ > 0.0);
-  cursor_->setLine(s.x(position_), topMargin, s.x(position_), topMargin + height);
+QRectF TraceChart::plot() const {
+  // Its bottom is the middle of a row of pixels: a hand at rest is one clear line.
+  return {TimeScale::leftMargin, topMargin, scale().span(), std::max(10.0, height() - topMargin - bottomMargin - 0.5)};
 }
 
-void TraceChart::resizeEvent(QResizeEvent* event) {
-  QChartView::resizeEvent(event);
-  chart()->resize(viewport()->size());
-  chart()->setPlotArea(QRectF(TimeScale::leftMargin, topMargin, scale().span(),
-                              std::max(10.0, viewport()->height() - topMargin - bottomMargin)));
-  place();
+void TraceChart::paintAxes(QPainter& painter) const {
+  const QRectF box = plot();
+  painter.setPen(palette::darkText);
+  painter.drawText(QRectF(0, 0, width(), topMargin), Qt::AlignCenter, title_);
+  const QPen grid(QColor(0xe4, 0xe4, 0xe4), 1.0);
+  const int decimals = top_ < 1.0 ? 2 : top_ < 10.0 ? 1 : 0;
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const double y = box.bottom() - share / headroom * box.height();
+    painter.setPen(grid);
+    painter.drawLine(QPointF(box.left(), y), QPointF(box.right(), y));
+    painter.setPen(palette::darkText);
+    painter.drawText(QRectF(0, y - 10.0, box.left() - 6.0, 20.0), Qt::AlignRight | Qt::AlignVCenter,
+                     QLocale().toString(share * top_, 'f', decimals));
+  }
+  if (seconds_ <= 0.0) return;
+  const double interval = timeInterval(seconds_);
+  for (int n = 0; n * interval <= seconds_; ++n) {
+    const double x = scale().x(n * interval);
+    painter.setPen(grid);
+    painter.drawLine(QPointF(x, box.top()), QPointF(x, box.bottom()));
+    painter.setPen(palette::darkText);
+    painter.drawText(QRectF(x - 40.0, box.bottom(), 80.0, bottomMargin), Qt::AlignCenter,
+                     QLocale().toString(n * interval, 'f', 0));
+  }
 }
+
+void TraceChart::paintTrace(QPainter& painter, std::size_t hand) const {
+  const QRectF box = plot();
+  QPolygonF line;
+  line.reserve(static_cast<qsizetype>(values_[hand].size()));
+  for (std::size_t i = 0; i < values_[hand].size(); ++i) {
+    const double time = std::min(seconds_, (static_cast<double>(i) + 0.5) * bin_);
+    line.append({scale().x(time), box.bottom() - values_[hand][i] / (headroom * top_) * box.height()});
+  }
+  // Qt strokes lines of a pixel twenty times as fast as wider ones.
+  QPen pen(hand == 0 ? palette::blue : palette::vermillion, 1.0);
+  pen.setCosmetic(true);
+  if (hand == 1) pen.setStyle(Qt::DashLine);
+  painter.setPen(pen);
+  painter.drawPolyline(line);
+}
+
+void TraceChart::paintEvent(QPaintEvent*) {
+  if (painted_.isNull()) {
+    const double ratio = devicePixelRatioF();
+    painted_ = QPixmap((QSizeF(size()) * ratio).toSize());
+    painted_.setDevicePixelRatio(ratio);
+    painted_.fill(Qt::white);
+    QPainter painter(&painted_);
+    painter.setFont(font());
+    paintAxes(painter);
+    painter.setRenderHint(QPainter::Antialiasing);
+    for (std::size_t hand = 0; hand < handCount; ++hand) paintTrace(painter, hand);
+  }
+  QPainter painter(this);
+  painter.drawPixmap(0, 0, painted_);
+  if (seconds_ <= 0.0) return;
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(QPen(Qt::black, 1.5));
+  const double x = std::floor(scale().x(position_)) + 0.5;  // one black column, not two grey ones
+  painter.drawLine(QPointF(x, plot().top()), QPointF(x, plot().bottom()));
+}
+
+void TraceChart::resizeEvent(QResizeEvent*) { painted_ = {}; }
 
 void TraceChart::mousePressEvent(QMouseEvent* event) {
   if (seconds_ > 0.0 && event->button() == Qt::LeftButton) emit timeChosen(scale().time(event->position().x()));

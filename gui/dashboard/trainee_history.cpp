@@ -33,6 +33,7 @@ std::vector<Trainee> traineesOf(const std::vector<analytics::AttemptRow>& attemp
       profiles.insert(attempt.profile);
   }
   std::vector<Trainee> trainees;
+  trainees.reserve(people.size() + profiles.size());
   for (const std::string& name : people) trainees.push_back({name, false});
   for (const std::string& name : profiles) trainees.push_back({name, true});
   return trainees;

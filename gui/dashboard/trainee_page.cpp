@@ -36,8 +36,9 @@ QString curveText(const TraineeHistory& history) {
 
 TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
-  auto* row = new QHBoxLayout;
-  const auto add = [&](const char* name, const char* text, int stretch) {
+  auto* upper = new QHBoxLayout;
+  auto* lower = new QHBoxLayout;  // keys are long: they have a line of their own
+  const auto add = [](QHBoxLayout* row, const char* name, const char* text, int stretch) {
     auto* box = new QComboBox;
     box->setObjectName(name);
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -48,10 +49,11 @@ TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
     row->addWidget(box, stretch);
     return box;
   };
-  trainee_ = add("trainee", "T&rainee", 1);
-  figure_ = add("trainee-figure", "&Checkpoint", 3);
-  key_ = add("trainee-key", "Comparable &within", 3);
-  layout->addLayout(row);
+  trainee_ = add(upper, "trainee", "T&rainee", 1);
+  figure_ = add(upper, "trainee-figure", "&Checkpoint", 3);
+  key_ = add(lower, "trainee-key", "Comparable &within", 3);
+  layout->addLayout(upper);
+  layout->addLayout(lower);
   chart_ = new HistoryChart;
   table_ = new QTableWidget(0, 6);
   table_->setObjectName("trainee-attempts");

@@ -105,6 +105,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, QWidget* parent)
 
   auto* const lower = new QVBoxLayout(mistakes_);
   lower->setContentsMargins(0, 0, 0, 0);
+  mistakesTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
   lower->addWidget(mistakesTitle_);
   lower->addWidget(list_, 1);
   lower->addWidget(back_);
@@ -172,6 +173,10 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
 }
 
 void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
+  const bool none = status.figures.mistakes->empty();
+  mistakesTitle_->setText(!none                           ? "What went wrong:"
+                          : status.stage == Stage::paused ? "Nothing went wrong so far."
+                                                          : "Nothing went wrong.");
   if (listed_ == status.figures.mistakes) return;
   listed_ = status.figures.mistakes;
   list_->clear();
@@ -179,10 +184,8 @@ void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
     auto* const item = new QListWidgetItem(mistakeText(mistake), list_);
     item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
   }
-  const bool some = list_->count() > 0;
-  mistakesTitle_->setText(some ? "What went wrong:" : "Nothing went wrong so far.");
-  list_->setVisible(some);
-  back_->setVisible(some);
+  list_->setVisible(!none);
+  back_->setVisible(!none);
   // The last one is the one to be undone, mostly.
   list_->setCurrentRow(list_->count() - 1);
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <iterator>
 #include <QBoxLayout>
 #include <QCoreApplication>
@@ -60,10 +61,7 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   connect(view_, &OperationView::handSwitched, this, &TrainerWindow::refresh);
   connect(view_, &ScenePictureWidget::pictureShown, this, [this] {
     if (!session_) return;
-    if (!looked_.isValid()) {
-      looked_.start();
-      shownBefore_ = view_->shown();
-    }
+    rate_.shown(std::chrono::steady_clock::now());
     session_->shown();
   });
   connect(panel_, &RunPanel::pauseRequested, this, &TrainerWindow::togglePause);
@@ -111,7 +109,7 @@ void TrainerWindow::begin(recorder::LoadedScene scene) {
   TrainingSettings settings = setup_.settings;
   settings.scene = std::move(scene);
   view_->showText("Getting ready …");
-  looked_.invalidate();
+  rate_ = {};
   session_ = std::make_unique<TrainingSession>(
       std::move(settings), setup_.input,
       [view = view_](std::shared_ptr<const SceneView> seen) { view->showView(std::move(seen)); });
@@ -149,12 +147,10 @@ void TrainerWindow::endSession() {
   session_->stop();
   std::vector<std::string> lines = session_->recorded();
   recorded_.insert(recorded_.end(), std::make_move_iterator(lines.begin()), std::make_move_iterator(lines.end()));
-  if (looked_.isValid()) {
-    const double seconds = 1e-3 * static_cast<double>(looked_.elapsed());
-    const auto pictures = static_cast<double>(view_->shown() - shownBefore_);
-    recorded_.push_back(fmt::format("{}: {:.0f} pictures of {}x{} in {:.1f} s, {:.1f} a second", session_->scene().name,
-                                    pictures, view_->width(), view_->height(), seconds,
-                                    seconds > 0.0 ? pictures / seconds : 0.0));
+  if (rate_.pictures() > 0) {
+    recorded_.push_back(fmt::format("{}: {:.1f} pictures a second of {}x{} in {:.1f} s, one stood for {:.2f} s at most",
+                                    session_->scene().name, rate_.mean(), view_->width(), view_->height(),
+                                    rate_.seconds(), rate_.longest()));
   }
   session_.reset();
 }
@@ -190,6 +186,7 @@ void TrainerWindow::refresh() {
   if (!open) return;
   const TrainingStatus status = session_->status();
   view_->setActive(status.stage == Stage::running);
+  rate_.setRunning(status.stage == Stage::running);
   const SceneDescription& scene = session_->scene();
   const std::optional<Hand> driven = setup_.mouse ? std::optional(setup_.mouse->hand()) : std::nullopt;
   panel_->show(status, panelText(status, scene, session_->summary(), session_->mode(), driven),

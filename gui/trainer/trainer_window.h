@@ -2,12 +2,12 @@
 #pragma once
 
 #include <memory>
-#include <QElapsedTimer>
 #include <QMainWindow>
 #include <QTimer>
 #include <string>
 #include <vector>
 
+#include "gui/trainer/picture_rate.h"
 #include "gui/trainer/scene_choice.h"
 #include "gui/trainer/training_session.h"
 #include "recorder/sources/devices/mouse_input.h"
@@ -49,8 +49,8 @@ class TrainerWindow : public QMainWindow {
   /// The session of the scene that is open; null on the page of scenes.
   [[nodiscard]] TrainingSession* session() { return session_.get(); }
   [[nodiscard]] OperationView* view() { return view_; }
-  /// Recordings of all scenes so far, one line each for a terminal, and how many pictures each scene was shown in. Ends
-  /// what runs.
+  /// Recordings of all scenes so far, one line each for a terminal, and how many pictures a second each scene was shown
+  /// in while it ran. Ends what runs.
   [[nodiscard]] std::vector<std::string> endAndReport();
 
   /// Writes a PNG of what is seen. @throws calot::Error (failure)
@@ -75,8 +75,7 @@ class TrainerWindow : public QMainWindow {
   RunPanel* panel_;
   QAction *pauseAction_, *finishAction_, *restartAction_;
   QTimer timer_;
-  QElapsedTimer looked_;  ///< since the scene's first picture
-  quint64 shownBefore_ = 0;
+  PictureRate rate_;  ///< of the scene
   std::vector<std::string> recorded_;
   std::unique_ptr<TrainingSession> session_;
 };

@@ -85,7 +85,7 @@ class TrainingSession {
   [[nodiscard]] recorder::Mode mode() const { return settings_.attempt.mode; }
   [[nodiscard]] const SceneDescription& scene() const { return settings_.scene.description; }
   [[nodiscard]] const std::string& summary() const { return settings_.scene.summary; }
-  /// Recordings so far, one line each for a terminal.
+  /// Recordings so far, two lines each for a terminal: what was recorded, and how punctual its forces were.
   [[nodiscard]] std::vector<std::string> recorded() const;
 
  private:

@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include "gui/view/thread_rank.h"
+
 namespace calot::gui {
 
 PictureLoop::PictureLoop(MakeDraw make, Receiver receiver)
@@ -45,6 +47,8 @@ void PictureLoop::clear() {
 }
 
 void PictureLoop::run() {
+  // Before what draws starts threads of its own.
+  stepBack(behindEverything);
   Draw draw;
   for (;;) {
     ScenePicture picture;

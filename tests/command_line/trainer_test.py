@@ -3,6 +3,7 @@
 """calot-trainer before its window: wrong options, scenes and devices are one line and the right exit code; and a run by a script from start to end."""
 
 import os
+import re
 import signal
 import subprocess
 import time
@@ -39,6 +40,11 @@ class Trainer(ProgramTest):
         self.assertIn("/nowhere", self.declined(2, "--scene", SCENE, "-o", "/nowhere"))
         self.declined(2, "--scene", SCENE, "--mode", "play", *out)
         self.declined(2, "--device", "null", "--performer", "skilled", *out)
+        for seconds in ("0", "-1", "nan", "inf", "1x", ""):
+            self.assertIn("--seconds", self.declined(2, "--scene", SCENE, "--seconds", seconds, *out))
+        self.declined(2, "--scene", SCENE, "--pictures", self.folder / "missing", *out)
+        # Nobody makes files there, not even an administrator.
+        self.assertIn("cannot be written", self.declined(1, "--scene", SCENE, "-o", "/proc"))
         self.declined(2, "--no-such-option")
 
     def test_damaged_input(self):
@@ -53,6 +59,15 @@ class Trainer(ProgramTest):
         answer = program.calot("record", "--scene", SCENE, "--device", "mouse", "-o", self.folder / "a.h5")
         self.assertEqual(answer.code, 2, answer)
         self.assertIn("calot-trainer", answer.err)
+
+    def test_it_ends_by_itself_after_so_many_seconds(self):
+        answer = trainer("--scene", SCENE, "--performer", "skilled", "--seconds", "0.5", "-o", self.folder)
+        self.assertEqual(answer.code, 0, answer)
+        [file] = self.folder.glob("*.h5")
+        seconds = float(re.search(r", (\d+\.\d+) s, stopped$", answer.out, re.MULTILINE).group(1))
+        self.assertGreaterEqual(seconds, 0.5)
+        self.assertRegex(answer.out, r"forces late \(\d+\.\d+ %\), at most by")
+        self.well("replay", file)
 
     def test_a_signal_ends_it_and_the_recording_is_whole(self):
         running = subprocess.Popen([str(TRAINER), "--scene", SCENE, "--device", "null", "-o", str(self.folder)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -69,7 +84,7 @@ class Trainer(ProgramTest):
         self.assertNotIn("calot-trainer: ", err)  # Qt itself has remarks on a platform without a screen
         [file] = self.folder.glob("*.h5")
         self.assertTrue(out.startswith(f"{file}: attempt "), out)
-        self.assertIn(", stopped;", out)
+        self.assertIn(", stopped\n", out)
         self.assertRegex(file.name, rf"^{SCENE}-\d{{8}}T\d{{6}}Z\.h5$")
         self.well("replay", file)
 

@@ -7,6 +7,7 @@
 #include <QCoreApplication>
 
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <QElapsedTimer>
@@ -32,6 +33,13 @@ constexpr double longestStart = 1000.0;  // ms, of 10,000 attempts
 constexpr double longestGap = 100.0;     // ms between two turns of the interface
 constexpr double longestSeek = 300.0;    // ms till a picture of about that moment
 
+/// Of this thread: what a turn costs, whatever else the machine is at.
+double cpuMilliseconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
 class InterfaceHeavy : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -45,16 +53,17 @@ class InterfaceHeavy : public ::testing::Test {
     std::cout << what << ": " << took << " of " << limit << " ms, " << took / limit << '\n';
     EXPECT_LT(took / limit, 1.0) << what;
   }
+  static void fillWithOthers(const fs::path& path) {
+    analytics::CohortDatabase database(path.string(), Access::create);
+    for (int i = 0; i < 10000; ++i) database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1)});
+  }
   QTemporaryDir folder_;
   fs::path root_;
 };
 
 TEST_F(InterfaceHeavy, TenThousandAttemptsAreOnTheScreenWithinASecond) {
   const std::string path = (root_ / "c.db").string();
-  {
-    analytics::CohortDatabase database(path, Access::create);
-    for (int i = 0; i < 10000; ++i) database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1)});
-  }
+  fillWithOthers(path);
   QElapsedTimer clock;
   clock.start();
   DashboardWindow window;
@@ -89,25 +98,30 @@ TEST_F(InterfaceHeavy, NothingBlocksWhileAReplayAndAnImportRun) {
   const std::string command = std::string(CALOT_PROGRAM) + " assess " + (root_ / "one.h5").string() + " --cohort " +
                               (root_ / "c.db").string() + " > /dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0);
+  fillWithOthers(root_ / "c.db");
   DashboardWindow window;
   window.show();
   ASSERT_TRUE(window.openDatabase(QString::fromStdString((root_ / "c.db").string())));
   QCoreApplication::processEvents();
 
-  double gap = 0.0;
+  double gap = 0.0, work = 0.0;
   QElapsedTimer turn;
+  double before = cpuMilliseconds();
   QTimer timer;
   QObject::connect(&timer, &QTimer::timeout, [&] {
     gap = std::max(gap, static_cast<double>(turn.nsecsElapsed()) * 1e-6);
     turn.restart();
+    work = std::max(work, cpuMilliseconds() - before);
+    before = cpuMilliseconds();
   });
   turn.start();
   timer.start(1);
   window.findChild<QTabWidget*>()->setCurrentIndex(1);
   AttemptPage& page = *window.findChild<AttemptPage*>();
   ASSERT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, 300000));
+  std::cout << "most work in a turn while an attempt is opened: " << work << " ms\n";
   judge("largest gap while an attempt is opened", gap, longestGap);
-  gap = 0.0;
+  gap = work = 0.0;
   window.importRecordings({folder_.path()});
   page.replay().setSpeed(16.0);
   page.replay().play();
@@ -117,6 +131,7 @@ TEST_F(InterfaceHeavy, NothingBlocksWhileAReplayAndAnImportRun) {
     QTest::qWait(20);
     if (page.replay().isOpen() && !page.replay().position().playing) page.replay().play();
   }
+  std::cout << "most work in a turn while a replay and an import run: " << work << " ms\n";
   judge("largest gap while a replay and an import run", gap, longestGap);
 }
 

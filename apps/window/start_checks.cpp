@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/window/start_checks.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+}  // namespace
+
+void requireFolder(const std::string& folder, const std::string& what) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw Error(ExitCode::usage, fmt::format("{}: is no folder; {} go into one that exists", folder, what));
+  // Rights alone do not tell: a file system may take no files, or be for reading only.
+  std::string trial = folder + "/.calot-XXXXXX";
+  const int file = ::mkstemp(trial.data());
+  if (file < 0)
+    throw Error(ExitCode::failure,
+                fmt::format("{}: {} cannot be written there: {}", folder, what, std::strerror(errno)));
+  ::close(file);
+  ::unlink(trial.c_str());
+}
+
+void requireScreen() {
+  const std::string platform = variable("QT_QPA_PLATFORM");
+  const bool onScreen = platform.empty() || platform.starts_with("xcb") || platform.starts_with("wayland");
+  if (onScreen && variable("DISPLAY").empty() && variable("WAYLAND_DISPLAY").empty())
+    throw Error(ExitCode::failure,
+                "there is no screen to show a window on (DISPLAY is not set); xvfb-run gives a virtual one");
+}
+
+std::string positiveSeconds(const std::string& text) {
+  char* end = nullptr;
+  const double seconds = std::strtod(text.c_str(), &end);
+  const bool whole = end != text.c_str() && *end == '\0';
+  return whole && std::isfinite(seconds) && seconds > 0.0 ? std::string()
+                                                          : fmt::format("'{}' is no number of seconds above 0", text);
+}
+
+}  // namespace calot::apps
