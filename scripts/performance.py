@@ -35,6 +35,7 @@ HEADLINES = [
     ("paper.B.hz", "whole steps of a dissection, case B", "1/s", "> 1000"),
     ("step.E.hz", "the same, case E", "1/s", "> 250"),
     ("scene.operation.step_ms", "a step of the whole operation", "ms", "< 2.5"),
+    ("skip.cholecystectomy.rest.step_ms", "a step of it while nobody is near", "ms", "< 0.1"),
     ("replay.cholecystectomy.x_realtime", "replay of the operation over real time", "", "> 10"),
     ("contact.B.vs_deformation", "contact over deformation, case B", "", "< 3"),
     ("contact.max_depth_mm", "deepest point of an instrument", "mm", "< 0.2"),

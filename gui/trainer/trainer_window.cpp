@@ -108,6 +108,7 @@ void TrainerWindow::begin(recorder::LoadedScene scene) {
   setWindowTitle(QString::fromStdString(scene.description.name) + QString::fromUtf8(" – Calot trainer"));
   TrainingSettings settings = setup_.settings;
   settings.scene = std::move(scene);
+  settings.firstPicture = std::chrono::seconds(5);
   view_->showText("Getting ready …");
   rate_ = {};
   session_ = std::make_unique<TrainingSession>(

@@ -250,6 +250,7 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
                           const std::filesystem::path& file) {
   tap_.follow(session);
   session.join(tap_);
+  awaitPicture(session);
   recorder::RunSettings run;
   run.live = true;
   run.progress = [&](std::uint64_t) {
@@ -273,6 +274,21 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   }
   writer.finish();
   keepResult(report, source);
+}
+
+/// Nobody operates blindly. Meanwhile what the first steps need is worked out.
+void TrainingSession::awaitPicture(recorder::Session& session) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds glance(10);
+  const Clock::time_point end = Clock::now() + settings_.firstPicture;
+  session.prepare();
+  while (!tap_.isShown() && Clock::now() < end) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (command_) return;
+    }
+    std::this_thread::sleep_for(glance);
+  }
 }
 
 void TrainingSession::keepResult(const recorder::RunReport& report, const recorder::SampleSource& source) {

@@ -2,6 +2,7 @@
 // One trainee at one scene: attempts one after the other, each recorded as `calot record --live` records. No window.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <filesystem>
 #include <functional>
@@ -28,6 +29,8 @@ struct TrainingSettings {
   std::optional<recorder::StationKey> key;
   std::filesystem::path folder;  ///< where recordings go; it exists
   unsigned threads = 1;          ///< of the simulation
+  /// How long an attempt waits for its first picture, at most: OpenGL's programs are compiled for it.
+  std::chrono::milliseconds firstPicture{0};
 };
 
 /// What the session is at.
@@ -105,6 +108,7 @@ class TrainingSession {
   void run(recorder::Session& session, recorder::SampleSource& source, recorder::ControlledSource& controlled,
            recorder::RecordingWriter& writer, AttemptMonitor& monitor, const recorder::AttemptHeader& header,
            const std::filesystem::path& file);
+  void awaitPicture(recorder::Session& session);
   void keepResult(const recorder::RunReport& report, const recorder::SampleSource& source);
   void enter(Stage stage);
   void giveWay() const;

@@ -14,6 +14,7 @@ constexpr std::chrono::milliseconds patience(500);
 void ViewTap::follow(const recorder::Session& session) {
   session_ = &session;
   viewer_ = std::make_unique<SceneViewer>(session.model());
+  underway_ = 1;
   give();
 }
 

@@ -29,6 +29,8 @@ class ViewTap final : public recorder::Observer {
   void follow(const recorder::Session& session);
   /// Any thread: a view has been shown.
   void shown() { underway_ = 0; }
+  /// Has the newest one that was handed out been shown, or one after it?
+  [[nodiscard]] bool isShown() const { return underway_ == 0; }
   [[nodiscard]] std::uint64_t taken() const { return taken_; }  ///< views handed out
 
  private:

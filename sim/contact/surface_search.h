@@ -71,12 +71,6 @@ struct Near {
   double distance = 0.0;       ///< signed (m)
 };
 
-/// How the nodes of a patch have been displaced since rest: their mean, and how far the farthest is from it (m).
-struct Displacement {
-  Vec3 mean = Vec3::Zero();
-  double spread = -1.0;  ///< negative: not asked for yet
-};
-
 Displacement displacementOf(std::span<const int> nodes, std::span<const Vec3> position, std::span<const Vec3> rest);
 
 /// Bounds of the nodes that belong to a patch, grown by `margin`.

@@ -8,14 +8,21 @@
 
 namespace calot {
 
-void patchesInPlay(const SurfacePair& pair, const ContactSurface& a, std::span<const Vec3> positionA,
-                   const ContactSurface& b, std::span<const Vec3> positionB, double reach,
+void measureDisplacement(const ContactSurface& surface, std::span<const Vec3> position, std::span<const Vec3> rest,
+                         SurfaceDisplacement& out) {
+  out.whole = displacementOf(surface.nodes(), position, rest);
+  out.patch.resize(surface.patches().size());
+  for (std::uint32_t p = 0; p < out.patch.size(); ++p) {
+    out.patch[p] = displacementOf(surface.patchNodes(p), position, rest);
+  }
+}
+
+void patchesInPlay(const SurfacePair& pair, const SurfaceDisplacement& a, const SurfaceDisplacement& b, double reach,
                    std::vector<std::uint32_t>& out) {
   out.clear();
-  const Displacement other = displacementOf(b.nodes(), positionB, pair.restB_);
-  for (std::uint32_t p = 0; p < a.patches().size(); ++p) {
-    const Displacement mine = displacementOf(a.patchNodes(p), positionA, pair.restA_);
-    const double free = pair.leastDistance_[p] - ((mine.mean - other.mean).norm() + mine.spread + other.spread);
+  for (std::uint32_t p = 0; p < a.patch.size(); ++p) {
+    const Displacement& mine = a.patch[p];
+    const double free = pair.leastDistance_[p] - ((mine.mean - b.whole.mean).norm() + mine.spread + b.whole.spread);
     if (pair.depth_[p] > deepestOverlap || free <= reach) out.push_back(p);
   }
 }

@@ -35,6 +35,7 @@ struct VertexContact {
 };
 
 class NearTriangles;
+struct SurfaceDisplacement;
 
 /// What is known at rest of the vertices of one surface and the triangles of another or of the same; part of Model.
 class SurfacePair {
@@ -57,6 +58,8 @@ class SurfacePair {
   static constexpr double known = 0.015;    ///< distances at rest are known up to this (m)
 
   [[nodiscard]] bool self() const { return self_; }
+  [[nodiscard]] std::span<const Vec3> vertexRest() const { return restA_; }
+  [[nodiscard]] std::span<const Vec3> triangleRest() const { return restB_; }
   /// min(0, signed distance at rest) of each vertex (m).
   [[nodiscard]] std::span<const double> restOffset() const { return offset_; }
   /// How far the box of a patch of vertices must be grown for the broad phase to find all that counts (m).
@@ -66,9 +69,8 @@ class SurfacePair {
 
  private:
   friend class SurfaceSearch;
-  friend void patchesInPlay(const SurfacePair& pair, const ContactSurface& a, std::span<const Vec3> positionA,
-                            const ContactSurface& b, std::span<const Vec3> positionB, double reach,
-                            std::vector<std::uint32_t>& out);
+  friend void patchesInPlay(const SurfacePair& pair, const SurfaceDisplacement& a, const SurfaceDisplacement& b,
+                            double reach, std::vector<std::uint32_t>& out);
   void measureRest(const ContactSurface& a, const ContactSurface& b);
   [[nodiscard]] bool wasBehind(int vertex, std::size_t triangle) const;
 
@@ -88,10 +90,24 @@ class SurfacePair {
   std::size_t patchesB_ = 0;
 };
 
+/// How nodes have been displaced since rest: their mean, and how far the farthest is from it (m).
+struct Displacement {
+  Vec3 mean = Vec3::Zero();
+  double spread = -1.0;  ///< negative: not asked for yet
+};
+
+/// That of a surface: worked out once for all pairs that it is part of.
+struct SurfaceDisplacement {
+  std::vector<Displacement> patch;  ///< of the nodes that belong to each
+  Displacement whole;
+};
+void measureDisplacement(const ContactSurface& surface, std::span<const Vec3> position, std::span<const Vec3> rest,
+                         SurfaceDisplacement& out);
+
 /// The patches of `a` that can be in contact at all, ascending: the broad phase need be asked for these alone (and the
 /// answer's queries numbered by them). The others have not been displaced enough against the whole of `b`.
-void patchesInPlay(const SurfacePair& pair, const ContactSurface& a, std::span<const Vec3> positionA,
-                   const ContactSurface& b, std::span<const Vec3> positionB, double reach,
+/// @pre displacements are from the pair's rest
+void patchesInPlay(const SurfacePair& pair, const SurfaceDisplacement& a, const SurfaceDisplacement& b, double reach,
                    std::vector<std::uint32_t>& out);
 
 /// Finds the contacts of `a`'s vertices with `b`'s triangles (for a surface with itself, both are the same).

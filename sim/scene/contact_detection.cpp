@@ -210,6 +210,15 @@ void Stepper::Workspace::detectTissue(const State& state) {
   result.contact.tissueDepth = 0.0;
   const std::size_t first = blocks.size();
   tissueGap.clear();
+  displacement.resize(model.organs().size());
+  for (SurfaceDisplacement& organ : displacement) organ.patch.clear();
+  // From the skin at rest, from which all pairs are.
+  const auto displaced = [&](std::size_t organ) -> const SurfaceDisplacement& {
+    SurfaceDisplacement& own = displacement[organ];
+    const OrganModel& fixed = model.organs()[organ];
+    if (own.patch.empty()) measureDisplacement(fixed.surface, skin[organ], fixed.skin, own);
+    return own;
+  };
   for (std::size_t i = 0; i < model.tissuePairs().size(); ++i) {
     const TissuePair& pair = model.tissuePairs()[i];
     if (!moved[pair.a] && !moved[pair.b]) continue;
@@ -218,7 +227,7 @@ void Stepper::Workspace::detectTissue(const State& state) {
     const SurfacePair& rest_ = restOf(i);
     const ContactSurface& a = model.organs()[pair.a].surface;
     const ContactSurface& b = model.organs()[pair.b].surface;
-    patchesInPlay(rest_, a, skin[pair.a], b, skin[pair.b], far, patches);
+    patchesInPlay(rest_, displaced(pair.a), displaced(pair.b), far, patches);
     if (patches.empty()) continue;
     queries.clear();
     for (const std::uint32_t p : patches) {

@@ -238,6 +238,7 @@ struct Stepper::Workspace {
   std::vector<Box> earlierBounds;
   std::vector<BroadPhase::Pair> pairs;
   std::vector<std::uint32_t> patches;
+  std::vector<SurfaceDisplacement> displacement;  // per organ
   std::vector<SurfaceContact> found;
   std::vector<Inside> inside;
   std::vector<VertexContact> foundVertices;

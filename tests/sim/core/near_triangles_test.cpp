@@ -29,7 +29,11 @@ constexpr double reach = 4e-5;  // m, as in a step
 std::vector<BroadPhase::Pair> pairsOf(const SurfacePair& pair, const Body& a, std::span<const Vec3> positionA,
                                       const Body& b, std::span<const Vec3> positionB) {
   std::vector<std::uint32_t> play;
-  patchesInPlay(pair, a.surface, positionA, b.surface, positionB, reach, play);
+  SurfaceDisplacement movedA;
+  SurfaceDisplacement movedB;
+  measureDisplacement(a.surface, positionA, pair.vertexRest(), movedA);
+  measureDisplacement(b.surface, positionB, pair.triangleRest(), movedB);
+  patchesInPlay(pair, movedA, movedB, reach, play);
   SortedGrid grid(0.02);
   std::vector<Box> boxes;
   patchBounds(b.surface, positionB, 0.0, boxes);

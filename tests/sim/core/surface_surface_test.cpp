@@ -37,7 +37,11 @@ std::vector<VertexContact> contacts(const SurfacePair& pair, const Body& a, std:
   surfaceContacts(pair, a.surface, positionA, b.surface, positionB, pairs, reach, out);
   // Asking for the patches in play alone changes nothing.
   std::vector<std::uint32_t> play;
-  patchesInPlay(pair, a.surface, positionA, b.surface, positionB, reach, play);
+  SurfaceDisplacement movedA;
+  SurfaceDisplacement movedB;
+  measureDisplacement(a.surface, positionA, pair.vertexRest(), movedA);
+  measureDisplacement(b.surface, positionB, pair.triangleRest(), movedB);
+  patchesInPlay(pair, movedA, movedB, reach, play);
   std::vector<VertexContact> fewer;
   std::erase_if(pairs,
                 [&](const BroadPhase::Pair& p) { return !std::binary_search(play.begin(), play.end(), p.query); });
