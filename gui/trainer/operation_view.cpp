@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/operation_view.h"
 
+#include <cstddef>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QWheelEvent>
@@ -11,11 +12,12 @@ namespace calot::gui {
 using recorder::MouseControl;
 
 namespace {
-constexpr double notch = 120.0;  // of QWheelEvent::angleDelta
-}
+constexpr double notch = 120.0;           // of QWheelEvent::angleDelta
+constexpr std::size_t drawersAtOnce = 2;  // the picture follows the hand: it is to come as often as the machine can
+}  // namespace
 
 OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, QWidget* parent)
-    : ScenePictureWidget(parent), mouse_(std::move(mouse)) {
+    : ScenePictureWidget(parent, drawersAtOnce), mouse_(std::move(mouse)) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
   setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape holds the run, Tab leaves.");

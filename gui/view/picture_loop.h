@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene views to pictures on a thread of its own, the newest only. Knows no window.
+// Scene views to pictures on threads of its own, the newest only. Knows no window.
 #pragma once
 
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "gui/render/image.h"
 #include "sim/scene/scene_view.h"
@@ -21,20 +23,23 @@ struct ScenePicture {
   Image image;
 };
 
-/// A thread that draws whatever view is the newest. While one is being drawn the next ones replace each other: nothing
-/// queues, nobody waits. The last view that was given is always drawn in the end, in the last size that was given.
+/// Draws whatever view is the newest. While one is being drawn the next ones replace each other: nothing queues, nobody
+/// waits. The last view that was given is always drawn in the end, in the last size that was given.
+///
+/// With two drawers two views are drawn at a time: much of a picture is work of one thread, during which the other
+/// processors would wait. Pictures come in the order of their views; one that a newer one has overtaken is dropped.
 class PictureLoop {
  public:
   using Draw = std::function<Image(const SceneView&, int width, int height)>;
-  /// Makes what draws; called once, on the loop's own thread, before the first picture.
+  /// Makes what draws; called once a drawer, on its own thread, before its first picture.
   using MakeDraw = std::function<Draw()>;
   struct Receiver {
-    std::function<void(ScenePicture)> picture;       ///< called on the loop's thread
+    std::function<void(ScenePicture)> picture;       ///< called on a drawer's thread, by one at a time
     std::function<void(const std::string&)> failed;  ///< a view could not be drawn: one line
   };
 
-  PictureLoop(MakeDraw make, Receiver receiver);
-  /// Waits for the picture that is being drawn; what is left is dropped.
+  PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers = 1);
+  /// Waits for the pictures that are being drawn; what is left is dropped.
   ~PictureLoop();
   PictureLoop(const PictureLoop&) = delete;
   PictureLoop& operator=(const PictureLoop&) = delete;
@@ -55,9 +60,12 @@ class PictureLoop {
   std::condition_variable wake_;
   std::shared_ptr<const SceneView> newest_;
   int width_ = 0, height_ = 0;  ///< 0: none is wanted yet
-  bool stale_ = false;          ///< the newest view was not drawn yet in this size
+  bool stale_ = false;          ///< the newest view was not taken yet in this size
   bool stop_ = false;
-  std::thread thread_;  // last: it uses what is above
+  std::uint64_t taken_ = 0;      ///< pictures begun
+  std::uint64_t delivered_ = 0;  ///< the newest of them that the receiver has
+  std::mutex delivering_;
+  std::vector<std::thread> threads_;  // last: they use what is above
 };
 
 }  // namespace calot::gui

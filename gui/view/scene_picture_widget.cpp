@@ -31,25 +31,27 @@ QSize pictureSize(const QSize& size, double ratio) {
 
 }  // namespace
 
-ScenePictureWidget::ScenePictureWidget(QWidget* parent) : QWidget(parent) {
+ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers) : QWidget(parent) {
   setObjectName("scene");
   setAccessibleName("Picture of the scene");
   setAttribute(Qt::WA_OpaquePaintEvent);
   loop_ = std::make_unique<PictureLoop>(
-      makeDraw, PictureLoop::Receiver{[this](ScenePicture picture) {
-                                        const std::lock_guard lock(mutex_);
-                                        const bool waiting = newest_.view != nullptr;
-                                        newest_ = std::move(picture);
-                                        // One call is under way already: it takes this picture.
-                                        if (!waiting)
-                                          QMetaObject::invokeMethod(
-                                              this, [this] { takePicture(); }, Qt::QueuedConnection);
-                                      },
-                                      [this](const std::string& fault) {
-                                        const QString text = QString::fromStdString(fault);
-                                        QMetaObject::invokeMethod(
-                                            this, [this, text] { takeFailure(text); }, Qt::QueuedConnection);
-                                      }});
+      makeDraw,
+      PictureLoop::Receiver{[this](ScenePicture picture) {
+                              const std::lock_guard lock(mutex_);
+                              const bool waiting = newest_.view != nullptr;
+                              newest_ = std::move(picture);
+                              // One call is under way already: it takes this picture.
+                              if (!waiting)
+                                QMetaObject::invokeMethod(
+                                    this, [this] { takePicture(); }, Qt::QueuedConnection);
+                            },
+                            [this](const std::string& fault) {
+                              const QString text = QString::fromStdString(fault);
+                              QMetaObject::invokeMethod(
+                                  this, [this, text] { takeFailure(text); }, Qt::QueuedConnection);
+                            }},
+      drawers);
 }
 
 ScenePictureWidget::~ScenePictureWidget() { loop_.reset(); }

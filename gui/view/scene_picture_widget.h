@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <QImage>
@@ -16,7 +17,8 @@ namespace calot::gui {
 class ScenePictureWidget : public QWidget {
   Q_OBJECT
  public:
-  explicit ScenePictureWidget(QWidget* parent = nullptr);
+  /// @param drawers how many views are drawn at a time (PictureLoop)
+  explicit ScenePictureWidget(QWidget* parent = nullptr, std::size_t drawers = 1);
   ~ScenePictureWidget() override;
 
   /// Any thread; returns at once. @pre not null, changed by nobody any more

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <condition_variable>
 #include <future>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -130,6 +133,57 @@ TEST(PictureLoop, WhatWasClearedIsNotDrawn) {
   held.loop().show(viewOfStep(2));
   held.awaitAnswers(2);
   EXPECT_EQ(held.shown(), (std::vector<std::uint64_t>{0, 2}));
+}
+
+TEST(PictureLoop, TwoDrawersDrawTwoViewsAtATimeAndOneThatIsOvertakenIsDropped) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::set<std::uint64_t> open;  // steps that may be finished
+  std::vector<std::uint64_t> begun, ended, shown;
+  const auto await = [&](const std::vector<std::uint64_t>& list, std::size_t count) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return list.size() >= count; });
+  };
+  const auto finish = [&](std::uint64_t step) {
+    const std::lock_guard lock(mutex);
+    open.insert(step);
+    changed.notify_all();
+  };
+  PictureLoop loop(
+      [&] {
+        return [&](const SceneView& view, int, int) {
+          std::unique_lock lock(mutex);
+          begun.push_back(view.step);
+          changed.notify_all();
+          changed.wait(lock, [&] { return open.contains(view.step); });
+          ended.push_back(view.step);
+          changed.notify_all();
+          return Image{};
+        };
+      },
+      {[&](const ScenePicture& picture) {
+         const std::lock_guard lock(mutex);
+         shown.push_back(picture.view->step);
+         changed.notify_all();
+       },
+       [](const std::string&) {}},
+      2);
+  loop.resize(64, 48);
+  finish(0);
+  loop.show(viewOfStep(0));
+  await(ended, 2);  // both get warm by it, and it is shown once
+  loop.show(viewOfStep(1));
+  await(begun, 3);
+  loop.show(viewOfStep(2));
+  await(begun, 4);
+  finish(2);
+  await(shown, 2);
+  finish(1);
+  await(ended, 4);
+  finish(3);
+  loop.show(viewOfStep(3));
+  await(shown, 3);
+  EXPECT_EQ(shown, (std::vector<std::uint64_t>{0, 2, 3}));
 }
 
 TEST(PictureLoop, EndsWhileOneIsDrawnAndOthersWait) {
