@@ -91,6 +91,23 @@ TEST(TrainingSession, RecordsAsTheCommandLineDoesAndReplaysExactly) {
   }
 }
 
+TEST(TrainingSession, AnAttemptBeginsWhenItsFirstPictureWasShown) {
+  recorder::test::Folder folder;
+  const auto input = std::make_shared<ScriptInput>(trainertest::swayingScript(0.3));
+  TrainingSettings settings = trainertest::smallSettings(folder);
+  settings.firstPicture = std::chrono::minutes(5);
+  std::atomic<int> views{0};
+  TrainingSession session(std::move(settings), input, [&](const auto& /*view*/) { ++views; });
+  session.start();
+  ASSERT_TRUE(waitFor([&] { return views > 0; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(session.status().stage, Stage::preparing);
+  EXPECT_EQ(views, 1);
+  session.shown();
+  EXPECT_TRUE(waitFor([&] { return session.status().stage == Stage::ended; }));
+  EXPECT_EQ(session.status().report.outcome, Outcome::completed);
+}
+
 TEST(TrainingSession, APauseLeavesNoTick) {
   Rig rig(0.8);
   rig.session->start();
