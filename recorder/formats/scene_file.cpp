@@ -123,8 +123,10 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   if (object.has("solver")) {
     const JsonObject solver = object.at("solver").object(sceneRule("solver"));
     solver.read("tolerance", scene.solver.tolerance);
+    solver.read("speedTolerance", scene.solver.speedTolerance);
     solver.read("iterations", scene.solver.iterations);
     solver.read("responseTolerance", scene.solver.responseTolerance);
+    solver.read("responseSpeedTolerance", scene.solver.responseSpeedTolerance);
     solver.read("contactTolerance", scene.solver.contactTolerance);
     solver.read("contactPasses", scene.solver.contactPasses);
     solver.read("contactIterations", scene.solver.contactIterations);

@@ -100,8 +100,9 @@ std::vector<ObjectRule> makeRules() {
        {openBelow(optional("power", 0, 1000)), optional("reach", 0, 0.005), optional("carve", 0, 0.005),
         openBelow(optional("spot", 0, 0.0001)), openBelow(optional("charTime", 0, 100))}},
       {"solver",
-       {openBelow(optional("tolerance", 0, 0.1)), optional("iterations", 1, 100000),
-        openBelow(optional("responseTolerance", 0, 0.1)), openBelow(optional("contactTolerance", 0, 0.001)),
+       {openBelow(optional("tolerance", 0, 0.1)), optional("speedTolerance", 0, 0.001),
+        optional("iterations", 1, 100000), openBelow(optional("responseTolerance", 0, 0.1)),
+        optional("responseSpeedTolerance", 0, 0.001), openBelow(optional("contactTolerance", 0, 0.001)),
         optional("contactPasses", 1, 100), optional("contactIterations", 1, 100000), optional("sleeping")}},
   };
 }

@@ -13,8 +13,9 @@ namespace calot {
 
 namespace {
 
-constexpr std::size_t fewest = 3;  ///< triangles that are worth the lanes
-constexpr double rounding = 1e-8;  // m, far above that of all distances here
+constexpr std::size_t fewest = 3;    ///< triangles that are worth the lanes
+constexpr double rounding = 1e-8;    // m, far above that of all distances here
+constexpr double fastest = 0.00075;  ///< displacement a step beyond which lists do not live long enough to pay (m)
 
 /// Widens a box to hold the motions of some nodes. @param now of each node, was of each in `node`: four numbers
 CALOT_LANE_KERNEL void includeMotions(std::span<const int> node, const double* now, const double* was, double* lower,
@@ -44,6 +45,7 @@ void NearTriangles::reset() {
 }
 
 void NearTriangles::begin(const SurfaceSearch& search) {
+  ++age_;
   list_.resize(search.a().patches().size());
   bounds_.clear();
   now_.resize(search.positionB().size());
@@ -63,7 +65,7 @@ void NearTriangles::follow(const SurfaceSearch& search, std::uint32_t patch, std
 /// Have the open vertices been displaced by less than the margin against all triangles near them?
 bool NearTriangles::holds(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
                           double reach) {
-  const List& list = list_[patch];
+  List& list = list_[patch];
   if (!list.made || list.reach != reach) return false;
   Padded lower;  // of a box that holds the displacements of all corners near
   Padded upper;
@@ -79,12 +81,14 @@ bool NearTriangles::holds(const SurfaceSearch& search, std::uint32_t patch, std:
   const Box moved{Vec3(lower[0], lower[1], lower[2]), Vec3(upper[0], upper[1], upper[2])};
   const std::span<const int> node = search.a().patchNodes(patch);
   displaced_.resize(node.size());
+  double farthest = 0.0;
   for (const std::size_t k : search.room().open) {
     const Vec3 mine = search.positionA()[static_cast<std::size_t>(node[k])] - list.vertex[k];
     displaced_[k] = (mine - moved.lower).cwiseMax(moved.upper - mine).norm() + rounding;
-    if (!(displaced_[k] + rounding < margin)) return false;
+    farthest = std::max(farthest, displaced_[k]);
   }
-  return true;
+  list.pace = farthest / static_cast<double>(age_ - list.age);
+  return farthest + rounding < list.margin;
 }
 
 void NearTriangles::readBounds(const SurfaceSearch& search) {
@@ -122,8 +126,10 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
   List& list = list_[patch];
   list.made = true;
   list.reach = reach;
+  list.age = age_;
+  list.margin = list.pace > fastest ? 0.0 : margin;
   const Box box =
-      boundsOf(search.a(), search.positionA(), patch, search.pair().search(patch, reach) + margin + rounding);
+      boundsOf(search.a(), search.positionA(), patch, search.pair().search(patch, reach) + list.margin + rounding);
   list.patch.clear();
   list.start.assign(1, 0);
   list.corner.clear();
@@ -133,6 +139,7 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
     for (const int n : search.b().patchCorners(q)) list.corner.push_back(now_[static_cast<std::size_t>(n)]);
     list.start.push_back(list.corner.size());
   }
+  triangles_.choose(list.patch, box);
   const std::span<const int> node = search.a().patchNodes(patch);
   list.vertex.clear();
   list.entry.clear();
@@ -141,13 +148,12 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
     const auto v = static_cast<std::size_t>(n);
     const Vec3& p = search.positionA()[v];
     const std::size_t first = list.entry.size();
-    for (const std::uint32_t q : list.patch) {
-      triangles_.forEachWithin(
-          q, p, search.limitOf(v, reach) + margin, [&](std::size_t g) { return counting(search, n, q, g); },
-          [&](std::size_t t, double squared) {
-            list.entry.push_back({floatBelow(std::sqrt(squared) - rounding), static_cast<std::uint32_t>(t)});
-          });
-    }
+    triangles_.forEachWithin(
+        p, search.limitOf(v, reach) + list.margin,
+        [&](std::uint32_t q, std::size_t g) { return counting(search, n, q, g); },
+        [&](std::size_t t, double squared) {
+          list.entry.push_back({floatBelow(std::sqrt(squared) - rounding), static_cast<std::uint32_t>(t)});
+        });
     std::sort(list.entry.begin() + static_cast<std::ptrdiff_t>(first), list.entry.end());
     list.entryEnd.push_back(list.entry.size());
     list.vertex.push_back(p);

@@ -5,7 +5,8 @@
 // vertices goes `margin` farther than it need, and what it came upon is written down, with its distances and with where
 // everything was. Until a vertex and the patches of triangles near it have been displaced against one another by that
 // margin, no other triangle can have come within the distance that counts, and of those in the list only the ones that
-// were not farther than that distance and the displacement (Verlet's neighbour lists, 1967).
+// were not farther than that distance and the displacement (Verlet's neighbour lists, 1967). Where all
+// moves so fast that lists do not live long enough to pay, a look goes no farther than it need.
 //
 // The lists say which triangles need not be looked at, never on which side of one a vertex is: that is told from the
 // present alone. So the answer is the same with lists of any age and without, and nothing of this is part of State.
@@ -64,6 +65,9 @@ class NearTriangles {
   struct List {
     bool made = false;
     double reach = 0.0;                 ///< with which it was made (m)
+    double margin = 0.0;                ///< the same: NearTriangles::margin, or nothing where all moves fast
+    double pace = 0.0;                  ///< at which all was displaced when it was last asked (m a step)
+    std::uint64_t age = 0;              ///< the step in which it was made
     std::vector<std::uint32_t> patch;   ///< of triangles, whose corners were written down; ascending
     std::vector<std::size_t> start;     ///< of each in `corner`, and the end
     std::vector<Padded> corner;         ///< where they were (m)
@@ -91,6 +95,7 @@ class NearTriangles {
   std::vector<Box> bounds_;        ///< of the patches of triangles now; empty until asked for
   std::vector<double> displaced_;  ///< of the patch at hand, per vertex: against the triangles near it, at most (m)
   std::uint32_t patch_ = 0;        ///< at hand
+  std::uint64_t age_ = 0;          ///< steps
   Counts counts_;
 };
 

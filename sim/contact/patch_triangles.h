@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/contact/broad_phase.h"
 #include "sim/contact/surface_patches.h"
 #include "sim/contact/triangle_lanes.h"
 #include "sim/math/linear.h"
@@ -19,37 +20,44 @@ namespace calot {
 class PatchTriangles {
  public:
   static constexpr std::size_t groups = laneGroups(ContactSurface::largestPatch);  ///< in a patch, at most
-  static_assert(groups == laneCount && laneCount == 8);
 
   /// The surface has moved: what was made is no longer true. @param surface, position outlive the calls that follow
   void begin(const ContactSurface& surface, std::span<const Vec3> position);
 
-  /// Calls f(triangle, squared) for the triangles of a patch that may be within the distance, with a lower bound of
-  /// their squared distance (m^2), good to 1e-9 m: that of the box for a sliver, whose computed foot may be off.
-  /// @param counting counting(group) tells which lanes matter, a bit for each: triangles 8 group + lane of the patch
+  /// Takes up what of some patches reaches into a box: that is what forEachWithin() then knows.
+  void choose(std::span<const std::uint32_t> patches, const Box& box);
+
+  /// Calls f(triangle, squared) for the chosen triangles that may be within the distance, with a lower bound of their
+  /// squared distance (m^2), good to 1e-9 m: nothing for a sliver, whose computed foot may be off.
+  /// @param counting counting(patch, group) tells which lanes matter, a bit for each: triangles 8 group + lane of it
+  /// @pre p lies in the box of choose(), and as far from its sides as the distance
   template <class C, class F>
-  void forEachWithin(std::uint32_t patch, const Vec3& p, double distance, C&& counting, F&& f) {
-    const Patch& own = of(patch);
+  void forEachWithin(const Vec3& p, double distance, C&& counting, F&& f) {
+    const Ball ball(p, distance);
+    within(whole_, ball, hit_);
+    near_.clear();
+    nearBoxes_.clear();
+    for (std::size_t w = 0; w < whole_.size(); ++w) {
+      for (std::uint32_t lanes = hit_[w]; lanes != 0; lanes &= lanes - 1) {
+        const Chosen& chosen = chosen_[w * laneCount + static_cast<std::size_t>(std::countr_zero(lanes))];
+        const std::uint32_t counts = counting(chosen.patch, chosen.group);
+        if (counts == 0) continue;
+        near_.push_back({&chosen, counts});
+        nearBoxes_.push_back(&chosen.of->box);
+      }
+    }
+    within(nearBoxes_, ball, hit_);
     const double most = distance * distance;
-    LaneValues whole;
-    boxDistances(own.whole, p, whole);
-    for (std::size_t g = 0; g < own.count; ++g) {
-      if (whole[g] > most) continue;
-      std::uint32_t lanes = counting(g);
+    for (std::size_t n = 0; n < near_.size(); ++n) {
+      std::uint32_t lanes = near_[n].counts & hit_[n];
       if (lanes == 0) continue;
-      const Group& group = own.group[g];
-      LaneValues box;
-      boxDistances(group.box, p, box);
-      std::uint32_t within = 0;
-      for (std::size_t l = 0; l < laneCount; ++l) within |= (box[l] > most ? 0U : 1U) << l;
-      lanes &= within;
-      if (lanes == 0) continue;
+      const Group& group = *near_[n].chosen->of;
       LaneValues squared;
       pointTriangleDistances(group.triangles, p, squared);
       for (; lanes != 0; lanes &= lanes - 1) {
         const auto l = static_cast<std::size_t>(std::countr_zero(lanes));
-        const double least = (group.slivers >> l & 1U) != 0 ? box[l] : squared[l];
-        if (!(least > most)) f(own.first + g * laneCount + l, least);
+        const double least = (group.slivers >> l & 1U) != 0 ? 0.0 : squared[l];
+        if (!(least > most)) f(group.first + l, least);
       }
     }
   }
@@ -57,15 +65,30 @@ class PatchTriangles {
  private:
   struct Group {
     TriangleLanes triangles;
-    BoundsLanes box;
+    BoxLanes box;               ///< of each triangle
+    std::size_t first = 0;      ///< triangle
     std::uint32_t slivers = 0;  ///< a bit for each lane
   };
   struct Patch {
     bool made = false;
-    std::size_t first = 0;  ///< triangle
     std::size_t count = 0;  ///< of groups
-    BoundsLanes whole;      ///< of each group
+    BoxLanes whole;         ///< of each group
     std::array<Group, groups> group;
+  };
+  struct Chosen {
+    std::uint32_t patch = 0;
+    std::uint32_t group = 0;
+    const Group* of = nullptr;
+  };
+  struct Near {
+    const Chosen* chosen;
+    std::uint32_t counts;  ///< a bit for each lane
+  };
+  /// A place and a distance, rounded such that what is within stays so.
+  struct Ball {
+    Ball(const Vec3& p, double distance);
+    std::array<float, 3> lower{}, upper{};
+    float squared;
   };
 
   const Patch& of(std::uint32_t patch) {
@@ -73,10 +96,17 @@ class PatchTriangles {
     return patch_[patch];
   }
   void make(std::uint32_t patch);
+  /// Which of the boxes may reach into the ball, a bit for each lane.
+  static void within(std::span<const BoxLanes* const> boxes, const Ball& ball, std::vector<std::uint8_t>& hit);
 
   const ContactSurface* surface_ = nullptr;
   std::span<const Vec3> position_;
   std::vector<Patch> patch_;
+  std::vector<Chosen> chosen_;
+  std::vector<BoxLanes> chosenBoxes_;  ///< of groups
+  std::vector<const BoxLanes*> whole_, nearBoxes_;
+  std::vector<Near> near_;
+  std::vector<std::uint8_t> hit_;
 };
 
 }  // namespace calot

@@ -6,17 +6,14 @@
 #include <utility>
 
 #include "sim/contact/float_bounds.h"
+#include "sim/math/lanes.h"
 
 namespace calot {
 
 namespace {
 
-void halve(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::size_t last,
-           std::vector<ContactSurface::Patch>& patches) {
-  if (last - first <= ContactSurface::largestPatch) {
-    patches.push_back({first, last});
-    return;
-  }
+/// Sorts items along the longest side of their places.
+void sortAlong(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::size_t last) {
   Box box;
   for (std::size_t i = first; i < last; ++i) box.include(items[i].first);
   const Vec3 size = box.upper - box.lower;
@@ -27,6 +24,26 @@ void halve(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::
               return std::lexicographical_compare(a.second.data(), a.second.data() + 3, b.second.data(),
                                                   b.second.data() + 3);
             });
+}
+
+/// Within a patch, triangles that follow one another by lanes stand near one another.
+void group(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::size_t last) {
+  const std::size_t groups = laneGroups(last - first);
+  if (groups <= 1) return;
+  sortAlong(items, first, last);
+  const std::size_t middle = first + groups / 2 * laneCount;
+  group(items, first, middle);
+  group(items, middle, last);
+}
+
+void halve(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::size_t last,
+           std::vector<ContactSurface::Patch>& patches) {
+  if (last - first <= ContactSurface::largestPatch) {
+    patches.push_back({first, last});
+    group(items, first, last);
+    return;
+  }
+  sortAlong(items, first, last);
   const std::size_t middle = first + (last - first) / 2;
   halve(items, first, middle, patches);
   halve(items, middle, last, patches);

@@ -12,7 +12,7 @@ OrganBody::OrganBody(const Model& model, std::size_t organ, const SolidSolver::S
       settings_(settings),
       responses_(responses),
       executor_(executor),
-      rest_(solid_, settings, executor) {}
+      rest_(solid_, responses, executor) {}
 
 std::span<const Vec3> OrganBody::position(const State& state) const { return state.organ[organ_].position; }
 std::span<const Vec3> OrganBody::velocity(const State& state) const { return state.organ[organ_].velocity; }

@@ -173,8 +173,10 @@ Stepper::Workspace::Workspace(const Model& model_, Executor& executor_, MakeBroa
   settings.step = model.stepSeconds();
   settings.tolerance = model.scene().solver.tolerance;
   settings.cap = model.scene().solver.iterations;
+  settings.speedTolerance = model.scene().solver.speedTolerance;
   responseSettings = settings;
   responseSettings.tolerance = model.scene().solver.responseTolerance;
+  responseSettings.speedTolerance = model.scene().solver.responseSpeedTolerance;
   for (std::size_t o = 0; o < organs; ++o) {
     body.push_back(std::make_unique<OrganBody>(model, o, settings, responseSettings, executor));
     skinOf.push_back(std::make_unique<OrganSkin>(model, o));

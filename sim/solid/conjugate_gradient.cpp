@@ -63,7 +63,7 @@ void ConjugateGradient::clear(std::size_t size) {
 }
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
-                                     std::span<float> x, double tolerance, std::uint32_t cap) {
+                                     std::span<float> x, const SolveGoal& wanted) {
   const sweeps::Slices slices = slicesOf(matrix, values);
   clear(matrix.vectorSize());
   sRows_.assign(matrix.rows() * rowStride, 0.0F);
@@ -92,10 +92,11 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
     report.converged = start == 0.0;
     return report;
   }
-  const double goal = tolerance * tolerance * start;
+  const double from = std::max(start, wanted.from());
+  const double goal = wanted.tolerance * wanted.tolerance * from;
   double size = start;
   float beta = 0.0F;
-  while (size > goal && report.iterations < cap) {
+  while (size > goal && report.iterations < wanted.cap) {
     std::fill(u_.begin(), u_.end(), 0.0F);
     sweeps::backward(slices, z_.data(), beta, p_.data(), t_.data(), u_.data());
     addExtra();
@@ -106,7 +107,7 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
     size = next;
     ++report.iterations;
   }
-  report.residual = std::sqrt(size / start);
+  report.residual = std::sqrt(size / from);
   report.converged = size <= goal;
   return report;
 }

@@ -27,9 +27,20 @@ struct Slices;
 struct SolveReport {
   std::uint32_t iterations = 0;
   /// |r| / |b| by the recursion, in the norm of the preconditioner's inverse, largest over the right-hand sides: near
-  /// to the relative error in the norm of energy.
+  /// to the relative error in the norm of energy. Where b is less than what the tolerance is counted from
+  /// (SolveGoal::from()), |r| over that.
   double residual = 0.0;
   bool converged = true;
+};
+
+/// When a solve ends: |r| <= max(tolerance |b|, least), in the norm of SolveReport.
+struct SolveGoal {
+  double tolerance = 1e-4;
+  std::uint32_t cap = 200;  ///< of iterations
+  double least = 0.0;       ///< what is less is not worth an iteration (kg^1/2 m/s, for b in N s)
+
+  /// The square of what the tolerance is counted from where b is less.
+  [[nodiscard]] double from() const { return least > 0.0 ? (least / tolerance) * (least / tolerance) : 0.0; }
 };
 
 class ConjugateGradient {
@@ -39,15 +50,15 @@ class ConjugateGradient {
   /// @pre the diagonal blocks are positive definite.
   void prepare(const BlockMatrix& matrix, std::span<const float> values, std::span<const ExtraBlock> extra = {});
 
-  /// Solves A x = b until the residual of SolveReport is at most `tolerance`. Layout of b and x: BlockMatrix vectors.
+  /// Solves A x = b until the residual of SolveReport is at most the tolerance. Layout of b and x: BlockMatrix vectors.
   /// @pre prepare() was called with these values.
   SolveReport solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
-                    std::span<float> x, double tolerance, std::uint32_t cap);
+                    std::span<float> x, const SolveGoal& wanted);
 
   /// The same with a lattice beside the sweeps, which then cost half a multiplication more each: large solids need a
   /// fraction of the iterations. The residual is in the norm of both.
   SolveReport solve(const BlockMatrix& matrix, std::span<const float> values, CoarseLattice& lattice,
-                    std::span<const float> b, std::span<float> x, double tolerance, std::uint32_t cap);
+                    std::span<const float> b, std::span<float> x, const SolveGoal& wanted);
 
   /// Eight right-hand sides at once: component i of row r of vector k stands at 24 r + 8 i + k. Zero ones cost nothing
   /// extra and stay zero. What becomes of one does not depend on the others.

@@ -17,8 +17,7 @@
 namespace calot {
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, CoarseLattice& lattice,
-                                     std::span<const float> b, std::span<float> x, double tolerance,
-                                     std::uint32_t cap) {
+                                     std::span<const float> b, std::span<float> x, const SolveGoal& wanted) {
   const sweeps::Slices slices = slicesOf(matrix, values);
   const std::size_t size = matrix.vectorSize();
   clear(size);
@@ -56,10 +55,11 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
     report.converged = start == 0.0;
     return report;
   }
-  const double goal = tolerance * tolerance * start;
+  const double from = std::max(start, wanted.from());
+  const double goal = wanted.tolerance * wanted.tolerance * from;
   double left = start;
   float beta = 0.0F;
-  while (left > goal && report.iterations < cap) {
+  while (left > goal && report.iterations < wanted.cap) {
     std::fill(uw_.begin(), uw_.end(), 0.0F);
     sweeps::backwardPairs(slices, z_.data(), c_.data(), beta, p_.data(), uw_.data(), pq_.data());
     for (const ExtraBlock& e : extra_) {
@@ -76,7 +76,7 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
     beta = static_cast<float>(next / left);
     left = next;
   }
-  report.residual = std::sqrt(std::max(0.0, left) / start);
+  report.residual = std::sqrt(std::max(0.0, left) / from);
   report.converged = left <= goal;
   return report;
 }

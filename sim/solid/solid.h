@@ -69,6 +69,8 @@ class SolidSolver {
     double step = 0.01;  ///< h (s)
     double tolerance = 1e-4;
     std::uint32_t cap = 200;
+    /// An error whose energy is that of the whole solid at this speed is not worth an iteration (m/s).
+    double speedTolerance = 0.0;
     int rotationSweeps = 2;
     bool lattice = true;  ///< where CoarseLattice::isWorthIt()
   };
@@ -132,6 +134,7 @@ class SolidSolver {
   std::vector<float> b_, x_;
   std::vector<Vec3> freeVelocity_;
   double heldBack_ = 0.0;
+  double wholeMass_ = 0.0;  ///< of the solid at rest (kg)
   ConjugateGradient cg_;
   std::optional<CoarseLattice> lattice_;
   const SolidModel* latticeModel_ = nullptr;  ///< that it was made of

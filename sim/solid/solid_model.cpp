@@ -20,6 +20,7 @@ SolidModel::SolidModel(std::vector<Vec3> rest, std::vector<Index4> tetrahedra, c
     const double quarter = 0.25 * material_.density * elements().restVolume(e);
     for (int a = 0; a < 4; ++a) mass_[static_cast<std::size_t>(tetrahedra_[e][a])] += quarter;
   }
+  wholeMass_ = std::accumulate(mass_.begin(), mass_.end(), 0.0);
 }
 
 SolidModel::SolidModel(std::vector<Vec3> rest, std::vector<Index8> cubes, double edge, const std::vector<bool>& fixed,
@@ -34,6 +35,7 @@ SolidModel::SolidModel(std::vector<Vec3> rest, std::vector<Index8> cubes, double
   for (const Index8& cube : cube_) {
     for (const int node : cube) mass_[static_cast<std::size_t>(node)] += eighth;
   }
+  wholeMass_ = std::accumulate(mass_.begin(), mass_.end(), 0.0);
 }
 
 std::size_t SolidModel::groups() const { return laneGroups(elementCount()); }

@@ -49,6 +49,8 @@ class SolidModel {
   [[nodiscard]] std::size_t groups() const;
   /// Lumped masses (kg): an equal share of each incident element, where all are full.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
+  /// Their sum.
+  [[nodiscard]] double wholeMass() const { return wholeMass_; }
   /// Deformed volume (m^3). @param fill share of each cube that is there; empty: all of it
   [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill = {}) const;
   /// Row of a node in the system, or -1 where it is fixed. Some rows have no node: they only fill slices up.
@@ -69,6 +71,7 @@ class SolidModel {
   Material material_;
   std::variant<TetrahedralElements, HexahedralElements> elements_;
   std::vector<double> mass_;
+  double wholeMass_ = 0.0;
   SolidSystem system_;
 };
 

@@ -97,10 +97,11 @@ void SolidSolver::prepare(const SolidModel& model, const Settings& settings, Exe
 
 /// x_ = A^-1 b_
 SolveReport SolidSolver::solve(const Settings& settings) {
-  if (lattice_) {
-    return cg_.solve(system_->matrix(), values_, *lattice_, b_, x_, asSmooth * settings.tolerance, settings.cap);
-  }
-  return cg_.solve(system_->matrix(), values_, b_, x_, settings.tolerance, settings.cap);
+  SolveGoal wanted{settings.tolerance, settings.cap, settings.speedTolerance * std::sqrt(wholeMass_)};
+  if (!lattice_) return cg_.solve(system_->matrix(), values_, b_, x_, wanted);
+  wanted.tolerance *= asSmooth;
+  wanted.least *= asSmooth;
+  return cg_.solve(system_->matrix(), values_, *lattice_, b_, x_, wanted);
 }
 
 void SolidSolver::addAttachments(const Settings& settings, std::span<const Attachment> attachments) {
@@ -226,6 +227,7 @@ SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, 
       }
     }
   });
+  wholeMass_ = model.wholeMass();
   cg_.prepare(system_->matrix(), values_, extra_);
   const SolveReport report = solve(settings);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());

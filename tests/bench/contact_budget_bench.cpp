@@ -34,6 +34,7 @@ struct Probe {
 
 SceneDescription converged(SceneDescription scene) {
   scene.solver.tolerance = 1e-7;
+  scene.solver.speedTolerance = scene.solver.responseSpeedTolerance = 0.0;
   scene.solver.iterations = 2000;
   scene.solver.responseTolerance = 1e-6;
   scene.solver.contactTolerance = 1e-11;

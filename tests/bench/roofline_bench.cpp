@@ -168,7 +168,7 @@ void roofline(benchmark::State& bench, const BoxSize& size) {
   for (auto _ : bench) {
     // No tolerance: as many iterations as asked for, and one more sweep and update to begin with.
     constexpr std::uint32_t iterations = 20;
-    const double iteration = leastTime([&] { cg.solve(matrix, values, b, x, 0.0, iterations); }) / (iterations + 0.5);
+    const double iteration = leastTime([&] { cg.solve(matrix, values, b, x, {0.0, iterations}); }) / (iterations + 0.5);
     put(bench, name, "iteration", iterationOf(matrix), iteration);
     const double elements = leastTime([&] {
       model.elements().evaluate(state.position, state.velocity, body.step, model.material().lame, 2, state.rotation,

@@ -174,6 +174,7 @@ TEST(Bodies, ASymmetricGraspStaysSymmetric) {
   scene.hands[0].home = Vec3(-0.03, 0.0, 0.03);
   scene.hands[1].home = Vec3(0.03, 0.0, 0.03);
   scene.solver.tolerance = 1e-6;
+  scene.solver.speedTolerance = scene.solver.responseSpeedTolerance = 0.0;
   scene.solver.responseTolerance = 1e-5;
   scene.solver.contactTolerance = 1e-10;
   scene.solver.contactIterations = 1000;

@@ -356,7 +356,7 @@ TEST(ConjugateGradient, AgreesWithDenseFactorisation) {
     std::vector<float> x(system.matrix.vectorSize(), 7.0F);
     cg.prepare(system.matrix, system.values);
     constexpr double tolerance = 3e-5;
-    const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, tolerance, 1000);
+    const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, {tolerance, 1000});
     EXPECT_TRUE(report.converged) << nodes << " nodes";
     EXPECT_LE(report.residual, tolerance);
     EXPECT_GT(report.iterations, 0U);
@@ -375,6 +375,42 @@ TEST(ConjugateGradient, AgreesWithDenseFactorisation) {
       }
     }
   }
+}
+
+/// What is left to do counts by its energy: a small load is solved no farther than `least`, a smaller one not at all,
+/// and the residual is told from what the tolerance is counted from.
+TEST(ConjugateGradient, EndsWhereWhatIsLeftIsNotWorthAnIteration) {
+  SCOPED_TRACE("seed 34");
+  Random random(34);
+  const System system = randomSystem(60, 120, random);
+  const Eigen::VectorXd b = system.randomVector(random);
+  const Eigen::MatrixXd m = system.preconditioner();
+  const double size = std::sqrt(b.dot(m.ldlt().solve(b)));
+  ConjugateGradient cg;
+  cg.prepare(system.matrix, system.values);
+  std::vector<float> x(system.matrix.vectorSize());
+  std::uint32_t before = 1000;
+  for (const double share : {0.0, 1e-4, 1e-2, 0.3}) {
+    const SolveGoal goal{1e-5, 1000, share * size};
+    const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, goal);
+    EXPECT_TRUE(report.converged) << share;
+    EXPECT_LE(report.residual, goal.tolerance) << share;
+    EXPECT_LT(report.iterations, before) << share;
+    before = report.iterations;
+    const Eigen::VectorXd r = b - system.whole() * system.unpacked(x);
+    const double left = std::sqrt(r.dot(m.ldlt().solve(r)));
+    EXPECT_LE(left, 2.0 * std::max(1e-5, share) * size) << share;
+    if (share > 0.0) {
+      EXPECT_NEAR(report.residual, 1e-5 * left / (share * size), 0.1 * report.residual + 1e-7);
+    }
+  }
+  EXPECT_GT(before, 0U);
+  const SolveReport none = cg.solve(system.matrix, system.values, system.packed(b), x, {1e-5, 1000, 1.01 * size});
+  EXPECT_TRUE(none.converged);
+  EXPECT_EQ(none.iterations, 0U);
+  EXPECT_EQ(system.unpacked(x).norm(), 0.0);
+  // A cap that binds is a miss, however little is asked for.
+  EXPECT_FALSE(cg.solve(system.matrix, system.values, system.packed(b), x, {1e-5, 1, 1e-4 * size}).converged);
 }
 
 TEST(ConjugateGradient, BlocksThatTheStructureHasNoPlaceFor) {
@@ -404,7 +440,7 @@ TEST(ConjugateGradient, BlocksThatTheStructureHasNoPlaceFor) {
   ConjugateGradient cg;
   cg.prepare(system.matrix, system.values, extra);
   std::vector<float> x(system.matrix.vectorSize());
-  EXPECT_TRUE(cg.solve(system.matrix, system.values, system.packed(b), x, 1e-6, 1000).converged);
+  EXPECT_TRUE(cg.solve(system.matrix, system.values, system.packed(b), x, {1e-6, 1000}).converged);
   const Eigen::VectorXd wanted = a.ldlt().solve(b);
   EXPECT_LT((system.unpacked(x) - wanted).norm(), 2e-5 * wanted.norm());
   Eigen::MatrixXd two = Eigen::MatrixXd::Zero(system.size(), laneCount);
@@ -425,7 +461,7 @@ TEST(ConjugateGradient, SweepsHalveTheIterations) {
   ConjugateGradient cg;
   cg.prepare(system.matrix, system.values);
   std::vector<float> x(system.matrix.vectorSize());
-  const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, 1e-4, 1000);
+  const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, {1e-4, 1000});
   const int sweeps = iterationsWith(system.whole(), system.preconditioner(), b, 1e-4);
   const int diagonal = iterationsWith(system.whole(), system.blockDiagonal(), b, 1e-4);
   RecordProperty("iterations", static_cast<int>(report.iterations));
@@ -490,7 +526,7 @@ TEST(ConjugateGradient, ZeroRightHandSide) {
   cg.prepare(system.matrix, system.values);
   const std::vector<float> b(system.matrix.vectorSize(), 0.0F);
   std::vector<float> x(b.size(), 7.0F);
-  const SolveReport report = cg.solve(system.matrix, system.values, b, x, 1e-6, 100);
+  const SolveReport report = cg.solve(system.matrix, system.values, b, x, {1e-6, 100});
   EXPECT_TRUE(report.converged);
   EXPECT_EQ(report.iterations, 0U);
   EXPECT_EQ(report.residual, 0.0);
@@ -504,7 +540,7 @@ TEST(ConjugateGradient, ACapThatBindsIsReported) {
   cg.prepare(system.matrix, system.values);
   const Eigen::VectorXd b = system.randomVector(random);
   std::vector<float> x(system.matrix.vectorSize());
-  const SolveReport one = cg.solve(system.matrix, system.values, system.packed(b), x, 1e-6, 2);
+  const SolveReport one = cg.solve(system.matrix, system.values, system.packed(b), x, {1e-6, 2});
   EXPECT_FALSE(one.converged);
   EXPECT_EQ(one.iterations, 2U);
   const Eigen::LDLT<Eigen::MatrixXd> m(system.preconditioner());
@@ -531,7 +567,7 @@ TEST(ConjugateGradient, AnIndefiniteMatrixIsNoSilentMiss) {
   b[3 * system.row[0]] = 1.0;
   b[3 * system.row[1]] = -1.0;
   std::vector<float> x(system.matrix.vectorSize());
-  const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, 1e-6, 100);
+  const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, {1e-6, 100});
   EXPECT_FALSE(report.converged);
   for (const float v : x) EXPECT_TRUE(std::isfinite(v));
 }
@@ -544,13 +580,13 @@ TEST(ConjugateGradient, WhatIsNotFiniteIsAMissAndLeavesNoTrace) {
   cg.prepare(system.matrix, system.values);
   const std::vector<float> good = system.packed(system.randomVector(random));
   std::vector<float> before(good.size());
-  cg.solve(system.matrix, system.values, good, before, 1e-4, 100);
+  cg.solve(system.matrix, system.values, good, before, {1e-4, 100});
   std::vector<float> bad = good;
   bad[laneOffset(static_cast<std::size_t>(system.row[4]))] = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> x(good.size());
-  EXPECT_FALSE(cg.solve(system.matrix, system.values, bad, x, 1e-4, 100).converged);
+  EXPECT_FALSE(cg.solve(system.matrix, system.values, bad, x, {1e-4, 100}).converged);
   std::vector<float> after(good.size());
-  EXPECT_TRUE(cg.solve(system.matrix, system.values, good, after, 1e-4, 100).converged);
+  EXPECT_TRUE(cg.solve(system.matrix, system.values, good, after, {1e-4, 100}).converged);
   EXPECT_EQ(before, after);
 }
 

@@ -175,6 +175,7 @@ TEST(TiedPair, KeepsItsMomentum) {
   scene.vessels.push_back(d);
   scene.solver.sleeping = false;
   scene.solver.tolerance = 1e-6;
+  scene.solver.speedTolerance = scene.solver.responseSpeedTolerance = 0.0;
   scene.hands[0].home = Vec3(-0.1, 0.0, 0.1);
   scene.hands[1].home = Vec3(0.1, 0.0, 0.1);
   const std::unique_ptr<const Model> model = test::buildModel(scene);
