@@ -5,8 +5,10 @@
 // vertices goes `margin` farther than it need, and what it came upon is written down, with its distances and with where
 // everything was. Until a vertex and the patches of triangles near it have been displaced against one another by that
 // margin, no other triangle can have come within the distance that counts, and of those in the list only the ones that
-// were not farther than that distance and the displacement (Verlet's neighbour lists, 1967). Where all
-// moves so fast that lists do not live long enough to pay, a look goes no farther than it need.
+// were not farther than that distance and the displacement (Verlet's neighbour lists, 1967). What all
+// near have in common, a rotation too, displaces nothing against anything. Where things move so fast that lists do not
+// live long enough to pay, a look goes no farther than it need; and lists that live are made for a third of the patches
+// a step, so that no step has all of them to make.
 //
 // The lists say which triangles need not be looked at, never on which side of one a vertex is: that is told from the
 // present alone. So the answer is the same with lists of any age and without, and nothing of this is part of State.
@@ -42,6 +44,9 @@ class NearTriangles {
   void reset();
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
+  /// Works out ahead what the lists of a surface with itself would have to, patch by patch. @param surface at rest
+  void prepare(const SurfacePair& pair, const ContactSurface& surface);
+
   /// To be called before the patches of one answer: surfaces have moved.
   void begin(const SurfaceSearch& search);
   /// Makes nearest() ready for the open vertices of a patch (SearchRoom::open): with the lists there are, where they
@@ -54,6 +59,7 @@ class NearTriangles {
   SearchRoom& room() { return room_; }
 
  private:
+  static constexpr std::size_t unknown = ~std::size_t{0};
   struct Entry {
     float distance = 0.0F;  ///< not above what it was (m)
     std::uint32_t triangle = 0;
@@ -68,6 +74,7 @@ class NearTriangles {
     double margin = 0.0;                ///< the same: NearTriangles::margin, or nothing where all moves fast
     double pace = 0.0;                  ///< at which all was displaced when it was last asked (m a step)
     std::uint64_t age = 0;              ///< the step in which it was made
+    bool turning = false;               ///< has so far moved that a common rotation is looked for
     std::vector<std::uint32_t> patch;   ///< of triangles, whose corners were written down; ascending
     std::vector<std::size_t> start;     ///< of each in `corner`, and the end
     std::vector<Padded> corner;         ///< where they were (m)
@@ -76,23 +83,25 @@ class NearTriangles {
     std::vector<Entry> entry;           ///< nearest first
   };
 
+  double measure(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                 const std::array<Padded, 4>* rigid);
+  double measureTurned(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near);
   bool holds(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
   void renew(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
   void readBounds(const SurfaceSearch& search);
-  std::uint32_t counting(const SurfaceSearch& search, int vertex, std::uint32_t patch, std::size_t group);
+  void count(const SurfacePair& pair, const ContactSurface& surface, std::uint32_t vertices, std::uint32_t triangles);
 
   SearchRoom room_;
   std::vector<List> list_;  ///< per patch of vertices
   PatchTriangles triangles_;
-  /// Of a surface with itself: for each vertex (empty until asked for) and group of eight triangles which of them
-  /// SurfacePair does not exclude, a bit each, and whether that was worked out.
-  struct Counting {
-    std::uint8_t lanes = 0;
-    bool known = false;
-  };
-  std::vector<std::vector<Counting>> counting_;
-  std::vector<Padded> now_;        ///< where the nodes of the triangles' surface are (m)
-  std::vector<Box> bounds_;        ///< of the patches of triangles now; empty until asked for
+  /// Of a surface with itself: for a patch of vertices and one of triangles where in `counting_` it begins.
+  std::vector<std::size_t> countingStart_;
+  /// For each vertex and eight triangles which of them SurfacePair does not exclude, a bit each.
+  std::vector<std::uint8_t> counting_;
+  std::vector<Padded> now_;                  ///< where the nodes of the triangles' surface are (m)
+  std::vector<Box> bounds_;                  ///< of the patches of triangles now; empty until asked for
+  std::vector<const Padded*> was_;           ///< per near patch: where its corners were
+  std::vector<Vec3> sampleWas_, sampleNow_;  ///< of measureTurned()
   std::vector<double> displaced_;  ///< of the patch at hand, per vertex: against the triangles near it, at most (m)
   std::uint32_t patch_ = 0;        ///< at hand
   std::uint64_t age_ = 0;          ///< steps

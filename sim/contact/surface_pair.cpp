@@ -19,6 +19,10 @@ SurfacePair::SurfacePair(const ContactSurface& vertices, std::span<const Vec3> v
 
 SurfacePair::SurfacePair(const ContactSurface& surface, std::span<const Vec3> rest)
     : self_(true), restA_(rest.begin(), rest.end()), restB_(rest.begin(), rest.end()), triangle_(surface.triangles()) {
+  for (const Index3& t : triangle_) {
+    const Vec3& a = rest[static_cast<std::size_t>(t[0])];
+    normal_.push_back((rest[static_cast<std::size_t>(t[1])] - a).cross(Vec3(rest[static_cast<std::size_t>(t[2])] - a)));
+  }
   Candidates candidates;
   std::vector<std::vector<std::uint32_t>> lists(rest.size());
   std::vector<double> radius(rest.size(), 0.0);
@@ -51,23 +55,34 @@ SurfacePair::SurfacePair(const ContactSurface& surface, std::span<const Vec3> re
 bool SurfacePair::excluded(int vertex, std::size_t triangle) const {
   if (!self_) return false;
   const auto v = static_cast<std::size_t>(vertex);
-  const auto first = excluded_.begin() + static_cast<std::ptrdiff_t>(excludedStart_[v]);
-  const auto last = excluded_.begin() + static_cast<std::ptrdiff_t>(excludedStart_[v + 1]);
-  return std::binary_search(first, last, static_cast<std::uint32_t>(triangle)) || wasBehind(vertex, triangle);
+  const std::span<const std::uint32_t> near = listed(v);
+  if (std::binary_search(near.begin(), near.end(), static_cast<std::uint32_t>(triangle))) return true;
+  const Index3& t = triangle_[triangle];
+  const auto corner = [&](int k) { return restB_[static_cast<std::size_t>(t[k])]; };
+  return wasBehind(v, triangle, closestOnTriangle(restA_[v], corner(0), corner(1), corner(2)).squaredDistance);
 }
 
-bool SurfacePair::wasBehind(int vertex, std::size_t triangle) const {
-  const Index3& t = triangle_[triangle];
-  const Vec3& p = restA_[static_cast<std::size_t>(vertex)];
-  const Vec3& a = restB_[static_cast<std::size_t>(t[0])];
-  const Vec3& b = restB_[static_cast<std::size_t>(t[1])];
-  const Vec3& c = restB_[static_cast<std::size_t>(t[2])];
-  const Vec3 normal = (b - a).cross(c - a);
-  if (!((p - a).dot(normal) < 0.0)) return false;
-  const PointTriangle point = closestOnTriangle(p, a, b, c);
-  if (point.squaredDistance > thickest * thickest) return false;
+std::uint32_t SurfacePair::notExcluded(int vertex, std::size_t first, std::size_t count,
+                                       const TriangleLanes& rest) const {
+  std::uint32_t lanes = (1U << count) - 1U;
+  if (!self_) return lanes;
+  const auto v = static_cast<std::size_t>(vertex);
+  LaneValues squared;
+  pointTriangleDistances(rest, restA_[v], squared);
+  for (std::size_t l = 0; l < count; ++l) lanes &= ~((wasBehind(v, first + l, squared[l]) ? 1U : 0U) << l);
+  const std::span<const std::uint32_t> near = listed(v);
+  auto next = std::lower_bound(near.begin(), near.end(), static_cast<std::uint32_t>(first));
+  for (; next != near.end() && *next < first + count; ++next) lanes &= ~(1U << (*next - first));
+  return lanes;
+}
+
+/// @param squared distance at rest (m^2)
+bool SurfacePair::wasBehind(std::size_t vertex, std::size_t triangle, double squared) const {
+  if (squared > thickest * thickest) return false;
+  const Vec3& normal = normal_[triangle];
+  const double height = (restA_[vertex] - restB_[static_cast<std::size_t>(triangle_[triangle][0])]).dot(normal);
   // Behind in earnest, not beside on the same bent side: more than 30 degrees below the face's plane.
-  return (p - point.point).dot(normal) < -0.5 * std::sqrt(point.squaredDistance * normal.squaredNorm());
+  return height < 0.0 && height < -0.5 * std::sqrt(squared * normal.squaredNorm());
 }
 
 void SurfacePair::measureRest(const ContactSurface& a, const ContactSurface& b) {

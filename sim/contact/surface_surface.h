@@ -36,6 +36,7 @@ struct VertexContact {
 
 class NearTriangles;
 struct SurfaceDisplacement;
+struct TriangleLanes;
 
 /// What is known at rest of the vertices of one surface and the triangles of another or of the same; part of Model.
 class SurfacePair {
@@ -66,18 +67,26 @@ class SurfacePair {
   [[nodiscard]] double search(std::uint32_t patch, double reach) const { return std::max(reach, depth_[patch]); }
   /// Is this triangle never held against this vertex? Never so between two surfaces.
   [[nodiscard]] bool excluded(int vertex, std::size_t triangle) const;
+  /// The same of up to eight that follow one another. @param rest their places at rest
+  /// @return those that are not excluded, a bit each
+  [[nodiscard]] std::uint32_t notExcluded(int vertex, std::size_t first, std::size_t count,
+                                          const TriangleLanes& rest) const;
 
  private:
   friend class SurfaceSearch;
   friend void patchesInPlay(const SurfacePair& pair, const SurfaceDisplacement& a, const SurfaceDisplacement& b,
                             double reach, std::vector<std::uint32_t>& out);
   void measureRest(const ContactSurface& a, const ContactSurface& b);
-  [[nodiscard]] bool wasBehind(int vertex, std::size_t triangle) const;
+  [[nodiscard]] bool wasBehind(std::size_t vertex, std::size_t triangle, double squared) const;
+  [[nodiscard]] std::span<const std::uint32_t> listed(std::size_t vertex) const {
+    return {excluded_.data() + excludedStart_[vertex], excludedStart_[vertex + 1] - excludedStart_[vertex]};
+  }
 
   bool self_ = false;
   std::vector<Vec3> restA_;
   std::vector<Vec3> restB_;
   std::vector<Index3> triangle_;  ///< of b
+  std::vector<Vec3> normal_;      ///< of those at rest, as long as twice the area; of a surface with itself (m^2)
   std::vector<double> offset_;
   std::vector<double> depth_;  ///< per patch: deepestOverlap less the least offset of its vertices
   std::vector<std::size_t> excludedStart_;

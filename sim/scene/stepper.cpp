@@ -232,7 +232,9 @@ Stepper::~Stepper() = default;
 void Stepper::prepare() {
   const FloatingPointScope scope;
   Workspace& w = *w_;
-  for (std::size_t pair = 0; pair < w.model.tissuePairs().size(); ++pair) w.restOf(pair);
+  for (std::size_t pair = 0; pair < w.model.tissuePairs().size(); ++pair) {
+    w.nearTriangles[pair].prepare(w.restOf(pair), w.model.organs()[w.model.tissuePairs()[pair].b].surface);
+  }
   for (std::size_t o = 0; o < w.model.organs().size(); ++o) {
     const OrganModel& organ = w.model.organs()[o];
     std::vector<int> nodes;

@@ -243,6 +243,10 @@ TEST(NearTriangles, SmallMotionsNeedNoSearch) {
   EXPECT_EQ(agree(pair, sheet, shape, sheet, shape, warm), 0U);
   const std::size_t first = warm.counts().renewed;
   EXPECT_GT(first, 5U) << "far from rest, so lists are made";
+  for (int step = 0; step < 3; ++step) agree(pair, sheet, shape, sheet, shape, warm);
+  EXPECT_GT(warm.counts().renewed, first) << "those that live for a third of the patches at a time,";
+  EXPECT_LE(warm.counts().renewed, 3 * first) << "and once for each";
+  const std::size_t settled = warm.counts().renewed;
   const std::size_t looked = warm.counts().looked;
   for (int step = 1; step <= 100; ++step) {
     std::vector<Vec3> at = shape;
@@ -253,13 +257,33 @@ TEST(NearTriangles, SmallMotionsNeedNoSearch) {
     }
     EXPECT_EQ(agree(pair, sheet, at, sheet, at, warm), 0U);
   }
-  EXPECT_EQ(warm.counts().renewed, first) << "the lists hold";
+  EXPECT_EQ(warm.counts().renewed, settled) << "the lists hold";
   EXPECT_EQ(warm.counts().looked, looked) << "and nothing in them is near enough to be looked at";
   // Forgotten, they are made anew.
   warm.reset();
   EXPECT_EQ(warm.counts().renewed, 0U);
   agree(pair, sheet, shape, sheet, shape, warm);
   EXPECT_EQ(warm.counts().renewed, first);
+}
+
+/// What all near turn by together displaces nothing: lists live on until the rotation is a large one.
+TEST(NearTriangles, ListsLiveWhileAllTurns) {
+  const Body sheet(test::boxSurface(Vec3(-0.03, -0.01, 0.0), Vec3(0.03, 0.01, 0.002), {30, 10, 1}));
+  const SurfacePair pair(sheet.surface, sheet.skin.vertex);
+  Random random(775);
+  Wander bent(random, 0.0);
+  bent.startAt(2.2, Vec3::Zero());
+  std::vector<Vec3> at = bent.apply(sheet.skin.vertex, 0.01);
+  NearTriangles warm;
+  agree(pair, sheet, at, sheet, at, warm);
+  const std::size_t first = warm.counts().renewed;
+  const Quat turn = Quat(1.0, 0.03, 0.04, 0.0).normalized();  // a tenth of a radian a step
+  for (int step = 0; step < 100; ++step) {
+    for (Vec3& p : at) p = turn * p;
+    agree(pair, sheet, at, sheet, at, warm);
+  }
+  std::printf("%zu lists, renewed %zu times in 100 steps\n", first, warm.counts().renewed);
+  EXPECT_LT(warm.counts().renewed, 40 * first);
 }
 
 }  // namespace
