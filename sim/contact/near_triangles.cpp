@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "sim/contact/float_bounds.h"
+#include "sim/contact/rigid_motion.h"
 #include "sim/contact/triangle_lanes.h"
 #include "sim/math/vectors.h"
 
@@ -62,36 +63,6 @@ CALOT_LANE_KERNEL void includeTurnedMotions(std::span<const int> node, const dou
   writeVector(low, lower);
   writeVector(high, upper);
 }
-
-/// The rigid motion that takes places nearest to where they are now: two Gauss-Newton steps, enough for a fraction of
-/// a turn.
-struct RigidMotion {
-  Mat3 turn = Mat3::Identity();
-  Vec3 shift = Vec3::Zero();
-
-  RigidMotion() = default;
-  RigidMotion(std::span<const Vec3> was, std::span<const Vec3> now) {
-    Vec3 from = Vec3::Zero();
-    Vec3 to = Vec3::Zero();
-    for (std::size_t i = 0; i < was.size(); ++i) {
-      from += was[i] / static_cast<double>(was.size());
-      to += now[i] / static_cast<double>(was.size());
-    }
-    for (int step = 0; step < 2; ++step) {
-      Mat3 inertia = Mat3::Zero();
-      Vec3 moment = Vec3::Zero();
-      for (std::size_t i = 0; i < was.size(); ++i) {
-        const Vec3 arm = turn * (was[i] - from);
-        inertia += arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose();
-        moment += arm.cross(now[i] - to);
-      }
-      const Vec3 half = 0.5 * (inertia.inverse() * moment);
-      if (!half.allFinite()) break;  // all on one line: as it is
-      turn = Quat(1.0, half[0], half[1], half[2]).normalized().toRotationMatrix() * turn;
-    }
-    shift = to - turn * from;
-  }
-};
 
 }  // namespace
 

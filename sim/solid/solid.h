@@ -69,10 +69,10 @@ class SolidSolver {
     double step = 0.01;  ///< h (s)
     double tolerance = 1e-4;
     std::uint32_t cap = 200;
-    /// An error whose energy is that of the whole solid at this speed is not worth an iteration (m/s).
-    double speedTolerance = 0.0;
     int rotationSweeps = 2;
     bool lattice = true;  ///< where CoarseLattice::isWorthIt()
+    /// An error whose energy is that of the whole solid at this speed is not worth an iteration (m/s).
+    double speedTolerance = 0.0;
   };
 
   /// Works out what the first step of a large model would have to: its coarse lattice.

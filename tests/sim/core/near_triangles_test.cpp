@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/contact/rigid_motion.h"
 #include "sim/contact/surface_surface.h"
 #include "sim/math/random.h"
 #include "tests/sim/core/support/body.h"
@@ -264,6 +265,36 @@ TEST(NearTriangles, SmallMotionsNeedNoSearch) {
   EXPECT_EQ(warm.counts().renewed, 0U);
   agree(pair, sheet, shape, sheet, shape, warm);
   EXPECT_EQ(warm.counts().renewed, first);
+}
+
+/// Up to a tenth of a turn is told from the places; whatever they are, it stays rigid.
+TEST(RigidMotion, IsToldFromPlaces) {
+  SCOPED_TRACE("seed 776");
+  Random random(776);
+  const auto place = [&](double size) -> Vec3 {
+    return size * Vec3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+  };
+  for (int i = 0; i < 200; ++i) {
+    const double angle = random.uniform(0.0, 0.6);
+    const Vec3 axis = place(1.0).normalized();
+    const Quat turn(Eigen::AngleAxisd(angle, axis));
+    const Vec3 shift = place(0.1);
+    std::vector<Vec3> was(static_cast<std::size_t>(4 + i % 20));
+    std::vector<Vec3> now;
+    for (Vec3& p : was) p = place(0.03);
+    for (const Vec3& p : was) now.push_back(turn * p + shift);
+    const RigidMotion found(was, now);
+    for (const Vec3& p : was) EXPECT_LT((found.turn * p + found.shift - (turn * p + shift)).norm(), 2e-5) << angle;
+  }
+  const std::vector<Vec3> line{Vec3::Zero(), Vec3::UnitX(), 2.0 * Vec3::UnitX()};
+  const std::vector<Vec3> other{Vec3::Zero(), Vec3::UnitY(), -3.0 * Vec3::UnitZ()};
+  for (const auto& [was, now] : {std::pair{line, line}, std::pair{line, other}, std::pair{other, line},
+                                 std::pair{std::vector<Vec3>{Vec3::UnitX()}, std::vector<Vec3>{Vec3::UnitZ()}},
+                                 std::pair{line, std::vector<Vec3>(3, Vec3::Constant(1e200))}}) {
+    const RigidMotion found(was, now);
+    EXPECT_LT((found.turn * found.turn.transpose() - Mat3::Identity()).norm(), 1e-12);
+    EXPECT_GT(found.turn.determinant(), 0.0);
+  }
 }
 
 /// What all near turn by together displaces nothing: lists live on until the rotation is a large one.
