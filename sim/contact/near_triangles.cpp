@@ -24,17 +24,23 @@ constexpr std::size_t sampled = 8;   ///< vertices that the rotation is told fro
 constexpr std::uint64_t turns = 3;   ///< in so many steps each patch's list may be made to live
 
 /// Widens a box to hold the motions of some nodes. @param now of each node, was of each in `node`: four numbers
-CALOT_LANE_KERNEL void includeMotions(std::span<const int> node, const double* now, const double* was, double* lower,
-                                      double* upper) {
+/// @param rigid a motion that does not count: columns of its rotation and what it adds, four times four numbers; null:
+/// none
+CALOT_INLINE void include(std::span<const int> node, const double* now, const double* was, const double* rigid,
+                          double* lower, double* upper) {
   FourDoubles low;
   FourDoubles high;
+  FourDoubles column[4];
   readVector(lower, low);
   readVector(upper, high);
+  for (std::size_t c = 0; rigid != nullptr && c < 4; ++c) readVector(rigid + 4 * c, column[c]);
   for (std::size_t k = 0; k < node.size(); ++k) {
     FourDoubles moved;
     FourDoubles before;
     readVector(now + 4 * static_cast<std::size_t>(node[k]), moved);
-    readVector(was + 4 * k, before);
+    const double* x = was + 4 * k;
+    readVector(x, before);
+    if (rigid != nullptr) before = ((column[0] * x[0] + column[1] * x[1]) + column[2] * x[2]) + column[3];
     moved -= before;
     low = moved < low ? moved : low;
     high = moved > high ? moved : high;
@@ -43,25 +49,14 @@ CALOT_LANE_KERNEL void includeMotions(std::span<const int> node, const double* n
   writeVector(high, upper);
 }
 
-/// The same less a rigid motion. @param rigid columns of its rotation and what it adds: four times four numbers
+CALOT_LANE_KERNEL void includeMotions(std::span<const int> node, const double* now, const double* was, double* lower,
+                                      double* upper) {
+  include(node, now, was, nullptr, lower, upper);
+}
+
 CALOT_LANE_KERNEL void includeTurnedMotions(std::span<const int> node, const double* now, const double* was,
                                             const double* rigid, double* lower, double* upper) {
-  FourDoubles low;
-  FourDoubles high;
-  FourDoubles column[4];
-  readVector(lower, low);
-  readVector(upper, high);
-  for (std::size_t c = 0; c < 4; ++c) readVector(rigid + 4 * c, column[c]);
-  for (std::size_t k = 0; k < node.size(); ++k) {
-    FourDoubles moved;
-    readVector(now + 4 * static_cast<std::size_t>(node[k]), moved);
-    const double* x = was + 4 * k;
-    moved -= ((column[0] * x[0] + column[1] * x[1]) + column[2] * x[2]) + column[3];
-    low = moved < low ? moved : low;
-    high = moved > high ? moved : high;
-  }
-  writeVector(low, lower);
-  writeVector(high, upper);
+  include(node, now, was, rigid, lower, upper);
 }
 
 }  // namespace

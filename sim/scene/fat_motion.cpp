@@ -11,8 +11,9 @@ namespace calot {
 namespace {
 
 /// Fat is held all over by what it hangs on, so that a coarser solution errs no more than the rotations do that are
-/// taken as they were (docs/simulation.md). It is never so still that another end of the solve would spare an
-/// iteration; but corners of nearly empty cubes, which weigh next to nothing, would go on trembling for ever.
+/// taken as they were (docs/simulation.md). It is hardly ever so still that a tolerance of speed would spare an
+/// iteration, and with one corners of nearly empty cubes, which weigh next to nothing, go on trembling and
+/// keep it awake.
 constexpr double coarser = 10.0;
 
 SolidSolver::Settings coarsened(SolidSolver::Settings settings) {

@@ -11,7 +11,8 @@
 
 namespace calot::bench {
 
-/// The peer: what the organs' motion costs where nothing touches. The same free motion with the scene's settings.
+/// The peer: what the organs' motion costs where nothing touches. The same free motion to the scene's relative
+/// tolerance, which holds for any scene and version: without its tolerance of speed.
 class DeformationAlone {
  public:
   DeformationAlone(const Model& model, Executor& executor);
