@@ -134,7 +134,7 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
   const Gate gate(session, settings);
   const std::uint64_t before = session.steps();
   std::atomic<bool> ranAway{false};  // the haptic thread asks before each step
-  session.prepare();
+  session.precompute();
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   HapticThread haptics(session.model(), source, session.haptics(), session.contactSets(),

@@ -14,8 +14,10 @@
 #include "sim/haptics/haptic_tick.h"
 #include "sim/math/executor.h"
 #include "sim/scene/model.h"
+#include "sim/scene/scene_viewer.h"
 #include "sim/scene/state.h"
-#include "sim/scene/stepper.h"
+#include "sim/step/hand_haptics.h"
+#include "sim/step/stepper.h"
 
 namespace calot::recorder {
 
@@ -42,8 +44,8 @@ class Session {
   /// Is told of the contact sets as soon as a step has made them, before any observer is told of the step.
   void onContactSets(std::function<void(const ContactSets&)> tell) { tell_ = std::move(tell); }
 
-  /// For live runs, before the first tick: see Stepper::prepare().
-  void prepare() { stepper_.prepare(); }
+  /// For live runs, before the first tick: see Stepper::precompute().
+  void precompute() { stepper_.precompute(); }
 
   /// Haptic tick of both hands for the i-th tick of the coming step.
   /// @param sets which contact sets to use; none: the newest (the previous step's). Live, older ones come where the

@@ -39,8 +39,7 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene,
                  "name of a scene (calot scenes), or a scene file; without one, the window offers them");
   auto* const device = app.add_option("--device", o.source.device.name,
-                                      "gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE or null "
-                                      "(docs/devices.md); default: mouse and keyboard");
+                                      recorder::deviceUsage() + " (docs/devices.md); default: mouse and keyboard");
   app.add_option("--performer", o.source.performer,
                  "watch a synthetic operator: skilled, intermediate, unskilled, or a file")
       ->excludes(device);

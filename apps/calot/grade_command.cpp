@@ -124,7 +124,7 @@ void addGrade(CLI::App& app, Run& run) {
       "The attempt's recording, for the moments of weak figures; default: the file beside the database");
   command->add_flag("--mix-keys", o->mixKeys, "Compare across scenes, devices and versions, and say so");
   command->add_option("--html", o->html, "Write the sheet as one self-contained page");
-  command->add_option("--pdf", o->pdf, "Write the sheet on A4 pages");
+  addPdfOption(*command, o->pdf, "Write the sheet on A4 pages");
   command->add_flag("--json", o->json, "Print JSON");
   command->add_flag("--force", o->force, "Replace files that are there");
   command->callback([o, &run] { run = [o] { return grade(*o); }; });

@@ -2,16 +2,27 @@
 #include "apps/calot/report_files.h"
 
 #include "analytics/report/page_html.h"
-#include "gui/report/pdf_report.h"
 #include "recorder/attempt.h"
 #include "recorder/formats/text_output.h"
+#ifdef CALOT_PDF
+#include "gui/report/pdf_report.h"
+#endif
 
 namespace calot::apps {
 
-void writeReport(const analytics::ReportDocument& document, const std::string& html, const std::string& pdf,
-                 bool force) {
+void addPdfOption(CLI::App& command, std::string& file, const std::string& help) {
+  [[maybe_unused]] CLI::Option* option = command.add_option("--pdf", file, help);
+#ifndef CALOT_PDF
+  option->check([](const std::string&) { return "this build writes no PDF; --html writes the same report"; });
+#endif
+}
+
+void writeReport(const analytics::ReportDocument& document, const std::string& html,
+                 [[maybe_unused]] const std::string& pdf, bool force) {
   if (!html.empty()) recorder::writeText(html, analytics::pageHtml(document), force);
+#ifdef CALOT_PDF
   if (!pdf.empty()) recorder::writeText(pdf, gui::pdfReport(document, recorder::softwareName()), force);
+#endif
 }
 
 }  // namespace calot::apps

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 
 #include "analytics/report/report_document.h"
 
 namespace calot::apps {
+
+/// Adds `--pdf FILE`. A build without Qt (CALOT_WINDOWS off) has no PDF and refuses the option.
+void addPdfOption(CLI::App& command, std::string& file, const std::string& help);
 
 /// Writes a report as a page and on paper, where a file is named. @throws Error as recorder::writeText and
 /// gui::pdfReport

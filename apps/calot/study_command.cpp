@@ -58,7 +58,7 @@ void addStudy(CLI::App& app, Run& run) {
   command->add_flag("--json", options->json, "Print JSON");
   command->add_option("--csv", options->csv, "Write study.csv, values.csv and flow.csv into this folder");
   command->add_option("--html", options->html, "Write one self-contained page with figures");
-  command->add_option("--pdf", options->pdf, "Write the same on A4 pages");
+  addPdfOption(*command, options->pdf, "Write the same on A4 pages");
   command->add_flag("--force", options->force, "Replace files that are there");
   command->callback([options, &run] {
     run = [options] {

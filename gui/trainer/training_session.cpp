@@ -281,7 +281,7 @@ void TrainingSession::awaitPicture(recorder::Session& session) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds glance(10);
   const Clock::time_point end = Clock::now() + settings_.firstPicture;
-  session.prepare();
+  session.precompute();
   while (!tap_.isShown() && Clock::now() < end) {
     {
       const std::lock_guard lock(mutex_);

@@ -18,9 +18,9 @@ namespace calot::recorder {
 namespace {
 
 constexpr std::size_t mostFat = 4;
-constexpr double fewestCells = 4.0;                           ///< along a side of the box
-constexpr double mostCells = 16e6;                            ///< of the box
-constexpr double sideCells = BrickLattice::mostNodes - 16.0;  ///< along a side, with room for a margin
+constexpr double fewestCells = 4.0;                          ///< along a side of the box
+constexpr double mostCells = 16e6;                           ///< of the box
+constexpr double sideCells = BrickLattice::maxNodes - 16.0;  ///< along a side, with room for a margin
 
 template <class Named>
 bool known(const std::vector<Named>& all, const std::string& name) {

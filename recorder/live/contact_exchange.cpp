@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "sim/scene/stepper.h"
+#include "sim/step/hand_haptics.h"
 
 namespace calot::recorder {
 

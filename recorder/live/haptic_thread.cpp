@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cerrno>
 
-#include "sim/scene/stepper.h"
+#include "sim/step/hand_haptics.h"
 
 namespace calot::recorder {
 

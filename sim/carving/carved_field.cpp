@@ -21,8 +21,8 @@ bool isRim(const BrickLattice& lattice, std::uint32_t node) {
 }  // namespace
 
 std::string FieldModel::fault() const {
-  if ((lattice.nodes().array() < 2).any() || (lattice.nodes().array() > BrickLattice::mostNodes).any()) {
-    return "a field needs 2 to " + std::to_string(BrickLattice::mostNodes) + " nodes along each axis";
+  if ((lattice.nodes().array() < 2).any() || (lattice.nodes().array() > BrickLattice::maxNodes).any()) {
+    return "a field needs 2 to " + std::to_string(BrickLattice::maxNodes) + " nodes along each axis";
   }
   if (!(band > 0.0)) return "the band of a field must be positive";
   if (value.size() != lattice.storage()) return "a field needs one value for each node";

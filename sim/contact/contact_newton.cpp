@@ -79,7 +79,7 @@ bool ContactSolver::direction(const ContactProblem& problem, std::span<const dou
   };
   for (std::size_t b = 0, at = 0; b < problem.kind.size(); at += blockRows(problem.kind[b]), ++b) {
     const double limit = problem.limit[b];
-    if (problem.kind[b] == BlockKind::ball) {
+    if (problem.kind[b] == BlockKind::bilateral) {
       const double s = (w[at * n + at] + w[(at + 1) * n + at + 1] + w[(at + 2) * n + at + 2]) / 3.0;
       const Vec3 v(s * lambda[at] - gap[at], s * lambda[at + 1] - gap[at + 1], s * lambda[at + 2] - gap[at + 2]);
       if (v.norm() <= s * limit) {
@@ -152,7 +152,7 @@ void ContactSolver::newton(const ContactProblem& problem, std::span<double> lamb
   }
   // A force may be below its bound by what the tolerance leaves.
   for (std::size_t b = 0, at = 0; b < problem.kind.size(); at += blockRows(problem.kind[b]), ++b) {
-    makeAdmissible(problem.kind[b], problem.limit[b], lambda.subspan(at, blockRows(problem.kind[b])));
+    projectOntoFrictionCone(problem.kind[b], problem.limit[b], lambda.subspan(at, blockRows(problem.kind[b])));
   }
   evaluateGaps(problem, lambda, gap);
   report.residual = naturalResidual(problem, lambda, gap);

@@ -56,7 +56,7 @@ std::array<double, 2> tangential(const Rows& w, const double* lambda, const doub
   return {x, y};
 }
 
-/// Force of a ball block.
+/// Force of a bilateral block.
 Vec3 held(const Rows& w, const double* lambda, const double* gap, double limit) {
   Mat3 block;
   for (int i = 0; i < 3; ++i) {
@@ -78,7 +78,7 @@ Vec3 held(const Rows& w, const double* lambda, const double* gap, double limit) 
 }
 
 double blockResidual(BlockKind kind, double limit, const Rows& w, const double* lambda, const double* gap) {
-  if (kind == BlockKind::ball) {
+  if (kind == BlockKind::bilateral) {
     const double s = (w(0, 0) + w(1, 1) + w(2, 2)) / 3.0;
     const Vec3 l(s * lambda[0], s * lambda[1], s * lambda[2]);
     return (l - projected(l - Vec3(gap[0], gap[1], gap[2]), s * limit)).norm();
@@ -93,8 +93,8 @@ double blockResidual(BlockKind kind, double limit, const Rows& w, const double* 
 
 }  // namespace
 
-void makeAdmissible(BlockKind kind, double limit, std::span<double> lambda) {
-  if (kind == BlockKind::ball) {
+void projectOntoFrictionCone(BlockKind kind, double limit, std::span<double> lambda) {
+  if (kind == BlockKind::bilateral) {
     const Vec3 l = projected(Vec3(lambda[0], lambda[1], lambda[2]), limit);
     for (std::size_t i = 0; i < 3; ++i) lambda[i] = l[static_cast<int>(i)];
     return;
@@ -137,7 +137,7 @@ ContactReport sweepContacts(const ContactProblem& problem, std::span<double> lam
     addScaled(n, by, w + row * n, gap.data());
   };
   for (std::size_t b = 0, at = 0; b < problem.kind.size(); at += blockRows(problem.kind[b]), ++b) {
-    makeAdmissible(problem.kind[b], problem.limit[b], lambda.subspan(at, blockRows(problem.kind[b])));
+    projectOntoFrictionCone(problem.kind[b], problem.limit[b], lambda.subspan(at, blockRows(problem.kind[b])));
   }
   evaluateGaps(problem, lambda, gap);
   ContactReport report;
@@ -146,7 +146,7 @@ ContactReport sweepContacts(const ContactProblem& problem, std::span<double> lam
     if (report.residual <= tolerance || report.sweeps >= cap) break;
     for (std::size_t b = 0, at = 0; b < problem.kind.size(); at += blockRows(problem.kind[b]), ++b) {
       const Rows rows{w, n, at};
-      if (problem.kind[b] == BlockKind::ball) {
+      if (problem.kind[b] == BlockKind::bilateral) {
         const Vec3 to = held(rows, lambda.data() + at, gap.data() + at, problem.limit[b]);
         for (std::size_t i = 0; i < 3; ++i) change(at + i, to[static_cast<int>(i)]);
         continue;

@@ -5,7 +5,7 @@
 //   unilateral  1 row   0 <= lambda  _|_  gap >= 0
 //   frictional  3 rows  the first as above; the other two, tangential slip, with |lambda_t| <= mu lambda_n and slip
 //                       against the force where that bound is reached (Coulomb; De Saxce and Feng 1998)
-//   ball        3 rows  gap = 0 as long as |lambda| <= limit; at the limit, the point is pulled through
+//   bilateral   3 rows  gap = 0 as long as |lambda| <= limit; at the limit, the point is pulled through
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace calot {
 
-enum class BlockKind : std::uint8_t { unilateral = 0, frictional = 1, ball = 2 };
+enum class BlockKind : std::uint8_t { unilateral = 0, frictional = 1, bilateral = 2 };
 
 constexpr std::size_t blockRows(BlockKind kind) { return kind == BlockKind::unilateral ? 1 : 3; }
 
 /// Spans into the caller's arrays. n rows in blocks, in order.
 struct ContactProblem {
   std::span<const BlockKind> kind;
-  std::span<const double> limit;       ///< per block: friction coefficient (frictional), force (ball, N)
+  std::span<const double> limit;       ///< per block: friction coefficient (frictional), force (bilateral, N)
   std::span<const double> compliance;  ///< W, row-major, n x n, symmetric, positive diagonal (m/N)
   std::span<const double> free;        ///< gaps and slips without any force (m)
 };
@@ -67,7 +67,7 @@ class ContactSolver {
 };
 
 /// Projects a block's forces onto what its kind admits.
-void makeAdmissible(BlockKind kind, double limit, std::span<double> lambda);
+void projectOntoFrictionCone(BlockKind kind, double limit, std::span<double> lambda);
 
 /// gap = W lambda + free, column by column.
 void evaluateGaps(const ContactProblem& problem, std::span<const double> lambda, std::span<double> gap);

@@ -156,7 +156,7 @@ double NearTriangles::measureTurned(const SurfaceSearch& search, std::uint32_t p
   const RigidMotion motion(sampleWas_, sampleNow_);
   std::array<Padded, 4> rigid{};
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) rigid[c][i] = motion.turn(static_cast<int>(i), static_cast<int>(c));
+    for (std::size_t c = 0; c < 3; ++c) rigid[c][i] = motion.rotation(static_cast<int>(i), static_cast<int>(c));
     rigid[3][i] = motion.shift[static_cast<int>(i)];
   }
   return measure(search, patch, near, &rigid);
@@ -171,7 +171,7 @@ void NearTriangles::readBounds(const SurfaceSearch& search) {
   }
 }
 
-void NearTriangles::prepare(const SurfacePair& pair, const ContactSurface& surface) {
+void NearTriangles::precompute(const SurfacePair& pair, const ContactSurface& surface) {
   if (!pair.self()) return;
   for (std::uint32_t p = 0; p < surface.patches().size(); ++p) {
     for (std::uint32_t q = 0; q < surface.patches().size(); ++q) count(pair, surface, p, q);

@@ -45,7 +45,7 @@ class NearTriangles {
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
   /// Works out ahead what the lists of a surface with itself would have to, patch by patch. @param surface at rest
-  void prepare(const SurfacePair& pair, const ContactSurface& surface);
+  void precompute(const SurfacePair& pair, const ContactSurface& surface);
 
   /// To be called before the patches of one answer: surfaces have moved.
   void begin(const SurfaceSearch& search);

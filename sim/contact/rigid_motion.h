@@ -9,10 +9,10 @@
 
 namespace calot {
 
-/// x -> turn x + shift, by which places come nearest to where they are now: two Gauss-Newton steps, enough for a tenth
-/// of a turn. It is rigid whatever the places are. @pre as many of both, and one at least
+/// x -> rotation x + shift, by which places come nearest to where they are now: two Gauss-Newton steps, enough for a
+/// tenth of a revolution. It is rigid whatever the places are. @pre as many of both, and one at least
 struct RigidMotion {
-  Mat3 turn = Mat3::Identity();
+  Mat3 rotation = Mat3::Identity();
   Vec3 shift = Vec3::Zero();
 
   RigidMotion(std::span<const Vec3> was, std::span<const Vec3> now) {
@@ -26,15 +26,15 @@ struct RigidMotion {
       Mat3 inertia = Mat3::Zero();
       Vec3 moment = Vec3::Zero();
       for (std::size_t i = 0; i < was.size(); ++i) {
-        const Vec3 arm = turn * (was[i] - from);
+        const Vec3 arm = rotation * (was[i] - from);
         inertia += arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose();
         moment += arm.cross(now[i] - to);
       }
       const Vec3 half = 0.5 * (inertia.inverse() * moment);
       if (!(half.squaredNorm() < 1.0)) break;  // all on one line, or more than it can tell: as it is
-      turn = Quat(1.0, half[0], half[1], half[2]).normalized().toRotationMatrix() * turn;
+      rotation = Quat(1.0, half[0], half[1], half[2]).normalized().toRotationMatrix() * rotation;
     }
-    shift = to - turn * from;
+    shift = to - rotation * from;
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Squared distances of eight triangles at once. The bits are those of the scalar functions of
-// sim/geometry/closest_point.h (tests/sim/core/triangle_lanes_test.cpp): the lanes say which triangles count, those few
-// are then asked one by one where and by which feature.
+// sim/geometry/closest_point.h (tests/sim/contact/triangle_lanes_test.cpp): the lanes say which triangles count, those
+// few are then asked one by one where and by which feature.
 #pragma once
 
 #include <array>

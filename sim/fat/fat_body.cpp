@@ -138,7 +138,7 @@ Vec3 FatBody::meanPlace(const FatState& state, std::uint32_t& nodes) const {
   return nodes == 0 ? sum : Vec3(sum / static_cast<double>(nodes));
 }
 
-Mat3 FatBody::turn(const FatState& state, int node) const {
+Mat3 FatBody::rotation(const FatState& state, int node) const {
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   Eigen::Vector4d first = Eigen::Vector4d::Zero();
   double atRest = 0.0;

@@ -53,9 +53,9 @@ class FatBody {
   /// Share of a tie (FatModel::allTies()) that is there: its nodes that are still inside.
   [[nodiscard]] double tieShare(std::size_t tie) const { return tieShare_[tie]; }
   /// How a node's answer to impulses differs from that at rest (RestCompliance): the rotation of the cubes that hold
-  /// it, times a factor above one where fat has left around it. Compliance between a and b is about turn(a) C_ab
-  /// turn(b)^T.
-  [[nodiscard]] Mat3 turn(const FatState& state, int node) const;
+  /// it, times a factor above one where fat has left around it. Compliance between a and b is about rotation(a) C_ab
+  /// rotation(b)^T.
+  [[nodiscard]] Mat3 rotation(const FatState& state, int node) const;
 
   /// The surface for contact; CarvedContact::place() maps it.
   [[nodiscard]] const CarvedContact& contact() const { return contact_; }

@@ -14,9 +14,9 @@ namespace calot {
 
 namespace {
 
-constexpr int marginCells = 3;                  ///< of the lattice around the surface
-constexpr std::uint32_t nodesOfBlock = 192;     ///< lattice edges of a block, one number each in contact
-constexpr std::uint32_t mostNodes = 1U << 25U;  ///< ContactSurface
+constexpr int marginCells = 3;                 ///< of the lattice around the surface
+constexpr std::uint32_t nodesOfBlock = 192;    ///< lattice edges of a block, one number each in contact
+constexpr std::uint32_t maxNodes = 1U << 25U;  ///< ContactSurface
 constexpr int mostCellsPerCube = 16;
 
 /// Calls visit(node, its coordinates) for the inside nodes of a field, ascending.
@@ -78,7 +78,7 @@ std::unique_ptr<const FatModel> FatModel::make(const TriangleMesh& surface, cons
   if (!error.empty()) return nullptr;
   model->tie(partners);
   model->rankBlocks();
-  if (model->block_.size() > mostNodes / nodesOfBlock) {
+  if (model->block_.size() > maxNodes / nodesOfBlock) {
     error = "its cells are too fine: choose a larger cell size";
     return nullptr;
   }
@@ -107,8 +107,8 @@ std::string FatModel::cast(const TriangleMesh& surface, double cell) {
   }
   const Box box = bounds(surface);
   for (int a = 0; a < 3; ++a) {
-    if ((box.upper[a] - box.lower[a]) / cell > BrickLattice::mostNodes - 2 * marginCells - k_ - 2) {
-      return "its cells are too fine: more than " + std::to_string(BrickLattice::mostNodes) + " along an axis";
+    if ((box.upper[a] - box.lower[a]) / cell > BrickLattice::maxNodes - 2 * marginCells - k_ - 2) {
+      return "its cells are too fine: more than " + std::to_string(BrickLattice::maxNodes) + " along an axis";
     }
   }
   field_.lattice = BrickLattice::around(box, cell, marginCells, k_);

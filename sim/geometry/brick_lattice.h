@@ -21,13 +21,13 @@ namespace calot {
 /// The cell of a node is the cube whose lowest corner it is.
 class BrickLattice {
  public:
-  static constexpr int side = 8;            ///< nodes along a brick
-  static constexpr int brickNodes = 512;    ///< side^3
-  static constexpr int mostNodes = 1 << 9;  ///< along an axis: every index used below fits 32 bits
+  static constexpr int side = 8;           ///< nodes along a brick
+  static constexpr int brickNodes = 512;   ///< side^3
+  static constexpr int maxNodes = 1 << 9;  ///< along an axis: every index used below fits 32 bits
 
   BrickLattice() = default;
   /// @param origin node (0, 0, 0) (m) @param cell distance of neighbours (m) @param nodes along each axis
-  /// @pre cell > 0, 2 <= nodes <= mostNodes
+  /// @pre cell > 0, 2 <= nodes <= maxNodes
   BrickLattice(const Vec3& origin, double cell, const Index3& nodes)
       : origin_(origin), cell_(cell), nodes_(nodes), bricks_((nodes.array() + (side - 1)) / side) {}
 

@@ -22,7 +22,7 @@ bool finite(const std::vector<double>& values) {
 bool isConsistent(const ContactSet& set) {
   std::size_t rows = 0;
   for (const BlockKind kind : set.kind) {
-    if (kind > BlockKind::ball) return false;
+    if (kind > BlockKind::bilateral) return false;
     rows += blockRows(kind);
   }
   if (set.limit.size() != set.kind.size() || set.direction.size() != rows || set.free.size() != rows ||
@@ -78,13 +78,13 @@ HapticForce hapticTick(const HapticModel& model, HapticState& state, const Conta
   }
   if (state.age < model.ticksPerStep) ++state.age;
   if (changed) {
-    state.forceRest = state.force - out.head<3>();
-    state.torqueRest = state.torque - out[3];
+    state.forceResidual = state.force - out.head<3>();
+    state.torqueResidual = state.torque - out[3];
   }
-  state.forceRest *= letGo;
-  state.torqueRest *= letGo;
-  state.force = out.head<3>() + state.forceRest;
-  state.torque = out[3] + state.torqueRest;
+  state.forceResidual *= letGo;
+  state.torqueResidual *= letGo;
+  state.force = out.head<3>() + state.forceResidual;
+  state.torque = out[3] + state.torqueResidual;
   const double size = state.force.norm();
   if (size > model.largestForce) state.force *= model.largestForce / size;
   return {state.force, state.torque * axis};

@@ -53,8 +53,8 @@ struct HapticState {
   std::vector<double> lambda;           ///< N
   Vec3 force = Vec3::Zero();            ///< what the last tick gave out (N)
   double torque = 0.0;                  ///< about the axis (N m)
-  Vec3 forceRest = Vec3::Zero();        ///< what is left of the difference at the last change of sets (N)
-  double torqueRest = 0.0;              ///< N m
+  Vec3 forceResidual = Vec3::Zero();    ///< what is left of the difference at the last change of sets (N)
+  double torqueResidual = 0.0;          ///< N m
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -65,8 +65,8 @@ struct HapticState {
     visit("lambda", self.lambda);
     visit("force", self.force);
     visit("torque", self.torque);
-    visit("forceRest", self.forceRest);
-    visit("torqueRest", self.torqueRest);
+    visit("forceResidual", self.forceResidual);
+    visit("torqueResidual", self.torqueResidual);
   }
 };
 

@@ -5,7 +5,6 @@
 
 #include "sim/scene/scene_view_parts.h"
 #include "sim/scene/scene_viewer.h"
-#include "sim/scene/stepper.h"
 
 namespace calot {
 

@@ -34,4 +34,7 @@ class SceneViewer {
   std::vector<std::unique_ptr<Fat>> fat_;        ///< per body of fat
 };
 
+/// Surfaces, instruments and camera of a State.
+SceneView viewOf(const Model& model, const State& state);
+
 }  // namespace calot

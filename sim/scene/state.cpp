@@ -233,7 +233,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     if ((hand.grasped == noStructure) != (held == 0)) return false;
     if (held == 0) continue;
     if (hand.grasped >= model.structures().size()) return false;
-    // Of fat, who steps it drops places that are not there.
+    // The stepper discards contact points whose fat was carved away.
     if (model.structures()[hand.grasped].kind == StructureKind::fat) continue;
     const std::size_t vertices = skinVertices(model, read, hand.grasped);
     for (const std::array<std::uint32_t, 3>& corners : hand.graspNode) {

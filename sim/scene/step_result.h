@@ -11,7 +11,8 @@
 
 namespace calot {
 
-/// Numbers are stored in recordings and never reused. Structures: organs, then vessels, in the scene's order.
+/// In the order of their numbers, which are stored in recordings and never reused. Structures: organs, then vessels, in
+/// the scene's order.
 enum class EventKind : std::uint16_t {
   contactBegin = 1,        ///< subject: structure; value: first normal force (N)
   contactEnd = 2,          ///< subject: structure; value: how long it lasted (s)
@@ -25,32 +26,29 @@ enum class EventKind : std::uint16_t {
   graspEnd = 10,           ///< tissue let go; subject: structure; value: how long it was held (s)
   graspSlip = 11,          ///< held tissue begins to slip; subject: structure; value: pull (N)
   tissueTear = 12,         ///< held tissue tore out of the jaws; subject: structure; value: pull (N)
-  strandsBurned = 17,      ///< strands of connective tissue burned through; subject: tissue; value: share of the bed
-  strandsTorn = 18,        ///< strands of connective tissue tore; subject: tissue; value: share of the bed
-  connectiveFreed = 19,    ///< the last strand is gone; subject: tissue; value: share of the bed that is residue
-  vesselTorn = 20,         ///< a vessel tore; subject: structure; value: stretch
-  clipSet = 21,            ///< subject: structure; value: share of the flattened vessel between the clip's legs
-  clipHalfOn = 22,         ///< beside clipSet: it does not enclose the whole vessel; value: as there
-  clipOnClip = 23,         ///< beside clipSet: it overlaps another clip; value: by how much (m)
-  clipTooNear = 24,        ///< beside clipSet: too near to another clip, a junction or an edge; value: gap (m)
-  clipDropped = 25,        ///< an applier closed on nothing and lost its clip; value: clips left
-  vesselCut = 26,          ///< scissors parted a vessel; subject: structure; value: arc length from its start (m)
-  cutOpen = 27,  ///< beside vesselCut, vesselBurned and vesselTorn: bleeds or leaks; value: 1 towards its start, 2 its
-                 ///< end, 3 both
-  cutThroughClip = 28,  ///< beside vesselCut: within the width of a clip; value: as there
-  vesselBurned = 29,    ///< cautery parted a vessel; subject: structure; value: as vesselCut
-  organPerforated =
-      30,            ///< cautery or a tear opened an organ; subject: structure; value: cautery at the spot (s), 0: torn
-  tooFewClips = 33,  ///< beside vesselCut: a side has fewer clips than it should; subject: structure; value: missing
+  // 13 to 15 were never given out: 16 was taken first, by the live loop, and later kinds went on from 17.
+  clockStretched = 16,   ///< not the core's: the tick clock waited, lag over 100 ms; value: in this step (s)
+  strandsBurned = 17,    ///< strands of connective tissue burned through; subject: tissue; value: share of the bed
+  strandsTorn = 18,      ///< strands of connective tissue tore; subject: tissue; value: share of the bed
+  connectiveFreed = 19,  ///< the last strand is gone; subject: tissue; value: share of the bed that is residue
+  vesselTorn = 20,       ///< a vessel tore; subject: structure; value: stretch
+  clipSet = 21,          ///< subject: structure; value: share of the flattened vessel between the clip's legs
+  clipHalfOn = 22,       ///< beside clipSet: it does not enclose the whole vessel; value: as there
+  clipOnClip = 23,       ///< beside clipSet: it overlaps another clip; value: by how much (m)
+  clipTooNear = 24,      ///< beside clipSet: too near to another clip, a junction or an edge; value: gap (m)
+  clipDropped = 25,      ///< an applier closed on nothing and lost its clip; value: clips left
+  vesselCut = 26,        ///< scissors parted a vessel; subject: structure; value: arc length from its start (m)
+  cutOpen = 27,          ///< beside vesselCut, vesselBurned, vesselTorn: it leaks; value: 1 start, 2 end, 3 both sides
+  cutThroughClip = 28,   ///< beside vesselCut: within the width of a clip; value: as there
+  vesselBurned = 29,     ///< cautery parted a vessel; subject: structure; value: as vesselCut
+  organPerforated = 30,  ///< cautery or a tear opened an organ; subject: structure; value: cautery there (s), 0 if torn
+  smoke = 31,            ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
+  fatCameLoose = 32,     ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
+  tooFewClips = 33,     ///< beside vesselCut: a side has fewer clips than it should; subject: structure; value: missing
   criticalError = 34,   ///< a vessel to be spared was clipped or opened; subject: structure; value: kind of that event
   phaseBegin = 35,      ///< subject: the Phase that begins; value: the one before
-  fatCameLoose = 32,    ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
   runaway = 36,         ///< something moves faster than fastestMotion, or is no number any more; value: speed (m/s)
-  motionHeldBack = 37,  ///< tissue would have moved faster than it can and was held back; subject: structure; value: at
-                        ///< which speed (m/s)
-  smoke = 31,           ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
-  clockStretched =
-      16,  ///< lag beyond 100 ms made the tick clock wait; value: by how much in this step (s). Not the core's
+  motionHeldBack = 37,  ///< tissue faster than it can move was held back; subject: structure; value: that speed (m/s)
 };
 
 /// Subject of smoke from connective tissue 0.

@@ -165,7 +165,7 @@ bool CoarseLattice::invert(std::span<const float> rest) {
   return true;
 }
 
-void CoarseLattice::turn(std::span<const RotationGroup> rotation) {
+void CoarseLattice::rotate(std::span<const RotationGroup> rotation) {
   if (inverse_.empty()) return;
   const std::size_t rows = element_.size();
   quaternion_.assign(rows * 4, 0.0F);

@@ -26,7 +26,7 @@ class CoarseLattice {
   CoarseLattice(const SolidModel& model, std::span<const float> rest);
 
   /// Takes the nodes' rotations from a few of their elements'.
-  void turn(std::span<const RotationGroup> rotation);
+  void rotate(std::span<const RotationGroup> rotation);
 
   /// c = Z E^-1 Z^T r, both vectors of the matrix (lanes). Leaves c alone where E could not be inverted.
   void answer(const float* r, float* c);

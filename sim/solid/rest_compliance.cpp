@@ -13,10 +13,10 @@ RestCompliance::RestCompliance(const SolidModel& model, const SolidSolver::Setti
   const FloatingPointScope scope;
   settings_.lattice = false;  // which no solve of many right-hand sides takes
   SolidState rest = restState(model);
-  solver_.freeMotion(model, rest, Vec3::Zero(), {}, settings_, executor, surroundings);
+  solver_.solveUnconstrained(model, rest, Vec3::Zero(), {}, settings_, executor, surroundings);
 }
 
-void RestCompliance::require(std::span<const int> nodes) {
+void RestCompliance::precomputeCompliance(std::span<const int> nodes) {
   // Eight right-hand sides cost as much as one, and each lane of a solve goes on until it is done, whatever the others
   // do: lanes that are left take nodes next to those that are asked for, which are likely to be asked for as well.
   pending_.clear();

@@ -27,7 +27,7 @@ class RestCompliance {
 
   /// Works out the columns of these nodes that are not known yet, eight right-hand sides at a time. A column is a
   /// function of the model alone: in which order and company it is asked for changes nothing.
-  void require(std::span<const int> nodes);
+  void precomputeCompliance(std::span<const int> nodes);
 
   /// C_ab: velocity of node a (m/s) for an impulse on node b (N s). @pre b was required
   [[nodiscard]] Mat3 block(int a, int b) const;

@@ -76,29 +76,29 @@ class SolidSolver {
   };
 
   /// Works out what the first step of a large model would have to: its coarse lattice.
-  void prepare(const SolidModel& model, const Settings& settings, Executor& executor);
+  void precompute(const SolidModel& model, const Settings& settings, Executor& executor);
 
   /// Assembles at the state's position and computes the free velocity (without contact) into freeVelocity().
   /// @param external forces on the nodes besides gravity (N), or empty.
-  SolveReport freeMotion(const SolidModel& model, SolidState& state, const Vec3& gravity,
-                         std::span<const Vec3> external, const Settings& settings, Executor& executor,
-                         const Surroundings& surroundings = {});
+  SolveReport solveUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
+                                 std::span<const Vec3> external, const Settings& settings, Executor& executor,
+                                 const Surroundings& surroundings = {});
 
   /// Velocities that the step ends with, as far as they are known: free motion and what push() added since.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
 
-  /// Adds the answer to impulses on the nodes to freeVelocity(): dv = A^-1 impulse. @pre freeMotion() of this step was
-  /// called. @param impulse per node (N s)
+  /// Adds the answer to impulses on the nodes to freeVelocity(): dv = A^-1 impulse. @pre solveUnconstrained() of this
+  /// step was called. @param impulse per node (N s)
   SolveReport push(std::span<const Vec3> impulse, const Settings& settings);
 
   /// Velocity responses to up to eight unit impulses, each spread over nodes: column k answers impulse[k].
-  /// @pre freeMotion() of this step was called.
+  /// @pre solveUnconstrained() of this step was called.
   struct Impulse {
-    static constexpr std::size_t mostNodes = 24;  ///< a triangle whose corners lie in three cubes
-    std::array<int, mostNodes> node{};
-    std::array<double, mostNodes> weight{};  ///< share of each node
-    std::size_t count = 0;                   ///< how many of them count
-    Vec3 impulse = Vec3::Zero();             ///< N s
+    static constexpr std::size_t maxNodes = 24;  ///< a triangle whose corners lie in three cubes
+    std::array<int, maxNodes> node{};
+    std::array<double, maxNodes> weight{};  ///< share of each node
+    std::size_t count = 0;                  ///< how many of them count
+    Vec3 impulse = Vec3::Zero();            ///< N s
   };
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
                         std::vector<std::vector<Vec3>>& response);

@@ -70,9 +70,9 @@ void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> 
 void SolidSolver::assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
                            const Surroundings& surroundings, Executor& executor) {
   const StiffnessAssembly::Scale scale = scaleOf(model, settings.step);
-  prepare(model, settings, executor);
+  precompute(model, settings, executor);
   if (settings.lattice && CoarseLattice::isWorthIt(model)) {
-    lattice_->turn(state.rotation);
+    lattice_->rotate(state.rotation);
   } else {
     lattice_.reset();  // an earlier step's
     latticeModel_ = nullptr;
@@ -84,7 +84,7 @@ void SolidSolver::assemble(const SolidModel& model, const SolidState& state, con
   for (const JointAttachment& joint : surroundings.joints) addJoint(settings, joint);
 }
 
-void SolidSolver::prepare(const SolidModel& model, const Settings& settings, Executor& executor) {
+void SolidSolver::precompute(const SolidModel& model, const Settings& settings, Executor& executor) {
   if (!settings.lattice || !CoarseLattice::isWorthIt(model)) return;
   const StiffnessAssembly::Scale scale = scaleOf(model, settings.step);
   if (latticeModel_ == &model && latticeScale_.mass == scale.mass && latticeScale_.stiffness == scale.stiffness) return;
@@ -171,9 +171,9 @@ void SolidSolver::addPair(const SolidPlace& p, const SolidPlace& q, const Mat3& 
   }
 }
 
-SolveReport SolidSolver::freeMotion(const SolidModel& model, SolidState& state, const Vec3& gravity,
-                                    std::span<const Vec3> external, const Settings& settings, Executor& executor,
-                                    const Surroundings& surroundings) {
+SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
+                                            std::span<const Vec3> external, const Settings& settings,
+                                            Executor& executor, const Surroundings& surroundings) {
   const double h = settings.step;
   const SolidModel::Material& m = model.material();
   chooseSystem(model, surroundings.fill);

@@ -112,7 +112,8 @@ void BeamSolver::assembleElement(const BeamModel& model, const BeamState& state,
   add(ba, 3, 3, -bend, k.bend);
 }
 
-bool BeamSolver::freeMotion(const BeamModel& model, const BeamState& state, const BeamLoads& loads, double step) {
+bool BeamSolver::solveUnconstrained(const BeamModel& model, const BeamState& state, const BeamLoads& loads,
+                                    double step) {
   step_ = step;
   const std::size_t nodes = model.nodes();
   tree_.reset(nodes);
@@ -157,7 +158,7 @@ void BeamSolver::push(const BeamModel& model, std::span<const Vec3> impulse) {
   solveInto(model);
 }
 
-void BeamSolver::require(const BeamModel& model, std::span<const int> nodes) {
+void BeamSolver::precomputeCompliance(const BeamModel& model, std::span<const int> nodes) {
   const std::size_t size = 9 * model.nodes();
   for (const int node : nodes) {
     const auto n = static_cast<std::size_t>(node);

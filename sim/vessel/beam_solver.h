@@ -55,17 +55,18 @@ class BeamSolver {
  public:
   /// Factorises at the state and computes the velocities without contact.
   /// @return false where the matrix was not positive definite (numbers near the end of their range).
-  bool freeMotion(const BeamModel& model, const BeamState& state, const BeamLoads& loads, double step);
+  bool solveUnconstrained(const BeamModel& model, const BeamState& state, const BeamLoads& loads, double step);
 
   /// Velocities that the step ends with, as far as they are known: free motion and what push() added since.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
   [[nodiscard]] const std::vector<Vec3>& freeAngularVelocity() const { return freeSpin_; }
 
-  /// Adds the answer to impulses on the nodes. @pre freeMotion() of this step was called. @param impulse per node (N s)
+  /// Adds the answer to impulses on the nodes. @pre solveUnconstrained() of this step was called. @param impulse per
+  /// node (N s)
   void push(const BeamModel& model, std::span<const Vec3> impulse);
 
-  /// Works out what block() needs for impulses on these nodes, once a step each. @pre freeMotion() of this step
-  void require(const BeamModel& model, std::span<const int> nodes);
+  /// Works out what block() needs for impulses on these nodes, once a step each. @pre solveUnconstrained() of this step
+  void precomputeCompliance(const BeamModel& model, std::span<const int> nodes);
 
   /// C_ab, exactly that of push(): velocity of node a (m/s) for an impulse on node b (N s). @pre b was required
   [[nodiscard]] Mat3 block(int a, int b) const;

@@ -47,7 +47,8 @@ Hung hang(const SolidModel& model, int steps, const SolidSolver::Settings& setti
   SolidSolver solver;
   Hung hung{restState(model)};
   for (int n = 0; n < steps; ++n) {
-    const SolveReport report = solver.freeMotion(model, hung.state, Vec3(0.0, gravity, 0.0), {}, settings, executor);
+    const SolveReport report =
+        solver.solveUnconstrained(model, hung.state, Vec3(0.0, gravity, 0.0), {}, settings, executor);
     solver.advance(model, hung.state, {}, settings.step);
     hung.iterations += static_cast<double>(report.iterations) / steps;
     hung.converged = hung.converged && report.converged;
@@ -116,7 +117,7 @@ TEST(CoarseLattice, ConvergesFarFromRest) {
   SolidSolver solver;
   for (int n = 0; n < 40; ++n) {
     const SolveReport report =
-        solver.freeMotion(model, state, Vec3(0.0, gravity, 0.0), {}, settingsOf(1e-3, true), executor);
+        solver.solveUnconstrained(model, state, Vec3(0.0, gravity, 0.0), {}, settingsOf(1e-3, true), executor);
     EXPECT_TRUE(report.converged) << "step " << n;
     EXPECT_LT(report.iterations, 200U) << "step " << n;
     EXPECT_TRUE(solver.advance(model, state, {}, 0.02)) << "step " << n;

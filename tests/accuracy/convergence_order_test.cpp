@@ -191,7 +191,7 @@ TEST(ConvergenceOrder, Step) {
     double y = 1.0;
     double v = 0.0;
     for (int i = 0; i < count; ++i) {
-      ASSERT_TRUE(solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor).converged);
+      ASSERT_TRUE(solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor).converged);
       ASSERT_TRUE(solver.advance(model, state, {}, h));
       v += h * (-square * (y + (h + beta) * v) - alpha * v) / (1.0 + alpha * h + (h * h + beta * h) * square);
       y += h * v;

@@ -100,7 +100,7 @@ TEST(Accuracy, MomentumIsConserved) {
   settings.step = 0.001;
   settings.tolerance = 1e-6;
   for (int i = 0; i < 200; ++i) {
-    solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor);
+    solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor);
     ASSERT_TRUE(solver.advance(model, state, {}, settings.step));
   }
   EXPECT_LT((linear() - before).norm(), 1e-5 * before.norm());

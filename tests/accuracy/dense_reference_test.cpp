@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/accuracy/support/dense_step.h"
-#include "tests/sim/core/support/scenes.h"
+#include "tests/sim/scene/support/scenes.h"
 
 namespace calot {
 namespace {

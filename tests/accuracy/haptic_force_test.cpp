@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/math/random.h"
-#include "tests/sim/core/support/loop.h"
+#include "tests/sim/scene/support/loop.h"
 
 namespace calot {
 namespace {

@@ -76,7 +76,7 @@ Indentation press(int cells, double fineness, double depth) {
   for (int step = 0; step < 18; ++step) {
     const double down = depth * std::min(1.0, (step + 1) / 4.0);
     const Vec3 centre(1e-5, 2e-5, radius - down);
-    solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor);
+    solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor);
     std::vector<SurfaceContact> found;
     capsuleContacts(surface, state.position, all, centre, centre, radius, 0.3 * fineness, 0, found);
     const std::size_t n = found.size();

@@ -89,7 +89,7 @@ TEST(Hexahedra, AKnownElementChangesNoBitOfASpring) {
   for (const auto& [loads, out] : {std::pair(&known, &velocity[0]), {&unknown, &velocity[1]}}) {
     SolidState state = restState(model);
     SolidSolver solver;
-    EXPECT_TRUE(solver.freeMotion(model, state, Vec3::Zero(), {}, {}, executor, {*loads, {}, {}}).converged);
+    EXPECT_TRUE(solver.solveUnconstrained(model, state, Vec3::Zero(), {}, {}, executor, {*loads, {}, {}}).converged);
     *out = solver.freeVelocity();
   }
   double largest = 0.0;
@@ -303,7 +303,7 @@ TEST(Attachments, BlockOnASpring) {
     const double before = state.position[middle][1];
     spring.force = -stiffness * state.position[middle];
     spring.damper = settings.step * stiffness * Mat3::Identity();
-    solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor, {{&spring, 1}, {}});
+    solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor, {{&spring, 1}, {}});
     ASSERT_TRUE(solver.advance(model, state, {}, settings.step));
     const double after = state.position[middle][1];
     if (before > 0.0 && after <= 0.0) crossing = settings.step * (i + before / (before - after));
@@ -332,7 +332,7 @@ TEST(Attachments, StiffSpringsAreStable) {
     for (int i = 0; i < 600; ++i) {
       spring.force = stiffness * (target - spring.place.of(state.position));
       spring.damper = (settings.step * stiffness + 0.05) * Mat3::Identity();
-      solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor, {{&spring, 1}, {}});
+      solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor, {{&spring, 1}, {}});
       ASSERT_TRUE(solver.advance(model, state, {}, settings.step));
       for (const Vec3& p : state.position) ASSERT_LT(p.norm(), 0.2);
     }

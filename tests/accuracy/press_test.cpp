@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/scene/stepper.h"
-#include "tests/sim/core/support/scenes.h"
+#include "sim/step/hand_haptics.h"
+#include "sim/step/stepper.h"
+#include "tests/sim/scene/support/scenes.h"
 
 namespace calot {
 namespace {
@@ -81,7 +82,7 @@ TEST(Press, ForcesBalance) {
     // Sideways the lever between contact and tip, a radius apart, stands between the two.
     EXPECT_LT((held - force).norm(), 0.03 * force.norm());
     // The ticks feel the same force, once what an earlier set said is let go.
-    HapticState haptic = initialHaptics(*model, state, 0);
+    HapticState haptic = initialHaptics(state, 0);
     Vec3 felt = Vec3::Zero();
     for (int tick = 0; tick < 200; ++tick) {
       felt = hapticTick(hapticModel(*model, 0), haptic, stepper.contactSet(0)).force;

@@ -91,8 +91,8 @@ TEST(SolidSystem, WhatIsLeftMovesAsASolidOfItsOwn) {
     SolidSolver first;
     SolidSolver second;
     const Vec3 gravity(0.0, -9.81, 0.0);
-    ASSERT_TRUE(first.freeMotion(whole, a, gravity, {}, exactly(), executor, {{}, carved.fill, {}}).converged);
-    ASSERT_TRUE(second.freeMotion(own, b, gravity, {}, exactly(), executor).converged);
+    ASSERT_TRUE(first.solveUnconstrained(whole, a, gravity, {}, exactly(), executor, {{}, carved.fill, {}}).converged);
+    ASSERT_TRUE(second.solveUnconstrained(own, b, gravity, {}, exactly(), executor).converged);
     std::size_t compared = 0;
     for (std::size_t n = 0; n < number.size(); ++n) {
       if (number[n] < 0) {
@@ -127,8 +127,8 @@ TEST(SolidSystem, NoBitDependsOnWhatWasThereBefore) {
     SolidState again = state;
     SolidSolver fresh;
     const Surroundings around{{}, carved.fill, {}};
-    old.freeMotion(model, state, gravity, {}, settings, executor, around);
-    fresh.freeMotion(model, again, gravity, {}, settings, executor, around);
+    old.solveUnconstrained(model, state, gravity, {}, settings, executor, around);
+    fresh.solveUnconstrained(model, again, gravity, {}, settings, executor, around);
     ASSERT_EQ(old.freeVelocity(), fresh.freeVelocity()) << "step " << step;
     ASSERT_TRUE(old.advance(model, state, {}, settings.step));
     for (std::size_t n = 0; n < model.nodes(); ++n) {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scene/stepper.h"
+#include "sim/step/stepper.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/contact_run.h"
 #include "tests/bench/numbers.h"
@@ -82,7 +82,7 @@ void budget(benchmark::State& bench, std::uint32_t passes, std::uint32_t sweeps)
   SerialExecutor executor;
   Stepper stepper(*model, executor);
   DeformationAlone peer(*model, executor);
-  stepper.prepare();
+  stepper.precompute();
   std::vector<double> error;
   std::vector<double> residual;
   std::vector<double> left;

@@ -18,7 +18,8 @@ std::uint32_t DeformationAlone::step(std::vector<SolidState>& organ) {
   std::uint32_t iterations = 0;
   for (std::size_t o = 0; o < organ.size(); ++o) {
     const SolidModel& solid = model_.organs()[o].solid;
-    iterations += solver_[o].freeMotion(solid, organ[o], model_.scene().gravity, {}, settings_, executor_).iterations;
+    iterations +=
+        solver_[o].solveUnconstrained(solid, organ[o], model_.scene().gravity, {}, settings_, executor_).iterations;
     solver_[o].advance(solid, organ[o], {}, settings_.step);
   }
   return iterations;
@@ -30,7 +31,7 @@ ContactRun::ContactRun(const Model& model) : model_(model), stepper_(model, exec
 
 double ContactRun::prepare() {
   const double start = threadSeconds();
-  stepper_.prepare();
+  stepper_.precompute();
   return threadSeconds() - start;
 }
 
@@ -39,7 +40,7 @@ std::vector<StepCost> ContactRun::run(const Motion& motion) {
   State state = initialState(model_, 1);
   stepper_.invalidate();
   std::array<HapticState, handCount> haptics;
-  for (std::size_t h = 0; h < handCount; ++h) haptics[h] = initialHaptics(model_, state, h);
+  for (std::size_t h = 0; h < handCount; ++h) haptics[h] = initialHaptics(state, h);
   std::vector<SolidState> before;
   for (std::size_t n = 0; n < motion.step.size(); ++n) {
     before = state.organ;

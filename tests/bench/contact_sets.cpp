@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/scene/stepper.h"
+#include "sim/step/hand_haptics.h"
+#include "sim/step/stepper.h"
 #include "tests/bench/touch_motion.h"
 
 namespace calot::bench {

@@ -139,8 +139,8 @@ void steps(benchmark::State& bench, bool strokes) {
                         share * (settings.step * tie.stiffness + tie.damping) * Mat3::Identity()});
       }
       const SolveReport report =
-          solver.freeMotion(model->solid(), state.solid, {0.0, 0.0, i % 40 < 20 ? gravity : -gravity}, {}, settings,
-                            executor, {ties, body.fill()});
+          solver.solveUnconstrained(model->solid(), state.solid, {0.0, 0.0, i % 40 < 20 ? gravity : -gravity}, {},
+                                    settings, executor, {ties, body.fill()});
       solver.advance(model->solid(), state.solid, {}, settings.step);
       iterations.push_back(report.iterations);
       const double moved = threadSeconds();

@@ -64,13 +64,13 @@ Own hangOurs(const SolidModel& model, const HangingBody& body, int steps, double
   SolidState state = restState(model);
   {
     SolidState first = state;  // what a solver works out once
-    solver.freeMotion(model, first, body.gravity(0), {}, settings, executor);
+    solver.solveUnconstrained(model, first, body.gravity(0), {}, settings, executor);
   }
   Own own;
   for (int n = 0; n < steps; ++n) {
     const std::vector<Vec3> load = body.load ? body.load(n) : std::vector<Vec3>{};
     const double begin = threadSeconds();
-    const SolveReport report = solver.freeMotion(model, state, body.gravity(n), load, settings, executor);
+    const SolveReport report = solver.solveUnconstrained(model, state, body.gravity(n), load, settings, executor);
     solver.advance(model, state, {}, settings.step);
     own.hung.seconds += (threadSeconds() - begin) / steps;
     own.iterations += static_cast<double>(report.iterations) / steps;

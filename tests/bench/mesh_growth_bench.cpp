@@ -44,7 +44,7 @@ Swing swing(const Model& model, int steps) {
   for (int n = 0; n < warm + steps; ++n) {
     const Vec3 gravity(0.0, n / 10 % 2 == 0 ? -9.81 : 4.0, n / 7 % 2 == 0 ? 3.0 : -3.0);
     const double begin = threadSeconds();
-    const SolveReport report = solver.freeMotion(solid, state, gravity, {}, settings, executor);
+    const SolveReport report = solver.solveUnconstrained(solid, state, gravity, {}, settings, executor);
     solver.advance(solid, state, {}, settings.step);
     if (n < warm) continue;
     out.seconds += (threadSeconds() - begin) / steps;

@@ -32,7 +32,7 @@ inline std::vector<std::uint64_t> largeSolid(Executor& executor) {
   SolidSolver::Settings settings;
   std::vector<std::uint64_t> digests;
   for (int n = 0; n < steps; ++n) {
-    solver.freeMotion(model, state, Vec3(0.0, -9.81, 0.0), {}, settings, executor);
+    solver.solveUnconstrained(model, state, Vec3(0.0, -9.81, 0.0), {}, settings, executor);
     solver.advance(model, state, {}, settings.step);
     DigestStream digest;
     digest.append(state.position.data(), state.position.size() * sizeof(Vec3));

@@ -10,8 +10,9 @@
 
 #include "sim/haptics/haptic_tick.h"
 #include "sim/scene/flat.h"
-#include "sim/scene/stepper.h"
 #include "sim/scene/version.h"
+#include "sim/step/hand_haptics.h"
+#include "sim/step/stepper.h"
 #include "tests/determinism/large_solid.h"
 #include "tests/determinism/thread_executor.h"
 
@@ -63,7 +64,7 @@ int run(const char* path, unsigned threads) {
   const std::size_t perStep = flat.scene.ticksPerStep;
   std::array<HapticState, handCount> haptic;
   std::array<HapticModel, handCount> hapticOf{hapticModel(*built.model, 0), hapticModel(*built.model, 1)};
-  for (std::size_t h = 0; h < handCount; ++h) haptic[h] = initialHaptics(*built.model, state, h);
+  for (std::size_t h = 0; h < handCount; ++h) haptic[h] = initialHaptics(state, h);
   std::printf("simulation %u\n", simulationVersion);
   const std::span<const TickSamples> all(flat.ticks);
   for (std::size_t at = 0; at + perStep <= all.size(); at += perStep) {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "tests/sim/core/support/loop.h"
+#include "tests/sim/scene/support/loop.h"
 #include "tests/stability/support/solid_checks.h"
 
 namespace calot {

@@ -46,7 +46,7 @@ TEST(LargeDeformation, ThrownNodesComeBack) {
       }
       SolidSolver solver;
       for (int i = 0; i < 400; ++i) {
-        solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor);
+        solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor);
         ASSERT_TRUE(solver.advance(model, state, {}, settings.step)) << "step " << i;
       }
       ASSERT_TRUE(isFinite(state));
@@ -72,7 +72,7 @@ TEST(LargeDeformation, AScrambledSolidStaysFinite) {
     const double before = energy(model, state);
     SolidSolver solver;
     for (int i = 0; i < 300; ++i) {
-      solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor);
+      solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor);
       ASSERT_TRUE(solver.advance(model, state, {}, settings.step)) << "step " << i;
     }
     ASSERT_TRUE(isFinite(state));
@@ -91,7 +91,7 @@ TEST(LargeDeformation, AThousandfoldLoadIsSurvived) {
     SolidSolver solver;
     for (int i = 0; i < 600; ++i) {
       const Vec3 gravity = i < 100 ? Vec3(9810.0 * direction) : Vec3(Vec3::Zero());
-      const SolveReport report = solver.freeMotion(model, state, gravity, {}, settings, executor);
+      const SolveReport report = solver.solveUnconstrained(model, state, gravity, {}, settings, executor);
       EXPECT_EQ(report.converged, report.residual <= settings.tolerance);
       ASSERT_TRUE(solver.advance(model, state, {}, settings.step)) << "step " << i;
       ASSERT_TRUE(isFinite(state)) << "step " << i;
@@ -121,7 +121,7 @@ TEST(LargeDeformation, EnergyDecaysWithAnyStep) {
     const double start = energy(model, state);
     double previous = start;
     for (int i = 0; i < 120; ++i) {
-      solver.freeMotion(model, state, Vec3::Zero(), {}, settings, executor);
+      solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor);
       ASSERT_TRUE(solver.advance(model, state, {}, step));
       const double now = energy(model, state);
       ASSERT_LE(now, step < 0.05 ? 1.02 * previous + 1e-9 * start : start) << "step number " << i;

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "tests/sim/core/support/scenes.h"
+#include "tests/sim/scene/support/scenes.h"
 
 namespace calot {
 namespace {

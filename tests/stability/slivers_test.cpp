@@ -115,7 +115,7 @@ TEST(Slivers, ShakenAndThrownComeBack) {
   std::uint32_t most = 0;
   for (int i = 0; i < 600; ++i) {
     const Vec3 gravity = i < 100 ? Vec3(i / 10 % 2 == 0 ? 30.0 : -30.0, -9.81, 0.0) : Vec3(Vec3::Zero());
-    const SolveReport report = solver.freeMotion(model, state, gravity, {}, settings, executor);
+    const SolveReport report = solver.solveUnconstrained(model, state, gravity, {}, settings, executor);
     EXPECT_EQ(report.converged, report.residual <= settings.tolerance) << "step " << i;
     missed += report.converged ? 0 : 1;
     most = std::max(most, report.iterations);

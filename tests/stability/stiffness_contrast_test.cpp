@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "tests/sim/core/support/loop.h"
+#include "tests/sim/scene/support/loop.h"
 
 namespace calot {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "sim/math/random.h"
-#include "sim/scene/stepper.h"
-#include "tests/sim/core/support/loop.h"
+#include "sim/step/stepper.h"
+#include "tests/sim/scene/support/loop.h"
 #include "tests/stability/support/depth.h"
 
 namespace calot {

@@ -8,17 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "recorder/sources/devices/device_kind.h"
 #include "recorder/sources/devices/device_mapping.h"
 #include "recorder/sources/devices/device_pump.h"
 #include "recorder/sources/devices/raw_sample_queue.h"
 #include "recorder/sources/source.h"
 
 namespace calot::recorder {
-
-/// The clock of a device without real time: a tick is a millisecond of it.
-struct TickClock {
-  std::int64_t now = 0;  ///< ns
-};
 
 struct DeviceSourceSettings {
   std::optional<Calibration> calibration;

@@ -104,7 +104,7 @@ GamepadDevice::GamepadDevice(const std::string& name, DeviceClock clock)
                                        : fmt::format("gamepad: none that is called \"{}\" is attached", name));
   }
   const std::string called = printable(SDL_GameControllerName(sdl_->controller));
-  info_.name = "gamepad";
+  info_.name = gamepadKind.name;
   info_.identity = "gamepad:" + called;
   info_.detail = called;
   DeviceCapabilities& c = info_.capabilities;
@@ -202,5 +202,29 @@ std::vector<std::string> listGamepads() {
   }
   return names;
 }
+
+constinit const DeviceKind gamepadKind{
+    .name = "gamepad",
+    .usage = "gamepad[:NAME]",
+    .help = "the first gamepad whose name contains NAME; drives one hand at a time",
+    .list =
+        [] {
+          std::vector<ListedDevice> out;
+          const auto add = [&out](const std::string& name, const std::string& detail, bool present) {
+            out.push_back({name, detail, present, "1 at a time", "3 + roll, jaw, buttons", "250"});
+          };
+          try {
+            for (const std::string& pad : listGamepads()) add("gamepad:" + pad, pad, true);
+            if (out.empty()) add("gamepad", "none is attached", false);
+          } catch (const Error& e) {
+            add("gamepad", e.what(), false);
+          }
+          return out;
+        },
+    .open =
+        [](const DeviceRequest& request) {
+          return OpenedDevice{std::make_unique<GamepadDevice>(request.argument), nullptr};
+        },
+};
 
 }  // namespace calot::recorder

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/device_kind.h"
 
 namespace calot::recorder {
 
@@ -50,5 +51,7 @@ class GamepadDevice final : public Device {
 
 /// Names of the gamepads that are attached. @throws Error (failure) where the system cannot be asked.
 std::vector<std::string> listGamepads();
+
+extern const DeviceKind gamepadKind;
 
 }  // namespace calot::recorder

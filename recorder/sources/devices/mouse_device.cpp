@@ -34,9 +34,9 @@ double drawn(double& asked, double most) {
 
 MouseDevice::MouseDevice(std::shared_ptr<MouseInput> input, DeviceClock clock)
     : input_(std::move(input)), clock_(std::move(clock)) {
-  info_.name = "mouse";
+  info_.name = mouseKind.name;
   info_.identity = "mouse";
-  info_.detail = "mouse and keyboard of the trainer's window";
+  info_.detail = mouseKind.help;
   DeviceCapabilities& c = info_.capabilities;
   c.hands = 2;  // both are there; one is moved at a time
   c.sensedRotations = 1;
@@ -124,5 +124,20 @@ void MouseDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
   lastResting_ = now;
   put(other, wish, 0, now, out);
 }
+
+constinit const DeviceKind mouseKind{
+    .name = "mouse",
+    .usage = "mouse",
+    .help = "mouse and keyboard of the trainer's window",
+    .needsWindow = true,
+    .list =
+        [] {
+          return std::vector<ListedDevice>{{"mouse", "needs a window: calot-trainer has one", false, "2, 1 at a time",
+                                            "3 + roll, jaw, buttons", "250"}};
+        },
+    .open = [](const DeviceRequest& request) -> OpenedDevice {
+      request.refuse("mouse and keyboard need a window: calot-trainer has one");
+    },
+};
 
 }  // namespace calot::recorder

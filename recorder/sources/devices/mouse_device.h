@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/device_kind.h"
 #include "recorder/sources/devices/mouse_input.h"
 
 namespace calot::recorder {
@@ -46,5 +47,7 @@ class MouseDevice final : public Device {
   std::int64_t lastResting_ = 0;  ///< of the hand that holds
   bool open_ = true, greeted_ = false;
 };
+
+extern const DeviceKind mouseKind;
 
 }  // namespace calot::recorder

@@ -11,9 +11,9 @@ constexpr std::int64_t mostAtOnce = 1000;   // samples; a poll after a long paus
 }  // namespace
 
 NullDevice::NullDevice(DeviceClock clock) : clock_(std::move(clock)), next_(clock_()) {
-  info_.name = "null";
+  info_.name = nullKind.name;
   info_.identity = "null";
-  info_.detail = "never moves";
+  info_.detail = nullKind.help;
   info_.operatorKind = OperatorKind::performer;
   info_.capabilities.hands = handCount;
   info_.capabilities.sensesGripper = true;
@@ -36,5 +36,21 @@ void NullDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
     }
   }
 }
+
+constinit const DeviceKind nullKind{
+    .name = "null",
+    .usage = "null",
+    .help = "never moves",
+    .list =
+        [] {
+          return std::vector<ListedDevice>{{"null", nullKind.help, true, "2", "none", "1000"}};
+        },
+    .open =
+        [](const DeviceRequest& request) {
+          if (!request.argument.empty()) request.refuse("nothing stands behind its name");
+          auto ticks = std::make_shared<TickClock>();
+          return OpenedDevice{std::make_unique<NullDevice>([ticks] { return ticks->now; }), ticks};
+        },
+};
 
 }  // namespace calot::recorder

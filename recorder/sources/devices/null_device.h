@@ -2,6 +2,7 @@
 #pragma once
 
 #include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/device_kind.h"
 
 namespace calot::recorder {
 
@@ -24,5 +25,7 @@ class NullDevice final : public Device {
   std::uint64_t sequence_ = 0;
   bool open_ = true;
 };
+
+extern const DeviceKind nullKind;
 
 }  // namespace calot::recorder

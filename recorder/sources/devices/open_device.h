@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Devices by name: gamepad[:NAME], openigtlink[:HOST[:PORT]], null, scripted:FILE.
+// The table of devices, and devices by name.
 #pragma once
 
 #include <array>
-#include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "recorder/sources/devices/device.h"
-#include "recorder/sources/devices/device_source.h"
+#include "recorder/sources/devices/device_kind.h"
 
 namespace calot::recorder {
 
-struct OpenedDevice {
-  std::unique_ptr<Device> device;
-  std::shared_ptr<TickClock> tickClock;  ///< for devices without real time: DeviceSourceSettings::tickClock
-};
+/// Every kind of device that this build knows, in the order in which tables show them.
+std::span<const DeviceKind* const> deviceKinds();
+
+/// The kind that a name asks for ("gamepad:left one": gamepad), or null.
+const DeviceKind* findDeviceKind(std::string_view name);
+
+/// What can be asked for without a window: "gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE or null".
+/// @param last joins the last two: "or", "and"
+std::string deviceUsage(std::string_view last = "or");
 
 /// Opens a device by its name.
 /// @param tools of an OpenIGTLink server: left and right, an empty one for none; ignored for others.
@@ -23,15 +28,7 @@ struct OpenedDevice {
 /// script; failure, for a gamepad that is not there. An OpenIGTLink server need not be there yet.
 OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools);
 
-/// What could be opened, for `calot devices`.
-struct ListedDevice {
-  std::string name;    ///< for --device
-  std::string detail;  ///< for people
-  bool present = true;
-  std::string hands;
-  std::string senses;
-  std::string rate;
-};
+/// What could be opened, of all kinds.
 std::vector<ListedDevice> listDevices();
 
 }  // namespace calot::recorder

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <thread>
 #include <utility>
+
+#include "recorder/errors.h"
 
 namespace calot::recorder {
 namespace {
@@ -19,11 +22,48 @@ constexpr std::size_t mostFaults = 16;  // kinds of fault told a connection
 constexpr double largestGripper = 3.2;  // rad
 constexpr int statusOk = 1;
 
+// HOST, HOST:PORT, [IPv6]:PORT or nothing.
+void readAddress(const DeviceRequest& request, OpenIgtLinkSettings& out) {
+  std::string address = request.argument;
+  if (address.empty()) return;
+  std::string port;
+  if (address.front() == '[') {
+    const std::size_t end = address.find(']');
+    if (end == std::string::npos || (end + 1 < address.size() && address[end + 1] != ':'))
+      request.refuse("[HOST]:PORT is wanted");
+    if (end + 1 < address.size()) port = address.substr(end + 2);
+    if (end + 1 < address.size() && port.empty()) request.refuse("a port is missing behind the colon");
+    address = address.substr(1, end - 1);
+  } else if (const std::size_t colon = address.find(':'); colon != std::string::npos) {
+    port = address.substr(colon + 1);
+    address = address.substr(0, colon);
+    if (port.empty()) request.refuse("a port is missing behind the colon");
+  }
+  if (address.empty() || address.size() > 253) request.refuse("a host is missing: openigtlink:HOST:PORT");
+  for (const char c : address) {
+    if (c <= 0x20 || c >= 0x7f || c == '/') request.refuse("the host is no name or address");
+  }
+  out.host = address;
+  if (port.empty()) return;
+  const auto [end, fault] = std::from_chars(port.data(), port.data() + port.size(), out.port);
+  if (fault != std::errc() || end != port.data() + port.size() || out.port < 1 || out.port > 65535)
+    request.refuse("the port is no number from 1 to 65535");
+}
+
+void checkTools(const std::array<std::string, handCount>& tools) {
+  if (tools[0].empty() && tools[1].empty()) throw Error(ExitCode::usage, "--tools: at least one hand needs a tool");
+  if (tools[0] == tools[1]) throw Error(ExitCode::usage, "--tools: both hands have the same tool");
+  for (const std::string& tool : tools) {
+    if (tool.size() > openigtlink::longestName)
+      throw Error(ExitCode::usage, fmt::format("--tools: a name has at most {} characters", openigtlink::longestName));
+  }
+}
+
 }  // namespace
 
 OpenIgtLinkDevice::OpenIgtLinkDevice(OpenIgtLinkSettings settings, DeviceClock clock)
     : settings_(std::move(settings)), clock_(std::move(clock)) {
-  info_.name = "openigtlink";
+  info_.name = openIgtLinkKind.name;
   info_.identity = fmt::format("openigtlink:{}/{},{}", settings_.host, settings_.tool[0], settings_.tool[1]);
   info_.detail = fmt::format("server {}:{}, tools \"{}\" and \"{}\"", settings_.host, settings_.port, settings_.tool[0],
                              settings_.tool[1]);
@@ -129,5 +169,26 @@ void OpenIgtLinkDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
   }
   if (!stream_.open()) lose("the server is gone", out);
 }
+
+constinit const DeviceKind openIgtLinkKind{
+    .name = "openigtlink",
+    .usage = "openigtlink[:HOST[:PORT]]",
+    .help = "tracked tools of an OpenIGTLink server",
+    .list =
+        [] {
+          return std::vector<ListedDevice>{
+              {"openigtlink:HOST:PORT",
+               fmt::format("a server's tracked tools; default localhost:{}", openigtlink::defaultPort), true, "2",
+               "6, jaw by SENSOR", "the server's"}};
+        },
+    .open =
+        [](const DeviceRequest& request) {
+          checkTools(request.tools);
+          OpenIgtLinkSettings settings;
+          settings.tool = request.tools;
+          readAddress(request, settings);
+          return OpenedDevice{std::make_unique<OpenIgtLinkDevice>(settings), nullptr};
+        },
+};
 
 }  // namespace calot::recorder

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/device_kind.h"
 #include "recorder/sources/devices/openigtlink_wire.h"
 #include "recorder/sources/devices/tcp.h"
 
@@ -52,5 +53,7 @@ class OpenIgtLinkDevice final : public Device {
   std::int64_t nextAttempt_ = 0;  ///< ns
   bool open_ = true;
 };
+
+extern const DeviceKind openIgtLinkKind;
 
 }  // namespace calot::recorder

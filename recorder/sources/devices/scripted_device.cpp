@@ -13,7 +13,7 @@ ScriptedDevice::ScriptedDevice(DeviceScript script, DeviceClock clock)
       origin_(clock_()) {
   std::sort(script_.unpluggings.begin(), script_.unpluggings.end(),
             [](const auto& a, const auto& b) { return a.at < b.at; });
-  info_.name = "scripted";
+  info_.name = scriptedKind.name;
   info_.identity = "scripted:" + script_.name;
   info_.detail = "plays " + script_.file;
   info_.operatorKind = script_.motionFile ? OperatorKind::kinematics : OperatorKind::performer;
@@ -66,5 +66,24 @@ Wrench ScriptedDevice::shown(Hand hand) const {
   if (!connected_) return {};
   return gate_[static_cast<std::size_t>(hand)].output(clock_());
 }
+
+constinit const DeviceKind scriptedKind{
+    .name = "scripted",
+    .usage = "scripted:FILE",
+    .help = "plays a script or a kinematics file",
+    .list =
+        [] {
+          return std::vector<ListedDevice>{
+              {scriptedKind.usage, scriptedKind.help, true, "2", "6, jaw, buttons", "the file's"}};
+        },
+    .open =
+        [](const DeviceRequest& request) {
+          if (request.argument.empty()) request.refuse("a file is missing: scripted:FILE");
+          auto ticks = std::make_shared<TickClock>();
+          return OpenedDevice{
+              std::make_unique<ScriptedDevice>(readDeviceScript(request.argument), [ticks] { return ticks->now; }),
+              ticks};
+        },
+};
 
 }  // namespace calot::recorder

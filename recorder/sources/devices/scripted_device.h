@@ -2,6 +2,7 @@
 #pragma once
 
 #include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/device_kind.h"
 #include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/wrench_gate.h"
 
@@ -34,5 +35,7 @@ class ScriptedDevice final : public Device {
   std::size_t unplugging_ = 0;
   bool connected_ = false, open_ = true, greeted_ = false;
 };
+
+extern const DeviceKind scriptedKind;
 
 }  // namespace calot::recorder

@@ -12,8 +12,8 @@
 
 #include "sim/contact/capsule_contact.h"
 #include "sim/instruments/instrument_shape.h"
-#include "sim/scene/stepper.h"
-#include "tests/sim/core/support/contact_reference.h"
+#include "sim/step/stepper.h"
+#include "tests/sim/contact/support/contact_reference.h"
 
 namespace calot::test {
 

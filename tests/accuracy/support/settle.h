@@ -30,7 +30,7 @@ inline double settle(const SolidModel& model, SolidState& state, const Settling&
   settings.cap = 4000;
   double speed = 1e300;
   for (int i = 0; i < how.most && speed > how.still; ++i) {
-    solver.freeMotion(model, state, how.gravity, how.external, settings, executor, how.around);
+    solver.solveUnconstrained(model, state, how.gravity, how.external, settings, executor, how.around);
     if (!solver.advance(model, state, {}, settings.step)) return 1e300;
     speed = 0.0;
     for (const Vec3& v : state.velocity) speed = std::max(speed, v.norm());

@@ -17,7 +17,7 @@
 #include "analytics/statistics/hedges.h"
 #include "analytics/statistics/kruskal_wallis.h"
 #include "analytics/statistics/learning_curve.h"
-#include "analytics/statistics/permutation_test.h"
+#include "analytics/statistics/permutation.h"
 #include "analytics/statistics/random_intercept.h"
 #include "analytics/statistics/spearman.h"
 #include "analytics/statistics/stratified_rank_sum.h"

@@ -9,7 +9,7 @@
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/hedges.h"
-#include "analytics/statistics/permutation_test.h"
+#include "analytics/statistics/permutation.h"
 #include "analytics/statistics/welch.h"
 #include "tests/analytics/statistics/support/published_data.h"
 

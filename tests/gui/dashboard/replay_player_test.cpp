@@ -13,7 +13,7 @@
 #include "recorder/errors.h"
 #include "recorder/replay.h"
 #include "tests/gui/dashboard/support/recorded.h"
-#include "tests/recorder/loop/support/small_scene.h"
+#include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui {
 namespace {

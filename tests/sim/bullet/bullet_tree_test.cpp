@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "sim/math/random.h"
-#include "tests/sim/core/support/broad_phase_checks.h"
-#include "tests/sim/core/support/scenes.h"
+#include "tests/sim/contact/support/broad_phase_checks.h"
+#include "tests/sim/scene/support/scenes.h"
 
 namespace calot {
 namespace {

@@ -73,12 +73,12 @@ struct Pair {
       addConnectiveLoads(tissue, state, ConnectiveSide::a, {a.position, a.velocity},
                          {b.position, sweep == 0 ? b.velocity : solverB.freeVelocity()}, h, loads);
       nextA = a;
-      solverA.freeMotion(upperSolid, nextA, Vec3::Zero(), load, settings, executor, {loads, {}});
+      solverA.solveUnconstrained(upperSolid, nextA, Vec3::Zero(), load, settings, executor, {loads, {}});
       loads.clear();
       addConnectiveLoads(tissue, state, ConnectiveSide::b, {b.position, b.velocity},
                          {a.position, solverA.freeVelocity()}, h, loads);
       nextB = b;
-      solverB.freeMotion(lowerSolid, nextB, Vec3::Zero(), {}, settings, executor, {loads, {}});
+      solverB.solveUnconstrained(lowerSolid, nextB, Vec3::Zero(), {}, settings, executor, {loads, {}});
     }
     ASSERT_TRUE(solverA.advance(upperSolid, nextA, {}, h));
     ASSERT_TRUE(solverB.advance(lowerSolid, nextB, {}, h));

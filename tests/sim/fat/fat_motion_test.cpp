@@ -98,7 +98,7 @@ TEST(FatMotion, ForcesOnTheSurfaceKeepSumAndMoment) {
       const double u = random.uniform();
       const Vec3 w(u * (1.0 - 0.3), 0.3 * u, 1.0 - u);
       const SolidSolver::Impulse place = rig.body.contact().influence({c[0], c[1], c[2]}, w);
-      ASSERT_LE(place.count, SolidSolver::Impulse::mostNodes);
+      ASSERT_LE(place.count, SolidSolver::Impulse::maxNodes);
       most = std::max(most, place.count);
       Vec3 mean = Vec3::Zero();
       double sum = 0.0;
@@ -136,12 +136,12 @@ TEST(FatMotion, ComplianceOfRestKnowsTheTies) {
       double exact = 0.0;
       for (std::size_t k = 0; k < place.count; ++k) exact += place.weight[k] * response[0][slot(place.node[k])][2];
       RestCompliance& used = free_ ? free : rest;
-      used.require({place.node.data(), place.count});
+      used.precomputeCompliance({place.node.data(), place.count});
       Mat3 sum = Mat3::Zero();
       for (std::size_t a = 0; a < place.count; ++a) {
         for (std::size_t b = 0; b < place.count; ++b) {
-          sum += place.weight[a] * place.weight[b] * rig.body.turn(rig.state, place.node[a]) *
-                 used.block(place.node[a], place.node[b]) * rig.body.turn(rig.state, place.node[b]).transpose();
+          sum += place.weight[a] * place.weight[b] * rig.body.rotation(rig.state, place.node[a]) *
+                 used.block(place.node[a], place.node[b]) * rig.body.rotation(rig.state, place.node[b]).transpose();
         }
       }
       largest = std::max(largest, sum(2, 2) / exact);

@@ -138,8 +138,8 @@ TEST(FatStroke, WhatIsCutLooseLeavesWithItsCubes) {
   // And it still can be solved.
   SolidSolver solver;
   SerialExecutor executor;
-  const SolveReport report =
-      solver.freeMotion(block.model->solid(), state.solid, {0.0, 0.0, -9.81}, {}, {}, executor, {{}, body.fill()});
+  const SolveReport report = solver.solveUnconstrained(block.model->solid(), state.solid, {0.0, 0.0, -9.81}, {}, {},
+                                                       executor, {{}, body.fill()});
   EXPECT_TRUE(report.converged);
 }
 

@@ -52,8 +52,8 @@ TEST(BeamSolver, AStepAllocatesNothing) {
   BeamLoads loads;
   loads.attachments = attachments;
   const auto step = [&] {
-    solver.freeMotion(model, state, loads, 0.01);
-    solver.require(model, nodes);
+    solver.solveUnconstrained(model, state, loads, 0.01);
+    solver.precomputeCompliance(model, nodes);
     solver.push(model, impulse);
     solver.attachmentForces(state, attachments, reaction);
     solver.advance(model, state);

@@ -156,10 +156,10 @@ TEST(Beam, MotionDoesNotDependOnTheFrame) {
   for (int k = 0; k < 50; ++k) {
     BeamLoads loads;
     loads.gravity = Vec3(0.0, 0.0, -9.81);
-    solver.freeMotion(model, one, loads, 0.005);
+    solver.solveUnconstrained(model, one, loads, 0.005);
     solver.advance(model, one);
     loads.gravity = turn * loads.gravity;
-    solver.freeMotion(model, two, loads, 0.005);
+    solver.solveUnconstrained(model, two, loads, 0.005);
     solver.advance(model, two);
   }
   for (std::size_t n = 0; n < model.nodes(); ++n) EXPECT_LT((two.position[n] - turn * one.position[n]).norm(), 1e-9);
@@ -198,7 +198,7 @@ TEST(Beam, AFreeBeamKeepsItsMomentum) {
     const double step = i == 0 ? 0.0005 : 0.00025;
     BeamSolver solver;
     for (double t = 0.0; t < 1.0; t += step) {
-      solver.freeMotion(model, state, {}, step);
+      solver.solveUnconstrained(model, state, {}, step);
       ASSERT_FALSE(solver.advance(model, state).limited);
     }
     const std::array<Vec3, 2> after = momenta();
@@ -218,9 +218,9 @@ TEST(Beam, ComplianceIsTheAnswerToAPush) {
   part(state, placeAt(model, 2, 0.01), Parting::cut);
   setClip(model, state, {placeAt(model, 1, 0.01), 0.002, 0.01, 0.005, 0.0, 1.0}, 1.0);
   BeamSolver solver;
-  ASSERT_TRUE(solver.freeMotion(model, state, {}, 0.01));
+  ASSERT_TRUE(solver.solveUnconstrained(model, state, {}, 0.01));
   const std::vector<int> nodes{5, 12, 20, 30, 0};
-  solver.require(model, nodes);
+  solver.precomputeCompliance(model, nodes);
   for (const int b : nodes) {
     for (int k = 0; k < 3; ++k) {
       const std::vector<Vec3> before = solver.freeVelocity();
@@ -255,8 +255,8 @@ TEST(Beam, APushEqualsAForceOverTheStep) {
   loads.force = force;
   BeamSolver one;
   BeamSolver two;
-  one.freeMotion(model, state, loads, 0.01);
-  two.freeMotion(model, state, {}, 0.01);
+  one.solveUnconstrained(model, state, loads, 0.01);
+  two.solveUnconstrained(model, state, {}, 0.01);
   for (Vec3& f : force) f *= 0.01;
   two.push(model, force);
   for (std::size_t n = 0; n < model.nodes(); ++n) {
@@ -277,7 +277,7 @@ TEST(Beam, AttachmentsOfAnyStiffnessHoldAndTellTheirForce) {
     for (int k = 0; k < 2000; ++k) {
       attachments[0].velocity = k < 20 ? speed : Vec3::Zero();
       loads.attachments = attachments;
-      ASSERT_TRUE(solver.freeMotion(model, state, loads, 0.01));
+      ASSERT_TRUE(solver.solveUnconstrained(model, state, loads, 0.01));
       solver.attachmentForces(state, attachments, reaction);
       const BeamReport report = solver.advance(model, state);
       ASSERT_TRUE(report.finite);
@@ -306,7 +306,7 @@ TEST(Beam, ACarriedEndTakesTheVesselAlong) {
     const Quat turn(Eigen::AngleAxisd(2.0 * share, axis));
     target = {model.rest()[0] + share * Vec3(0.02, -0.01, 0.03), turn * model.restOrientation()[0]};
     carry(model, state, 0, target, 0.01);
-    solver.freeMotion(model, state, {}, 0.01);
+    solver.solveUnconstrained(model, state, {}, 0.01);
     ASSERT_FALSE(solver.advance(model, state).limited);
     ASSERT_LT((state.position[0] - target.position).norm(), 1e-15);
     ASSERT_LT(1.0 - std::abs(state.orientation[0].dot(target.orientation)), 1e-14);
@@ -328,7 +328,7 @@ TEST(Beam, ARestoredStateGoesOnWithTheSameBits) {
   loads.gravity = Vec3(0.0, -2.0, 1.0);
   for (int k = 0; k < 50; ++k) {
     if (k == 30) part(state, placeAt(model, 2, 0.012), Parting::cut);
-    solver.freeMotion(model, state, loads, 0.01);
+    solver.solveUnconstrained(model, state, loads, 0.01);
     solver.advance(model, state);
   }
   std::vector<std::byte> bytes;
@@ -340,9 +340,9 @@ TEST(Beam, ARestoredStateGoesOnWithTheSameBits) {
   ASSERT_TRUE(fits(model, restored));
   BeamSolver other;
   for (int k = 0; k < 50; ++k) {
-    solver.freeMotion(model, state, loads, 0.01);
+    solver.solveUnconstrained(model, state, loads, 0.01);
     solver.advance(model, state);
-    other.freeMotion(model, restored, loads, 0.01);
+    other.solveUnconstrained(model, restored, loads, 0.01);
     other.advance(model, restored);
   }
   std::vector<std::byte> one;

@@ -92,7 +92,7 @@ TEST(Clips, AClippedWallNeitherStretchesNorMovesAlong) {
     loads.attachments = pull;
     ASSERT_LT(test::settle(model, state, loads, 0.01, 20000), 1e-9);
     BeamSolver solver;
-    solver.freeMotion(model, state, loads, 0.01);
+    solver.solveUnconstrained(model, state, loads, 0.01);
     const BeamReport report = solver.advance(model, state);
     const double free = solver.strain()[10];
     EXPECT_GT(free, 0.04);
@@ -173,7 +173,7 @@ TEST(Tears, AVesselPulledTooFarTearsOnceAndLetsGo) {
   for (int k = 0; k < 400; ++k) {
     BeamLoads loads;
     loads.attachments = pull;
-    solver.freeMotion(model, state, loads, 0.01);
+    solver.solveUnconstrained(model, state, loads, 0.01);
     const BeamReport report = solver.advance(model, state);
     ASSERT_TRUE(test::isFinite(state));
     pull[0].target += 0.01 * pull[0].velocity;
@@ -189,7 +189,7 @@ TEST(Tears, AVesselPulledTooFarTearsOnceAndLetsGo) {
   EXPECT_GT(state.peakStrain[static_cast<std::size_t>(torn)], 0.5);
   EXPECT_NEAR(tension, 0.5 * 1e6 * model.branches()[0].section.area(), 0.1 * tension);
   // The held stump has gone back to its own length.
-  solver.freeMotion(model, state, {}, 0.01);
+  solver.solveUnconstrained(model, state, {}, 0.01);
   EXPECT_LT(solver.advance(model, state).largestTension, 0.05 * tension);
   std::printf("tore at element %d under %.3f N\n", torn, tension);
 }

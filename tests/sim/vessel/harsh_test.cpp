@@ -65,7 +65,7 @@ TEST(HarshVessels, StayFiniteAndComeToRest) {
       BeamLoads loads;
       loads.force = force;
       loads.attachments = attachments;
-      EXPECT_TRUE(solver.freeMotion(model, state, loads, 0.01)) << k;
+      EXPECT_TRUE(solver.solveUnconstrained(model, state, loads, 0.01)) << k;
       const BeamReport report = solver.advance(model, state);
       ASSERT_TRUE(report.finite) << k;
       ASSERT_TRUE(test::isFinite(state)) << k;
@@ -96,7 +96,7 @@ TEST(HarshVessels, ALoosePieceDriftsToAStop) {
   BeamSolver solver;
   BeamReport report;
   for (int k = 0; k < 1000; ++k) {
-    solver.freeMotion(model, state, {}, 0.01);
+    solver.solveUnconstrained(model, state, {}, 0.01);
     report = solver.advance(model, state);
     ASSERT_TRUE(test::isFinite(state));
   }

@@ -9,7 +9,7 @@
 
 #include "recorder/attempt.h"
 #include "recorder/recording/writer.h"
-#include "tests/recorder/loop/support/small_scene.h"
+#include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui::test {
 

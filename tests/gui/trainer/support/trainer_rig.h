@@ -9,7 +9,7 @@
 
 #include "gui/trainer/training_session.h"
 #include "recorder/sources/devices/device_script.h"
-#include "tests/recorder/loop/support/small_scene.h"
+#include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui::trainertest {
 

@@ -95,8 +95,8 @@ void FatRig::move(const Vec3& gravity, std::span<const Vec3> force, const Vec3& 
     a.force = share * tie.stiffness * (tie.rest + shift - tie.place.of(state.solid.position));
   }
   body.beginStep(state);
-  const SolveReport report =
-      solver.freeMotion(model.solid(), state.solid, gravity, force, settings, executor, {attachments, body.fill()});
+  const SolveReport report = solver.solveUnconstrained(model.solid(), state.solid, gravity, force, settings, executor,
+                                                       {attachments, body.fill()});
   EXPECT_TRUE(report.converged);
   EXPECT_TRUE(solver.advance(model.solid(), state.solid, {}, settings.step));
 }

@@ -44,7 +44,7 @@ inline double settle(const BeamModel& model, BeamState& state, const BeamLoads& 
   BeamSolver solver;
   double speed = 1e300;
   for (int i = 0; i < steps && speed > still; ++i) {
-    solver.freeMotion(model, state, loads, step);
+    solver.solveUnconstrained(model, state, loads, step);
     speed = solver.advance(model, state).largestSpeed;
   }
   return speed;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a kind of device declares of itself. Each device's own source defines its DeviceKind; the table in
+// open_device.cpp lists them. Help texts, `calot devices`, `--device` and the trainer's choice run over that table.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "recorder/sources/devices/device.h"
+
+namespace calot::recorder {
+
+/// The clock of a device without real time: a tick is a millisecond of it.
+struct TickClock {
+  std::int64_t now = 0;  ///< ns
+};
+
+/// What a user asks for.
+struct DeviceRequest {
+  std::string name;      ///< as written: "openigtlink:localhost:18944"
+  std::string argument;  ///< behind the first colon, never empty where there is a colon: "localhost:18944"
+  std::array<std::string, handCount> tools;  ///< names of a tracker's tools, left and right; empty: none
+
+  /// @throws Error (usage) that names the request and says why
+  [[noreturn]] void refuse(const std::string& why) const;
+};
+
+struct OpenedDevice {
+  std::unique_ptr<Device> device;
+  std::shared_ptr<TickClock> tickClock;  ///< for devices without real time: DeviceSourceSettings::tickClock
+};
+
+/// One row of `calot devices`.
+struct ListedDevice {
+  std::string name;    ///< what to ask for
+  std::string detail;  ///< for people
+  bool present = true;
+  std::string hands;
+  std::string senses;
+  std::string rate;
+};
+
+struct DeviceKind {
+  const char* name;          ///< before the colon, and DeviceInfo::name: "gamepad"; stored, never reused
+  const char* usage;         ///< how to ask for one: "gamepad[:NAME]"
+  const char* help;          ///< one line for people
+  bool needsWindow = false;  ///< its input comes from a window, which opens it itself; `open` refuses
+  /// What is there, or could be. Does not throw.
+  std::vector<ListedDevice> (*list)();
+  /// @throws Error: usage, for a request that makes no sense; damaged, for a bad file; failure, where it is not there.
+  OpenedDevice (*open)(const DeviceRequest& request);
+};
+
+}  // namespace calot::recorder

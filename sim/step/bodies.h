@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that a step solves: organs, then vessel trees, then fat, each behind Body. Internal to this folder.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/math/executor.h"
+#include "sim/step/body.h"
+#include "sim/step/fat_motion.h"
+#include "sim/step/step_log.h"
+#include "sim/step/tie_coupling.h"
+#include "sim/step/vessel_body.h"
+
+namespace calot {
+
+/// The bodies of a scene with their linear solvers, and the couplings of vessels to the organs that they are grown to.
+class Bodies {
+ public:
+  Bodies(const Model& model, Executor& executor);
+
+  /// To be called when the State was replaced.
+  void invalidate();
+  /// Computes ahead what steps otherwise compute on first use. Changes no result.
+  void precompute();
+  /// Takes over replaced States; remembers where fat is for the strokes of this step.
+  void beginStep(const State& state);
+
+  [[nodiscard]] std::size_t size() const { return body_.size(); }
+  [[nodiscard]] Body& operator[](std::size_t which) { return *body_[which]; }
+  [[nodiscard]] const Body& operator[](std::size_t which) const { return *body_[which]; }
+  [[nodiscard]] std::span<const std::unique_ptr<Body>> all() const { return body_; }
+
+  [[nodiscard]] std::size_t organs() const { return model_.organs().size(); }
+  [[nodiscard]] std::size_t firstFat() const { return organs() + vessel_.size(); }
+  [[nodiscard]] const VesselBody& vessel(std::size_t tree) const { return *vessel_[tree]; }
+  [[nodiscard]] FatMotion& fat(std::size_t index) { return *fat_[index]; }
+  [[nodiscard]] const FatMotion& fat(std::size_t index) const { return *fat_[index]; }
+  [[nodiscard]] std::size_t fatCount() const { return fat_.size(); }
+
+  /// Ties that are springs on both sides: per body, the tie's number and which of its sides the body is.
+  [[nodiscard]] const std::vector<std::pair<std::size_t, std::size_t>>& springsOf(std::size_t which) const {
+    return springs_[which];
+  }
+  /// Vessels solved together with the organ that they are grown to.
+  [[nodiscard]] std::vector<TieCoupling>& couplings() { return coupling_; }
+
+  /// Share of a tie's stiffness that is left: ties of fat fade as the fat is carved.
+  [[nodiscard]] double shareLeft(const Tie& tie) const;
+  [[nodiscard]] std::size_t firstStructure(std::size_t which) const;
+  [[nodiscard]] std::size_t structureOfVessel(std::size_t tree, std::size_t branch) const {
+    return organs() + model_.vesselTrees()[tree].vessel[branch];
+  }
+  [[nodiscard]] std::size_t structureOfFat(std::size_t index) const {
+    return model_.structures().size() - fat_.size() + index;
+  }
+  [[nodiscard]] double step() const { return settings_.step; }
+
+ private:
+  void sortTies();
+
+  const Model& model_;
+  SolidSolver::Settings settings_, responseSettings_;
+  std::vector<std::unique_ptr<Body>> body_;
+  std::vector<VesselBody*> vessel_;
+  std::vector<FatMotion*> fat_;
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> springs_;
+  std::vector<TieCoupling> coupling_;
+};
+
+/// Which bodies a step solves, and which parts of State it writes (the incremental digest hashes only those).
+struct Activity {
+  std::vector<bool> awake;    ///< per body: solved in this step
+  std::vector<bool> written;  ///< per body: its State is not that of the step before
+  std::vector<bool> frayed;   ///< per connective tissue: strands burned, touched or torn
+  std::vector<bool> charred;  ///< per organ
+  std::vector<bool> carved;   ///< per body of fat
+
+  explicit Activity(const Model& model);
+  void beginStep();
+  /// Wakes a body for the next step.
+  void disturb(Bodies& bodies, State& state, std::size_t which) {
+    bodies[which].quietSteps(state) = 0;
+    written[which] = true;
+  }
+};
+
+/// Does any strand of a connective tissue still hold?
+bool holdsAnything(const ConnectiveState& tissue);
+
+}  // namespace calot

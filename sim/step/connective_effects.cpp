@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/connective_effects.h"
+
+#include <algorithm>
+
+namespace calot {
+
+namespace {
+
+double shareOf(const ConnectiveTissue& tissue, std::span<const std::uint32_t> strands) {
+  double area = 0.0;
+  for (const std::uint32_t s : strands) area += tissue.strands()[s].area;
+  return area / tissue.area();
+}
+
+}  // namespace
+
+std::array<std::uint32_t, handCount> ConnectiveEffects::run(const HookSweeps& sweeps, Bodies& bodies, State& state,
+                                                            Activity& activity, StepResult& result, StepLog& log) {
+  std::array<std::uint32_t, handCount> burned{noStructure, noStructure};
+  for (std::size_t c = 0; c < model_.connective().size(); ++c) {
+    const ConnectiveModel& tie = model_.connective()[c];
+    ConnectiveState& tissue = state.connective[c];
+    ConnectiveResult& out = result.connective[c];
+    const std::vector<Vec3>& a = state.organ[tie.a].position;
+    const std::vector<Vec3>& b = state.organ[tie.b].position;
+    const bool held = holdsAnything(tissue);
+    out.hookTouches = 0;
+    for (std::size_t h = 0; h < handCount; ++h) {
+      if (sweeps[h].empty()) continue;
+      strands_.clear();
+      const std::size_t touches = burnStrands(tie.tissue, tissue, a, b, sweeps[h], bodies.step(), strands_);
+      out.hookTouches += static_cast<std::uint32_t>(touches);
+      if (touches > 0 && burned[h] == noStructure) burned[h] = static_cast<std::uint32_t>(c);
+      if (!strands_.empty()) {
+        log.emit(EventKind::strandsBurned, h, c, state.hand[h].simulatedPosition, shareOf(tie.tissue, strands_));
+      }
+    }
+    strands_.clear();
+    out.largestPull = tearOverstretched(tie.tissue, tissue, a, b, strands_);
+    if (!strands_.empty()) {
+      log.emit(EventKind::strandsTorn, StepLog::noHand, c, tie.tissue.strands()[strands_[0]].a.of(a),
+               shareOf(tie.tissue, strands_));
+    }
+    const ConnectiveShares shares = sharesOf(tie.tissue, tissue);
+    out.attached = shares.attached;
+    out.burned = shares.burned;
+    out.torn = shares.torn;
+    activity.frayed[c] = out.hookTouches > 0 || !strands_.empty();
+    if (held && !holdsAnything(tissue)) {
+      log.emit(EventKind::connectiveFreed, StepLog::noHand, c, Vec3::Zero(), shares.torn);
+    }
+    if (!activity.frayed[c]) continue;
+    // What was released moves.
+    activity.disturb(bodies, state, tie.a);
+    activity.disturb(bodies, state, tie.b);
+  }
+  return burned;
+}
+
+}  // namespace calot

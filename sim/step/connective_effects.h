@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a step does to connective tissue. Internal to this folder.
+#pragma once
+
+#include <vector>
+
+#include "sim/step/bodies.h"
+#include "sim/step/hook_motion.h"
+
+namespace calot {
+
+/// Burns the strands that the energised hooks touch, tears those that are pulled too hard.
+class ConnectiveEffects {
+ public:
+  explicit ConnectiveEffects(const Model& model) : model_(model) {}
+
+  /// @return per hand, the tissue that its hook burns; noStructure for none.
+  /// @pre organs and instruments are where the step leads them
+  std::array<std::uint32_t, handCount> run(const HookSweeps& sweeps, Bodies& bodies, State& state, Activity& activity,
+                                           StepResult& result, StepLog& log);
+
+ private:
+  const Model& model_;
+  std::vector<std::uint32_t> strands_;
+};
+
+}  // namespace calot

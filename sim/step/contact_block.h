@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The contact problem of a step as values: what detection finds, what the solver decides. Internal to this folder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/contact/contact_solver.h"
+#include "sim/instruments/port.h"
+#include "sim/scene/samples.h"
+#include "sim/solid/solid.h"
+
+namespace calot {
+
+/// One block of the contact problem: an instrument on a structure, an organ on an organ, or grasped tissue.
+struct ContactBlock {
+  static constexpr std::size_t none = ~std::size_t{0};
+
+  BlockKind kind = BlockKind::frictional;
+  double limit = 0.0;         ///< friction coefficient; largest force of a grasp (N)
+  std::size_t hand = none;    ///< whose instrument is pushed along +direction,
+  std::size_t other = none;   ///< or which body is,
+  std::size_t body = 0;       ///< and which body along -direction
+  std::size_t structure = 0;  ///< whose skin that is
+  std::size_t anchor = none;  ///< of a grasp: index of the grasped point
+  std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  SolidSolver::Impulse place, otherPlace;  ///< nodes and weights at which the bodies are pushed
+  std::array<ToolRow, 3> tool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
+  std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
+  std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
+  std::size_t row = 0;          ///< its first row
+
+  [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
+  [[nodiscard]] bool isTissueOnTissue() const { return hand == none; }
+  [[nodiscard]] bool isGrasp() const { return anchor != none; }
+};
+
+/// How one instrument moved before contact, and what the virtual coupling still asks for.
+struct InstrumentTravel {
+  Pose before;                        ///< simulated pose at the step's beginning
+  Pose reference;                     ///< simulated pose after the contact-free advance
+  ToolRow stretch = ToolRow::Zero();  ///< of the virtual coupling: from `reference` to the real pose
+  double reach = 0.0;                 ///< how far contacts are looked for (m)
+};
+using InstrumentTravels = std::array<InstrumentTravel, handCount>;
+
+/// The contact problem of a step: gap = W lambda + free, blocks in the order of hands, structures and contact points,
+/// grasps, then organs on organs. n rows.
+struct ContactSystem {
+  std::vector<ContactBlock> blocks;
+  std::size_t rows = 0;
+  std::vector<BlockKind> kinds;            ///< per block
+  std::vector<double> limits;              ///< per block
+  std::vector<double> carried;             ///< forces under which the tissue moves already (N)
+  std::vector<double> lambda;              ///< forces decided so far (N)
+  std::vector<double> trueGap;             ///< with `carried` applied to the tissue (m)
+  std::vector<double> freeGap;             ///< gaps without any force, as the problem sees them (m)
+  std::vector<double> tissueCompliance;    ///< estimate of the tissue's response, n x n (m/N)
+  std::vector<double> couplingCompliance;  ///< of the virtual couplings, n x n (m/N)
+  std::vector<double> compliance;          ///< W: both, n x n (m/N)
+
+  /// Numbers the blocks' rows in order; lists kinds and limits.
+  void numberRows();
+};
+
+/// Adds to a body's nodes what forces (or impulses) in the rows do to it. @param nodal stays empty where that is
+/// nothing
+/// @param forces a value per row @param nodes of the body
+void addNodalForces(std::span<const ContactBlock> blocks, std::size_t body, std::size_t nodes,
+                    std::span<const double> forces, double scale, std::vector<Vec3>& nodal);
+
+}  // namespace calot

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/contact_detection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/step/instrument_motion.h"
+#include "sim/step/sleeping.h"
+
+namespace calot {
+
+void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State& state, std::size_t hand,
+                                          std::size_t structure, const SurfaceContact& contact,
+                                          std::vector<ContactBlock>& blocks) const {
+  const StructureModel& touched = model_.structures()[structure];
+  const Pose tool = simulatedPose(state.hand[hand]);
+  ContactBlock block;
+  block.kind = touched.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
+  block.limit = touched.friction;
+  block.hand = hand;
+  block.body = touched.body;
+  block.structure = structure;
+  block.place = surfaces.skin(structure).influence(contact.node, contact.weight);
+  block.key = contact.key | static_cast<std::uint64_t>(structure) << 52U;
+  // Slip along and across the shaft, as far as the surface allows.
+  const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
+  block.direction = {contact.normal, frame.col(0), frame.col(1)};
+  block.gap = {contact.gap, 0.0, 0.0};
+  for (std::size_t k = 0; k < block.rows(); ++k) {
+    block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, contact.onAxis, block.direction[k]);
+  }
+  blocks.push_back(block);
+}
+
+void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& bodies,
+                                              const InstrumentTravels& travels, const State& state,
+                                              std::vector<ContactBlock>& blocks) {
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const HandState& hand = state.hand[h];
+    instrument_.place(model_.scene().hands[h], hand.instrument, simulatedPose(hand), hand.jaw);
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+      double speed = 0.0;
+      for (const Vec3& v : bodies[model_.structures()[s].body].velocity(state))
+        speed = std::max(speed, v.squaredNorm());
+      const double far = travels[h].reach + std::min(std::sqrt(speed) * bodies.step(), maxSlide);
+      found_.clear();
+      for (const Capsule& c : instrument_.capsule) {
+        const double allowed = allowedDepth(model_, state, h, c, s);
+        const std::size_t before = found_.size();
+        const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, capsuleSearch(c.radius, far));
+        capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, far, c.piece, found_);
+        if (allowed > 0.0) allowDepth(allowed, far, before, found_);
+      }
+      for (const SurfaceContact& contact : found_) addInstrumentBlock(surfaces, state, h, s, contact, blocks);
+    }
+  }
+}
+
+void ContactDetection::run(Surfaces& surfaces, Bodies& bodies, const InstrumentTravels& travels, State& state,
+                           Activity& activity, ContactSystem& contact, ContactResult& result) {
+  contact.blocks.clear();
+  findInstrumentContacts(surfaces, bodies, travels, state, contact.blocks);
+  grasping_.addBlocks(surfaces, state, contact.blocks);
+  wakeBodies(model_, bodies, travels, contact.blocks, state, activity);
+  result.tissueDepth = tissue_.run(surfaces, state, activity.awake, contact.blocks);
+  // What sleeps on both sides needs no force.
+  std::erase_if(contact.blocks, [&](const ContactBlock& block) {
+    return !activity.awake[block.body] && (block.other == ContactBlock::none || !activity.awake[block.other]);
+  });
+}
+
+}  // namespace calot

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/contact_problem.h"
+
+#include <algorithm>
+#include <array>
+
+namespace calot {
+
+namespace {
+
+/// Relative weight of a skin more compliant than the mesh can show; keeps rows that repeat each other apart. Larger
+/// softens contact; smaller costs Newton steps. Measured.
+constexpr double skinShare = 1e-4;
+
+/// A nodal quantity at a contact point.
+Vec3 at(const SolidSolver::Impulse& place, std::span<const Vec3> values) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < place.count; ++k)
+    sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
+  return sum;
+}
+
+}  // namespace
+
+void measureGaps(const Model& model, const Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
+                 ContactSystem& contact) {
+  const double h = bodies.step();
+  contact.trueGap.resize(contact.rows);
+  for (const ContactBlock& block : contact.blocks) {
+    Vec3 apart = Vec3::Zero();
+    if (activity.awake[block.body]) apart -= h * at(block.place, bodies[block.body].freeVelocity());
+    if (block.other != ContactBlock::none && activity.awake[block.other]) {
+      apart += h * at(block.otherPlace, bodies[block.other].freeVelocity());
+    }
+    ToolRow q = ToolRow::Zero();
+    if (!block.isTissueOnTissue()) {
+      const HandDescription& hand = model.scene().hands[block.hand];
+      q = travels[block.hand].stretch;
+      for (const ContactBlock& b : contact.blocks) {
+        if (b.hand != block.hand) continue;
+        for (std::size_t k = 0; k < b.rows(); ++k) {
+          q.head<3>() += contact.lambda[b.row + k] / hand.couplingStiffness * b.tool[k].head<3>();
+          q[3] += contact.lambda[b.row + k] / hand.rollStiffness * b.tool[k][3];
+        }
+      }
+    }
+    for (std::size_t k = 0; k < block.rows(); ++k) {
+      contact.trueGap[block.row + k] = block.gap[k] + block.direction[k].dot(apart) + block.tool[k].dot(q);
+    }
+    if (block.isTissueOnTissue()) contact.trueGap[block.row] += tissueSoftness * contact.lambda[block.row];
+  }
+}
+
+void sumCompliances(ContactSystem& contact) {
+  const std::size_t rows = contact.rows;
+  contact.compliance.resize(rows * rows);
+  for (std::size_t i = 0; i < rows * rows; ++i) {
+    contact.compliance[i] = contact.tissueCompliance[i] + contact.couplingCompliance[i];
+  }
+  for (std::size_t i = 0; i < rows; ++i) contact.compliance[i * rows + i] *= 1.0 + skinShare;
+}
+
+/// Drops blocks that stay open and carry no force. @return the largest violation (m)
+double ContactProblemStage::dropOpenBlocks(ContactSystem& contact) const {
+  double largest = 0.0;
+  std::size_t kept = 0;
+  for (std::size_t b = 0; b < contact.blocks.size(); ++b) {
+    const ContactBlock& block = contact.blocks[b];
+    const double* g = contact.trueGap.data() + block.row;
+    const bool bilateral = block.kind == BlockKind::bilateral;
+    largest = std::max(largest, bilateral ? Vec3(g[0], g[1], g[2]).norm() : std::max(0.0, -g[0]));
+    if (!bilateral && g[0] > openGap && contact.carried[block.row] == 0.0) continue;
+    if (kept != b) contact.blocks[kept] = block;
+    ++kept;
+  }
+  contact.blocks.resize(kept);
+  std::size_t to = 0;
+  for (const ContactBlock& block : contact.blocks) {
+    for (std::size_t k = 0; k < block.rows(); ++k) {
+      contact.carried[to + k] = contact.carried[block.row + k];
+      contact.trueGap[to + k] = contact.trueGap[block.row + k];
+    }
+    to += block.rows();
+  }
+  contact.numberRows();
+  contact.carried.resize(contact.rows);
+  contact.trueGap.resize(contact.rows);
+  contact.lambda = contact.carried;
+  return largest;
+}
+
+std::vector<ContactProblemStage::Part> ContactProblemStage::partsOf(Bodies& bodies, const Activity& activity,
+                                                                    const State& state, const ContactSystem& contact) {
+  std::vector<Part> parts;
+  std::array<Mat3, SolidSolver::Impulse::maxNodes> rotation;
+  std::vector<TieCoupling>& couplings = bodies.couplings();
+  std::vector<bool> stiffened(couplings.size(), false);
+  rotations_.clear();
+  for (std::size_t b = 0; b < contact.blocks.size(); ++b) {
+    const auto add = [&](std::size_t which, const SolidSolver::Impulse& place, double sign) {
+      if (which == ContactBlock::none || !activity.awake[which]) return;
+      parts.push_back({b, which, sign, &place, rotations_.size(), ContactBlock::none, {}, {}});
+      bodies[which].precomputeCompliance({place.node.data(), place.count});
+      for (std::size_t k = 0; k < place.count; ++k) {
+        rotation[k] = place.weight[k] * bodies[which].rotation(state, place.node[k]);
+        rotations_.push_back(columnsOf(rotation[k]));
+      }
+      for (std::size_t c = 0; c < couplings.size(); ++c) {
+        if (!couplings[c].joins(which)) continue;
+        if (!stiffened[c]) couplings[c].stiffen(state, bodies.all());
+        stiffened[c] = true;
+        parts.back().coupling = c;
+        couplings[c].responses(bodies[which], which, place, rotation, parts.back().responses);
+        couplings[c].tieImpulses(parts.back().responses, parts.back().impulses);
+        break;
+      }
+    };
+    add(contact.blocks[b].body, contact.blocks[b].place, -1.0);
+    add(contact.blocks[b].other, contact.blocks[b].otherPlace, 1.0);
+  }
+  return parts;
+}
+
+/// Compliance of the reference configurations, rotated with the nodes.
+void ContactProblemStage::assembleTissue(Bodies& bodies, const std::vector<Part>& parts, ContactSystem& contact) {
+  const double h2 = bodies.step() * bodies.step();
+  const std::size_t rows = contact.rows;
+  std::vector<double>& w = contact.tissueCompliance;
+  w.assign(rows * rows, 0.0);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (std::size_t q = p; q < parts.size(); ++q) {
+      const Part& a = parts[p];
+      const Part& b = parts[q];
+      const bool coupled = a.coupling != ContactBlock::none && a.coupling == b.coupling;
+      if (a.body != b.body && !coupled) continue;
+      Mat3 c = Mat3::Zero();
+      if (a.body == b.body) {
+        nodeBlocks_.resize(9 * a.place->count * b.place->count + 1);
+        bodies[a.body].blocks(a.nodes(), b.nodes(), nodeBlocks_);
+        c = sumOfRotated({rotations_.data() + a.rotations, a.place->count}, nodeBlocks_,
+                         {rotations_.data() + b.rotations, b.place->count});
+      }
+      if (coupled) c -= bodies.couplings()[a.coupling].schurComplement(a.responses, b.impulses);
+      c *= h2 * a.sign * b.sign;
+      const ContactBlock& one = contact.blocks[a.block];
+      const ContactBlock& two = contact.blocks[b.block];
+      for (std::size_t i = 0; i < one.rows(); ++i) {
+        for (std::size_t j = 0; j < two.rows(); ++j) {
+          const double share = one.direction[i].dot(c * two.direction[j]);
+          w[(one.row + i) * rows + two.row + j] += share;
+          if (p != q) w[(two.row + j) * rows + one.row + i] += share;
+        }
+      }
+    }
+  }
+  // C_ab and C_ba come from different solves, each to its tolerance.
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (std::size_t j = i + 1; j < rows; ++j) {
+      const double mean = 0.5 * (w[i * rows + j] + w[j * rows + i]);
+      w[i * rows + j] = w[j * rows + i] = mean;
+    }
+  }
+}
+
+/// Compliance of the virtual couplings, and of skin on skin.
+void ContactProblemStage::assembleCouplings(ContactSystem& contact) const {
+  const std::size_t rows = contact.rows;
+  std::vector<double>& w = contact.couplingCompliance;
+  w.assign(rows * rows, 0.0);
+  for (const ContactBlock& a : contact.blocks) {
+    if (a.isTissueOnTissue()) w[a.row * rows + a.row] = tissueSoftness;
+    for (const ContactBlock& b : contact.blocks) {
+      if (a.isTissueOnTissue() || a.hand != b.hand) continue;
+      const HandDescription& hand = model_.scene().hands[a.hand];
+      for (std::size_t i = 0; i < a.rows(); ++i) {
+        for (std::size_t j = 0; j < b.rows(); ++j) {
+          w[(a.row + i) * rows + b.row + j] += a.tool[i].head<3>().dot(b.tool[j].head<3>()) / hand.couplingStiffness +
+                                               a.tool[i][3] * b.tool[j][3] / hand.rollStiffness;
+        }
+      }
+    }
+  }
+}
+
+double ContactProblemStage::run(Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
+                                const State& state, ContactSystem& contact) {
+  measureGaps(model_, bodies, activity, travels, contact);
+  const double violation = dropOpenBlocks(contact);
+  assembleTissue(bodies, partsOf(bodies, activity, state, contact), contact);
+  assembleCouplings(contact);
+  sumCompliances(contact);
+  return violation;
+}
+
+}  // namespace calot

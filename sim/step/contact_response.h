@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stage 7 of a step: bodies and instruments move, and the haptic loop gets its contact problem.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/haptics/haptic_tick.h"
+#include "sim/step/contact_block.h"
+#include "sim/step/penetration_resolver.h"
+#include "sim/step/surfaces.h"
+
+namespace calot {
+
+using ContactSets = std::array<ContactSet, handCount>;
+
+/// Reads: velocities, contact forces, travels. Writes: positions and velocities of State, simulated poses, the warm
+/// start, forces on the instruments, the contact sets for the ticks to come; surfaces are current afterwards.
+class ContactResponse {
+ public:
+  explicit ContactResponse(const Model& model) : model_(model), resolver_(model), diverged_(model.bodies(), false) {}
+
+  void run(Surfaces& surfaces, Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
+           const ContactSystem& contact, State& state, ContactSets& sets, StepResult& result, StepLog& log);
+
+  /// Per body: it met numbers that are not finite in this step.
+  [[nodiscard]] const std::vector<bool>& diverged() const { return diverged_; }
+
+ private:
+  void integrateTissue(Surfaces& surfaces, Bodies& bodies, const Activity& activity, State& state, StepLog& log);
+  void integrateInstrument(std::size_t hand, const InstrumentTravel& travel, const ContactSystem& contact, State& state,
+                           HandResult& result) const;
+
+  const Model& model_;
+  PenetrationResolver resolver_;
+  std::vector<bool> diverged_;
+};
+
+/// The step's problem reduced to one hand. The other hand's forces, and those among organs, stay as they are.
+/// @pre bodies have moved
+void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTravel& travel,
+                  const ContactSystem& contact, std::size_t hand, std::uint64_t step, ContactSet& set);
+
+}  // namespace calot

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/contact_solution.h"
+
+#include <algorithm>
+#include <array>
+
+#include "sim/step/contact_problem.h"
+
+namespace calot {
+
+namespace {
+
+/// Tissue that responds by more than this multiple of what W predicts: a change of forces is taken back in part. Larger
+/// lets the iteration diverge on soft folds; smaller costs solves. Assumed.
+constexpr double maxSurprise = 2.0;
+constexpr double minShare = 1e-3;  ///< tissue that responds by less than this share: rounding, not a response
+
+}  // namespace
+
+/// Lets the bodies follow a change of forces, all rows at once: vessels, then organs with what is grown to them, then
+/// fat.
+void ContactSolution::applyContactImpulses(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
+                                           StepLog& log) {
+  const std::size_t organs = bodies.organs();
+  const std::size_t vessels = bodies.firstFat() - organs;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const std::size_t b = k < vessels ? organs + k : k < bodies.firstFat() ? k - vessels : k;
+    if (!activity.awake[b]) continue;
+    nodal_.clear();
+    addNodalForces(contact.blocks, b, bodies[b].nodes(), change_, bodies.step(), nodal_);
+    for (TieCoupling& c : bodies.couplings()) {
+      if (c.organ() == b) c.passOn(bodies.all(), nodal_);
+    }
+    if (nodal_.empty()) continue;
+    const SolveReport report = bodies[b].push(nodal_);
+    for (TieCoupling& c : bodies.couplings()) {
+      if (c.organ() == b) c.pull(bodies.all());
+    }
+    if (!report.converged && !log.hasMissed(miss::solver)) {
+      log.miss(miss::solver);
+      log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(b), Vec3::Zero(), report.residual);
+    }
+  }
+}
+
+/// Gaps after change_ was applied, `response_` of the tissue and what W predicted. @return s.y and s.W s for the change
+/// s and the response y
+std::array<double, 2> ContactSolution::measureResponse(Bodies& bodies, const Activity& activity,
+                                                       const InstrumentTravels& travels, ContactSystem& contact) {
+  const std::size_t rows = contact.rows;
+  measureGaps(model_, bodies, activity, travels, contact);
+  expected_.assign(rows, 0.0);
+  double measured = 0.0;
+  double predicted = 0.0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    double coupled = 0.0;
+    for (std::size_t j = 0; j < rows; ++j) {
+      expected_[i] += contact.tissueCompliance[i * rows + j] * change_[j];
+      coupled += contact.couplingCompliance[i * rows + j] * change_[j];
+    }
+    response_[i] = contact.trueGap[i] - gapBefore_[i] - coupled;
+    measured += change_[i] * response_[i];
+    predicted += change_[i] * expected_[i];
+  }
+  return {measured, predicted};
+}
+
+/// Applies the change s from `carried` to `lambda` and measures the tissue's response y. Where y is W s, nothing else
+/// happens. Where s.y is more than twice s.W s, going on like that would lead away from the solution: the change is
+/// taken back to the share for which the response is as large as predicted. Then W is corrected so that it gives this
+/// response (BFGS; Nocedal and Wright 2006, 6.19), which leaves it symmetric and positive:
+///   W += y y^T / (y.s) - W s s^T W / (s.W s).
+void ContactSolution::updateComplianceEstimate(Bodies& bodies, const Activity& activity,
+                                               const InstrumentTravels& travels, ContactSystem& contact, StepLog& log) {
+  const std::size_t rows = contact.rows;
+  gapBefore_ = contact.trueGap;
+  response_.resize(rows);
+  for (std::size_t i = 0; i < rows; ++i) change_[i] = contact.lambda[i] - contact.carried[i];
+  applyContactImpulses(bodies, activity, contact, log);
+  auto [measured, predicted] = measureResponse(bodies, activity, travels, contact);
+  if (predicted > 0.0 && measured > maxSurprise * predicted) {
+    const double back = predicted / measured - 1.0;
+    for (std::size_t i = 0; i < rows; ++i) change_[i] *= back;
+    applyContactImpulses(bodies, activity, contact, log);
+    for (std::size_t i = 0; i < rows; ++i) {
+      change_[i] *= (1.0 + back) / back;
+      contact.lambda[i] = contact.carried[i] + change_[i];
+    }
+    const std::array<double, 2> again = measureResponse(bodies, activity, travels, contact);
+    measured = again[0];
+    predicted = again[1];
+  }
+  contact.carried = contact.lambda;
+  if (!(predicted > 0.0) || !(measured > minShare * predicted)) return;
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (std::size_t j = 0; j < rows; ++j) {
+      contact.tissueCompliance[i * rows + j] +=
+          response_[i] * response_[j] / measured - expected_[i] * expected_[j] / predicted;
+    }
+  }
+  sumCompliances(contact);
+}
+
+void ContactSolution::run(Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
+                          ContactSystem& contact, ContactResult& result, StepLog& log) {
+  const SolverDescription& scene = model_.scene().solver;
+  const std::size_t rows = contact.rows;
+  result.blocks = static_cast<std::uint32_t>(contact.blocks.size());
+  result.rows = static_cast<std::uint32_t>(rows);
+  contact.freeGap.resize(rows);
+  gap_.resize(rows);
+  change_.resize(rows);
+  const ContactProblem problem{contact.kinds, contact.limits, contact.compliance, contact.freeGap};
+  for (result.passes = 0; rows > 0;) {
+    // Free gaps that give back the true ones under the present forces.
+    std::fill(contact.freeGap.begin(), contact.freeGap.end(), 0.0);
+    evaluateGaps(problem, contact.lambda, gap_);
+    for (std::size_t i = 0; i < rows; ++i) contact.freeGap[i] = contact.trueGap[i] - gap_[i];
+    result.error = naturalResidual(problem, contact.lambda, contact.trueGap);
+    if (result.passes == scene.contactPasses || (result.passes > 0 && result.error <= scene.contactTolerance)) break;
+    const ContactReport report =
+        solver_.solve(problem, contact.lambda, gap_, scene.contactTolerance, scene.contactIterations);
+    ++result.passes;
+    result.iterations += report.sweeps;
+    result.newtonSteps += report.newtonSteps;
+    result.residual = report.residual;
+    updateComplianceEstimate(bodies, activity, travels, contact, log);
+  }
+  if (result.residual > scene.contactTolerance) {
+    log.miss(miss::contact);
+    log.emit(EventKind::contactMiss, StepLog::noHand, 0, Vec3::Zero(), result.residual);
+  }
+}
+
+}  // namespace calot

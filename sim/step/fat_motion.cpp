@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/fat_motion.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "sim/step/organ_body.h"
+
+namespace calot {
+
+namespace {
+
+/// Fat is held all over by what it hangs on, so that a coarser solution errs no more than the rotations do that are
+/// taken as they were (docs/simulation.md). It is hardly ever so still that a tolerance of speed would spare an
+/// iteration, and with one corners of nearly empty cubes, which weigh next to nothing, go on trembling and
+/// keep it awake.
+constexpr double coarser = 10.0;
+
+SolidSolver::Settings coarsened(SolidSolver::Settings settings) {
+  settings.tolerance *= coarser;
+  settings.speedTolerance = 0.0;
+  return settings;
+}
+
+}  // namespace
+
+FatMotion::FatMotion(const Model& model, std::size_t fat, const SolidSolver::Settings& settings,
+                     const SolidSolver::Settings& responses, Executor& executor)
+    : index_(fat),
+      settings_(coarsened(settings)),
+      responses_(responses),
+      executor_(executor),
+      fat_(*model.fat()[fat]),
+      rest_(model.fat()[fat]->solid(), responses, executor,
+            {model.fat()[fat]->restAttachments(settings.step), model.fat()[fat]->restFill()}) {}
+
+void FatMotion::beginStep(const State& state) {
+  if (stale_) {
+    [[maybe_unused]] const bool taken = fat_.rebuild(state.fat[index_]);
+    assert(taken);  // restoreState() lets nothing else in
+    stale_ = false;
+    changed_ = true;
+  }
+  fat_.beginStep(state.fat[index_]);
+}
+
+FatStroke FatMotion::stroke(State& state, std::span<const SweptCapsule> tool) {
+  const FatStroke done = fat_.stroke(state.fat[index_], tool);
+  changed_ = changed_ || done.changed;
+  return done;
+}
+
+std::span<const Vec3> FatMotion::position(const State& state) const { return state.fat[index_].solid.position; }
+std::span<const Vec3> FatMotion::velocity(const State& state) const { return state.fat[index_].solid.velocity; }
+std::uint32_t& FatMotion::quietSteps(State& state) const { return state.fat[index_].solid.quietSteps; }
+
+SolveReport FatMotion::solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
+                                          std::span<const TieLoad> ties, const Surroundings& loads) {
+  load_.assign(loads.attachments.begin(), loads.attachments.end());
+  addAttachments(ties, settings_.step, position(state), load_);
+  return solver_.solveUnconstrained(fat_.model().solid(), state.fat[index_].solid, gravity, force, settings_, executor_,
+                                    {load_, fat_.fill(), loads.joints});
+}
+
+SolveReport FatMotion::push(std::span<const Vec3> impulse) { return solver_.push(impulse, responses_); }
+
+Mat3 FatMotion::rotation(const State& state, int node) const { return fat_.rotation(state.fat[index_], node); }
+
+bool FatMotion::advance(State& state) {
+  return solver_.advance(fat_.model().solid(), state.fat[index_].solid, {}, settings_.step);
+}
+
+void FatMotion::stop(State& state) const {
+  std::vector<Vec3>& velocity = state.fat[index_].solid.velocity;
+  std::fill(velocity.begin(), velocity.end(), Vec3::Zero());
+}
+
+bool FatSkin::follow(const State& /*state*/) {
+  const bool changed = motion_.changed_;
+  motion_.changed_ = false;
+  return changed;
+}
+
+void FatSkin::place(const State& state, std::vector<Vec3>& out) const {
+  motion_.fat_.contact().place(motion_.position(state), out);
+}
+
+SolidSolver::Impulse FatSkin::influence(const std::array<int, 3>& corner, const Vec3& weight) const {
+  return motion_.fat_.contact().influence(corner, weight);
+}
+
+}  // namespace calot

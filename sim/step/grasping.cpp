@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/grasping.h"
+
+#include <algorithm>
+
+#include "sim/geometry/closest_point.h"
+#include "sim/step/jaws.h"
+#include "sim/step/tissue_damage.h"
+
+namespace calot {
+
+namespace {
+
+/// The ratchet holds this much harder than a hand that just closes. Larger: tissue tears before it slips. Assumed.
+constexpr double ratchetGrip = 2.0;
+constexpr double weakestGrip = 0.2;     ///< share of the slip force that barely closed jaws hold. Assumed
+constexpr double searchRadius = 0.004;  ///< of a point to grasp, about each station along the jaws (m)
+constexpr double minSpacing = 0.0015;   ///< between grasped points (m): nearer ones repeat each other's rows
+constexpr double lostDistance = 0.005;  ///< a point that slipped so far out of the jaws is released (m)
+/// Stations along the line between the jaws, from the tip backwards (shares of its length).
+constexpr std::array<double, 3> stations{1.0, 0.65, 0.3};
+
+double gripOf(const HandState& hand) {
+  return std::clamp(1.0 - hand.realJaw / closedJaw, weakestGrip, 1.0) *
+         ((hand.buttons & button::lock) != 0 ? ratchetGrip : 1.0);
+}
+
+Vec3 skinPoint(const std::vector<Vec3>& skin, const std::array<std::uint32_t, 3>& node, const Vec3& weight) {
+  Vec3 p = Vec3::Zero();
+  for (std::size_t c = 0; c < 3; ++c) p += weight[static_cast<int>(c)] * skin[node[c]];
+  return p;
+}
+
+/// Keeps the first `count` grasped points.
+void resizeGrasp(HandState& hand, std::size_t count) {
+  hand.graspNode.resize(count);
+  hand.graspWeight.resize(count);
+  hand.graspForce.resize(count);
+  hand.graspPlace.resize(count);
+}
+
+/// Moves grasped point `from` to `to`. @pre to <= from
+void moveGrasp(HandState& hand, std::size_t from, std::size_t to) {
+  hand.graspNode[to] = hand.graspNode[from];
+  hand.graspWeight[to] = hand.graspWeight[from];
+  hand.graspForce[to] = hand.graspForce[from];
+  hand.graspPlace[to] = hand.graspPlace[from];
+}
+
+}  // namespace
+
+void Grasping::end(Surfaces& surfaces, std::size_t hand, EventKind why, double value, State& state, StepLog& log,
+                   ContactResult& contact) {
+  HandState& h = state.hand[hand];
+  log.emit(why, hand, h.grasped, h.simulatedPosition, value);
+  h.grasped = noStructure;
+  h.slipping = false;
+  resizeGrasp(h, 0);
+  // Jaws may have sunk into what they held.
+  resolver_.run(surfaces, hand, state, contact);
+}
+
+void Grasping::removeStaleGrasps(Surfaces& surfaces, std::size_t hand, State& state, StepLog& log,
+                                 ContactResult& contact) {
+  HandState& h = state.hand[hand];
+  if (h.grasped == noStructure) return;
+  const Skin& held = surfaces.skin(h.grasped);
+  std::size_t kept = 0;
+  for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
+    const auto exists = [&](std::uint32_t node) { return held.exists(static_cast<int>(node)); };
+    if (std::all_of(h.graspNode[a].begin(), h.graspNode[a].end(), exists)) moveGrasp(h, a, kept++);
+  }
+  resizeGrasp(h, kept);
+  if (kept > 0) return;
+  end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, contact);
+}
+
+void Grasping::release(Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
+  for (std::size_t hand = 0; hand < handCount; ++hand) removeStaleGrasps(surfaces, hand, state, log, contact);
+  for (std::size_t hand = 0; hand < handCount; ++hand) {
+    const HandState& h = state.hand[hand];
+    if (h.grasped == noStructure || (h.instrument == InstrumentKind::grasper && h.realJaw <= openJaw)) continue;
+    end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, contact);
+  }
+}
+
+void Grasping::close(Surfaces& surfaces, State& state, StepLog& log) const {
+  for (std::size_t hand = 0; hand < handCount; ++hand) closeOne(surfaces, hand, state, log);
+}
+
+void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const {
+  HandState& h = state.hand[hand];
+  if (h.realJaw > (h.instrument == InstrumentKind::scissors ? openBlades : openJaw)) h.jawsOpened = true;
+  if (h.instrument != InstrumentKind::grasper) return;
+  if (h.realJaw > closedJaw || !h.jawsOpened) return;
+  h.jawsOpened = false;
+  const Pose tool = simulatedPose(h);
+  const auto [from, to] = graspRegion(closedJaw, model_.scene().hands[hand].shaftRadius).line();
+  std::size_t structure = ContactBlock::none;
+  std::vector<Vec3> held;
+  for (const double station : stations) {
+    const Vec3 target = tool.position + tool.orientation * Vec3(from + station * (to - from));
+    double nearest = searchRadius * searchRadius;
+    std::size_t nearestStructure = ContactBlock::none;
+    Index3 triangle = Index3::Zero();
+    PointTriangle best;
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+      if (structure != ContactBlock::none && s != structure) continue;
+      for (const std::uint32_t p : surfaces.patchesNear(s, target, target, searchRadius)) {
+        const ContactSurface& surface = surfaces.mesh(s);
+        for (std::size_t t = surface.patches()[p].first; t < surface.patches()[p].last; ++t) {
+          const Index3& corner = surface.triangles()[t];
+          const auto at = [&](int k) -> const Vec3& { return surfaces.points(s)[static_cast<std::size_t>(corner[k])]; };
+          const PointTriangle found = closestOnTriangle(target, at(0), at(1), at(2));
+          if (!(found.squaredDistance < nearest)) continue;
+          nearest = found.squaredDistance;
+          nearestStructure = s;
+          triangle = corner;
+          best = found;
+        }
+      }
+    }
+    if (nearestStructure == ContactBlock::none) continue;
+    const bool near =
+        std::any_of(held.begin(), held.end(), [&](const Vec3& p) { return (p - best.point).norm() < minSpacing; });
+    if (near) continue;
+    structure = nearestStructure;
+    held.push_back(best.point);
+    h.graspNode.push_back({static_cast<std::uint32_t>(triangle[0]), static_cast<std::uint32_t>(triangle[1]),
+                           static_cast<std::uint32_t>(triangle[2])});
+    h.graspWeight.push_back(best.barycentric);
+    h.graspPlace.push_back(tool.orientation.conjugate() * (best.point - tool.position));
+    h.graspForce.push_back(Vec3::Zero());
+  }
+  if (held.empty()) return;
+  h.grasped = static_cast<std::uint32_t>(structure);
+  h.graspSince = state.clock.step;
+  h.slipping = false;
+  log.emit(EventKind::graspBegin, hand, structure, h.simulatedPosition, h.realJaw);
+}
+
+void Grasping::addBlocks(const Surfaces& surfaces, const State& state, std::vector<ContactBlock>& blocks) const {
+  for (std::size_t hand = 0; hand < handCount; ++hand) {
+    const HandState& h = state.hand[hand];
+    if (h.grasped == noStructure) continue;
+    const HandDescription& description = model_.scene().hands[hand];
+    const Pose tool = simulatedPose(h);
+    const double each = description.slipForce * gripOf(h) / static_cast<double>(h.graspNode.size());
+    for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
+      const Vec3 onSkin = skinPoint(surfaces.points(h.grasped), h.graspNode[a], h.graspWeight[a]);
+      const Vec3 inJaws = tool.position + tool.orientation * h.graspPlace[a];
+      ContactBlock block;
+      block.kind = BlockKind::bilateral;
+      block.limit = each;
+      block.hand = hand;
+      block.body = model_.structures()[h.grasped].body;
+      block.structure = h.grasped;
+      block.anchor = a;
+      block.place =
+          surfaces.skin(h.grasped).influence({static_cast<int>(h.graspNode[a][0]), static_cast<int>(h.graspNode[a][1]),
+                                              static_cast<int>(h.graspNode[a][2])},
+                                             h.graspWeight[a]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        block.direction[k] = Vec3::Unit(static_cast<int>(k));
+        block.gap[k] = inJaws[static_cast<int>(k)] - onSkin[static_cast<int>(k)];
+        block.tool[k] = toolRow(description.port, tool, inJaws, block.direction[k]);
+      }
+      blocks.push_back(block);
+    }
+  }
+}
+
+bool Grasping::slip(const Surfaces& surfaces, std::size_t hand, State& state) const {
+  HandState& h = state.hand[hand];
+  const HandDescription& description = model_.scene().hands[hand];
+  const double each = description.slipForce * gripOf(h) / static_cast<double>(h.graspNode.size());
+  const Pose tool = simulatedPose(h);
+  const auto [from, to] = graspRegion(closedJaw, description.shaftRadius).line();
+  bool slipping = false;
+  std::size_t kept = 0;
+  for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
+    Vec3 place = h.graspPlace[a];
+    bool gone = false;
+    if (h.graspForce[a].norm() >= each * (1.0 - 1e-9)) {
+      slipping = true;
+      place = tool.orientation.conjugate() *
+              (skinPoint(surfaces.points(h.grasped), h.graspNode[a], h.graspWeight[a]) - tool.position);
+      const Vec3 onLine = from + closestOnSegment(place, from, to) * (to - from);
+      gone = (place - onLine).norm() > searchRadius + lostDistance;
+    }
+    if (gone) continue;
+    moveGrasp(h, a, kept);
+    h.graspPlace[kept++] = place;
+  }
+  resizeGrasp(h, kept);
+  return slipping;
+}
+
+void Grasping::settle(Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log) {
+  for (std::size_t hand = 0; hand < handCount; ++hand) {
+    HandState& h = state.hand[hand];
+    HandResult& out = result.hand[hand];
+    out.grasping = h.grasped == noStructure ? 0 : 1U << h.grasped;
+    out.graspForce = 0.0;
+    if (h.grasped == noStructure) continue;
+    Vec3 pull = Vec3::Zero();
+    for (const Vec3& f : h.graspForce) pull += f;
+    out.graspForce = pull.norm();
+    if (out.graspForce > model_.scene().hands[hand].tearForce) {
+      if (h.grasped < model_.organs().size())
+        perforateOrgan(model_, h.grasped, h.simulatedPosition, 0.0, state, activity, log);
+      end(surfaces, hand, EventKind::tissueTear, out.graspForce, state, log, result.contact);
+      continue;
+    }
+    const bool slipping = slip(surfaces, hand, state);
+    if (slipping && !h.slipping) {
+      log.emit(EventKind::graspSlip, hand, h.grasped, h.simulatedPosition, out.graspForce);
+    }
+    h.slipping = slipping;
+    if (h.graspNode.empty()) {
+      end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, result.contact);
+    }
+  }
+}
+
+}  // namespace calot

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/hook_motion.h"
+
+#include "sim/step/placed_instrument.h"
+
+namespace calot {
+
+void sweepHooks(const Model& model, const InstrumentTravels& travels, const State& state, HookSweeps& sweeps) {
+  for (std::size_t hand = 0; hand < handCount; ++hand) {
+    sweeps[hand].clear();
+    const HandState& h = state.hand[hand];
+    const bool energised = (h.buttons & (button::cutPedal | button::coagulatePedal)) != 0;
+    if (h.instrument != InstrumentKind::hook || !energised) continue;
+    const HandDescription& description = model.scene().hands[hand];
+    const Pose now = simulatedPose(h);
+    const InstrumentShape hook =
+        instrumentShape(h.instrument, h.jaw, description.shaftRadius, (now.position - description.port).norm());
+    const InstrumentShape before = placed(hook, travels[hand].before);
+    const InstrumentShape after = placed(hook, now);
+    for (std::size_t k = 0; k < after.capsules().size(); ++k) {
+      const Capsule& from = before.capsules()[k];
+      const Capsule& to = after.capsules()[k];
+      if (to.part == Capsule::Part::hook) sweeps[hand].push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
+    }
+  }
+}
+
+}  // namespace calot

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/instrument_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/contact/capsule_contact.h"
+#include "sim/step/hand_haptics.h"
+
+namespace calot {
+
+namespace {
+
+constexpr int maxAdvances = 16;      ///< conservative advancements a step; each halves the way at worst
+constexpr double maxJawStep = 0.05;  ///< of a jaw near a surface in one step (rad). Assumed: 5 rad/s
+
+}  // namespace
+
+/// Least gap between the placed instrument and all structures, at most `limit` (m).
+double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size_t hand, double limit) const {
+  double least = limit;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    for (const Capsule& c : instrument_.capsule) {
+      const double allowed = allowedDepth(model_, state, hand, c, s);
+      const double search = capsuleSearch(c.radius, std::max(least - allowed, 0.0));
+      const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, search);
+      if (near.empty()) continue;
+      least = allowed + leastGap(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, least - allowed);
+    }
+  }
+  return least;
+}
+
+void InstrumentMotion::advance(Surfaces& surfaces, std::size_t hand, State& state, InstrumentTravel& travel) {
+  HandState& h = state.hand[hand];
+  const HandDescription& description = model_.scene().hands[hand];
+  const Pose real{h.realPosition, h.realOrientation};
+  double left = 0.0;
+  for (int i = 0;; ++i) {
+    const Pose now = simulatedPose(h);
+    const Vec3 way = real.position - now.position;
+    const double roll = rollBetween(now.orientation, real.orientation);
+    const double closing = h.realJaw - h.jaw;
+    instrument_.place(description, h.instrument, now, std::max(h.jaw, h.realJaw));
+    // No point of the instrument moves farther: rotating about the port, it moves with the tip, and what stands off the
+    // axis a little more.
+    const InstrumentShape& local = instrument_.local;
+    const double length = (now.position - description.port).norm();
+    left = way.norm() * (1.0 + local.lateralReach() / length) + std::abs(roll) * local.lateralReach() +
+           0.5 * std::abs(closing) * local.jawReach();
+    if (!(left > 0.0)) break;
+    instrument_.place(description, h.instrument, now, h.jaw);
+    const double room = gapOf(surfaces, state, hand, left + 2.0 * contactMargin);
+    double share = 0.0;
+    if (room >= left + contactMargin) {
+      share = 1.0;
+    } else if (room > 1.05 * contactMargin && i < maxAdvances) {
+      share = (room - contactMargin) / left;
+    } else {
+      h.jaw += std::clamp(closing, -maxJawStep, maxJawStep);
+      break;
+    }
+    const Pose next = share == 1.0 ? throughPort(description.port, real.position, real.orientation,
+                                                 now.orientation.toRotationMatrix().col(2))
+                                   : movedTool(description.port, now, share * way, share * roll);
+    h.simulatedPosition = next.position;
+    h.simulatedOrientation = next.orientation;
+    h.jaw = share == 1.0 ? h.realJaw : h.jaw + share * closing;
+    if (share == 1.0) {
+      left = 0.0;
+      break;
+    }
+  }
+  travel.reference = simulatedPose(h);
+  travel.stretch = couplingStretch(travel.reference, real, hapticModel(model_, hand).largestStretch);
+  travel.reach = contactMargin + std::min(left, maxSlide);
+}
+
+InstrumentTravels InstrumentMotion::run(Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
+  InstrumentTravels travel;
+  for (std::size_t hand = 0; hand < handCount; ++hand) travel[hand].before = simulatedPose(state.hand[hand]);
+  grasping_.release(surfaces, state, log, contact);
+  for (std::size_t hand = 0; hand < handCount; ++hand) advance(surfaces, hand, state, travel[hand]);
+  grasping_.close(surfaces, state, log);
+  return travel;
+}
+
+}  // namespace calot

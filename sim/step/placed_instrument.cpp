@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/placed_instrument.h"
+
+#include "sim/vessel/centre_line.h"
+
+namespace calot {
+
+namespace {
+
+/// That jaws may sink into what they grasp (m): about the thickness of a fold of gallbladder wall. Larger: the
+/// instrument sticks in tissue after release; smaller: tissue is pushed out of closing jaws. Assumed.
+constexpr double graspedDepth = 0.0035;
+/// The same about a clip (m): deeper than any vessel is thick. Larger changes nothing.
+constexpr double crushedDepth = 0.02;
+
+/// Are these the jaws of an applier that has closed, and not opened since, about a clip of this vessel? They crush what
+/// they clip; blunt bodies that closed on a tube which cannot give way would throw it about.
+bool isClosedOnClip(const Model& model, const State& state, const HandState& hand, std::size_t structure) {
+  const StructureModel& s = model.structures()[structure];
+  if (hand.instrument != InstrumentKind::clipApplier || hand.jawsOpened || s.kind != StructureKind::vessel)
+    return false;
+  const BeamModel& beams = model.vesselTrees()[s.index].beams;
+  const BeamState& vessels = state.vessel[s.index];
+  const double reach = 1.5 * model.scene().clip.legs;
+  for (std::size_t c = 0; c < vessels.clips(); ++c) {
+    if (vessels.clipBranch[c] != s.branch) continue;
+    const Vec3 where = centreLine(beams, vessels, placeAt(beams, s.branch, vessels.clipPlace[c])).position;
+    if ((where - hand.simulatedPosition).squaredNorm() < reach * reach) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void PlacedInstrument::place(const HandDescription& hand, InstrumentKind kind, const Pose& pose, double jaw) {
+  const double length = (pose.position - hand.port).norm();
+  local = instrumentShape(kind, jaw, hand.shaftRadius, length);
+  const InstrumentShape world = placed(local, pose);
+  capsule.assign(world.capsules().begin(), world.capsules().end());
+}
+
+double allowedDepth(const Model& model, const State& state, std::size_t hand, const Capsule& capsule,
+                    std::size_t structure) {
+  const bool jaw = capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw;
+  if (!jaw) return 0.0;
+  const HandState& h = state.hand[hand];
+  if (isClosedOnClip(model, state, h, structure)) return crushedDepth;
+  return h.grasped == structure ? graspedDepth : 0.0;
+}
+
+}  // namespace calot

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A hand's instrument as capsules in W, and how far its jaws may sink into tissue. Internal to this folder.
+#pragma once
+
+#include <vector>
+
+#include "sim/instruments/instrument_shape.h"
+#include "sim/scene/model.h"
+#include "sim/scene/state.h"
+
+namespace calot {
+
+/// Simulated pose of a hand's instrument: p_WI, q_WI.
+inline Pose simulatedPose(const HandState& hand) { return {hand.simulatedPosition, hand.simulatedOrientation}; }
+
+/// The instrument's capsules at a pose.
+struct PlacedInstrument {
+  InstrumentShape local;         ///< in I
+  std::vector<Capsule> capsule;  ///< in W
+
+  void place(const HandDescription& hand, InstrumentKind kind, const Pose& pose, double jaw);
+};
+
+/// How deep this part of the instrument may stand in a structure (m): jaws in what they grasp, because a mesh does not
+/// fold between them, and in a vessel that they close a clip on, because a tube does not flatten between them; 0
+/// otherwise.
+double allowedDepth(const Model& model, const State& state, std::size_t hand, const Capsule& capsule,
+                    std::size_t structure);
+
+}  // namespace calot

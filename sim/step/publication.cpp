@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/publication.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/step/sleeping.h"
+#include "sim/step/tissue_damage.h"
+
+namespace calot {
+
+namespace {
+
+/// Below, nothing counts as touching (N). Larger misses light touches; smaller counts rounding. Assumed.
+constexpr double minForce = 1e-6;
+
+/// Largest speed (m/s) and largest displacement from rest (m) over a body's nodes.
+struct Extremes {
+  double speed = 0.0;
+  double displacement = 0.0;
+};
+Extremes extremesOf(std::span<const Vec3> position, std::span<const Vec3> velocity, std::span<const Vec3> rest) {
+  double speed = 0.0;
+  double displacement = 0.0;
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    speed = std::max(speed, velocity[n].squaredNorm());
+    displacement = std::max(displacement, (position[n] - rest[n]).squaredNorm());
+  }
+  return {std::sqrt(speed), std::sqrt(displacement)};
+}
+
+}  // namespace
+
+void Publication::publishOrgans(const ContactSystem& contact, Bodies& bodies, const Activity& activity, State& state,
+                                StepResult& result) const {
+  for (std::size_t o = 0; o < model_.organs().size(); ++o) {
+    SolidState& organ = state.organ[o];
+    OrganResult& out = result.organ[o];
+    const OrganModel& fixed = model_.organs()[o];
+    out.largestSpeed = 0.0;
+    if (activity.awake[o]) {
+      const Extremes now = extremesOf(organ.position, organ.velocity, fixed.solid.rest());
+      out.largestSpeed = now.speed;
+      organ.largestDisplacement = now.displacement;
+      organ.volume = fixed.solid.volume(organ.position);
+      countQuietSteps(model_, bodies, contact.blocks, o, now.speed, state);
+    }
+    out.largestDisplacement = organ.largestDisplacement;
+    out.volume = organ.volume;
+    out.charredArea = state.charred[o].area;
+  }
+}
+
+void Publication::publishVessel(const Bodies& bodies, bool awake, const State& state, std::size_t tree,
+                                std::size_t branch, VesselResult& out) const {
+  const VesselTree& vessels = model_.vesselTrees()[tree];
+  const BeamState& beams = state.vessel[tree];
+  const BeamModel::Branch& fixed = vessels.beams.branches()[branch];
+  out.asleep = !awake;
+  out.largestDisplacement = beams.largestDisplacement;
+  out.largestStrain = 0.0;
+  out.largestTension = 0.0;
+  out.clips = 0;
+  out.partings = 0;
+  double exposure = 0.0;
+  for (std::size_t e = fixed.firstElement; e < fixed.firstElement + fixed.elements(); ++e) {
+    if (beams.parting[e] != Parting::none) ++out.partings;
+    exposure = std::max(exposure, beams.exposure[e]);
+    if (!awake) continue;
+    out.largestStrain = std::max(out.largestStrain, bodies.vessel(tree).strain()[e]);
+    out.largestTension = std::max(out.largestTension, bodies.vessel(tree).tension()[e]);
+  }
+  out.charred = exposure / model_.scene().vessels[vessels.vessel[branch]].burnThrough;
+  for (const std::uint32_t clipped : beams.clipBranch) out.clips += clipped == branch ? 1 : 0;
+}
+
+void Publication::publishVessels(const ContactSystem& contact, Surfaces& surfaces, Bodies& bodies, Activity& activity,
+                                 State& state, StepResult& result, StepLog& log) const {
+  for (std::size_t t = 0; t < model_.vesselTrees().size(); ++t) {
+    const VesselTree& tree = model_.vesselTrees()[t];
+    BeamState& beams = state.vessel[t];
+    const std::size_t b = model_.organs().size() + t;
+    const BeamReport& report = bodies.vessel(t).report();
+    if (activity.awake[b]) {
+      double displacement = 0.0;
+      for (std::size_t n = 0; n < beams.position.size(); ++n) {
+        displacement = std::max(displacement, (beams.position[n] - tree.beams.rest()[n]).squaredNorm());
+      }
+      beams.largestDisplacement = std::sqrt(displacement);
+      countQuietSteps(model_, bodies, contact.blocks, b, report.largestSpeed, state);
+      if (report.torn >= 0) {
+        const auto torn = static_cast<std::size_t>(report.torn);
+        const BeamElement& element = tree.beams.elements()[torn];
+        log.emit(EventKind::vesselTorn, StepLog::noHand,
+                 bodies.structureOfVessel(t, static_cast<std::size_t>(element.branch)),
+                 beams.position[static_cast<std::size_t>(element.a)], report.largestStrain);
+        reportTear(model_, t, torn, state, log);
+        activity.disturb(bodies, state, b);
+        surfaces.markBodyStale(b);
+      }
+    }
+    for (std::size_t branch = 0; branch < tree.vessel.size(); ++branch) {
+      publishVessel(bodies, activity.awake[b], state, t, branch, result.vessel[tree.vessel[branch]]);
+    }
+  }
+}
+
+void Publication::publishFat(const ContactSystem& contact, Bodies& bodies, const Activity& activity, State& state,
+                             StepResult& result) const {
+  for (std::size_t f = 0; f < bodies.fatCount(); ++f) {
+    const std::size_t b = bodies.firstFat() + f;
+    SolidState& solid = state.fat[f].solid;
+    FatResult& out = result.fat[f];
+    const FatBody& fat = bodies.fat(f).fat();
+    out.asleep = !activity.awake[b];
+    out.largestSpeed = 0.0;
+    if (activity.awake[b]) {
+      const Extremes now = extremesOf(solid.position, solid.velocity, fat.model().solid().rest());
+      out.largestSpeed = now.speed;
+      solid.largestDisplacement = now.displacement;
+      if (!activity.carved[f]) countQuietSteps(model_, bodies, contact.blocks, b, now.speed, state);
+    }
+    out.largestDisplacement = solid.largestDisplacement;
+    out.volume = fat.volume().total();
+    out.toClear = fat.model().regions() > 0 ? fat.volume().inRegion(0) : 0.0;
+  }
+}
+
+void Publication::publishHand(const ContactSystem& contact, std::size_t h, State& state, HandResult& out,
+                              StepLog& log) const {
+  HandState& hand = state.hand[h];
+  out.instrument = hand.instrument;
+  out.tipReal = hand.realPosition;
+  out.tipSimulated = hand.simulatedPosition;
+  out.orientation = hand.simulatedOrientation;
+  out.jaw = hand.jaw;
+  out.clips = hand.clips;
+  out.insertion = (hand.simulatedPosition - model_.scene().hands[h].port).norm();
+  std::fill(out.structureForce.begin(), out.structureForce.end(), 0.0);
+  for (const ContactBlock& block : contact.blocks) {
+    if (block.hand == h && !block.isGrasp()) out.structureForce[block.structure] += contact.lambda[block.row];
+  }
+  out.touching = 0;
+  for (std::size_t s = 0; s < model_.structures().size(); ++s) {
+    const std::uint32_t bit = 1U << s;
+    const bool touched = (hand.touching & bit) != 0;
+    const bool now = out.structureForce[s] > minForce;
+    if (now) out.touching |= bit;
+    if (now && !touched) {
+      hand.touchingSince[s] = state.clock.step;
+      log.emit(EventKind::contactBegin, h, s, hand.simulatedPosition, out.structureForce[s]);
+    } else if (touched && !now) {
+      log.emit(EventKind::contactEnd, h, s, hand.simulatedPosition,
+               static_cast<double>(state.clock.step - hand.touchingSince[s]) * model_.stepSeconds());
+    }
+  }
+  hand.touching = out.touching;
+}
+
+void Publication::reportRunaway(const Bodies& bodies, const Activity& activity, const std::vector<bool>& diverged,
+                                const State& state, StepLog& log) const {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!activity.awake[b]) continue;
+    // Body::advance() lets nothing that is not finite into State and stops the node instead; that is no motion either.
+    double largest = diverged[b] ? 1e300 : 0.0;
+    std::size_t where = 0;
+    const std::span<const Vec3> velocity = bodies[b].velocity(state);
+    for (std::size_t n = 0; n < velocity.size(); ++n) {
+      const double speed = velocity[n].norm();
+      if (speed <= largest) continue;
+      largest = speed;
+      where = n;
+    }
+    if (largest <= fastestMotion) continue;
+    log.miss(miss::runaway);
+    log.emit(EventKind::runaway, StepLog::noHand, bodies.firstStructure(b), bodies[b].position(state)[where], largest);
+  }
+}
+
+void Publication::run(const ContactSystem& contact, Surfaces& surfaces, Bodies& bodies, State& state,
+                      Activity& activity, StepResult& result, StepLog& log) {
+  publishOrgans(contact, bodies, activity, state, result);
+  publishVessels(contact, surfaces, bodies, activity, state, result, log);
+  publishFat(contact, bodies, activity, state, result);
+  grasping_.settle(surfaces, state, activity, result, log);
+  for (std::size_t h = 0; h < handCount; ++h) publishHand(contact, h, state, result.hand[h], log);
+}
+
+}  // namespace calot

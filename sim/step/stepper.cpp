@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/stepper.h"
+
+#include <cassert>
+
+#include "sim/math/floating_point.h"
+#include "sim/step/contact_detection.h"
+#include "sim/step/contact_problem.h"
+#include "sim/step/contact_response.h"
+#include "sim/step/contact_solution.h"
+#include "sim/step/instrument_motion.h"
+#include "sim/step/procedure_stage.h"
+#include "sim/step/publication.h"
+#include "sim/step/sample_stage.h"
+#include "sim/step/tissue_effects.h"
+#include "sim/step/unconstrained_motion.h"
+#include "sim/step/warm_start.h"
+
+namespace calot {
+
+namespace {
+
+StepResult emptyResult(const Model& model) {
+  StepResult result;
+  result.organ.resize(model.organs().size());
+  result.connective.resize(model.connective().size());
+  result.vessel.resize(model.scene().vessels.size());
+  result.fat.resize(model.fat().size());
+  for (HandResult& hand : result.hand) hand.structureForce.resize(model.structures().size());
+  return result;
+}
+
+}  // namespace
+
+/// The stages, what they hand on, and what they work on.
+struct Stepper::Pipeline {
+  Pipeline(const Model& m, Executor& executor, MakeBroadPhase make)
+      : model(m),
+        bodies(m, executor),
+        surfaces(m, bodies, make),
+        activity(m),
+        grasping(m),
+        sampleStage(m),
+        instrumentMotion(m, grasping),
+        contactDetection(m, grasping),
+        unconstrainedMotion(m),
+        contactProblem(m),
+        contactSolution(m),
+        contactResponse(m),
+        tissueEffects(m),
+        publication(m, grasping),
+        procedureStage(m, bodies),
+        result(emptyResult(m)) {}
+
+  const Model& model;
+  Bodies bodies;
+  Surfaces surfaces;
+  Activity activity;
+  Grasping grasping;
+
+  SampleStage sampleStage;
+  InstrumentMotion instrumentMotion;
+  ContactDetection contactDetection;
+  UnconstrainedMotion unconstrainedMotion;
+  ContactProblemStage contactProblem;
+  ContactSolution contactSolution;
+  ContactResponse contactResponse;
+  TissueEffects tissueEffects;
+  Publication publication;
+  ProcedureStage procedureStage;
+
+  ContactSystem contact;
+  ContactSets contactSets;
+  StepResult result;
+  IncrementalDigest digest;
+};
+
+Stepper::Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase)
+    : p_(std::make_unique<Pipeline>(model, executor, makeBroadPhase)) {}
+Stepper::~Stepper() = default;
+
+const StepResult& Stepper::step(State& state, std::span<const TickSamples> samples) {
+  const FloatingPointScope scope;
+  Pipeline& p = *p_;
+  assert(samples.size() == p.model.scene().ticksPerStep);
+  p.result.step = state.clock.step;
+  p.result.contact = {};
+  StepLog log{p.result};
+  p.activity.beginStep();
+  p.bodies.beginStep(state);
+
+  p.sampleStage.run(samples, state, log);
+  p.surfaces.refresh(state);
+  const InstrumentTravels travels = p.instrumentMotion.run(p.surfaces, state, log, p.result.contact);
+  p.contactDetection.run(p.surfaces, p.bodies, travels, state, p.activity, p.contact, p.result.contact);
+  loadWarmStart(state, p.contact);
+  p.unconstrainedMotion.run(p.bodies, p.contact, p.activity, state, p.result, log);
+  p.result.contact.violation = p.contactProblem.run(p.bodies, p.activity, travels, state, p.contact);
+  p.contactSolution.run(p.bodies, p.activity, travels, p.contact, p.result.contact, log);
+  p.contactResponse.run(p.surfaces, p.bodies, p.activity, travels, p.contact, state, p.contactSets, p.result, log);
+  p.tissueEffects.run(travels, p.surfaces, p.bodies, state, p.activity, p.result, log);
+  p.publication.run(p.contact, p.surfaces, p.bodies, state, p.activity, p.result, log);
+  p.procedureStage.run(p.bodies, state, p.result, log);
+  p.publication.reportRunaway(p.bodies, p.activity, p.contactResponse.diverged(), state, log);
+
+  ++state.clock.step;
+  return p.result;
+}
+
+void Stepper::precompute() {
+  const FloatingPointScope scope;
+  p_->contactDetection.precompute();
+  p_->bodies.precompute();
+}
+
+const ContactSet& Stepper::contactSet(std::size_t hand) const { return p_->contactSets[hand]; }
+
+const StateDigest& Stepper::digest(const State& state) {
+  const Activity& a = p_->activity;
+  std::vector<bool> written(State::organsFrom, true);
+  const auto vessels = a.written.begin() + static_cast<std::ptrdiff_t>(p_->bodies.organs());
+  const auto fat = a.written.begin() + static_cast<std::ptrdiff_t>(p_->bodies.firstFat());
+  written.insert(written.end(), a.written.begin(), vessels);
+  written.insert(written.end(), a.frayed.begin(), a.frayed.end());
+  written.insert(written.end(), vessels, fat);
+  written.insert(written.end(), a.charred.begin(), a.charred.end());
+  written.insert(written.end(), fat, a.written.end());
+  written.insert(written.end(), a.carved.begin(), a.carved.end());
+  written.resize(written.size() + state.procedure.size(), true);
+  const StateDigest& digest = p_->digest.update(state, written);
+  assert(digest == digestOf(state));
+  return digest;
+}
+
+void Stepper::invalidate() {
+  p_->surfaces.invalidate();
+  p_->bodies.invalidate();
+  p_->contactDetection.invalidate();
+  p_->contactSets = {};
+  p_->digest.reset();
+}
+
+}  // namespace calot

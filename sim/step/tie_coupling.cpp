@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"  // first
+
+#include "sim/step/tie_coupling.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+
+#include "sim/math/dense.h"
+
+namespace calot {
+
+namespace {
+
+/// Adds `block` to a row-major matrix of 3 x 3 blocks, n of them in a row.
+void addTo(std::vector<double>& matrix, std::size_t n, std::size_t i, std::size_t j, const Mat3& block) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      matrix[(3 * i + a) * 3 * n + 3 * j + b] += block(static_cast<int>(a), static_cast<int>(b));
+    }
+  }
+}
+
+Mat3 blockOf(std::span<const double> matrix, std::size_t n, std::size_t i, std::size_t j) {
+  Mat3 block;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      block(static_cast<int>(a), static_cast<int>(b)) = matrix[(3 * i + a) * 3 * n + 3 * j + b];
+    }
+  }
+  return block;
+}
+
+}  // namespace
+
+TieCoupling::TieCoupling(const Model& model, std::size_t organ, std::vector<std::size_t> ties, double step)
+    : model_(model), organ_(organ), tie_(std::move(ties)), step_(step) {
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    const SolidPlace& place = tie(i).place[0];
+    assert(tie(i).body[0] == organ_ && tie(i).place[1].count == 1);
+    organNode_.insert(organNode_.end(), place.node.begin(),
+                      place.node.begin() + static_cast<std::ptrdiff_t>(place.count));
+    joint_.place.push_back(place);
+  }
+  std::sort(organNode_.begin(), organNode_.end());
+  organNode_.erase(std::unique(organNode_.begin(), organNode_.end()), organNode_.end());
+  joint_.force.resize(tie_.size());
+  ahead_.resize(tie_.size());
+  vesselSeen_.resize(tie_.size());
+  force_.resize(tie_.size());
+  change_.resize(tie_.size());
+}
+
+bool TieCoupling::joins(std::size_t body) const {
+  if (body == organ_) return true;
+  return std::any_of(tie_.begin(), tie_.end(), [&](std::size_t t) { return model_.ties()[t].body[1] == body; });
+}
+
+/// 1 / d + h C of the vessels.
+void TieCoupling::rigidity(std::span<const std::unique_ptr<Body>> body, std::vector<double>& out) const {
+  const std::size_t n = tie_.size();
+  out.assign(9 * n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    addTo(out, n, i, i, (1.0 / (step_ * tie(i).stiffness + tie(i).damping)) * Mat3::Identity());
+    for (std::size_t j = 0; j < n; ++j) {
+      if (vesselOf(i) == vesselOf(j)) addTo(out, n, i, j, step_ * body[vesselOf(i)]->block(nodeOf(i), nodeOf(j)));
+    }
+  }
+}
+
+/// Row i of D times velocities.
+Vec3 TieCoupling::applied(std::size_t i, std::span<const Vec3> velocity) const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t j = 0; j < tie_.size(); ++j) {
+    if (vesselOf(i) == vesselOf(j)) sum += blockOf(joint_.damper, tie_.size(), i, j) * velocity[j];
+  }
+  return sum;
+}
+
+void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body>> body) {
+  const std::size_t n = tie_.size();
+  for (std::size_t i = 0; i < n; ++i) body[vesselOf(i)]->precomputeCompliance(std::array{nodeOf(i)});
+  rigidity(body, joint_.damper);
+  // A sum of 1 / d and what is positive semidefinite.
+  if (!invertPositive(joint_.damper, 3 * n)) joint_.damper.assign(9 * n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 gap = tie(i).place[0].of(body[organ_]->position(state)) -
+                     body[vesselOf(i)]->position(state)[static_cast<std::size_t>(nodeOf(i))];
+    ahead_[i] = (tie(i).stiffness / (step_ * tie(i).stiffness + tie(i).damping)) * gap;
+    vesselSeen_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
+    change_[i] = vesselSeen_[i] - ahead_[i];
+    force_[i].setZero();
+  }
+  for (std::size_t i = 0; i < n; ++i) joint_.force[i] = applied(i, change_);
+}
+
+void TieCoupling::pull(std::span<const std::unique_ptr<Body>> body) {
+  // force = D (V - ...) as the organ has it now; the vessels get what it changed by.
+  for (std::size_t i = 0; i < tie_.size(); ++i) change_[i] = tie(i).place[0].of(body[organ_]->freeVelocity());
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    const Vec3 force = applied(i, change_) - joint_.force[i];
+    vesselSeen_[i] = force - force_[i];  // for a moment: what is new
+    force_[i] = force;
+  }
+  std::size_t i = 0;
+  while (i < tie_.size()) {
+    const std::size_t vessel = vesselOf(i);
+    impulse_.assign(body[vessel]->nodes(), Vec3::Zero());
+    for (; i < tie_.size() && vesselOf(i) == vessel; ++i) {
+      impulse_[static_cast<std::size_t>(nodeOf(i))] += step_ * vesselSeen_[i];
+    }
+    body[vessel]->push(impulse_);
+  }
+  for (i = 0; i < tie_.size(); ++i) {
+    vesselSeen_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
+  }
+}
+
+void TieCoupling::passOn(std::span<const std::unique_ptr<Body>> body, std::vector<Vec3>& impulse) {
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    change_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))] - vesselSeen_[i];
+  }
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    const Vec3 more = applied(i, change_);
+    if (more.isZero(0.0)) continue;
+    joint_.force[i] += more;
+    if (impulse.empty()) impulse.assign(body[organ_]->nodes(), Vec3::Zero());
+    const SolidPlace& place = tie(i).place[0];
+    for (std::size_t k = 0; k < place.count; ++k) {
+      impulse[static_cast<std::size_t>(place.node[k])] += (step_ * place.weight[k]) * more;
+    }
+  }
+}
+
+void TieCoupling::stiffen(const State& state, std::span<const std::unique_ptr<Body>> body) {
+  const std::size_t n = tie_.size();
+  Body& organ = *body[organ_];
+  organ.precomputeCompliance(organNode_);
+  rotation_.clear();
+  for (const int node : organNode_) rotation_.push_back(organ.rotation(state, node));
+  const std::size_t nodes = organNode_.size();
+  std::vector<Mat3> between(nodes * nodes);
+  for (std::size_t a = 0; a < nodes; ++a) {
+    for (std::size_t b = 0; b < nodes; ++b) {
+      between[a * nodes + b] = rotation_[a] * organ.block(organNode_[a], organNode_[b]) * rotation_[b].transpose();
+    }
+  }
+  const auto number = [&](int node) {
+    return static_cast<std::size_t>(std::lower_bound(organNode_.begin(), organNode_.end(), node) - organNode_.begin());
+  };
+  rigidity(body, tight_);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const SolidPlace& p = tie(i).place[0];
+      const SolidPlace& q = tie(j).place[0];
+      Mat3 sum = Mat3::Zero();
+      for (std::size_t a = 0; a < p.count; ++a) {
+        for (std::size_t b = 0; b < q.count; ++b) {
+          // C_ab and C_ba come from different solves, each to its tolerance: their mean.
+          const std::size_t x = number(p.node[a]);
+          const std::size_t y = number(q.node[b]);
+          sum += (0.5 * p.weight[a] * q.weight[b]) * (between[x * nodes + y] + between[y * nodes + x].transpose());
+        }
+      }
+      addTo(tight_, n, i, j, step_ * sum);
+    }
+  }
+  if (!invertPositive(tight_, 3 * n)) tight_.assign(9 * n * n, 0.0);
+}
+
+void TieCoupling::responses(const Body& body, std::size_t which, const SolidSolver::Impulse& place,
+                            std::span<const Mat3> rotation, std::vector<Mat3>& out) const {
+  out.assign(tie_.size(), Mat3::Zero());
+  if (which != organ_) {
+    for (std::size_t i = 0; i < tie_.size(); ++i) {
+      if (vesselOf(i) != which) continue;
+      for (std::size_t k = 0; k < place.count; ++k) {
+        out[i] -= body.block(nodeOf(i), place.node[k]) * rotation[k].transpose();
+      }
+    }
+    return;
+  }
+  std::vector<Mat3> atNode(organNode_.size(), Mat3::Zero());
+  for (std::size_t a = 0; a < organNode_.size(); ++a) {
+    for (std::size_t k = 0; k < place.count; ++k) {
+      atNode[a] += body.block(organNode_[a], place.node[k]) * rotation[k].transpose();
+    }
+    atNode[a] = rotation_[a] * atNode[a];
+  }
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    const SolidPlace& at = tie(i).place[0];
+    for (std::size_t k = 0; k < at.count; ++k) {
+      const auto a = std::lower_bound(organNode_.begin(), organNode_.end(), at.node[k]) - organNode_.begin();
+      out[i] += at.weight[k] * atNode[static_cast<std::size_t>(a)];
+    }
+  }
+}
+
+void TieCoupling::tieImpulses(std::span<const Mat3> responses, std::vector<Mat3>& out) const {
+  out.assign(tie_.size(), Mat3::Zero());
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    for (std::size_t j = 0; j < tie_.size(); ++j) out[i] += blockOf(tight_, tie_.size(), i, j) * responses[j];
+  }
+}
+
+Mat3 TieCoupling::schurComplement(std::span<const Mat3> responses, std::span<const Mat3> tieImpulses) const {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; i < tie_.size(); ++i) sum += responses[i].transpose() * tieImpulses[i];
+  return step_ * sum;
+}
+
+}  // namespace calot

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/tissue_damage.h"
+
+#include <algorithm>
+
+#include "sim/vessel/centre_line.h"
+#include "sim/vessel/clips.h"
+
+namespace calot {
+
+namespace {
+
+/// EventKind::cutOpen's value: which sides are open.
+double openSides(const CutJudgement& cut) { return (cut.opensBefore ? 1.0 : 0.0) + (cut.opensAfter ? 2.0 : 0.0); }
+
+/// Clips that the scene's procedure wants beside a cut and that are not there.
+std::size_t missingClips(const Model& model, std::size_t structure, const CutJudgement& cut) {
+  const std::vector<ProcedureModel::Divide>& divide = model.procedure().divide;
+  std::size_t missing = 0;
+  for (std::size_t d = 0; d < divide.size(); ++d) {
+    if (divide[d].structure != structure) continue;
+    const DivideDescription& wanted = model.scene().procedure.divide[d];
+    const std::size_t patient = wanted.patientAtStart ? cut.before : cut.after;
+    const std::size_t specimen = wanted.patientAtStart ? cut.after : cut.before;
+    missing += wanted.patient - std::min<std::size_t>(patient, wanted.patient) + wanted.specimen -
+               std::min<std::size_t>(specimen, wanted.specimen);
+  }
+  return missing;
+}
+
+}  // namespace
+
+void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, double exposure, State& state,
+                    Activity& activity, StepLog& log) {
+  if (!(model.scene().organs[organ].burnThrough > 0.0) || state.charred[organ].perforated) return;
+  state.charred[organ].perforated = true;
+  activity.charred[organ] = true;
+  log.emit(EventKind::organPerforated, StepLog::noHand, organ, where, exposure);
+}
+
+void partVessel(const Model& model, std::size_t structure, const BeamPlace& where, EventKind kind, std::size_t hand,
+                Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log) {
+  const StructureModel& s = model.structures()[structure];
+  const VesselTree& tree = model.vesselTrees()[s.index];
+  BeamState& vessels = state.vessel[s.index];
+  const CutJudgement cut = judgeCut(tree.beams, vessels, where);
+  const Vec3 place = centreLine(tree.beams, vessels, where).position;
+  if (!part(vessels, where, kind == EventKind::vesselCut ? Parting::cut : Parting::burned)) return;
+  activity.disturb(bodies, state, s.body);
+  surfaces.markBodyStale(s.body);
+  log.emit(kind, hand, structure, place, where.place);
+  if (openSides(cut) > 0.0) log.emit(EventKind::cutOpen, hand, structure, place, openSides(cut));
+  if (kind == EventKind::vesselCut) {
+    const std::size_t missing = missingClips(model, structure, cut);
+    if (missing > 0) log.emit(EventKind::tooFewClips, hand, structure, place, static_cast<double>(missing));
+  }
+  if (cut.throughClip) log.emit(EventKind::cutThroughClip, hand, structure, place, where.place);
+}
+
+void reportTear(const Model& model, std::size_t tree, std::size_t element, State& state, StepLog& log) {
+  const VesselTree& vesselTree = model.vesselTrees()[tree];
+  const BeamModel& beams = vesselTree.beams;
+  BeamState& vessels = state.vessel[tree];
+  const BeamElement& torn = beams.elements()[element];
+  const BeamModel::Branch& branch = beams.branches()[static_cast<std::size_t>(torn.branch)];
+  BeamPlace where;
+  where.branch = static_cast<std::size_t>(torn.branch);
+  where.element = element;
+  where.share = vessels.partedAt[element];
+  where.place = branch.place[element - branch.firstElement] + where.share * torn.length;
+  vessels.parting[element] = Parting::none;  // judged as it was before
+  const CutJudgement cut = judgeCut(beams, vessels, where);
+  vessels.parting[element] = Parting::torn;
+  if (openSides(cut) > 0.0) {
+    log.emit(EventKind::cutOpen, StepLog::noHand, model.organs().size() + vesselTree.vessel[where.branch],
+             vessels.position[static_cast<std::size_t>(torn.a)], openSides(cut));
+  }
+}
+
+}  // namespace calot

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"  // first
+
+#include "sim/step/vessel_tools.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/geometry/closest_point.h"
+#include "sim/math/elementary.h"
+#include "sim/step/jaws.h"
+#include "sim/vessel/centre_line.h"
+#include "sim/vessel/clips.h"
+
+namespace calot {
+
+namespace {
+
+/// Between jaws beside a vessel that they still close on (m). Larger: clips jump onto vessels; smaller: hands need more
+/// skill than in life. Assumed.
+constexpr double jawRoom = 0.002;
+constexpr double gripRoom = 0.0005;    ///< between blades and vessel where they count as touching (m). Assumed
+constexpr double bladeLength = 0.012;  ///< of scissors, from their tips (m)
+
+}  // namespace
+
+/// The vessel that runs nearest to the line between the jaws, if any does so within reach.
+/// @param length of that line, from the tips backwards (m)
+VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t hand, double length) const {
+  Crossing best;
+  const Pose tool = simulatedPose(state.hand[hand]);
+  const Vec3 along = tool.orientation * Vec3::UnitZ();
+  double least = 1e300;
+  for (std::size_t s = model_.organs().size(); s < model_.structures().size(); ++s) {
+    const StructureModel& structure = model_.structures()[s];
+    if (structure.kind != StructureKind::vessel) continue;
+    const BeamModel& beams = model_.vesselTrees()[structure.index].beams;
+    const BeamState& now = state.vessel[structure.index];
+    const BeamModel::Branch& branch = beams.branches()[structure.branch];
+    // A vessel that is partly beyond the tips or behind the crotch counts with that part.
+    const double beyond = pinchedSection(branch.section, 1.0).wide;
+    const Vec3 crotch = tool.position - (length + beyond) * along;
+    const Vec3 tips = tool.position + beyond * along;
+    for (std::size_t e = branch.firstElement; e < branch.firstElement + branch.elements(); ++e) {
+      if (now.parting[e] != Parting::none) continue;
+      const BeamElement& element = beams.elements()[e];
+      const SegmentSegment close = closestSegments(crotch, tips, now.position[static_cast<std::size_t>(element.a)],
+                                                   now.position[static_cast<std::size_t>(element.b)]);
+      const double reach = branch.section.outerRadius + jawRoom;
+      if (!(close.squaredDistance < least) || close.squaredDistance > reach * reach) continue;
+      least = close.squaredDistance;
+      best.structure = s;
+      best.place.branch = structure.branch;
+      best.place.element = e;
+      best.place.share = close.t;
+      const std::size_t i = e - branch.firstElement;
+      best.place.place = branch.place[i] + close.t * (branch.place[i + 1] - branch.place[i]);
+      best.depth = close.s * (length + 2.0 * beyond) - beyond;
+    }
+  }
+  if (best.structure == ContactBlock::none) return best;
+  const std::size_t tree = model_.structures()[best.structure].index;
+  best.frame = centreLine(model_.vesselTrees()[tree].beams, state.vessel[tree], best.place);
+  const double cosine = along.dot(best.frame.orientation * Vec3::UnitZ());
+  best.sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+  return best;
+}
+
+/// Do both blades touch the vessel where it crosses them? It is then cut: blades that went on closing as blunt bodies
+/// would only push it out.
+bool VesselTools::isGripped(const State& state, std::size_t hand, const Crossing& crossing) {
+  const StructureModel& structure = model_.structures()[crossing.structure];
+  const BeamModel& beams = model_.vesselTrees()[structure.index].beams;
+  const double outer = beams.branches()[structure.branch].section.outerRadius;
+  instrument_.place(model_.scene().hands[hand], state.hand[hand].instrument, simulatedPose(state.hand[hand]),
+                    state.hand[hand].jaw);
+  bool upper = false;
+  bool lower = false;
+  for (const Capsule& c : instrument_.capsule) {
+    if (c.part != Capsule::Part::upperJaw && c.part != Capsule::Part::lowerJaw) continue;
+    const Vec3& centre = crossing.frame.position;
+    const Vec3 nearest = c.p0 + closestOnSegment(centre, c.p0, c.p1) * (c.p1 - c.p0);
+    if ((nearest - centre).norm() > c.radius + outer + gripRoom) continue;
+    (c.part == Capsule::Part::upperJaw ? upper : lower) = true;
+  }
+  return upper && lower;
+}
+
+void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& bodies, State& state,
+                            Activity& activity, StepLog& log) const {
+  HandState& h = state.hand[hand];
+  if (h.clips == 0) return;
+  --h.clips;
+  const auto drop = [&] {
+    log.emit(EventKind::clipDropped, hand, 0, h.simulatedPosition, static_cast<double>(h.clips));
+  };
+  if (crossing.structure == ContactBlock::none) {
+    drop();
+    return;
+  }
+  const StructureModel& structure = model_.structures()[crossing.structure];
+  const BeamModel& beams = model_.vesselTrees()[structure.index].beams;
+  BeamState& vessels = state.vessel[structure.index];
+  const ClipDescription& clip = model_.scene().clip;
+  ClipAttempt attempt;
+  attempt.place = crossing.place;
+  attempt.width = clip.width;
+  // A vessel that runs askew takes up more of the legs.
+  attempt.legs = clip.legs * crossing.sine;
+  attempt.depth = crossing.depth * crossing.sine;
+  const Vec3 closing = crossing.frame.orientation.conjugate() * (h.simulatedOrientation * Vec3::UnitY());
+  attempt.roll = arctangent2(closing[1], closing[0]);
+  const ClipJudgement seat = judgeClip(beams, vessels, attempt, {clip.leastGap, clip.leastJunctionGap});
+  if (seat.missed) {
+    drop();
+    return;
+  }
+  setClip(beams, vessels, attempt, seat.enclosed);
+  activity.disturb(bodies, state, structure.body);
+  const auto report = [&](EventKind kind, double value) {
+    log.emit(kind, hand, crossing.structure, crossing.frame.position, value);
+  };
+  report(EventKind::clipSet, seat.enclosed);
+  if (seat.halfOn) report(EventKind::clipHalfOn, seat.enclosed);
+  if (seat.onClip) report(EventKind::clipOnClip, -seat.clipGap);
+  if (seat.nearClip || seat.nearJunction || seat.onEdge) {
+    const double gap = std::min(seat.nearClip ? seat.clipGap : 1e300, seat.nearJunction ? seat.junctionGap : 1e300);
+    report(EventKind::clipTooNear, seat.onEdge ? 0.0 : gap);
+  }
+}
+
+void VesselTools::closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity,
+                           StepLog& log) {
+  HandState& h = state.hand[hand];
+  const bool clips = h.instrument == InstrumentKind::clipApplier;
+  if (!h.jawsOpened || (!clips && h.instrument != InstrumentKind::scissors)) return;
+  const bool closed = h.realJaw <= closedJaw || (clips && (h.buttons & button::fire) != 0);
+  if (!closed && (clips || h.realJaw > openBlades)) return;
+  const Crossing crossing = vesselBetween(state, hand, clips ? model_.scene().clip.legs : bladeLength);
+  if (clips) {
+    setClipOn(hand, crossing, bodies, state, activity, log);
+  } else if (crossing.structure != ContactBlock::none && isGripped(state, hand, crossing)) {
+    // Blades part what they enclose: the centre line must be between them.
+    if (crossing.depth >= 0.0 && crossing.depth <= bladeLength) {
+      partVessel(model_, crossing.structure, crossing.place, EventKind::vesselCut, hand, bodies, surfaces, state,
+                 activity, log);
+    }
+  } else if (!closed) {
+    return;
+  }
+  h.jawsOpened = false;
+}
+
+void VesselTools::run(Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log) {
+  for (std::size_t hand = 0; hand < handCount; ++hand) closeOne(hand, bodies, surfaces, state, activity, log);
+}
+
+}  // namespace calot

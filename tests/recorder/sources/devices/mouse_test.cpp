@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mouse and keyboard as a device, on a clock of the test's own.
+#include "recorder/sources/devices/mouse_device.h"
+
+#include <gtest/gtest.h>
+
+#include "recorder/live/controlled_source.h"
+#include "recorder/sources/devices/device_source.h"
+#include "sim/math/random.h"
+#include "tests/recorder/sources/devices/support/device_support.h"
+
+namespace calot::recorder {
+namespace {
+
+struct Rig {
+  std::shared_ptr<MouseInput> mouse = std::make_shared<MouseInput>();
+  std::int64_t now = 1'000'000'000;
+  MouseDevice device{mouse, [this] { return now; }};
+  DeviceInput input;
+
+  /// Lets so many milliseconds pass; the last sample of a hand.
+  DeviceSample run(int milliseconds, Hand hand = Hand::right) {
+    for (int i = 0; i < milliseconds; ++i) {
+      now += 1'000'000;
+      device.poll(std::chrono::nanoseconds(0), input);
+    }
+    for (auto it = input.samples.rbegin(); it != input.samples.rend(); ++it) {
+      if (it->hand == hand) return *it;
+    }
+    ADD_FAILURE() << "no sample of that hand";
+    return {};
+  }
+};
+
+TEST(Mouse, PointerMovesTheTipByPixelsAndNeverTooFast) {
+  Rig rig;
+  EXPECT_EQ(rig.run(20).position, Vec3::Zero());
+  rig.mouse->move(100.0, -40.0);
+  EXPECT_NEAR((rig.run(100).position - Vec3(0.015, -0.006, 0)).norm(), 0.0, 1e-12);
+  rig.input.samples.clear();
+  rig.mouse->move(600.0, 0.0);  // 90 mm at once
+  rig.run(400);
+  const DeviceSample* before = nullptr;
+  for (const DeviceSample& s : rig.input.samples) {
+    if (s.hand != Hand::right) continue;
+    if (before != nullptr) {
+      const double seconds = 1e-9 * static_cast<double>(s.hostTime - before->hostTime);
+      EXPECT_LE((s.position - before->position).norm(), 0.5 * seconds + 1e-12);
+    }
+    before = &s;
+  }
+  EXPECT_NEAR((before->position - Vec3(0.105, -0.006, 0)).norm(), 0.0, 1e-12);
+}
+
+TEST(Mouse, WheelGoesAlongTheShaft) {
+  Rig rig;
+  const Vec3 port(0.03, -0.04, -0.12);  // 130 mm from the tip
+  rig.mouse->setPorts({Vec3::Zero(), port});
+  rig.run(20);
+  rig.mouse->turnWheel(4.0);
+  const Vec3 shaft = -port / 0.13;
+  EXPECT_NEAR((rig.run(200).position - 0.012 * shaft).norm(), 0.0, 1e-12);
+  rig.mouse->turnWheel(-4.0);
+  EXPECT_NEAR(rig.run(200).position.norm(), 0.0, 1e-12);
+  // It is not drawn out of its port.
+  rig.mouse->turnWheel(-400.0);
+  EXPECT_NEAR((rig.run(5000).position - port).norm(), 0.01, 1e-9);
+}
+
+TEST(Mouse, KeysRollJawAndPedals) {
+  Rig rig;
+  rig.run(20);
+  for (const MouseControl c : {MouseControl::right, MouseControl::rollRight, MouseControl::openJaw, MouseControl::cut,
+                               MouseControl::coagulate, MouseControl::fire})
+    rig.mouse->hold(c, true);
+  const DeviceSample s = rig.run(400);
+  EXPECT_NEAR((s.position - Vec3(0.012, 0, 0)).norm(), 0.0, 2e-4);
+  EXPECT_NEAR(s.orientation.angularDistance(Quat(Eigen::AngleAxisd(0.6, Vec3::UnitZ()))), 0.0, 0.01);
+  EXPECT_NEAR(s.gripper, 0.72, 0.01);
+  EXPECT_EQ(s.buttons, button::cutPedal | button::coagulatePedal | button::fire);
+  EXPECT_NEAR(rig.run(3000).gripper, 1.2, 1e-12);
+  rig.mouse->release();
+  const DeviceSample still = rig.run(20);
+  EXPECT_EQ(still.buttons, 0);
+  EXPECT_EQ(rig.run(200).position, still.position);
+  rig.mouse->hold(MouseControl::fine, true);
+  rig.mouse->move(100.0, 0.0);
+  EXPECT_NEAR(rig.run(100).position.x() - still.position.x(), 0.25 * 0.015, 1e-12);
+}
+
+TEST(Mouse, TheHandThatIsLeftHolds) {
+  Rig rig;
+  rig.mouse->move(50.0, 0.0);
+  rig.mouse->hold(MouseControl::cut, true);
+  rig.mouse->toggleLock();
+  const DeviceSample right = rig.run(100);
+  EXPECT_EQ(right.buttons, button::cutPedal | button::lock);
+  rig.mouse->switchHand();
+  EXPECT_EQ(rig.mouse->hand(), Hand::left);
+  rig.mouse->move(0.0, 80.0);
+  EXPECT_NEAR((rig.run(300, Hand::left).position - Vec3(0, 0.012, 0)).norm(), 0.0, 1e-12);
+  const DeviceSample held = rig.run(1, Hand::right);
+  EXPECT_EQ(held.position, right.position);
+  EXPECT_EQ(held.buttons, button::lock) << "the ratchet holds, the pedal does not";
+  EXPECT_TRUE(rig.mouse->locked(Hand::right));
+  EXPECT_FALSE(rig.mouse->locked(Hand::left));
+  rig.mouse->reset();
+  EXPECT_EQ(rig.mouse->hand(), Hand::right);
+  EXPECT_FALSE(rig.mouse->locked(Hand::right));
+}
+
+// Whatever is done: samples are numbers within reach, in rising order, and no hand is ever silent for 100 ms, after
+// which it would not be measured.
+TEST(Mouse, AnythingAtAllGivesGoodSamples) {
+  const std::uint64_t seed = 20;
+  SCOPED_TRACE(seed);
+  Random random(seed, 1);
+  Rig rig;
+  rig.mouse->setPorts({Vec3(0.05, 0.05, -0.1), Vec3(-0.05, 0.05, -0.1)});
+  for (int i = 0; i < 3000; ++i) {
+    const double right = random.uniform(-200.0, 200.0);
+    const double down = random.uniform(-200.0, 200.0);
+    rig.mouse->move(right, down);
+    rig.mouse->turnWheel(random.uniform(-5.0, 5.0));
+    const auto control = static_cast<MouseControl>(random.uniform(0.0, static_cast<double>(mouseControls) - 1e-9));
+    rig.mouse->hold(control, random.uniform(0.0, 1.0) < 0.5);
+    if (random.uniform(0.0, 1.0) < 0.05) rig.mouse->switchHand();
+    if (random.uniform(0.0, 1.0) < 0.05) rig.mouse->toggleLock();
+    rig.run(1 + static_cast<int>(random.uniform(0.0, 10.0)), rig.mouse->hand());
+  }
+  std::array<const DeviceSample*, handCount> before{};
+  for (const DeviceSample& s : rig.input.samples) {
+    ASSERT_TRUE(s.position.allFinite());
+    ASSERT_LE(s.position.cwiseAbs().maxCoeff(), 0.2);
+    ASSERT_NEAR(s.orientation.norm(), 1.0, 1e-12);
+    ASSERT_GE(s.gripper, 0.0);
+    ASSERT_LE(s.gripper, 1.2);
+    const DeviceSample*& last = before[static_cast<std::size_t>(s.hand)];
+    if (last != nullptr) {
+      ASSERT_EQ(s.sequence, last->sequence + 1);
+      ASSERT_GT(s.hostTime, last->hostTime);
+      ASSERT_LT(s.hostTime - last->hostTime, 50'000'000);
+    }
+    last = &s;
+  }
+}
+
+/// The device behind its source, on the tick clock.
+struct SourceRig {
+  SceneDescription scene = devicetest::emptyScene();
+  std::shared_ptr<MouseInput> mouse = std::make_shared<MouseInput>();
+  std::shared_ptr<TickClock> clock = std::make_shared<TickClock>();
+  std::unique_ptr<DeviceSource> source;
+  std::uint64_t tick = 0;
+  TickSamples now;
+
+  SourceRig() {
+    DeviceSourceSettings settings;
+    settings.tickClock = clock;
+    source = std::make_unique<DeviceSource>(
+        std::make_unique<MouseDevice>(mouse, [ticks = clock] { return ticks->now; }), scene, settings);
+  }
+  void run(SampleSource& from, int ticks) {
+    for (int i = 0; i < ticks; ++i) ASSERT_TRUE(from.next(tick++, now));
+  }
+};
+
+TEST(Mouse, BothHandsAreMeasuredWhicheverIsDriven) {
+  SourceRig rig;
+  rig.source->waitForFirst(1.0);
+  rig.mouse->switchHand();
+  for (int i = 0; i < 2000; ++i) {
+    rig.run(*rig.source, 1);
+    for (std::size_t h = 0; h < handCount; ++h) {
+      ASSERT_TRUE(rig.now.hand[h].valid) << "tick " << i;
+      ASSERT_EQ(rig.now.hand[h].instrument, rig.scene.hands[h].instrument);
+    }
+  }
+}
+
+TEST(Mouse, ABranchSetsOutFromWhereTheHandsWere) {
+  SourceRig rig;
+  TickSamples start;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    start.hand[h].position = rig.scene.hands[h].home + Vec3(0.01, 0.002, -0.003);
+    start.hand[h].orientation = Quat(0.5, 0.5, 0.5, 0.5);
+  }
+  start = roundedToGrid(start);
+  rig.source->setOutFrom(start);
+  rig.source->waitForFirst(1.0);
+  rig.run(*rig.source, 50);
+  for (std::size_t h = 0; h < handCount; ++h) EXPECT_EQ(rig.now.hand[h].position, start.hand[h].position);
+}
+
+TEST(ControlledSource, HoldsExchangesAndEnds) {
+  SourceRig rig;
+  rig.source->waitForFirst(1.0);
+  ControlledSource controlled(*rig.source);
+  rig.run(controlled, 100);
+  const TickSamples before = rig.now;
+  EXPECT_EQ(controlled.status(), SourceStatus::ok);
+  controlled.hold(true);
+  EXPECT_EQ(controlled.status(), SourceStatus::paused);
+  rig.mouse->move(400.0, 0.0);  // while the run is held
+  for (int i = 0; i < 200; ++i) {
+    rig.clock->now += 2'000'000;
+    EXPECT_EQ(controlled.status(), SourceStatus::paused);
+  }
+  controlled.hold(false);
+  EXPECT_EQ(controlled.status(), SourceStatus::ok);
+  rig.run(controlled, 20);
+  EXPECT_EQ(rig.now.hand[1].position, before.hand[1].position) << "what was done in the pause moved the hand";
+  rig.mouse->move(10.0, 0.0);
+  rig.run(controlled, 20);
+  EXPECT_NEAR((rig.now.hand[1].position - before.hand[1].position).norm(), 0.0015, 2e-6);
+
+  controlled.mount(Hand::left, InstrumentKind::scissors);
+  rig.run(controlled, 1);
+  EXPECT_EQ(rig.now.hand[0].instrument, InstrumentKind::scissors);
+  EXPECT_EQ(rig.now.hand[1].instrument, rig.scene.hands[1].instrument);
+
+  controlled.hold(true);
+  controlled.finish(Outcome::abandoned);
+  EXPECT_EQ(controlled.status(), SourceStatus::ok) << "what is to end is held back";
+  EXPECT_FALSE(controlled.next(rig.tick, rig.now));
+  EXPECT_EQ(controlled.ending(), Outcome::abandoned);
+}
+
+}  // namespace
+}  // namespace calot::recorder

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The procedure as the core keeps it: phases, critical view, errors; and the assistant's pull.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "tests/sim/scene/support/scenes.h"
+
+namespace calot {
+namespace {
+
+constexpr double height = 0.03;
+constexpr std::size_t duct = 1;
+constexpr std::size_t main_ = 2;
+
+/// Two ducts side by side over a block, one to be divided, one to be spared.
+SceneDescription twoDucts() {
+  SceneDescription scene = test::blockScene(300, 6);
+  scene.name = "two ducts";
+  VesselDescription d;
+  d.name = "duct";
+  d.path = {Vec3(-0.04, -0.012, height), Vec3(0.04, -0.012, height)};
+  d.radius = 0.002;
+  d.material = {2e5, 0.45, 1050.0, 5.0, 0.01};
+  d.start.kind = d.end.kind = VesselEndDescription::Kind::fixed;
+  scene.vessels.push_back(d);
+  d.name = "main";
+  d.path = {Vec3(-0.04, 0.012, height), Vec3(0.04, 0.012, height)};
+  scene.vessels.push_back(d);
+  scene.procedure.specimen = "block";
+  scene.procedure.divide = {{"duct", 2, 1, true}};
+  scene.procedure.spare = {"main"};
+  scene.hands[0].home = Vec3(0.0, 0.0, 0.06);
+  scene.hands[1].home = Vec3(0.05, 0.0, 0.06);
+  return scene;
+}
+
+class Procedure : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { model_ = test::buildModel(twoDucts()); }
+  static void TearDownTestSuite() { model_.reset(); }
+  void SetUp() override {
+    ASSERT_TRUE(model_);
+    rig_ = std::make_unique<test::Rig>(*model_);
+  }
+  const StepResult& step(const Vec3& tip, double jaw, InstrumentKind instrument, std::uint8_t buttons = 0) {
+    TickSamples tick;
+    tick.camera = model_->scene().camera;
+    InstrumentSample& hand = tick.hand[0];
+    hand.position = tip;
+    Mat3 frame;  // jaws open across the ducts
+    frame << 1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0;
+    hand.orientation = Quat(frame);
+    hand.jaw = jaw;
+    hand.instrument = instrument;
+    hand.buttons = buttons;
+    tick.hand[1].position = model_->scene().hands[1].home;
+    const StepResult& result =
+        rig_->stepper.step(rig_->state, std::vector<TickSamples>(model_->scene().ticksPerStep, tick));
+    for (const Event& event : result.events) events_.push_back(event);
+    EXPECT_EQ(rig_->stepper.digest(rig_->state), digestOf(rig_->state));
+    return result;
+  }
+  void closeAt(InstrumentKind instrument, double x, double y) {
+    const double below = instrument == InstrumentKind::clipApplier ? 0.0042 : 0.006;
+    for (int i = 0; i <= 40; ++i) step(Vec3(x, y, 0.06 + (height - below - 0.06) * i / 40.0), 0.9, instrument);
+    for (int i = 0; i <= 20; ++i) step(Vec3(x, y, height - below), 0.9 - 0.04 * i, instrument);
+    for (int i = 0; i <= 20; ++i) step(Vec3(x, y, height - below), 0.1 + 0.04 * i, instrument);
+    for (int i = 0; i <= 40; ++i)
+      step(Vec3(x, y, height - below + (0.06 - height + below) * i / 40.0), 0.9, instrument);
+  }
+  [[nodiscard]] const ProcedureState& now() const { return rig_->state.procedure[0]; }
+  [[nodiscard]] std::vector<Event> all(EventKind kind) const {
+    std::vector<Event> found;
+    std::copy_if(events_.begin(), events_.end(), std::back_inserter(found),
+                 [&](const Event& e) { return e.kind == kind; });
+    return found;
+  }
+
+  static inline std::unique_ptr<const Model> model_;
+  std::unique_ptr<test::Rig> rig_;
+  std::vector<Event> events_;
+};
+
+TEST_F(Procedure, AsItShouldBe) {
+  EXPECT_EQ(now().phase, Phase::clipping) << "there is no fat to be carved";
+  for (const double x : {-0.024, -0.018, -0.006}) closeAt(InstrumentKind::clipApplier, x, -0.012);
+  EXPECT_TRUE(now().frozen);
+  EXPECT_EQ(now().triangleCleared, 2);
+  EXPECT_EQ(now().lowerThirdFreed, 2);
+  EXPECT_EQ(now().twoStructures, 2);
+  closeAt(InstrumentKind::scissors, -0.012, -0.012);
+  ASSERT_EQ(all(EventKind::vesselCut).size(), 1U);
+  EXPECT_TRUE(all(EventKind::tooFewClips).empty());
+  EXPECT_EQ(now().phase, Phase::done) << "nothing else holds the specimen";
+  EXPECT_EQ(now().errors, 0U);
+  EXPECT_EQ(now().criticalErrors, 0U);
+  const std::vector<Event> phases = all(EventKind::phaseBegin);
+  ASSERT_FALSE(phases.empty());
+  EXPECT_EQ(phases.back().subject, static_cast<std::uint16_t>(Phase::done));
+}
+
+TEST_F(Procedure, AClipTooFewIsAnError) {
+  for (const double x : {-0.020, -0.006}) closeAt(InstrumentKind::clipApplier, x, -0.012);
+  closeAt(InstrumentKind::scissors, -0.013, -0.012);
+  ASSERT_EQ(all(EventKind::tooFewClips).size(), 1U);
+  EXPECT_EQ(all(EventKind::tooFewClips)[0].value, 1.0);
+  EXPECT_EQ(all(EventKind::tooFewClips)[0].subject, duct);
+  EXPECT_EQ(now().errors, 1U);
+}
+
+TEST_F(Procedure, WhatIsToBeSparedIsACriticalError) {
+  closeAt(InstrumentKind::clipApplier, -0.02, 0.012);
+  closeAt(InstrumentKind::scissors, -0.01, 0.012);
+  const std::vector<Event> critical = all(EventKind::criticalError);
+  ASSERT_EQ(critical.size(), 2U);
+  EXPECT_EQ(critical[0].subject, main_);
+  EXPECT_EQ(critical[0].value, static_cast<double>(EventKind::clipSet));
+  EXPECT_EQ(critical[1].value, static_cast<double>(EventKind::vesselCut));
+  EXPECT_EQ(now().criticalErrors, 2U);
+  EXPECT_EQ(step(Vec3(0.0, 0.0, 0.06), 0.9, InstrumentKind::scissors).procedure.criticalErrors, 2U);
+}
+
+TEST_F(Procedure, AVesselThatIsCutBeforeTheFirstClipIsNotSeenAnyMore) {
+  closeAt(InstrumentKind::scissors, -0.012, -0.012);
+  EXPECT_EQ(now().twoStructures, 0);
+  EXPECT_FALSE(now().frozen);
+  closeAt(InstrumentKind::clipApplier, 0.01, -0.012);
+  EXPECT_TRUE(now().frozen);
+  EXPECT_EQ(now().twoStructures, 0);
+}
+
+TEST(Retraction, PullsWhatLiesInItsSphereAndThenSleeps) {
+  SceneDescription scene = test::blockScene(300, 6);
+  RetractionDescription pull;
+  pull.organ = "block";
+  pull.centre = Vec3(0.03, 0.0, test::blockTop);
+  pull.radius = 0.012;
+  pull.displacement = Vec3(0.0, 0.0, 0.004);
+  pull.start = 0.2;
+  pull.duration = 0.5;
+  scene.retraction.push_back(pull);
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  const Vec3 home = scene.hands[0].home;
+  for (int i = 0; i < 19; ++i) EXPECT_TRUE(rig.step(home).organ[0].asleep);
+  double largest = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    const StepResult& result = rig.step(home);
+    largest = std::max(largest, result.organ[0].largestDisplacement);
+    EXPECT_EQ(result.misses, 0U);
+  }
+  EXPECT_GT(largest, 0.001);
+  EXPECT_LT(largest, 0.0045);
+  EXPECT_TRUE(rig.step(home).organ[0].asleep) << "held still, it is at rest";
+}
+
+TEST(ProcedureModelBuild, SaysWhatIsWrong) {
+  const auto error = [](auto&& change) {
+    SceneDescription scene = twoDucts();
+    change(scene);
+    return Model::build(std::move(scene)).error;
+  };
+  EXPECT_EQ(error([](SceneDescription& s) { s.procedure.specimen = "spleen"; }),
+            "procedure: the scene has no organ 'spleen'");
+  EXPECT_EQ(error([](SceneDescription& s) { s.procedure.bed = "bed"; }),
+            "procedure: the scene has no connective tissue 'bed'");
+  EXPECT_EQ(error([](SceneDescription& s) { s.procedure.spare = {"block"}; }),
+            "procedure: the scene has no vessel 'block'");
+  EXPECT_EQ(error([](SceneDescription& s) {
+              s.retraction.push_back({"block", Vec3::Zero(), 1e-6});
+            }),
+            "retraction: no node of 'block' lies inside its sphere");
+}
+
+}  // namespace
+}  // namespace calot
