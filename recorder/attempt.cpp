@@ -65,12 +65,13 @@ AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Pr
   header.sceneMajor = model.scene().majorVersion;
   header.sceneMinor = model.scene().minorVersion;
   header.assets = std::move(assets);
-  for (const StructureModel& structure : model.structures()) {
-    std::vector<std::string>& names = structure.kind == StructureKind::organ    ? header.organs
-                                      : structure.kind == StructureKind::vessel ? header.vessels
-                                                                                : header.fat;
-    names.push_back(structure.name);
-  }
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId kind) {
+    if constexpr (Kind::hasStructures) {
+      for (const StructureModel& structure : model.structures()) {
+        if (structure.kind == kind) Kind::namesOf(header).push_back(structure.name);
+      }
+    }
+  });
   header.layout = model.layout();
   header.deviceSamples = !provenance.device.empty();
   return header;

@@ -8,6 +8,7 @@
 
 #include "sim/scene/description.h"
 #include "sim/scene/digests.h"
+#include "sim/tissue/tissues.h"
 
 namespace calot::recorder {
 
@@ -32,8 +33,9 @@ struct Asset {
   std::vector<std::byte> bytes;
 };
 
-/// Everything that is known when an attempt starts; the recording's root attributes and /scene.
-struct AttemptHeader {
+/// Everything that is known when an attempt starts; the recording's root attributes and /scene. Names of tissue in the
+/// Model's order: columns of the observables, since the version of StepResult that brought them.
+struct AttemptHeader : Tissues::Names {
   std::string attempt;         ///< uuid, lower case with hyphens
   std::string parent;          ///< uuid of the recording this one branches from, or empty
   std::int64_t forkStep = -1;  ///< last step shared with the parent; -1: no branch
@@ -54,16 +56,18 @@ struct AttemptHeader {
   std::string sceneName;
   std::uint32_t sceneMajor = 0, sceneMinor = 0;
   std::vector<Asset> assets;  ///< the scene file first
-  /// Names in the Model's order: columns of the observables. Vessels and fat: since version 3 of StepResult.
-  std::vector<std::string> organs, vessels, fat;
   DigestLayout layout;
   bool deviceSamples = false;  ///< the recording has a place for a device's raw samples (/device); no attribute
 
   /// Organs, then vessels, then bodies of fat: what subjects of events and bits of `touching` and `grasping` count.
   [[nodiscard]] std::vector<std::string> structures() const {
-    std::vector<std::string> names = organs;
-    names.insert(names.end(), vessels.begin(), vessels.end());
-    names.insert(names.end(), fat.begin(), fat.end());
+    std::vector<std::string> names;
+    Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+      if constexpr (Kind::hasStructures) {
+        const std::vector<std::string>& own = Kind::namesOf(*this);
+        names.insert(names.end(), own.begin(), own.end());
+      }
+    });
     return names;
   }
 };

@@ -39,7 +39,7 @@ class BurnPerBed final : public Checkpoint {
   explicit BurnPerBed(const AttemptContext& context)
       : bed_(context), notApplicable_(bed_.notApplicable().empty() ? whyTooOld(context, 3) : bed_.notApplicable()) {}
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
     if (!notApplicable_.empty()) return;
     bed_.take(record.result);
     charred_ = charredArea(record.result);

@@ -28,7 +28,7 @@ CheckpointDefinition member(const char* name, const char* title, const char* win
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = judgedVersion(1),
       .definition = formula,
       .paperReading = "",
   };
@@ -62,9 +62,9 @@ class BurnPerFat final : public Checkpoint {
   explicit BurnPerFat(const AttemptContext& context)
       : notApplicable_(context.scene.fat == 0 ? "the scene has no fat" : whyNoPhases(context)) {}
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& judgement) override {
     if (!notApplicable_.empty()) return;
-    const Phase phase = record.result.procedure.phase;
+    const Phase phase = judgement.phase;
     double volume = 0.0;
     for (const FatResult& fat : record.result.fat) volume += fat.volume;
     if (!whole_) whole_ = volume;
@@ -94,9 +94,9 @@ class BurnPerDissection final : public Checkpoint {
     if (notApplicable_.empty() && !(bed_.area() > 0.0)) notApplicable_ = "the bed has no area";
   }
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& judgement) override {
     if (!notApplicable_.empty()) return;
-    const Phase phase = record.result.procedure.phase;
+    const Phase phase = judgement.phase;
     bed_.take(record.result);
     charred_.add(phase, charredArea(record.result), record.step == 0);
     freed_.add(phase, bed_.freedArea(), record.step == 0);

@@ -87,7 +87,7 @@ class CauteryWithoutContact final : public Checkpoint {
   explicit CauteryWithoutContact(const AttemptContext& context)
       : tooOld_(whyTooOld(context, 3)), hand_(handCount, CurrentInTheAir(context)) {}
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
     for (std::size_t h = 0; h < hand_.size(); ++h) hand_[h].add(record.result.hand[h]);
   }
 
@@ -118,8 +118,8 @@ class PhaseCauteryWithoutContact final : public Checkpoint {
       : notApplicable_(whyNoPhases(context)),
         window_(windowPhases.size(), BothHands(handCount, CurrentInTheAir(context))) {}
 
-  void onStep(const recorder::StepRecord& record) override {
-    const Phase phase = record.result.procedure.phase;
+  void onStep(const recorder::StepRecord& record, const Judgement& judgement) override {
+    const Phase phase = judgement.phase;
     if (phase != phase_) {
       for (BothHands& hands : window_) {
         for (CurrentInTheAir& hand : hands) hand.endStretch();

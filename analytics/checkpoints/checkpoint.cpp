@@ -51,7 +51,7 @@ std::string nameOf(Aggregation aggregation) {
 
 std::string nameOf(Finality finality) { return finality == Finality::running ? "running" : "final"; }
 
-void Checkpoint::onStep(const recorder::StepRecord& /*record*/) {}
+void Checkpoint::onStep(const recorder::StepRecord& /*record*/, const Judgement& /*judgement*/) {}
 
 std::string whyTooOld(const AttemptContext& context, std::uint32_t needed) {
   if (context.resultVersion >= needed) return {};

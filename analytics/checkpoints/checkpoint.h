@@ -13,6 +13,7 @@
 #include "analytics/checkpoints/scene_facts.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "sim/judgement/judgement.h"
 
 namespace calot::analytics {
 
@@ -93,6 +94,9 @@ struct AttemptContext {
 /// Empty when results of `needed` or later are there; else why a checkpoint that reads them is not applicable.
 std::string whyTooOld(const AttemptContext& context, std::uint32_t needed);
 
+/// Version of a definition that stands on judgement (phases, critical view, errors): rises with the rules' own.
+constexpr std::uint32_t judgedVersion(std::uint32_t own) { return own + judgementVersion - 1; }
+
 struct Motion;
 struct PhaseMotion;
 class ForceTrack;
@@ -116,8 +120,8 @@ struct AttemptEnd {
 class Checkpoint {
  public:
   virtual ~Checkpoint() = default;
-  /// Called once per step, in order. Motion and haptic forces are collected once for all: AttemptEnd has them.
-  virtual void onStep(const recorder::StepRecord& record);
+  /// Called once per step, in order, with what was judged of it. Motion and haptic forces are collected once for all: AttemptEnd has them.
+  virtual void onStep(const recorder::StepRecord& record, const Judgement& judgement);
   /// The figures so far: one per subject, in the order of hands or organs. May be called more than once.
   [[nodiscard]] virtual std::vector<CheckpointValue> values(const AttemptEnd& end) const = 0;
 };

@@ -23,7 +23,7 @@ const CheckpointDefinition& clipErrorsDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = judgedVersion(1),
       .definition =
           "E = #{clips set half on, on another clip, too near to something, or on a vessel that is not cystic} "
           "+ #{clips dropped}; a clip with several faults counts once",
@@ -39,8 +39,8 @@ class ClipErrors final : public Checkpoint {
         vessel_(context.scene.vessel),
         notApplicable_(vessel_.empty() ? "the scene has no vessels" : whyTooOld(context, 3)) {}
 
-  void onStep(const recorder::StepRecord& record) override {
-    const std::vector<Event>& events = record.result.events;
+  void onStep(const recorder::StepRecord& /*record*/, const Judgement& judgement) override {
+    const std::vector<Event>& events = judgement.events;
     for (const Event& event : events) {
       if (event.kind == EventKind::clipDropped) ++dropped_;
       if (event.kind != EventKind::clipSet) continue;

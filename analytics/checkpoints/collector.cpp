@@ -10,6 +10,7 @@
 #include "analytics/checkpoints/phases.h"
 #include "analytics/checkpoints/registry.h"
 #include "recorder/sources/kinematics_file.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::analytics {
 namespace {
@@ -30,10 +31,10 @@ struct CheckpointCollector::Storage {
         ticksPerStep(header.ticksPerStep),
         track{MotionTrack(header.tickSeconds, sourceRate(header.provenance)),
               MotionTrack(header.tickSeconds, sourceRate(header.provenance))},
+        judge(scene),
         force(header.tickSeconds),
         phaseForce(header.tickSeconds) {
-    const std::vector<std::string>& components = header.layout.components;
-    const bool procedure = std::find(components.begin(), components.end(), "procedure") != components.end();
+    const bool procedure = !scene.procedure.specimen.empty();
     const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
                                  procedure,          header.handedness,   sceneFacts(scene)};
     for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint.push_back(entry.make(context));
@@ -44,6 +45,7 @@ struct CheckpointCollector::Storage {
   std::uint64_t ticksPerStep;
   std::array<MotionTrack, handCount> track;
   PhaseTrack phases;
+  Judge judge;
   ForceTrack force;
   PhaseForceTrack phaseForce;
   std::vector<std::unique_ptr<Checkpoint>> checkpoint;
@@ -67,12 +69,13 @@ void CheckpointCollector::onStep(const recorder::StepRecord& record) {
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
   }
   storage_->force.add(record);
-  storage_->phaseForce.add(record);
-  storage_->phases.add(record.result.procedure.phase, storage_->ticksPerStep);
+  const Judgement& judgement = storage_->judge.observe(record.result);
+  storage_->phaseForce.add(record, judgement.phase);
+  storage_->phases.add(judgement.phase, storage_->ticksPerStep);
   for (const Event& event : record.result.events) {
     if (event.kind == EventKind::clockStretched) storage_->stretched += event.value;
   }
-  for (const auto& checkpoint : storage_->checkpoint) checkpoint->onStep(record);
+  for (const auto& checkpoint : storage_->checkpoint) checkpoint->onStep(record, judgement);
   ++storage_->steps;
 }
 

@@ -41,7 +41,7 @@ class ConnectiveRemaining final : public Checkpoint {
  public:
   explicit ConnectiveRemaining(const AttemptContext& context) : bed_(context) {}
 
-  void onStep(const recorder::StepRecord& record) override { bed_.take(record.result); }
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override { bed_.take(record.result); }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!bed_.notApplicable().empty()) {

@@ -19,7 +19,7 @@ const CheckpointDefinition& criticalErrorsDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = judgedVersion(1),
       .definition =
           "#{clips on, and cuts, burns and tears through, vessels that the scene's procedure tells to spare}; "
           "one fails the attempt",
@@ -33,7 +33,7 @@ class CriticalErrors final : public Checkpoint {
   explicit CriticalErrors(const AttemptContext& context)
       : notApplicable_(context.procedure ? whyTooOld(context, 3) : "the scene has no procedure") {}
 
-  void onStep(const recorder::StepRecord& record) override { errors_ = record.result.procedure.criticalErrors; }
+  void onStep(const recorder::StepRecord& /*record*/, const Judgement& judgement) override { errors_ = judgement.criticalErrors; }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty()) {

@@ -21,7 +21,7 @@ const CheckpointDefinition& criticalViewDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::final,
-      .version = 1,
+      .version = judgedVersion(1),
       .definition =
           "sum of 0 to 2 points each for the cleared triangle, the freed lower third of the bed, and two "
           "structures alone entering the gallbladder; satisfactory from 5 of 6",
@@ -37,13 +37,13 @@ class CriticalView final : public Checkpoint {
                        : !context.scene.hasCystic() ? "the scene has no duct or artery that enters a gallbladder"
                                                     : whyTooOld(context, 3)) {}
 
-  void onStep(const recorder::StepRecord& record) override { view_ = record.result.procedure; }
+  void onStep(const recorder::StepRecord& /*record*/, const Judgement& judgement) override { view_ = judgement; }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty()) {
       return {makeMissing(criticalViewDefinition(), "", end.origin, Availability::notApplicable, notApplicable_)};
     }
-    const unsigned points = unsigned{view_.triangleCleared} + view_.lowerThirdFreed + view_.twoStructures;
+    const int points = view_.criticalView();
     if (!view_.criticalViewFrozen && end.outcome != recorder::Outcome::running) {
       return {makeMissing(criticalViewDefinition(), "", end.origin, Availability::notAvailable,
                           fmt::format("no clip was set: {} of 6 points at the end", points))};
@@ -55,7 +55,7 @@ class CriticalView final : public Checkpoint {
 
  private:
   std::string notApplicable_;
-  ProcedureResult view_;
+  ProcedureStatus view_;
 };
 
 }  // namespace

@@ -54,7 +54,7 @@ class CysticContactTime final : public Checkpoint {
   explicit CysticContactTime(const AttemptContext& context)
       : contact_(context, isCystic), notApplicable_(whyNoCystic(context, contact_)) {}
 
-  void onStep(const recorder::StepRecord& record) override { contact_.add(record.result); }
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override { contact_.add(record.result); }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty())
@@ -79,8 +79,8 @@ class PhaseCysticContactTime final : public Checkpoint {
     if (notApplicable_.empty()) notApplicable_ = whyNoCystic(context, window_.front());
   }
 
-  void onStep(const recorder::StepRecord& record) override {
-    const std::size_t window = windowOf(record.result.procedure.phase);
+  void onStep(const recorder::StepRecord& record, const Judgement& judgement) override {
+    const std::size_t window = windowOf(judgement.phase);
     if (window < window_.size()) window_[window].add(record.result);
   }
 

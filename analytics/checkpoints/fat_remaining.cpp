@@ -70,7 +70,7 @@ class FatRemaining final : public Checkpoint {
     }
   }
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
     const double now = volumeOf(record.result);
     if (steps_++ == 0) {
       fromStart_ = record.step == 0;

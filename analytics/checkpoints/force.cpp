@@ -38,8 +38,7 @@ void ForceTrack::interrupt() {
   for (Newest& newest : newest_) newest.ticks = 0;
 }
 
-void PhaseForceTrack::add(const recorder::StepRecord& record) {
-  const Phase phase = record.result.procedure.phase;
+void PhaseForceTrack::add(const recorder::StepRecord& record, Phase phase) {
   const std::size_t window = windowOf(phase);
   if (window < track_.size()) {
     if (phase != phase_) track_[window].interrupt();

@@ -55,7 +55,8 @@ class PhaseForceTrack {
   /// @param tickSeconds length of a tick (s).
   explicit PhaseForceTrack(double tickSeconds) : track_(windowPhases.size(), ForceTrack(tickSeconds)) {}
 
-  void add(const recorder::StepRecord& record);
+  /// @param phase of the step
+  void add(const recorder::StepRecord& record, Phase phase);
   /// @param window which of windowPhases.
   [[nodiscard]] const ForceTrack& of(std::size_t window) const { return track_[window]; }
 

@@ -6,6 +6,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/recorded_results.h"
 
 namespace calot::analytics {
 
@@ -13,6 +14,7 @@ std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recordin
   const recorder::AttemptHeader& header = recording.header();
   const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
   CheckpointCollector collector(header, scene, Origin::observables, cutoff);
+  recorder::RecordedResults results(header, scene);
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     const recorder::RecordedStep& step = recording.step(n);
     // Columns are counted by the header, structures by the scene: a checkpoint goes by the scene's.
@@ -22,7 +24,7 @@ std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recordin
                   fmt::format("{}: /observables: has other organs or connective tissues than the scene in /scene",
                               recording.path().string()));
     }
-    collector.onStep({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}});
+    collector.onStep({step.step, step.samples, step.ticks, results.of(step), step.digest, step.lateness, {}, {}});
   }
   collector.onEnd(recording.outcome());
   return collector.values();

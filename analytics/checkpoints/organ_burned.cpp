@@ -40,7 +40,7 @@ class OrganBurned final : public Checkpoint {
   explicit OrganBurned(const AttemptContext& context)
       : organ_(context.scene.organ), tooOld_(whyTooOld(context, 3)), charred_(organ_.size(), 0.0) {}
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
     if (!tooOld_.empty()) return;
     for (std::size_t o = 0; o < organ_.size(); ++o) charred_[o] = record.result.organ[o].charredArea;
   }

@@ -31,7 +31,7 @@ class OrganPerforations final : public Checkpoint {
   explicit OrganPerforations(const AttemptContext& context)
       : organ_(context.scene.organ), tooOld_(whyTooOld(context, 3)), count_(organ_.size(), 0) {}
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
     for (const Event& event : record.result.events) {
       if (event.kind == EventKind::organPerforated && event.subject < count_.size()) ++count_[event.subject];
     }

@@ -20,7 +20,7 @@ const CheckpointDefinition& phaseCharredAreaDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = judgedVersion(1),
       .definition = "area of all organs' skins at rest that is charred in the steps of the phase",
       .paperReading = "",
   };
@@ -33,10 +33,10 @@ class PhaseCharredArea final : public Checkpoint {
     for (const Phase phase : windowPhases) charred_.emplace_back(phase);
   }
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& record, const Judgement& judgement) override {
     if (!notApplicable_.empty()) return;
     const double area = charredArea(record.result);
-    for (GrowthInPhase& one : charred_) one.add(record.result.procedure.phase, area, record.step == 0);
+    for (GrowthInPhase& one : charred_) one.add(judgement.phase, area, record.step == 0);
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {

@@ -23,7 +23,7 @@ const CheckpointDefinition& phaseDurationDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = judgedVersion(1),
       .definition = "steps in the phase * ticks per step * tick length",
       .paperReading = "",
   };
@@ -35,9 +35,9 @@ class PhaseDuration final : public Checkpoint {
   explicit PhaseDuration(const AttemptContext& context)
       : notApplicable_(whyNoPhases(context)), tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {}
 
-  void onStep(const recorder::StepRecord& record) override {
+  void onStep(const recorder::StepRecord& /*record*/, const Judgement& judgement) override {
     for (std::size_t i = 0; i < windowPhases.size(); ++i)
-      steps_[i] += record.result.procedure.phase == windowPhases[i] ? 1 : 0;
+      steps_[i] += judgement.phase == windowPhases[i] ? 1 : 0;
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {

@@ -63,7 +63,7 @@ CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const ch
   d.window = "each phase of the procedure, as often as it recurs" + whole.window.substr(attempt.size());
   d.aggregation = whole.aggregation == Aggregation::hand ? Aggregation::handAndPhase : Aggregation::phase;
   d.origins = {Origin::resimulated, Origin::observables};
-  d.version = 1;
+  d.version = judgedVersion(1);
   d.definition = fmt::format("as {}, of the {} in the phase", whole.name, pieces);
   d.paperReading.clear();
   return d;

@@ -8,7 +8,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/motion.h"
-#include "sim/scene/step_result.h"
+#include "sim/judgement/judgement.h"
 
 namespace calot::analytics {
 

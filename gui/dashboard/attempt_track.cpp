@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gui/words/event_words.h"
+#include "recorder/recorded_results.h"
 
 namespace calot::gui {
 namespace {
@@ -79,16 +80,18 @@ AttemptTrack readTrack(recorder::Recording& recording,
   const std::uint64_t stepsPerBin = std::max<std::uint64_t>(1, (steps + mostBins - 1) / mostBins);
   track.bin = static_cast<double>(stepsPerBin) * stepSeconds;
   const SubjectNames names{header.structures(), {}};
+  recorder::RecordedJudge judge(header);
   Tracer tracer(track, stepsPerBin, stepSeconds);
   for (std::uint64_t n = 0; n < steps; ++n) {
     const recorder::RecordedStep& step = recording.step(n);
     const double end = static_cast<double>(n + 1) * stepSeconds;
     tracer.add(step);
-    const Phase phase = step.result.procedure.phase;
+    const Judgement& judgement = judge.observe(step);
+    const Phase phase = judgement.phase;
     if (track.phases.empty() || track.phases.back().phase != phase)
       track.phases.push_back({phase, static_cast<double>(n) * stepSeconds, end});
     track.phases.back().end = end;
-    for (const Event& event : step.result.events) {
+    for (const Event& event : judgement.events) {
       const EventWords* const words = wordsOf(event.kind);
       if (words != nullptr)
         track.events.push_back({end, event.kind, withHand(textOf(event, names), event), words->fault});

@@ -47,19 +47,21 @@ bool hasResults(const recorder::Recording& recording) { return !recorder::isLean
 MomentTrack::MomentTrack(const std::filesystem::path& recording, bool checkpoints) : recording_(recording) {
   refuseLean(recording_);
   const recorder::AttemptHeader& header = recording_.header();
+  const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
+  results_.emplace(header, scene);
+  judge_.emplace(scene);
   stepSeconds_ = header.tickSeconds * header.ticksPerStep;
   names_.structures = header.structures();
   if (checkpoints)
-    collector_ = std::make_unique<analytics::CheckpointCollector>(
-        header, recorder::sceneFromAssets(header.assets).description, analytics::Origin::observables);
+    collector_ = std::make_unique<analytics::CheckpointCollector>(header, scene, analytics::Origin::observables);
 }
 
 MomentTrack::~MomentTrack() = default;
 
 void MomentTrack::add(const recorder::RecordedStep& step) {
   const double time = static_cast<double>(step.step + 1) * stepSeconds_;
-  phase_ = step.result.procedure.phase;
-  for (const Event& event : step.result.events) {
+  const StepResult& result = results_->of(step);
+  for (const Event& event : judge_->observe(result).events) {
     const EventWords* const words = wordsOf(event.kind);
     if (words != nullptr) told_.push_back({time, textOf(event, names_), words->fault});
   }
@@ -72,7 +74,7 @@ void MomentTrack::add(const recorder::RecordedStep& step) {
       passed_[h].push_back({time, hand.tipSimulated});
   }
   if (collector_)
-    collector_->onStep({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}});
+    collector_->onStep({step.step, step.samples, step.ticks, result, step.digest, step.lateness, {}, {}});
 }
 
 void MomentTrack::refreshCheckpoints(double time) {
@@ -94,13 +96,10 @@ void MomentTrack::refreshCheckpoints(double time) {
 }
 
 Moment MomentTrack::at(std::uint64_t n) {
-  constexpr double lasting = std::max({eventSeconds, pathSeconds, smokeSeconds});
-  const auto before = static_cast<std::uint64_t>(lasting / stepSeconds_) + 1;
-  if (!collector_ && next_ + before < n) next_ = n - before;
   while (next_ <= n) add(recording_.step(next_++));
   Moment moment;
   moment.time = static_cast<double>(next_) * stepSeconds_;
-  moment.phase = wordFor(phase_);
+  moment.phase = wordFor(judge_->judgement().phase);
   while (!told_.empty() && told_.front().time < moment.time - eventSeconds) told_.pop_front();
   for (const Told& told : told_) moment.events.push_back({told.text, told.fault, moment.time - told.time});
   for (std::size_t h = 0; h < handCount; ++h) {
@@ -118,9 +117,10 @@ std::array<double, 4> phaseStarts(const std::filesystem::path& path) {
   recorder::Recording recording(path);
   refuseLean(recording);
   const double stepSeconds = recording.header().tickSeconds * recording.header().ticksPerStep;
+  recorder::RecordedJudge judge(recording.header());
   std::array<double, 4> starts{-1.0, -1.0, -1.0, -1.0};
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
-    const Phase phase = recording.step(n).result.procedure.phase;
+    const Phase phase = judge.observe(recording.step(n)).phase;
     for (std::size_t p = 0; p < starts.size(); ++p)
       if (analytics::windowPhases[p] == phase && starts[p] < 0.0) starts[p] = static_cast<double>(n) * stepSeconds;
   }

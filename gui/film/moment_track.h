@@ -7,12 +7,14 @@
 #include <deque>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analytics/checkpoints/collector.h"
 #include "gui/render/smoke.h"
 #include "gui/words/event_words.h"
+#include "recorder/recorded_results.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::gui {
@@ -36,8 +38,7 @@ struct Moment {
   std::array<std::vector<Place>, handCount> path;  ///< of the simulated tips, oldest first
 };
 
-/// Reads what a recording's steps recorded of themselves, and sums up: from its first step on where checkpoints are
-/// asked for, else from as long before the first moment as what is told lasts.
+/// Reads the results of a recording's steps and sums up, from its first step on: judgement needs all of them.
 class MomentTrack {
  public:
   static constexpr double eventSeconds = 5.0;
@@ -61,9 +62,10 @@ class MomentTrack {
   recorder::Recording recording_;
   double stepSeconds_ = 0.01;
   SubjectNames names_;
-  std::unique_ptr<analytics::CheckpointCollector> collector_;
+  std::unique_ptr<analytics::CheckpointCollector> collector_;  ///< none: no checkpoints are asked for
   std::uint64_t next_ = 0;  ///< step to read
-  Phase phase_ = Phase::none;
+  std::optional<recorder::RecordedResults> results_;
+  std::optional<Judge> judge_;
   struct Told {
     double time = 0.0;
     std::string text;

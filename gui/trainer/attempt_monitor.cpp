@@ -26,6 +26,7 @@ std::size_t bedOf(const SceneDescription& scene) {
 
 AttemptMonitor::AttemptMonitor(const Model& model)
     : model_(model),
+      judge_(model.scene()),
       list_({structureNames(model), connectiveNames(model)}, model.stepSeconds()),
       bed_(bedOf(model.scene())) {
   for (std::size_t h = 0; h < handCount; ++h) {
@@ -49,7 +50,8 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
     if (tick.lateness > recorder::tickDeadline) ++missed;
     if (tick.lateness > recorder::longestLag) stretched += static_cast<double>(tick.lateness - recorder::longestLag);
   }
-  const bool added = list_.add(record.result.events);
+  const Judgement& judgement = judge_.observe(record.result);
+  const bool added = list_.add(judgement.events);
 
   const std::lock_guard lock(mutex_);
   figures_.time = static_cast<double>(record.step + 1) * model_.stepSeconds();
@@ -60,7 +62,7 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   }
   for (std::size_t v = 0; v < record.result.vessel.size(); ++v)
     figures_.vessel[v] = {record.result.vessel[v].clips, record.result.vessel[v].partings};
-  figures_.procedure = record.result.procedure;
+  figures_.procedure = judgement;
   if (bed_ < record.result.connective.size()) figures_.attached = record.result.connective[bed_].attached;
   figures_.ticks += record.ticks.size();
   figures_.missedDeadlines += missed;

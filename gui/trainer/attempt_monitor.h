@@ -10,6 +10,7 @@
 
 #include "gui/trainer/mistakes.h"
 #include "recorder/observer.h"
+#include "sim/judgement/judge.h"
 #include "sim/scene/model.h"
 
 namespace calot::gui {
@@ -31,7 +32,7 @@ struct AttemptFigures {
   double time = 0.0;  ///< of the attempt (s)
   std::array<Hand, handCount> hand;
   std::vector<Vessel> vessel;
-  ProcedureResult procedure;
+  ProcedureStatus procedure;
   double attached = 0.0;                                 ///< of the procedure's bed, as a share
   std::uint64_t ticks = 0;                               ///< of this run: a branch counts from its fork on
   std::uint64_t missedDeadlines = 0;                     ///< of those
@@ -63,6 +64,7 @@ class AttemptMonitor final : public recorder::Observer {
 
  private:
   const Model& model_;
+  Judge judge_;  ///< simulation's thread
   MistakeList list_;
   std::size_t bed_;  ///< index of the procedure's connective tissue; none: how many there are
   TickSamples lastPose_;

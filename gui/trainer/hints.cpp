@@ -10,9 +10,6 @@
 namespace calot::gui {
 namespace {
 
-/// Of six points: from here on the critical view is satisfactory (docs/procedure.md).
-constexpr int satisfactory = 5;
-
 bool mounted(const AttemptFigures& figures, InstrumentKind kind) {
   return std::any_of(figures.hand.begin(), figures.hand.end(), [kind](const auto& h) { return h.instrument == kind; });
 }
@@ -48,8 +45,8 @@ std::string vesselHint(const SceneDescription& scene, const AttemptFigures& figu
 
 /// What the critical view still lacks, or nothing where it is satisfactory.
 std::string viewHint(const SceneDescription& scene, const AttemptFigures& figures) {
-  const ProcedureResult& p = figures.procedure;
-  if (p.criticalViewFrozen || p.triangleCleared + p.lowerThirdFreed + p.twoStructures >= satisfactory) return {};
+  const ProcedureStatus& p = figures.procedure;
+  if (p.criticalViewFrozen || p.criticalView() >= JudgementRules().satisfactory) return {};
   const std::string hook = take(figures, InstrumentKind::hook);
   if (p.triangleCleared < 2) return hook + "Carve the fat off Calot's triangle: pull it tight and press the cut pedal.";
   if (p.twoStructures < 2) return hook + "Free the vessels that enter the gallbladder of the fat around them.";

@@ -52,7 +52,7 @@ QString handText(const AttemptFigures::Hand& hand, std::size_t which, bool drive
 }
 
 QString scoreText(const SceneDescription& scene, const AttemptFigures& figures) {
-  const ProcedureResult& p = figures.procedure;
+  const ProcedureStatus& p = figures.procedure;
   if (scene.procedure.specimen.empty()) return {};
   QString text;
   if (!scene.procedure.divide.empty()) {

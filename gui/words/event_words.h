@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scene/step_result.h"
+#include "sim/judgement/judgement.h"
 
 namespace calot::gui {
 

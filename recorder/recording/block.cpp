@@ -187,7 +187,9 @@ void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* 
   }
   AppendVisitor visit{layout, block, layout.tickColumns};
   const std::uint64_t forces = layout.lean ? forceDigest(record.ticks) : 0;
-  visitStep(record.digest, forces, record.lateness, record.result, visit);
+  assert(!layout.procedure);  // only versions of old had it
+  const RecordedProcedure none;
+  visitStep(record.digest, forces, record.lateness, record.result, none, visit);
   for (const Event& event : record.result.events) {
     assert(event.step == record.step);
     appendEvent(event, block.column[layout.events]);
@@ -226,7 +228,7 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
     }
   }
   ExtractVisitor visit{layout, block, at, layout.tickColumns, false, {}};
-  visitStep(out.digest, out.forces, out.lateness, out.result, visit);
+  visitStep(out.digest, out.forces, out.lateness, out.result, out.procedure, visit);
   out.result.step = out.step;
   return named(visit.fault, out.step);
 }

@@ -87,11 +87,11 @@ ChainHead chainStart(const AttemptHeader& header) {
     hash.number(static_cast<std::uint64_t>(asset.bytes.size()));
     hash.bytes(asset.bytes.data(), asset.bytes.size());
   }
-  appendNames(hash, header.organs);
-  if (tellsOfStructures(header.stepResultVersion)) {
-    appendNames(hash, header.vessels);
-    appendNames(hash, header.fat);
-  }
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+    if constexpr (Kind::hasStructures) {
+      if (Kind::results.since <= header.stepResultVersion) appendNames(hash, Kind::namesOf(header));
+    }
+  });
   appendNames(hash, header.layout.components);
   hash.number(static_cast<std::uint64_t>(header.layout.fields.size()));
   for (const DigestLayout::Field& field : header.layout.fields) {

@@ -155,10 +155,9 @@ void observables(Builder& builder, const AttemptHeader& header, const Layout& la
        {"/observables", "/observables/left", "/observables/right", "/observables/contact", "/keyframes"}) {
     builder.group(name);
   }
-  if (layout.organs > 0) builder.group("/observables/organs");
-  if (layout.tissues > 0) builder.group("/observables/connective");
-  if (layout.vessels > 0) builder.group("/observables/vessels");
-  if (layout.fat > 0) builder.group("/observables/fat");
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId id) {
+    if (layout.count[id] > 0) builder.group(Kind::results.path);
+  });
   if (layout.procedure) builder.group("/observables/procedure");
   const Id g = hdf5::group(H5Gopen2(builder.root(), "/observables", H5P_DEFAULT));
   builder.attribute(g.get(), "version", H5T_STD_U32LE, &header.stepResultVersion);
@@ -191,9 +190,9 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
     const Id d = builder.dataset(column.path, type.get(), shape, column.chunkRows, column.deflate, true);
   }
   if (signer != nullptr) signature(builder, *signer);
-  builder.names("/scene/organs", header.organs);
-  builder.names("/scene/vessels", header.vessels);
-  builder.names("/scene/fat", header.fat);
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+    if constexpr (Kind::hasStructures) builder.names(namesPath<Kind>(), Kind::namesOf(header));
+  });
   builder.names("/steps/component_names", header.layout.components);
   std::vector<std::string> fieldNames;
   std::vector<std::uint32_t> fieldComponents;
@@ -239,10 +238,13 @@ void checkHeader(const AttemptHeader& header) {
   if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
   if (header.ticksPerStep < 1 || header.ticksPerStep > largestTicksPerStep) refuse("ticks a step must lie in 1..1000");
   if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");
-  if (header.organs.size() + header.vessels.size() + header.fat.size() > mostRecordedStructures)
-    refuse("more than 32 organs, vessels and bodies of fat");
-  if (!tellsOfStructures(header.stepResultVersion) && !(header.vessels.empty() && header.fat.empty()))
-    refuse("vessels or fat in a version of StepResult that does not tell of them");
+  if (header.structures().size() > mostRecordedStructures) refuse("more than 32 organs, vessels and bodies of fat");
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+    if constexpr (Kind::hasStructures) {
+      if (Kind::results.since > header.stepResultVersion && !Kind::namesOf(header).empty())
+        refuse(fmt::format("{} in a version of StepResult that does not have them", namesPath<Kind>()));
+    }
+  });
   if (header.layout.components.size() > 4096 || header.layout.fields.size() > 65536) refuse("too many digests");
   for (const DigestLayout::Field& f : header.layout.fields) {
     if (f.component >= header.layout.components.size())

@@ -62,17 +62,15 @@ struct TitleVisitor {
     }
   }
   template <class Part, class T>
-  void each(const char* folder, const char* name, const char* unit, const std::vector<Part>& parts, T Part::*) {
-    for (const std::string& part : namesOf(parts)) title(folder, fmt::format("{}[{}]", name, part), unit);
+  void each(const char* folder, const char* name, const char* unit, const std::vector<Part>& /*parts*/, T Part::*) {
+    Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+      if constexpr (std::is_same_v<typename Kind::Result, Part>) {
+        for (const std::string& part : namesOf<Kind>(header)) title(folder, fmt::format("{}[{}]", name, part), unit);
+      }
+    });
   }
 
  private:
-  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<OrganResult>&) const { return header.organs; }
-  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<ConnectiveResult>&) const {
-    return connectiveNames(header);
-  }
-  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<VesselResult>&) const { return header.vessels; }
-  [[nodiscard]] std::vector<std::string> namesOf(const std::vector<FatResult>&) const { return header.fat; }
   void title(const std::string& folder, const std::string& name, const char* unit) {
     CsvTable* table = find(tables, folder);
     if (table == nullptr) {
@@ -192,7 +190,8 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   const StepResult result;
   const std::uint64_t forces = 0;
   const float lateness = 0.0F;
-  visitStep(digest, forces, lateness, result, stepTitles);
+  const RecordedProcedure procedure;
+  visitStep(digest, forces, lateness, result, procedure, stepTitles);
   endRows(ticks);
   endRows(steps);
   CsvTable events(stage, "/events");
@@ -211,7 +210,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
     }
     beginRows(steps, n);
     ValueVisitor values{layout, steps};
-    visitStep(step.digest, step.forces, step.lateness, step.result, values);
+    visitStep(step.digest, step.forces, step.lateness, step.result, step.procedure, values);
     endRows(steps);
     for (const Event& e : step.result.events) {
       events.put(e.step);

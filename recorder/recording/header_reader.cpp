@@ -195,13 +195,14 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   for (std::size_t i = 1; i <= info.nlinks; ++i)
     h.assets.push_back(reader.asset(fmt::format("/scene/assets/{:03}", i)));
 
-  h.organs = reader.names("/scene/organs", mostRecordedStructures);
-  if (tellsOfStructures(h.stepResultVersion)) {
-    h.vessels = reader.names("/scene/vessels", mostRecordedStructures);
-    h.fat = reader.names("/scene/fat", mostRecordedStructures);
-    if (h.organs.size() + h.vessels.size() + h.fat.size() > mostRecordedStructures)
-      throw damaged(path, "/scene", "names more than 32 organs, vessels and bodies of fat");
-  }
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+    if constexpr (Kind::hasStructures) {
+      if (Kind::results.since <= h.stepResultVersion)
+        Kind::namesOf(h) = reader.names(namesPath<Kind>(), mostRecordedStructures);
+    }
+  });
+  if (h.structures().size() > mostRecordedStructures)
+    throw damaged(path, "/scene", "names more than 32 organs, vessels and bodies of fat");
   h.layout.components = reader.names("/steps/component_names", 4096);
   const std::vector<std::string> fields = reader.names("/steps/field_names", 65536);
   if (!fields.empty()) {

@@ -129,18 +129,12 @@ struct Collect {
 
 }  // namespace
 
-std::vector<std::string> connectiveNames(const AttemptHeader& header) {
-  static constexpr std::string_view prefix = "connective.";
+std::vector<std::string> namesOfComponents(const AttemptHeader& header, std::string_view prefix) {
   std::vector<std::string> names;
   for (const std::string& component : header.layout.components) {
     if (component.starts_with(prefix)) names.push_back(component.substr(prefix.size()));
   }
   return names;
-}
-
-bool hasProcedure(const AttemptHeader& header) {
-  const std::vector<std::string>& components = header.layout.components;
-  return std::find(components.begin(), components.end(), "procedure") != components.end();
 }
 
 std::uint64_t forceDigest(std::span<const TickOutcome> ticks) {
@@ -158,15 +152,15 @@ Layout::Layout(const AttemptHeader& header)
     : deviceSamples(header.deviceSamples),
       lean(isLean(header)),
       ticksPerStep(header.ticksPerStep),
-      organs(header.organs.size()),
-      tissues(header.stepResultVersion >= 2 ? connectiveNames(header).size() : 0),
       components(header.layout.components.size()),
       fields(header.layout.fields.size()),
-      vessels(tellsOfStructures(header.stepResultVersion) ? header.vessels.size() : 0),
-      fat(tellsOfStructures(header.stepResultVersion) ? header.fat.size() : 0),
-      structures(organs + vessels + fat),
-      procedure(tellsOfStructures(header.stepResultVersion) && hasProcedure(header)),
       resultVersion(header.stepResultVersion) {
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId id) {
+    if (Kind::results.since > resultVersion) return;
+    count[id] = namesOf<Kind>(header).size();
+    if (Kind::hasStructures) structures += count[id];
+  });
+  procedure = resultVersion == 3 && namesOfComponents(header, "procedure").size() == 1;
   stepsPerBlock = std::max<std::uint64_t>(1, 250 / ticksPerStep);
   ticksPerBlock = stepsPerBlock * ticksPerStep;
   // About a second, and at the end of a block.
@@ -185,7 +179,8 @@ Layout::Layout(const AttemptHeader& header)
   std::uint64_t forces = 0;
   float lateness = 0.0F;
   StepResult result;
-  visitStep(digest, forces, lateness, result, collect);
+  RecordedProcedure recorded;
+  visitStep(digest, forces, lateness, result, recorded, collect);
   stepColumns = columns.size() - tickColumns;
 
   const auto irregular = [this](const char* path, Element element, Stream stream, std::uint64_t chunkRows,

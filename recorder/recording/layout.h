@@ -7,10 +7,14 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "recorder/recording/recorded_procedure.h"
+#include "sim/tissue/tissues.h"
 
 namespace calot::recorder {
 
@@ -71,29 +75,42 @@ struct Layout {
   std::uint64_t ticksPerBlock = 250;
   std::uint64_t keyframeInterval = 100;  ///< steps: about a second, whole blocks
   std::uint64_t shortInterval = 25;      ///< about a quarter of it, whole blocks
-  std::size_t organs = 0, tissues = 0, components = 0, fields = 0;
-  std::size_t vessels = 0, fat = 0;  ///< 0 before version 3 of StepResult
-  std::size_t structures = 0;        ///< organs, vessels and fat
-  bool procedure = false;            ///< the scene has one
-  std::uint32_t resultVersion = 1;   ///< of StepResult: which columns there are
+  std::size_t components = 0, fields = 0;
+  std::array<std::size_t, Tissues::count> count{};  ///< of each kind of tissue; 0 before the version that brought it
+  std::size_t structures = 0;                       ///< that can be touched
+  bool procedure = false;           ///< version 3 of StepResult, which held the judgement of a scene's procedure
+  std::uint32_t resultVersion = 1;  ///< of StepResult: which columns there are
 
   explicit Layout(const AttemptHeader& header);
 
-  /// How many there are of what a step tells something of.
-  [[nodiscard]] std::size_t countOf(const std::vector<OrganResult>&) const { return organs; }
-  [[nodiscard]] std::size_t countOf(const std::vector<ConnectiveResult>&) const { return tissues; }
-  [[nodiscard]] std::size_t countOf(const std::vector<VesselResult>&) const { return vessels; }
-  [[nodiscard]] std::size_t countOf(const std::vector<FatResult>&) const { return fat; }
+  /// How many columns of its kind of tissue a list of results has.
+  template <class Result>
+  [[nodiscard]] std::size_t countOf(const std::vector<Result>& /*parts*/) const {
+    std::size_t found = 0;
+    Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId id) {
+      if constexpr (std::is_same_v<typename Kind::Result, Result>) found = count[id];
+    });
+    return found;
+  }
 };
 
-/// Names of the scene's connective tissues, as the State's components say.
-std::vector<std::string> connectiveNames(const AttemptHeader& header);
+/// Data set of the names of a kind of tissue: "/scene/organs".
+template <class Kind>
+std::string namesPath() {
+  return "/scene" + std::string(Kind::results.path).substr(std::string_view("/observables").size());
+}
 
-/// Whether the scene has a procedure, as the State's components say.
-bool hasProcedure(const AttemptHeader& header);
-
-/// Whether steps tell of vessels, fat and procedure: from version 3 of StepResult on.
-inline bool tellsOfStructures(std::uint32_t stepResultVersion) { return stepResultVersion >= 3; }
+/// Names of what a recording has of a kind of tissue, column by column. Kinds without structures are named by the
+/// State's components.
+std::vector<std::string> namesOfComponents(const AttemptHeader& header, std::string_view prefix);
+template <class Kind>
+std::vector<std::string> namesOf(const AttemptHeader& header) {
+  if constexpr (Kind::hasStructures) {
+    return Kind::namesOf(header);
+  } else {
+    return namesOfComponents(header, Kind::componentPrefix);
+  }
+}
 
 /// Lists what one tick stores. A visitor is called with (folder, name, unit, value); `outside` is for what the chain
 /// leaves out.
@@ -117,115 +134,59 @@ void visitTick(Samples& s, Outcome& o, Visitor& visit) {
   visit.outside("/ticks", "lateness", "s", o.lateness);
 }
 
-template <class Result, class Visitor>
-void visitConnective(Result& r, Visitor& visit) {
-  static constexpr const char* connective = "/observables/connective";
-  visit.each(connective, "attached", "", r.connective, &ConnectiveResult::attached);
-  visit.each(connective, "burned", "", r.connective, &ConnectiveResult::burned);
-  visit.each(connective, "torn", "", r.connective, &ConnectiveResult::torn);
-  visit.each(connective, "largest_pull", "Pa", r.connective, &ConnectiveResult::largestPull);
-  visit.each(connective, "hook_touches", "", r.connective, &ConnectiveResult::hookTouches);
-}
+/// Hands the fields of a StepResult (sim/scene/step_result.h) to a visitor of columns.
+template <class Visitor>
+struct ResultColumns {
+  Visitor& visit;
 
-template <class Result, class Visitor>
-void visitVessels(Result& r, Visitor& visit) {
-  static constexpr const char* vessels = "/observables/vessels";
-  visit.each(vessels, "largest_strain", "", r.vessel, &VesselResult::largestStrain);
-  visit.each(vessels, "largest_tension", "N", r.vessel, &VesselResult::largestTension);
-  visit.each(vessels, "largest_displacement", "m", r.vessel, &VesselResult::largestDisplacement);
-  visit.each(vessels, "clips", "", r.vessel, &VesselResult::clips);
-  visit.each(vessels, "partings", "", r.vessel, &VesselResult::partings);
-  visit.each(vessels, "charred", "", r.vessel, &VesselResult::charred);
-  visit.each(vessels, "asleep", "", r.vessel, &VesselResult::asleep);
-}
+  template <class T>
+  void one(const ResultGroup& group, const ResultField& field, T& value) {
+    if constexpr (std::is_same_v<std::remove_const_t<T>, std::vector<double>>) {
+      visit.list(group.path, field.name, field.unit, value, visit.layout.structures);
+    } else {
+      visit(group.path, field.name, unitOf(field), value);
+    }
+  }
+  template <class Parts, class Member>
+  void each(const ResultGroup& group, const ResultField& field, Parts& parts, Member member) {
+    if (visit.layout.countOf(parts) > 0) visit.each(group.path, field.name, unitOf(field), parts, member);
+  }
 
-template <class Result, class Visitor>
-void visitFat(Result& r, Visitor& visit) {
-  static constexpr const char* fat = "/observables/fat";
-  visit.each(fat, "volume", "m^3", r.fat, &FatResult::volume);
-  visit.each(fat, "to_clear", "m^3", r.fat, &FatResult::toClear);
-  visit.each(fat, "carved", "m^3", r.fat, &FatResult::carved);
-  visit.each(fat, "islands", "m^3", r.fat, &FatResult::islands);
-  visit.each(fat, "largest_displacement", "m", r.fat, &FatResult::largestDisplacement);
-  visit.each(fat, "largest_speed", "m/s", r.fat, &FatResult::largestSpeed);
-  visit.each(fat, "residual", "", r.fat, &FatResult::residual);
-  visit.each(fat, "iterations", "", r.fat, &FatResult::iterations);
-  visit.each(fat, "asleep", "", r.fat, &FatResult::asleep);
-}
-
-template <class Result, class Visitor>
-void visitProcedure(Result& r, Visitor& visit) {
-  static constexpr const char* procedure = "/observables/procedure";
-  visit(procedure, "phase", "", r.procedure.phase);
-  visit(procedure, "triangle_cleared", "", r.procedure.triangleCleared);
-  visit(procedure, "lower_third_freed", "", r.procedure.lowerThirdFreed);
-  visit(procedure, "two_structures", "", r.procedure.twoStructures);
-  visit(procedure, "critical_view_frozen", "", r.procedure.criticalViewFrozen);
-  visit(procedure, "lower_third_attached", "", r.procedure.lowerThirdAttached);
-  visit(procedure, "errors", "", r.procedure.errors);
-  visit(procedure, "critical_errors", "", r.procedure.criticalErrors);
-}
+ private:
+  /// Shares have none in titles.
+  static const char* unitOf(const ResultField& field) {
+    return field.unit[0] == '1' && field.unit[1] == '\0' ? "" : field.unit;
+  }
+};
 
 /// Lists what a StepResult stores, but for its events.
 template <class Result, class Visitor>
 void visitResult(Result& r, Visitor& visit) {
   if (visit.layout.lean) return;
-  static constexpr std::array<const char*, handCount> folder{"/observables/left", "/observables/right"};
-  for (std::size_t h = 0; h < folder.size(); ++h) {
-    visit(folder[h], "instrument", "", r.hand[h].instrument);
-    visit(folder[h], "tip_real", "m", r.hand[h].tipReal);
-    visit(folder[h], "tip_simulated", "m", r.hand[h].tipSimulated);
-    visit(folder[h], "orientation", "", r.hand[h].orientation);
-    visit(folder[h], "jaw", "rad", r.hand[h].jaw);
-    visit(folder[h], "insertion", "m", r.hand[h].insertion);
-    visit(folder[h], "contact_force", "N", r.hand[h].contactForce);
-    visit(folder[h], "touching", "", r.hand[h].touching);
-    visit.list(folder[h], "organ_force", "N", r.hand[h].structureForce, visit.layout.structures);
-  }
-  static constexpr const char* organs = "/observables/organs";
-  visit.each(organs, "volume", "m^3", r.organ, &OrganResult::volume);
-  visit.each(organs, "largest_displacement", "m", r.organ, &OrganResult::largestDisplacement);
-  visit.each(organs, "largest_speed", "m/s", r.organ, &OrganResult::largestSpeed);
-  visit.each(organs, "residual", "", r.organ, &OrganResult::residual);
-  visit.each(organs, "iterations", "", r.organ, &OrganResult::iterations);
-  visit.each(organs, "asleep", "", r.organ, &OrganResult::asleep);
-  static constexpr const char* contact = "/observables/contact";
-  visit(contact, "rows", "", r.contact.rows);
-  visit(contact, "iterations", "", r.contact.iterations);
-  visit(contact, "residual", "m", r.contact.residual);
-  visit(contact, "largest_depth", "m", r.contact.largestDepth);
-  visit("/observables", "misses", "", r.misses);
-  if (visit.layout.resultVersion < 2) return;
-  for (std::size_t h = 0; h < folder.size(); ++h) {
-    visit(folder[h], "contact_torque", "N m", r.hand[h].contactTorque);
-    visit(folder[h], "grasping", "", r.hand[h].grasping);
-    visit(folder[h], "grasp_force", "N", r.hand[h].graspForce);
-  }
-  visit(contact, "blocks", "", r.contact.blocks);
-  visit(contact, "newton_steps", "", r.contact.newtonSteps);
-  visit(contact, "passes", "", r.contact.passes);
-  visit(contact, "error", "m", r.contact.error);
-  visit(contact, "violation", "m", r.contact.violation);
-  visit(contact, "pinched_depth", "m", r.contact.pinchedDepth);
-  visit(contact, "tissue_depth", "m", r.contact.tissueDepth);
-  if (visit.layout.tissues > 0) visitConnective(r, visit);
-  if (!tellsOfStructures(visit.layout.resultVersion)) return;
-  for (std::size_t h = 0; h < folder.size(); ++h) {
-    visit(folder[h], "cautery", "", r.hand[h].cautery);
-    visit(folder[h], "clips", "", r.hand[h].clips);
-  }
-  visit.each(organs, "charred_area", "m^2", r.organ, &OrganResult::charredArea);
-  if (visit.layout.vessels > 0) visitVessels(r, visit);
-  if (visit.layout.fat > 0) visitFat(r, visit);
-  if (visit.layout.procedure) visitProcedure(r, visit);
+  ResultColumns<Visitor> columns{visit};
+  StepResult::fields(r, visit.layout.resultVersion, columns);
+}
+
+/// Lists what version 3 of StepResult stored of the procedure: the judgement of its time.
+template <class Procedure, class Visitor>
+void visitProcedure(Procedure& p, Visitor& visit) {
+  static constexpr const char* procedure = "/observables/procedure";
+  visit(procedure, "phase", "", p.phase);
+  visit(procedure, "triangle_cleared", "", p.triangleCleared);
+  visit(procedure, "lower_third_freed", "", p.lowerThirdFreed);
+  visit(procedure, "two_structures", "", p.twoStructures);
+  visit(procedure, "critical_view_frozen", "", p.criticalViewFrozen);
+  visit(procedure, "lower_third_attached", "", p.lowerThirdAttached);
+  visit(procedure, "errors", "", p.errors);
+  visit(procedure, "critical_errors", "", p.criticalErrors);
 }
 
 /// XXH3-64 of a step's forces and torques: tick by tick, left hand first.
 std::uint64_t forceDigest(std::span<const TickOutcome> ticks);
 
 /// Lists what one step stores, but for its events. @param forces digest of its ticks' forces
-template <class Digest, class Forces, class Lateness, class Result, class Visitor>
-void visitStep(Digest& digest, Forces& forces, Lateness& lateness, Result& r, Visitor& visit) {
+template <class Digest, class Forces, class Lateness, class Result, class Procedure, class Visitor>
+void visitStep(Digest& digest, Forces& forces, Lateness& lateness, Result& r, Procedure& procedure, Visitor& visit) {
   visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
   if (visit.layout.lean) {
     visit("/steps", "force_digest", "", forces);
@@ -234,6 +195,7 @@ void visitStep(Digest& digest, Forces& forces, Lateness& lateness, Result& r, Vi
   }
   visit.outside("/steps", "lateness", "s", lateness);
   visitResult(r, visit);
+  if (visit.layout.procedure) visitProcedure(procedure, visit);
 }
 
 }  // namespace calot::recorder

@@ -12,6 +12,7 @@
 #include "recorder/device_sample.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "recorder/recording/recorded_procedure.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::recorder {
@@ -38,6 +39,7 @@ struct RecordedStep {
   StateDigest digest;
   std::uint64_t forces = 0;  ///< golden: digest of the ticks' forces, which are not there themselves
   float lateness = 0.0F;
+  RecordedProcedure procedure;  ///< version 3 of StepResult: the judgement of its time
 };
 
 /// Does the content chain, computed anew from what the file holds, agree with its /status?

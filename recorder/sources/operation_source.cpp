@@ -20,6 +20,7 @@ OperationSource::OperationSource(const PerformerProfile& profile, const SceneDes
       hand_{PerformerHand(profile_, scene_.hands[0], 0, seed), PerformerHand(profile_, scene_.hands[1], 1, seed)},
       holding_({profile_, scene_, anatomy_, hand_}, 1 - worker, seed),
       working_({profile_, scene_, anatomy_, hand_}, worker, seed),
+      judge_(scene),
       random_(seed, 23) {
   provenance_.kind = OperatorKind::performer;
   provenance_.profile = profile.name;
@@ -30,7 +31,7 @@ Outcome OperationSource::ending() const { return gaveUp_ ? Outcome::abandoned : 
 
 void OperationSource::onStep(const StepRecord& record) {
   const FloatingPointScope environment;
-  for (const Event& event : record.result.events) {
+  for (const Event& event : judge_.observe(record.result).events) {
     if (event.kind == EventKind::clipHalfOn && event.hand == worker) ++badClips_;
   }
   if (!wantsToLook_) return;

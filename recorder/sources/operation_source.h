@@ -11,6 +11,7 @@
 #include "recorder/sources/performer_profile.h"
 #include "recorder/sources/performer_sight.h"
 #include "recorder/sources/source.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::recorder {
 
@@ -44,6 +45,7 @@ class OperationSource final : public SampleSource, private Observer {
   std::array<PerformerHand, handCount> hand_;
   HoldingMind holding_;
   WorkingMind working_;
+  Judge judge_;
   Random random_;
   bool wantsToLook_ = false;
   std::optional<Sight> sight_;

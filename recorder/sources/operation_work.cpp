@@ -13,7 +13,7 @@ constexpr double clipDepth = 0.0043;    // the vessel comes to lie so far behind
 constexpr double bladeJaw = 0.95;       // rad
 constexpr double bladeDepth = 0.0078;   // m
 constexpr double bladeTrial = 0.0012;   // by how much depths of one try and the next differ (m)
-constexpr double hover = 0.014;         // m
+constexpr double clipHover = 0.014;         // m
 constexpr double clipSpacing = 0.0033;  // between clips on one side of the cut (m)
 constexpr double clipToCut = 0.0033;    // and from the nearest of them to the cut (m)
 constexpr double clipApart = 0.0024;    // a clip nearer than this to another one would be too near (m)
@@ -90,7 +90,7 @@ void WorkingMind::clip(const Sight& sight) {
     return;
   }
   const std::size_t station = stationAt(place, vessel.centre.size());
-  if (bring(vessel.centre[station], vessel.along[station], hover, clipDepth, clipJaw)) {
+  if (bring(vessel.centre[station], vessel.along[station], clipHover, clipDepth, clipJaw)) {
     closeAndLeave(clipJaw);
     looks_ = 0;
     ++tries_;
@@ -128,7 +128,7 @@ void WorkingMind::cut(const Sight& sight) {
   const double place = vessel.clip.empty() ? cutAt * length : 0.5 * (from + to);
   const std::size_t station = stationAt(place, vessel.centre.size());
   const double depth = bladeDepth - bladeTrial * static_cast<double>(tries_ % 3U);
-  if (bring(vessel.centre[station], vessel.along[station], hover, depth, bladeJaw)) {
+  if (bring(vessel.centre[station], vessel.along[station], clipHover, depth, bladeJaw)) {
     closeAndLeave(bladeJaw);
     looks_ = 0;
     ++tries_;

@@ -10,202 +10,9 @@
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
 #include "sim/scene/samples.h"
+#include "sim/tissue/tissues.h"
 
 namespace calot {
-
-/// Closed triangle surface of an organ in W at rest (m).
-struct SurfaceDescription {
-  std::vector<Vec3> vertex;
-  std::vector<Index3> triangle;  ///< outward
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("vertex", self.vertex);
-    visit("triangle", self.triangle);
-  }
-};
-
-/// Isotropic material of a co-rotational solid.
-struct MaterialDescription {
-  double youngModulus = 5000.0;    ///< Pa
-  double poissonRatio = 0.45;      ///< in [0, 0.5)
-  double density = 1060.0;         ///< kg/m^3
-  double massDamping = 0.0;        ///< Rayleigh alpha (1/s)
-  double stiffnessDamping = 0.01;  ///< Rayleigh beta (s)
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("youngModulus", self.youngModulus);
-    visit("poissonRatio", self.poissonRatio);
-    visit("density", self.density);
-    visit("massDamping", self.massDamping);
-    visit("stiffnessDamping", self.stiffnessDamping);
-  }
-};
-
-/// Region of an organ whose nodes are held at their rest position: all nodes inside the sphere, or (when `nearOrgan` is
-/// not empty) all nodes within `distance` of that organ's rest surface.
-struct AnchorDescription {
-  Vec3 centre = Vec3::Zero();  ///< m
-  double radius = 0.0;         ///< m
-  std::string nearOrgan;
-  double distance = 0.0;  ///< m
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("centre", self.centre);
-    visit("radius", self.radius);
-    visit("nearOrgan", self.nearOrgan);
-    visit("distance", self.distance);
-  }
-};
-
-struct OrganDescription {
-  std::string name;
-  std::string appearance;
-  SurfaceDescription surface;
-  std::uint32_t tetrahedra = 0;  ///< requested number
-  MaterialDescription material;
-  double friction = 0.1;     ///< Coulomb coefficient of an instrument on this organ
-  double burnThrough = 0.0;  ///< cautery at one spot that perforates its wall (s); 0: it has none
-  std::vector<AnchorDescription> anchors;
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("appearance", self.appearance);
-    visit("surface", self.surface);
-    visit("tetrahedra", self.tetrahedra);
-    visit("material", self.material);
-    visit("friction", self.friction);
-    visit("burnThrough", self.burnThrough);
-    visit("anchors", self.anchors);
-  }
-};
-
-/// Connective tissue over the bed where one organ lies on another (sim/connective/connective_bed.h).
-struct ConnectiveDescription {
-  std::string name;
-  std::string first;            ///< organ whose surface the bed is part of
-  std::string second;           ///< organ that it lies on
-  double reach = 0.004;         ///< triangles of the first organ no farther from the second are the bed (m)
-  std::uint32_t strands = 200;  ///< at least so many
-  double stiffness = 2e5;       ///< of a unit area of bed (N/m^3)
-  double damping = 2e3;         ///< (N s/m^3)
-  double strength = 4e3;        ///< pull per area at which it tears (Pa)
-  double fadeTime = 0.4;        ///< in which the energised hook burns a strand through (s)
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("first", self.first);
-    visit("second", self.second);
-    visit("reach", self.reach);
-    visit("strands", self.strands);
-    visit("stiffness", self.stiffness);
-    visit("damping", self.damping);
-    visit("strength", self.strength);
-    visit("fadeTime", self.fadeTime);
-  }
-};
-
-/// How an end of a vessel is held.
-struct VesselEndDescription {
-  enum class Kind : std::uint8_t {
-    free,   ///< not at all
-    fixed,  ///< at its place at rest
-    organ,  ///< grown to an organ: goes where the tissue there goes
-    vessel  ///< grows out of an earlier vessel, at its node nearest to the end; starts only
-  };
-  Kind kind = Kind::free;
-  std::string to;            ///< name of that organ or vessel
-  double stiffness = 200.0;  ///< of all springs of an end that is grown to an organ together (N/m); not in scene files
-  double damping = 0.0;      ///< the same (N s/m)
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("kind", self.kind);
-    visit("to", self.to);
-    visit("stiffness", self.stiffness);
-    visit("damping", self.damping);
-  }
-};
-
-/// A duct or an artery: a tube along a curve (sim/vessel/beam_model.h).
-struct VesselDescription {
-  std::string name;
-  std::string appearance;
-  std::vector<Vec3> path;        ///< points that the centre line passes at rest, from start to end, in W (m)
-  std::uint32_t elements = 40;   ///< of equal length
-  double radius = 0.0015;        ///< outer (m)
-  double wall = 0.0005;          ///< thickness (m)
-  MaterialDescription material;  ///< of the wall
-  double ultimateStrain = 0.6;   ///< stretch at which it tears
-  double burnThrough = 1.0;      ///< cautery at one spot that parts it (s)
-  double friction = 0.1;         ///< Coulomb coefficient of an instrument on it
-  VesselEndDescription start, end;
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("appearance", self.appearance);
-    visit("path", self.path);
-    visit("elements", self.elements);
-    visit("radius", self.radius);
-    visit("wall", self.wall);
-    visit("material", self.material);
-    visit("ultimateStrain", self.ultimateStrain);
-    visit("burnThrough", self.burnThrough);
-    visit("friction", self.friction);
-    visit("start", self.start);
-    visit("end", self.end);
-  }
-};
-
-/// How fat hangs on an organ or a vessel: springs over what of it is no farther than `distance`.
-struct FatAttachmentDescription {
-  std::string to;           ///< name of an organ or a vessel
-  double distance = 0.002;  ///< from its rest surface (m)
-  double stiffness = 2e6;   ///< of a unit volume of fat that hangs on it (N/m^4)
-  double damping = 2e4;     ///< (N s/m^4)
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("to", self.to);
-    visit("distance", self.distance);
-    visit("stiffness", self.stiffness);
-    visit("damping", self.damping);
-  }
-};
-
-/// Fat that the energised hook carves: a potential field over coarse cubes (sim/carving, sim/solid).
-struct FatDescription {
-  std::string name;
-  std::string appearance;
-  SurfaceDescription surface;
-  double cellSize = 0.00075;       ///< of the potential field (m)
-  std::uint32_t cellsPerCube = 3;  ///< edge of a mechanical cube in cells
-  MaterialDescription material{1000.0, 0.4, 920.0, 2.0, 0.01};
-  double friction = 0.1;  ///< Coulomb coefficient of an instrument on it
-  std::vector<FatAttachmentDescription> attachments;
-  /// What is to be cleared, at rest: what lies over or under this triangle (m), no farther from its plane than
-  std::array<Vec3, 3> triangle{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  double triangleDepth = 0.0;  ///< m; 0: nothing
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("appearance", self.appearance);
-    visit("surface", self.surface);
-    visit("cellSize", self.cellSize);
-    visit("cellsPerCube", self.cellsPerCube);
-    visit("material", self.material);
-    visit("friction", self.friction);
-    visit("attachments", self.attachments);
-    visit("triangle", self.triangle);
-    visit("triangleDepth", self.triangleDepth);
-  }
-};
 
 /// Where a hand's instrument enters, and how it is coupled.
 struct HandDescription {
@@ -352,7 +159,7 @@ struct SolverDescription {
   }
 };
 
-struct SceneDescription {
+struct SceneDescription : Tissues::Descriptions {
   std::string name;
   std::uint32_t majorVersion = 1;  ///< changes when attempts before and after must not be compared
   std::uint32_t minorVersion = 0;
@@ -360,10 +167,6 @@ struct SceneDescription {
   Vec3 gravity = Vec3::Zero();      ///< m/s^2; zero: the organs' rest shape is their shape in the body, under gravity
   double timeLimit = 0.0;           ///< s; 0: none
   std::array<Vec3, 2> workspace{Vec3::Constant(-0.5), Vec3::Constant(0.5)};  ///< lower and upper corner for tips (m)
-  std::vector<OrganDescription> organs;
-  std::vector<ConnectiveDescription> connective;
-  std::vector<VesselDescription> vessels;
-  std::vector<FatDescription> fat;
   ProcedureDescription procedure;
   std::vector<RetractionDescription> retraction;
   std::array<HandDescription, handCount> hands;
@@ -382,10 +185,7 @@ struct SceneDescription {
     visit("gravity", self.gravity);
     visit("timeLimit", self.timeLimit);
     visit("workspace", self.workspace);
-    visit("organs", self.organs);
-    visit("connective", self.connective);
-    visit("vessels", self.vessels);
-    visit("fat", self.fat);
+    Tissues::Descriptions::fields(self, visit);
     visit("procedure", self.procedure);
     visit("retraction", self.retraction);
     visit("hands", self.hands);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The part of a Model that says what is to be done, and what an assistant does.
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,9 +12,16 @@ namespace calot {
 
 namespace {
 
-/// Strands whose places on the specimen are the nearest to a point, up to a third of the bed's area.
-std::vector<std::uint32_t> lowerThirdOf(const ConnectiveTissue& tissue, bool specimenIsA, std::span<const Vec3> rest,
-                                        const Vec3& from) {
+template <class Description>
+std::size_t indexNamed(const std::vector<Description>& list, const std::string& name) {
+  std::size_t i = 0;
+  while (i < list.size() && list[i].name != name) ++i;
+  return i;
+}
+
+/// Strands of a bed in three parts of a third of its area each, by how far they are from a point on the specimen.
+std::array<std::vector<std::uint32_t>, 3> thirdsOf(const ConnectiveTissue& tissue, bool specimenIsA,
+                                                   std::span<const Vec3> rest, const Vec3& from) {
   const std::vector<Strand>& strands = tissue.strands();
   std::vector<std::uint32_t> order(strands.size());
   std::vector<double> away(strands.size());
@@ -22,63 +31,58 @@ std::vector<std::uint32_t> lowerThirdOf(const ConnectiveTissue& tissue, bool spe
   }
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return away[a] != away[b] ? away[a] < away[b] : a < b; });
+  std::array<std::vector<std::uint32_t>, 3> third;
   double area = 0.0;
-  std::size_t count = 0;
-  while (count < order.size() && area < tissue.area() / 3.0) area += strands[order[count++]].area;
-  order.resize(count);
-  std::sort(order.begin(), order.end());
-  return order;
+  std::size_t at = 0;
+  for (std::size_t part = 0; part < third.size(); ++part) {
+    const double until = tissue.area() * static_cast<double>(part + 1) / 3.0;
+    const bool last = part + 1 == third.size();
+    while (at < order.size() && (last || area < until)) {
+      third[part].push_back(order[at]);
+      area += strands[order[at++]].area;
+    }
+    std::sort(third[part].begin(), third[part].end());
+  }
+  return third;
 }
 
 }  // namespace
 
-/// @return what is wrong with it, or nothing
+/// Checks the procedure's names; finds what a step reports of it. @return what is wrong with it, or nothing
 std::string Model::addProcedure(const SceneDescription& scene) {
   const ProcedureDescription& d = scene.procedure;
   if (d.specimen.empty()) return {};
-  ProcedureModel& out = procedure_;
-  out.present = true;
-  while (out.specimen < organs_.size() && organs_[out.specimen].name != d.specimen) ++out.specimen;
-  if (out.specimen == organs_.size()) return "procedure: the scene has no organ '" + d.specimen + "'";
-  for (std::size_t c = 0; c < connective_.size(); ++c) {
-    if (connective_[c].name == d.bed) out.bed = c;
-  }
+  const std::size_t specimen = indexNamed(scene.organs, d.specimen);
+  if (specimen == scene.organs.size()) return "procedure: the scene has no organ '" + d.specimen + "'";
+  const std::size_t bed = indexNamed(scene.connective, d.bed);
   if (!d.bed.empty()) {
-    if (out.bed == ProcedureModel::none) return "procedure: the scene has no connective tissue '" + d.bed + "'";
-    const ConnectiveModel& bed = connective_[out.bed];
-    if (bed.a != out.specimen && bed.b != out.specimen) {
+    if (bed == scene.connective.size()) return "procedure: the scene has no connective tissue '" + d.bed + "'";
+    if (connective()[bed].a != specimen && connective()[bed].b != specimen) {
       return "procedure: connective tissue '" + d.bed + "' does not hold '" + d.specimen + "'";
     }
   }
-  for (std::size_t f = 0; f < scene.fat.size(); ++f) {
-    if (scene.fat[f].name != d.fat) continue;
-    out.fat = f;
-    if (scene.fat[f].triangleDepth > 0.0) out.clearRegion = 0;
-  }
-  if (!d.fat.empty() && out.fat == ProcedureModel::none) return "procedure: the scene has no fat '" + d.fat + "'";
-  const auto vessel = [&](const std::string& name, std::size_t& structure) {
-    structure = structureNamed(name);
-    return structure < structure_.size() && structure_[structure].kind == StructureKind::vessel;
-  };
+  const std::size_t fat = indexNamed(scene.fat, d.fat);
+  if (!d.fat.empty() && fat == scene.fat.size()) return "procedure: the scene has no fat '" + d.fat + "'";
   for (const DivideDescription& divide : d.divide) {
-    ProcedureModel::Divide& to = out.divide.emplace_back();
-    if (!vessel(divide.vessel, to.structure)) return "procedure: the scene has no vessel '" + divide.vessel + "'";
-    if (out.fat == ProcedureModel::none) continue;
-    for (std::size_t r = 0; r < fat_[out.fat]->regions(); ++r) {
-      if (fat_[out.fat]->regionName(r) == divide.vessel) to.coverRegion = r;
+    const std::size_t vessel = indexNamed(scene.vessels, divide.vessel);
+    if (vessel == scene.vessels.size()) return "procedure: the scene has no vessel '" + divide.vessel + "'";
+    if (fat == scene.fat.size()) continue;
+    for (std::size_t r = 0; r < this->fat()[fat]->regions(); ++r) {
+      if (this->fat()[fat]->regionName(r) == divide.vessel) cover_.push_back({vessel, fat, r});
     }
   }
   for (const std::string& name : d.spare) {
-    if (!vessel(name, out.spare.emplace_back())) return "procedure: the scene has no vessel '" + name + "'";
+    if (indexNamed(scene.vessels, name) == scene.vessels.size())
+      return "procedure: the scene has no vessel '" + name + "'";
   }
-  if (out.bed != ProcedureModel::none && !d.divide.empty()) {
-    const StructureModel& first = structure_[out.divide[0].structure];
-    const BeamModel& beams = vesselTree_[first.index].beams;
+  if (!d.bed.empty() && !d.divide.empty()) {
+    const StructureModel& first = structure_[structureNamed(d.divide[0].vessel)];
+    const BeamModel& beams = vesselTrees()[first.index].beams;
     const std::vector<int>& node = beams.branches()[first.branch].node;
     const int end = d.divide[0].patientAtStart ? node.back() : node.front();
-    const ConnectiveModel& bed = connective_[out.bed];
-    out.lowerThird = lowerThirdOf(bed.tissue, bed.a == out.specimen, organs_[out.specimen].solid.rest(),
-                                  beams.rest()[static_cast<std::size_t>(end)]);
+    ConnectiveModel& tissue = connectiveModel[bed];
+    tissue.third = thirdsOf(tissue.tissue, tissue.a == specimen, organs()[specimen].solid.rest(),
+                            beams.rest()[static_cast<std::size_t>(end)]);
   }
   return {};
 }
@@ -87,9 +91,9 @@ std::string Model::addProcedure(const SceneDescription& scene) {
 std::string Model::addRetractions(const SceneDescription& scene) {
   for (const RetractionDescription& d : scene.retraction) {
     RetractionModel& out = retraction_.emplace_back();
-    while (out.organ < organs_.size() && organs_[out.organ].name != d.organ) ++out.organ;
-    if (out.organ == organs_.size()) return "retraction: the scene has no organ '" + d.organ + "'";
-    const std::vector<Vec3>& rest = organs_[out.organ].solid.rest();
+    while (out.organ < organs().size() && organs()[out.organ].name != d.organ) ++out.organ;
+    if (out.organ == organs().size()) return "retraction: the scene has no organ '" + d.organ + "'";
+    const std::vector<Vec3>& rest = organs()[out.organ].solid.rest();
     for (std::size_t n = 0; n < rest.size(); ++n) {
       if ((rest[n] - d.centre).norm() <= d.radius) out.node.push_back(static_cast<int>(n));
     }

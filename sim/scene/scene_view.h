@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/connective/connective_tissue.h"
 #include "sim/scene/samples.h"
-#include "sim/scene/step_result.h"
+#include "sim/tissue/tissues.h"
 
 namespace calot {
 
@@ -22,24 +21,6 @@ struct SurfaceView {
   std::vector<float> charred;    ///< per vertex: 0 not at all, 1 as it counts as charred, more beyond; empty: nowhere
   /// Per vertex: 0 on the skin; where a vessel is parted 1 at the face's rim to 2 (open; 1.5 clipped) in its middle.
   std::vector<float> face;
-};
-
-/// Connective tissue between two organs, in W: strands, and sheets between neighbouring strands.
-struct ConnectiveView {
-  std::string name;                                 ///< in the scene: "bed"
-  std::vector<std::array<Vec3, 2>> strand;          ///< ends on the first and on the second organ (m)
-  std::vector<StrandCondition> condition;           ///< per strand
-  std::vector<float> alpha;                         ///< per strand: 1 intact, falling while the hook burns it
-  std::vector<std::array<std::uint32_t, 2>> sheet;  ///< pairs of strands that a sheet joins while both are attached
-};
-
-/// A clip on a vessel.
-struct ClipView {
-  Pose pose;             ///< of its middle in W: z along the vessel, x in the direction in which it flattens it, y
-                         ///< from its crotch to the tips of its legs
-  double width = 0.0;    ///< along the vessel (m)
-  double legs = 0.0;     ///< their length, along y (m)
-  double halfGap = 0.0;  ///< half of what it leaves to the vessel, along x (m)
 };
 
 struct InstrumentView {

@@ -8,6 +8,7 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
+#include "sim/tissue/tissue_viewer.h"
 
 namespace calot {
 
@@ -27,11 +28,8 @@ class SceneViewer {
   [[nodiscard]] SceneView view(const State& state);
 
  private:
-  class Fat;
-  class Vessel;
   const Model& model_;
-  std::vector<std::unique_ptr<Vessel>> vessel_;  ///< in the order of the structures
-  std::vector<std::unique_ptr<Fat>> fat_;        ///< per body of fat
+  std::vector<std::unique_ptr<TissueViewer>> viewer_;  ///< per kind of tissue
 };
 
 /// Surfaces, instruments and camera of a State.

@@ -91,7 +91,7 @@ std::size_t fieldCount() {
 /// @pre vessels fit
 std::size_t skinVertices(const Model& model, const State& state, std::size_t structure) {
   const StructureModel& s = model.structures()[structure];
-  if (s.kind == StructureKind::organ) return model.organs()[s.index].skin.size();
+  if (s.kind == tissueId<OrganTissue>) return model.organs()[s.index].skin.size();
   TubeSurface tube(model.vesselTrees()[s.index].beams, s.branch, tubeSettings);
   tube.update(state.vessel[s.index]);
   return tube.vertices();
@@ -115,55 +115,22 @@ State initialState(const Model& model, std::uint64_t seed) {
     s.clips = hand.clips;
     s.touchingSince.assign(model.structures().size(), 0);
   }
-  for (const OrganModel& organ : model.organs()) {
-    state.organ.push_back(restState(organ.solid));
-    if (!scene.gravity.isZero(0.0)) state.organ.back().quietSteps = 0;
-    state.charred.emplace_back().exposure.assign(organ.skin.size(), 0.0F);
-  }
-  for (const ConnectiveModel& connective : model.connective())
-    state.connective.push_back(intactState(connective.tissue));
-  for (const VesselTree& tree : model.vesselTrees()) {
-    state.vessel.push_back(restState(tree.beams));
-    if (!scene.gravity.isZero(0.0)) state.vessel.back().quietSteps = 0;
-  }
-  if (model.procedure().present) {
-    const ProcedureModel& procedure = model.procedure();
-    state.procedure.emplace_back().phase = procedure.fat != ProcedureModel::none ? Phase::identification
-                                           : !procedure.divide.empty()           ? Phase::clipping
-                                                                                 : Phase::dissection;
-  }
-  for (const std::unique_ptr<const FatModel>& fat : model.fat()) {
-    state.fat.push_back(restState(*fat));
-    if (!scene.gravity.isZero(0.0)) state.fat.back().solid.quietSteps = 0;
-  }
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::start(model, state); });
   return state;
 }
 
-DigestLayout digestLayout(const DigestNames& names) {
-  DigestLayout layout;
-  layout.components = {"clock", "camera", "hand.left", "hand.right", "tissue"};
-  const auto add = [&](const char* prefix, const std::vector<std::string>& of) {
-    for (const std::string& name : of) layout.components.push_back(prefix + name);
-  };
-  add("organ.", names.organs);
-  add("connective.", names.connective);
-  add("vessels.", names.vesselTrees);
-  add("charred.", names.organs);
-  add("fat.", names.fat);
-  add("carved.", names.fat);
-  if (names.procedure) layout.components.emplace_back("procedure");
+DigestLayout digestLayout(const Model& model) {
   State state;
-  state.organ.resize(names.organs.size());
-  state.connective.resize(names.connective.size());
-  state.vessel.resize(names.vesselTrees.size());
-  state.charred.resize(names.organs.size());
-  state.fat.resize(names.fat.size());
-  state.procedure.resize(names.procedure ? 1 : 0);
-  std::uint32_t component = 0;
-  State::components(state, [&](const auto& part) {
-    NameVisitor visitor{layout, component++};
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::resize(model, state); });
+  DigestLayout layout;
+  const auto add = [&](std::string name, const auto& part) {
+    NameVisitor visitor{layout, static_cast<std::uint32_t>(layout.components.size())};
+    layout.components.push_back(std::move(name));
     std::remove_cvref_t<decltype(part)>::fields(part, visitor);
-  });
+  };
+  State::ownComponents(state, add);
+  State::tissueComponents(state, [&]<class Kind>(std::type_identity<Kind>, const char* prefix, std::size_t index,
+                                                 const auto& part) { add(prefix + Kind::nameOf(model, index), part); });
   return layout;
 }
 
@@ -201,27 +168,17 @@ std::vector<std::byte> saveState(const State& state) {
 
 bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state) {
   State read;
-  read.organ.resize(model.organs().size());
-  read.connective.resize(model.connective().size());
-  read.vessel.resize(model.vesselTrees().size());
-  read.charred.resize(model.organs().size());
-  read.fat.resize(model.fat().size());
-  read.procedure.resize(model.procedure().present ? 1 : 0);
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::resize(model, read); });
   ByteReader reader(bytes);
   State::components(read, [&](auto& part) { reader.read(part); });
   if (!reader.complete()) return false;
   FiniteVisitor finite;
   State::components(read, [&](const auto& part) { std::remove_cvref_t<decltype(part)>::fields(part, finite); });
   if (!finite.finite) return false;
-  for (std::size_t t = 0; t < read.vessel.size(); ++t) {
-    if (!fits(model.vesselTrees()[t].beams, read.vessel[t])) return false;
-  }
-  for (const ProcedureState& p : read.procedure) {
-    if (p.phase > Phase::done || p.triangleCleared > 2 || p.lowerThirdFreed > 2 || p.twoStructures > 2) return false;
-  }
-  for (std::size_t f = 0; f < read.fat.size(); ++f) {
-    if (!fits(*model.fat()[f], read.fat[f])) return false;
-  }
+  bool tissueFits = true;
+  Tissues::forEach(
+      [&]<class Kind>(std::type_identity<Kind>, TissueId) { tissueFits = tissueFits && Kind::fits(model, read); });
+  if (!tissueFits) return false;
   for (const HandState& hand : read.hand) {
     const std::size_t burnable = smokeOfConnective + model.connective().size();
     if (hand.burning != noStructure && hand.burning >= burnable) return false;
@@ -234,7 +191,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     if (held == 0) continue;
     if (hand.grasped >= model.structures().size()) return false;
     // The stepper discards contact points whose fat was carved away.
-    if (model.structures()[hand.grasped].kind == StructureKind::fat) continue;
+    if (model.structures()[hand.grasped].kind == tissueId<FatTissue>) continue;
     const std::size_t vertices = skinVertices(model, read, hand.grasped);
     for (const std::array<std::uint32_t, 3>& corners : hand.graspNode) {
       for (const std::uint32_t corner : corners) {
@@ -243,21 +200,6 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     }
   }
   if (read.tissue.key.size() != read.tissue.force.size()) return false;
-  for (std::size_t o = 0; o < read.organ.size(); ++o) {
-    const SolidModel& solid = model.organs()[o].solid;
-    if (read.organ[o].position.size() != solid.nodes() || read.organ[o].velocity.size() != solid.nodes()) return false;
-    if (read.organ[o].rotation.size() != solid.groups()) return false;
-    if (read.charred[o].exposure.size() != model.organs()[o].skin.size()) return false;
-  }
-  for (std::size_t c = 0; c < read.connective.size(); ++c) {
-    const ConnectiveState& connective = read.connective[c];
-    const std::size_t strands = model.connective()[c].tissue.strands().size();
-    if (connective.condition.size() != strands || connective.alpha.size() != strands) return false;
-    for (std::size_t s = 0; s < strands; ++s) {
-      if (connective.condition[s] > StrandCondition::torn) return false;
-      if (!(connective.alpha[s] >= 0.0) || connective.alpha[s] > 1.0) return false;
-    }
-  }
   state = std::move(read);
   return true;
 }

@@ -7,16 +7,15 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
-#include "sim/fat/fat_state.h"
 #include "sim/math/random.h"
 #include "sim/scene/digests.h"
 #include "sim/scene/model.h"
 #include "sim/scene/samples.h"
 #include "sim/scene/step_result.h"
-#include "sim/solid/solid.h"
-#include "sim/vessel/beam_state.h"
+#include "sim/tissue/tissues.h"
 
 namespace calot {
 
@@ -125,82 +124,48 @@ struct TissueContactState {
   }
 };
 
-/// Where cautery has charred an organ. Irreversible.
-struct CharState {
-  std::vector<float> exposure;  ///< per vertex of its skin: cautery per spot (s)
-  double area = 0.0;            ///< charred (m^2)
-  bool perforated = false;      ///< burned or torn open
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("exposure", self.exposure);
-    visit("area", self.area);
-    visit("perforated", self.perforated);
-  }
-};
-
-/// How far the procedure is.
-struct ProcedureState {
-  Phase phase = Phase::none;
-  bool frozen = false;  ///< the first clip is set: the critical view of safety is what it was then
-  std::uint8_t triangleCleared = 0, lowerThirdFreed = 0, twoStructures = 0;
-  std::uint32_t errors = 0;
-  std::uint32_t criticalErrors = 0;
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("phase", self.phase);
-    visit("frozen", self.frozen);
-    visit("triangleCleared", self.triangleCleared);
-    visit("lowerThirdFreed", self.lowerThirdFreed);
-    visit("twoStructures", self.twoStructures);
-    visit("errors", self.errors);
-    visit("criticalErrors", self.criticalErrors);
-  }
-};
-
-struct State {
-  /// Components that are written in every step stand before the organs.
-  static constexpr std::size_t organsFrom = 5;
+struct State : Tissues::States {
+  /// Components that are written in every step stand before those of tissue.
+  static constexpr std::size_t tissueFrom = 5;
 
   ClockState clock;
   CameraState camera;
   std::array<HandState, handCount> hand;
   TissueContactState tissue;
-  std::vector<SolidState> organ;
-  std::vector<ConnectiveState> connective;
-  std::vector<BeamState> vessel;   ///< per tree
-  std::vector<CharState> charred;  ///< per organ
-  std::vector<FatState> fat;
-  std::vector<ProcedureState> procedure;  ///< one, or none
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
   template <class Self, class Visit>
   static void components(Self& self, Visit&& visit) {
-    visit(self.clock);
-    visit(self.camera);
-    for (auto& h : self.hand) visit(h);
-    visit(self.tissue);
-    for (auto& o : self.organ) visit(o);
-    for (auto& c : self.connective) visit(c);
-    for (auto& v : self.vessel) visit(v);
-    for (auto& c : self.charred) visit(c);
-    for (auto& f : self.fat) visit(f.solid);
-    for (auto& f : self.fat) visit(f.carved);
-    for (auto& p : self.procedure) visit(p);
+    ownComponents(self, [&](const char*, auto& part) { visit(part); });
+    tissueComponents(self, [&](auto, const char*, std::size_t, auto& part) { visit(part); });
+  }
+
+  /// Calls visit(name, part) for the components that every scene has.
+  template <class Self, class Visit>
+  static void ownComponents(Self& self, Visit&& visit) {
+    visit("clock", self.clock);
+    visit("camera", self.camera);
+    visit("hand.left", self.hand[0]);
+    visit("hand.right", self.hand[1]);
+    visit("tissue", self.tissue);
+  }
+
+  /// Calls visit(kind, prefix, index, part) for the others: each is named prefix and the name of the index-th of its
+  /// kind.
+  template <class Self, class Visit>
+  static void tissueComponents(Self& self, Visit&& visit) {
+    Tissues::forEach([&]<class Kind>(std::type_identity<Kind> kind, TissueId) {
+      Kind::components(self,
+                       [&](const char* prefix, std::size_t index, auto& part) { visit(kind, prefix, index, part); });
+    });
   }
 };
 
 /// The state before the first step: organs at rest, instruments at home, camera in place.
 State initialState(const Model& model, std::uint64_t seed);
 
-/// What a Model's components are named after.
-struct DigestNames {
-  std::vector<std::string> organs, connective, vesselTrees, fat;
-  bool procedure = false;
-};
-/// Names of components and fields of a model's State.
-DigestLayout digestLayout(const DigestNames& names);
+/// Names of components and fields of a model's State. @pre the model has its tissue and scene
+DigestLayout digestLayout(const Model& model);
 
 /// Hashes every field of every component.
 StateDigest digestOf(const State& state);

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a step tells the world: the versioned contract (stepResultVersion) on which analytics and pictures stand.
+// What a step reports: the versioned contract (stepResultVersion) on which judgement, analytics and pictures stand.
+// Raw facts alone: what they mean for a grade is judged by an observer (sim/judgement).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "sim/math/linear.h"
 #include "sim/scene/samples.h"
+#include "sim/tissue/result_field.h"
+#include "sim/tissue/tissues.h"
 
 namespace calot {
 
-/// In the order of their numbers, which are stored in recordings and never reused. Structures: organs, then vessels, in
-/// the scene's order.
+/// Facts of a step. In the order of their numbers, which are stored in recordings and never reused. Structures: organs,
+/// then vessels, then fat, in the scene's order.
 enum class EventKind : std::uint16_t {
   contactBegin = 1,        ///< subject: structure; value: first normal force (N)
   contactEnd = 2,          ///< subject: structure; value: how long it lasted (s)
@@ -33,9 +37,9 @@ enum class EventKind : std::uint16_t {
   connectiveFreed = 19,  ///< the last strand is gone; subject: tissue; value: share of the bed that is residue
   vesselTorn = 20,       ///< a vessel tore; subject: structure; value: stretch
   clipSet = 21,          ///< subject: structure; value: share of the flattened vessel between the clip's legs
-  clipHalfOn = 22,       ///< beside clipSet: it does not enclose the whole vessel; value: as there
-  clipOnClip = 23,       ///< beside clipSet: it overlaps another clip; value: by how much (m)
-  clipTooNear = 24,      ///< beside clipSet: too near to another clip, a junction or an edge; value: gap (m)
+  clipHalfOn = 22,       ///< judged: it does not enclose the whole vessel; value: as of clipSet
+  clipOnClip = 23,       ///< judged: it overlaps another clip; value: by how much (m)
+  clipTooNear = 24,      ///< judged: too near to another clip, a junction or an edge; value: gap (m)
   clipDropped = 25,      ///< an applier closed on nothing and lost its clip; value: clips left
   vesselCut = 26,        ///< scissors parted a vessel; subject: structure; value: arc length from its start (m)
   cutOpen = 27,          ///< beside vesselCut, vesselBurned, vesselTorn: it leaks; value: 1 start, 2 end, 3 both sides
@@ -44,11 +48,17 @@ enum class EventKind : std::uint16_t {
   organPerforated = 30,  ///< cautery or a tear opened an organ; subject: structure; value: cautery there (s), 0 if torn
   smoke = 31,            ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
   fatCameLoose = 32,     ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
-  tooFewClips = 33,     ///< beside vesselCut: a side has fewer clips than it should; subject: structure; value: missing
-  criticalError = 34,   ///< a vessel to be spared was clipped or opened; subject: structure; value: kind of that event
-  phaseBegin = 35,      ///< subject: the Phase that begins; value: the one before
-  runaway = 36,         ///< something moves faster than fastestMotion, or is no number any more; value: speed (m/s)
-  motionHeldBack = 37,  ///< tissue faster than it can move was held back; subject: structure; value: that speed (m/s)
+  tooFewClips = 33,      ///< judged: a side of a cut has fewer clips than it should; value: missing
+  criticalError = 34,    ///< judged: a vessel to be spared was clipped or opened; value: kind of that event
+  phaseBegin = 35,       ///< judged: subject: the Phase that begins; value: the one before
+  runaway = 36,          ///< something moves faster than fastestMotion, or is no number any more; value: speed (m/s)
+  motionHeldBack = 37,   ///< tissue faster than it can move was held back; subject: structure; value: that speed (m/s)
+  clipPlace = 38,        ///< beside clipSet: arc length of its middle from the vessel's start (m)
+  clipGap = 39,          ///< beside clipSet, where the piece has another: distance of edges (m), below 0: overlap
+  clipJunctionGap = 40,  ///< beside clipSet, where the piece has one: to the nearest junction (m), below 0: across it
+  clipEndGap = 41,       ///< beside clipSet: to the nearest end of the piece (m), below 0: beyond it
+  clipsTowardsStart = 42,  ///< beside vesselCut: clips that close the piece on the start's side
+  clipsTowardsEnd = 43,    ///< the same on the end's side
 };
 
 /// Subject of smoke from connective tissue 0.
@@ -80,93 +90,82 @@ enum class Cautery : std::uint8_t { off = 0, withoutContact = 1, onTissue = 2 };
 /// One instrument at the end of a step.
 struct HandResult {
   InstrumentKind instrument = InstrumentKind::none;
-  Vec3 tipReal = Vec3::Zero();          ///< p_WI where the operator holds it, after port and workspace (m)
-  Vec3 tipSimulated = Vec3::Zero();     ///< p_WI where contact lets it be (m)
-  Quat orientation = Quat::Identity();  ///< q_WI of the simulated instrument
-  double jaw = 0.0;                     ///< rad
-  double insertion = 0.0;               ///< distance from port to simulated tip (m)
-  Vec3 contactForce = Vec3::Zero();     ///< f_W, force of the organs on the instrument, reduced to its tip (N)
-  double contactTorque = 0.0;           ///< of the organs about the shaft's axis (N m)
-  std::uint32_t touching = 0;           ///< bit s: a force acts between this instrument and structure s
-  std::vector<double> structureForce;   ///< per structure: sum of normal contact force magnitudes (N)
-  std::uint32_t grasping = 0;           ///< bit s: the jaws hold structure s
-  double graspForce = 0.0;              ///< pull on what the jaws hold (N)
-  Cautery cautery = Cautery::off;       ///< of the hook
-  std::uint32_t clips = 0;              ///< left in the clip applier
-};
+  Vec3 tipReal = Vec3::Zero();
+  Vec3 tipSimulated = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  double jaw = 0.0;
+  double insertion = 0.0;
+  Vec3 contactForce = Vec3::Zero();
+  double contactTorque = 0.0;
+  std::uint32_t touching = 0;
+  std::vector<double> structureForce;
+  std::uint32_t grasping = 0;
+  double graspForce = 0.0;
+  Cautery cautery = Cautery::off;
+  std::uint32_t clips = 0;
 
-/// One organ at the end of a step.
-struct OrganResult {
-  double volume = 0.0;               ///< of the deformed tetrahedra (m^3)
-  double largestDisplacement = 0.0;  ///< over its nodes, from rest (m)
-  double largestSpeed = 0.0;         ///< over its nodes (m/s)
-  double residual = 0.0;             ///< relative residual of the linear solve; 0 when asleep
-  std::uint32_t iterations = 0;      ///< of the linear solve; 0 when asleep
-  bool asleep = false;               ///< untouched and at rest: not solved in this step
-  double charredArea = 0.0;          ///< of its skin at rest (m^2)
-};
-
-/// One vessel at the end of a step.
-struct VesselResult {
-  double largestStrain = 0.0;        ///< stretch (length / rest length - 1) of any whole element; 0 when asleep
-  double largestTension = 0.0;       ///< pull in any whole element (N); 0 when asleep
-  double largestDisplacement = 0.0;  ///< of any node of the vessels that it grows together with, from rest (m)
-  std::uint32_t clips = 0;           ///< on it
-  std::uint32_t partings = 0;        ///< places where it is cut, burned or torn through
-  double charred = 0.0;              ///< most cautery at any spot, as a share of what parts it
-  bool asleep = false;
-};
-
-/// One connective tissue at the end of a step, as shares of its bed's area.
-struct ConnectiveResult {
-  double attached = 0.0;
-  double burned = 0.0;
-  double torn = 0.0;              ///< hangs on the organs as residue
-  double largestPull = 0.0;       ///< on any strand, per area (Pa)
-  std::uint32_t hookTouches = 0;  ///< strands that the energised hook touched in this step
-};
-
-/// One body of fat at the end of a step.
-struct FatResult {
-  double volume = 0.0;               ///< that is left, at rest (m^3)
-  double toClear = 0.0;              ///< the part of it inside the region that is to be cleared (m^3)
-  double carved = 0.0;               ///< volume that the hook took in this step (m^3)
-  double islands = 0.0;              ///< volume that came loose by that and left (m^3)
-  double largestDisplacement = 0.0;  ///< over its nodes, from rest (m)
-  double largestSpeed = 0.0;         ///< over its nodes (m/s)
-  double residual = 0.0;             ///< relative residual of the linear solve; 0 when asleep
-  std::uint32_t iterations = 0;      ///< of the linear solve; 0 when asleep
-  bool asleep = false;
-};
-
-/// What an attempt is at. Numbers are stored in recordings.
-enum class Phase : std::uint8_t { none = 0, identification = 1, clipping = 2, cutting = 3, dissection = 4, done = 5 };
-
-/// How far the procedure is, in scenes that have one.
-struct ProcedureResult {
-  Phase phase = Phase::none;         ///< of this step; phases may recur
-  std::uint8_t triangleCleared = 0;  ///< critical view of safety, 0 to 2 each, frozen at the first clip:
-  std::uint8_t lowerThirdFreed = 0;  ///< (docs/procedure.md)
-  std::uint8_t twoStructures = 0;    ///<
-  bool criticalViewFrozen = false;
-  double lowerThirdAttached = 0.0;   ///< share of the lower third of the bed that is still attached
-  std::uint32_t errors = 0;          ///< so far
-  std::uint32_t criticalErrors = 0;  ///< so far; one fails the attempt
+  template <class Visit>
+  static void fields(Visit&& visit) {
+    visit(ResultField{"instrument", "", "", 1, "mounted: 0 none, 1 grasper, 2 hook, 3 clip applier, 4 scissors"},
+          &HandResult::instrument);
+    visit(ResultField{"tip_real", "m", "p_WI", 1, "tip where the operator holds it, after port and workspace"},
+          &HandResult::tipReal);
+    visit(ResultField{"tip_simulated", "m", "p_WI", 1, "tip where contact lets it be"}, &HandResult::tipSimulated);
+    visit(ResultField{"orientation", "", "q_WI", 1, "of the simulated instrument, w x y z"}, &HandResult::orientation);
+    visit(ResultField{"jaw", "rad", "", 1, "opening angle of the jaws"}, &HandResult::jaw);
+    visit(ResultField{"insertion", "m", "", 1, "distance from port to simulated tip"}, &HandResult::insertion);
+    visit(ResultField{"contact_force", "N", "f_W", 1, "force of the organs on the instrument, reduced to its tip"},
+          &HandResult::contactForce);
+    visit(ResultField{"touching", "", "", 1, "bit s: a force acts between this instrument and structure s"},
+          &HandResult::touching);
+    visit(
+        ResultField{"organ_force", "N", "", 1, "per structure (the organs first), sum of the magnitudes of normal forces"},
+        &HandResult::structureForce);
+    visit(ResultField{"contact_torque", "N m", "", 2, "torque of the organs about the shaft's axis"},
+          &HandResult::contactTorque);
+    visit(ResultField{"grasping", "", "", 2, "bit s: the jaws hold structure s"}, &HandResult::grasping);
+    visit(ResultField{"grasp_force", "N", "", 2, "pull on what the jaws hold"}, &HandResult::graspForce);
+    visit(ResultField{"cautery", "", "", 3, "of the hook: 0 no current, 1 current without contact, 2 current on tissue"},
+          &HandResult::cautery);
+    visit(ResultField{"clips", "", "", 3, "left in the clip applier"}, &HandResult::clips);
+  }
 };
 
 /// The contact problem of a step.
 struct ContactResult {
-  std::uint32_t blocks = 0;       ///< places of contact and of hold
-  std::uint32_t rows = 0;         ///< scalar constraints
-  std::uint32_t iterations = 0;   ///< sweeps used
-  std::uint32_t newtonSteps = 0;  ///< used where sweeps did not converge
-  std::uint32_t passes = 0;       ///< how often the problem was posed
-  double residual = 0.0;          ///< of its last solution: largest natural residual (m), sim/contact/contact_solver.h
-  double error = 0.0;             ///< the same with the gaps that the forces really left (m)
-  double violation = 0.0;         ///< largest violation that the forces had to undo (m)
-  double largestDepth = 0.0;      ///< deepest point of an instrument inside an organ after the step (m), 0 if outside
-  double pinchedDepth = 0.0;      ///< the same where tissue presses from two sides and leaves no room (m)
-  double tissueDepth = 0.0;       ///< deepest overlap of organs, beyond that at rest, as the step found it (m)
+  std::uint32_t blocks = 0;
+  std::uint32_t rows = 0;
+  std::uint32_t iterations = 0;
+  std::uint32_t newtonSteps = 0;
+  std::uint32_t passes = 0;
+  double residual = 0.0;  ///< sim/contact/contact_solver.h
+  double error = 0.0;
+  double violation = 0.0;
+  double largestDepth = 0.0;
+  double pinchedDepth = 0.0;
+  double tissueDepth = 0.0;
+
+  template <class Visit>
+  static void fields(Visit&& visit) {
+    visit(ResultField{"rows", "", "", 1, "scalar constraints"}, &ContactResult::rows);
+    visit(ResultField{"iterations", "", "", 1, "sweeps used"}, &ContactResult::iterations);
+    visit(ResultField{"residual", "m", "", 1, "natural residual of the last solution, largest block"},
+          &ContactResult::residual);
+    visit(ResultField{"largest_depth", "m", "", 1, "deepest point of an instrument inside an organ; 0 outside"},
+          &ContactResult::largestDepth);
+    visit(ResultField{"blocks", "", "", 2, "contact points and grasped points"}, &ContactResult::blocks);
+    visit(ResultField{"newton_steps", "", "", 2, "used where sweeps did not converge"}, &ContactResult::newtonSteps);
+    visit(ResultField{"passes", "", "", 2, "how often the contact problem was posed"}, &ContactResult::passes);
+    visit(ResultField{"error", "m", "", 2, "natural residual with the gaps that the forces really left"},
+          &ContactResult::error);
+    visit(ResultField{"violation", "m", "", 2, "largest violation that the forces had to undo"}, &ContactResult::violation);
+    visit(ResultField{"pinched_depth", "m", "", 2,
+                      "as largest_depth, where tissue presses from two sides and leaves no way out"},
+          &ContactResult::pinchedDepth);
+    visit(ResultField{"tissue_depth", "m", "", 2,
+                      "deepest overlap of organs beyond that of the reference configuration, as the step found it"},
+          &ContactResult::tissueDepth);
+  }
 };
 
 /// Tissue and vessels do not move faster than this (m/s): hands reach 2, a stump that springs back 10. A step that
@@ -181,17 +180,58 @@ inline constexpr std::uint32_t speed = 1U << 3U;    ///< some tissue was held ba
 inline constexpr std::uint32_t runaway = 1U << 2U;  ///< State is worth nothing from here on: the attempt is to end
 }  // namespace miss
 
-struct StepResult {
+/// Everything that a step reports, in the order of its groups: both hands, then what is in `Tissues`, the contact
+/// problem, and what is the step's own.
+struct StepResult : Tissues::Results {
   std::uint64_t step = 0;  ///< n; the state after ticks [n T, (n + 1) T) with T ticks a step
   std::array<HandResult, handCount> hand;
-  std::vector<OrganResult> organ;
-  std::vector<ConnectiveResult> connective;
-  std::vector<VesselResult> vessel;
-  std::vector<FatResult> fat;
-  ProcedureResult procedure;
   ContactResult contact;
   std::uint32_t misses = 0;
   std::vector<Event> events;
+
+  static constexpr std::array<ResultGroup, handCount> handGroup{
+      ResultGroup{"/observables/left", 1, "one instrument; all of left, then all of right"}, ResultGroup{"/observables/right", 1, ""}};
+  static constexpr ResultGroup contactGroup{"/observables/contact", 1, "the contact problem"};
+  static constexpr ResultField missesField{
+      "misses", "", "", 1,
+      "bit 0: solver above its tolerance; bit 1: contact above its tolerance; bit 2: the simulation ran away, nothing "
+      "after it counts; bit 3: tissue that would have moved faster than it can was held back"};
+
+  /// Calls `visit` for every field that StepResult has had since `version` or before, in the order of the recording's
+  /// columns: what a version added stands behind what there was, and within a version groups stand in the order in
+  /// which versions brought them. `visit` has
+  ///   one(group, field, value)    of a group of which there is one
+  ///   each(group, field, parts, member)  of a kind of tissue: `parts` is the vector, `member` points into one of them
+  template <class Self, class Visit>
+  static void fields(Self& self, std::uint32_t version, Visit&& visit) {
+    for (std::uint32_t added = 1; added <= version; ++added) {
+      for (std::uint32_t brought = 1; brought <= added; ++brought) addedTo(self, added, brought, visit);
+    }
+  }
+
+  /// Same fields, bit for bit (a NaN is equal to itself, 0 and -0 differ), and the same events.
+  [[nodiscard]] bool isSameAs(const StepResult& other) const;
+
+ private:
+  /// Fields that version `added` brought to the groups that version `brought` brought.
+  template <class Self, class Visit>
+  static void addedTo(Self& self, std::uint32_t added, std::uint32_t brought, Visit& visit) {
+    const auto single = [&](const ResultGroup& group, auto& part) {
+      if (group.since != brought) return;
+      std::remove_cvref_t<decltype(part)>::fields([&](const ResultField& field, auto member) {
+        if (field.since == added) visit.one(group, field, part.*member);
+      });
+    };
+    for (std::size_t h = 0; h < handCount; ++h) single(handGroup[h], self.hand[h]);
+    Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+      if (Kind::results.since != brought) return;
+      Kind::Result::fields([&](const ResultField& field, auto member) {
+        if (field.since == added) visit.each(Kind::results, field, Kind::resultsOf(self), member);
+      });
+    });
+    single(contactGroup, self.contact);
+    if (brought == 1 && added == missesField.since) visit.one(ResultGroup{"/observables", 1, ""}, missesField, self.misses);
+  }
 };
 
 }  // namespace calot

@@ -7,9 +7,9 @@ namespace calot {
 
 /// Changes whenever any golden digest changes on purpose; says why in CHANGELOG.md. A recording of another simulation
 /// version cannot be decided by this build (exit code 5).
-inline constexpr std::uint32_t simulationVersion = 12;
+inline constexpr std::uint32_t simulationVersion = 13;
 
 /// Version of StepResult, and so of /observables.
-inline constexpr std::uint32_t stepResultVersion = 3;
+inline constexpr std::uint32_t stepResultVersion = 4;
 
 }  // namespace calot

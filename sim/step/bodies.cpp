@@ -119,6 +119,17 @@ void Activity::beginStep() {
   std::fill(carved.begin(), carved.end(), false);
 }
 
+void Activity::appendWritten(const Bodies& bodies, std::vector<bool>& out) const {
+  const auto vessels = written.begin() + static_cast<std::ptrdiff_t>(bodies.organs());
+  const auto fat = written.begin() + static_cast<std::ptrdiff_t>(bodies.firstFat());
+  out.insert(out.end(), written.begin(), vessels);
+  out.insert(out.end(), charred.begin(), charred.end());
+  out.insert(out.end(), frayed.begin(), frayed.end());
+  out.insert(out.end(), vessels, fat);
+  out.insert(out.end(), fat, written.end());
+  out.insert(out.end(), carved.begin(), carved.end());
+}
+
 bool holdsAnything(const ConnectiveState& tissue) {
   return std::find(tissue.condition.begin(), tissue.condition.end(), StrandCondition::attached) !=
          tissue.condition.end();

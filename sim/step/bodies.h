@@ -79,6 +79,8 @@ struct Activity {
 
   explicit Activity(const Model& model);
   void beginStep();
+  /// Appends for each of State's components of tissue, in their order, whether the step wrote it.
+  void appendWritten(const Bodies& bodies, std::vector<bool>& out) const;
   /// Wakes a body for the next step.
   void disturb(Bodies& bodies, State& state, std::size_t which) {
     bodies[which].quietSteps(state) = 0;

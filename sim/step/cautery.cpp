@@ -116,10 +116,10 @@ void CauteryEffects::burnHand(const std::vector<HookSweep>& sweeps, std::uint32_
     if (source == noStructure) source = static_cast<std::uint32_t>(s);
     const double share = 1.0 / static_cast<double>(found_.size());
     for (const SurfaceContact& contact : found_) {
-      const StructureKind kind = model_.structures()[s].kind;
+      const TissueId kind = model_.structures()[s].kind;
       const double time = share * tissue.bodies.step();
-      if (kind == StructureKind::vessel) burnVessel(hand, s, contact, time, tissue);
-      if (kind == StructureKind::organ) charOrgan(s, contact, time, tissue);
+      if (kind == tissueId<VesselTissue>) burnVessel(hand, s, contact, time, tissue);
+      if (kind == tissueId<OrganTissue>) charOrgan(s, contact, time, tissue);
     }
   }
   out.cautery = source == noStructure ? Cautery::withoutContact : Cautery::onTissue;

@@ -14,7 +14,7 @@ namespace {
 /// Below, nothing counts as touching (N). Larger misses light touches; smaller counts rounding. Assumed.
 constexpr double minForce = 1e-6;
 
-/// Largest speed (m/s) and largest displacement from rest (m) over a body's nodes.
+/// Largest speed (m/s) and largest displacement (m) over a body's nodes.
 struct Extremes {
   double speed = 0.0;
   double displacement = 0.0;
@@ -29,7 +29,45 @@ Extremes extremesOf(std::span<const Vec3> position, std::span<const Vec3> veloci
   return {std::sqrt(speed), std::sqrt(displacement)};
 }
 
+/// Share of the area of some strands that is attached; 0 of none.
+double attachedShare(const ConnectiveTissue& tissue, const ConnectiveState& state,
+                     std::span<const std::uint32_t> strands) {
+  double all = 0.0;
+  double attached = 0.0;
+  for (const std::uint32_t s : strands) {
+    const double area = tissue.strands()[s].area;
+    all += area;
+    if (state.condition[s] == StrandCondition::attached) attached += area;
+  }
+  return all > 0.0 ? attached / all : 0.0;
+}
+
 }  // namespace
+
+Publication::Publication(const Model& model, Grasping& grasping, const Bodies& bodies)
+    : model_(model), grasping_(grasping) {
+  for (std::size_t f = 0; f < bodies.fatCount(); ++f) {
+    const FatBody& fat = bodies.fat(f).fat();
+    std::vector<double>& whole = wholeRegion_.emplace_back();
+    for (std::size_t r = 0; r < fat.model().regions(); ++r) whole.push_back(fat.volume().inRegion(r));
+  }
+}
+
+/// Share that is left of the fat in a region.
+double Publication::shareLeft(const Bodies& bodies, std::size_t fat, std::size_t region) const {
+  const double whole = wholeRegion_[fat][region];
+  return whole > 0.0 ? bodies.fat(fat).fat().volume().inRegion(region) / whole : 0.0;
+}
+
+void Publication::publishConnective(const State& state, StepResult& result) const {
+  for (std::size_t c = 0; c < model_.connective().size(); ++c) {
+    const ConnectiveModel& fixed = model_.connective()[c];
+    ConnectiveResult& out = result.connective[c];
+    out.lowerAttached = attachedShare(fixed.tissue, state.connective[c], fixed.third[0]);
+    out.middleAttached = attachedShare(fixed.tissue, state.connective[c], fixed.third[1]);
+    out.upperAttached = attachedShare(fixed.tissue, state.connective[c], fixed.third[2]);
+  }
+}
 
 void Publication::publishOrgans(const ContactSystem& contact, Bodies& bodies, const Activity& activity, State& state,
                                 StepResult& result) const {
@@ -47,7 +85,12 @@ void Publication::publishOrgans(const ContactSystem& contact, Bodies& bodies, co
     }
     out.largestDisplacement = organ.largestDisplacement;
     out.volume = organ.volume;
-    out.charredArea = state.charred[o].area;
+    const CharState& charred = state.charred[o];
+    out.charredArea = charred.area;
+    out.wallExposure = 0.0;
+    if (charred.area > 0.0) {
+      out.wallExposure = double{*std::max_element(charred.exposure.begin(), charred.exposure.end())};
+    }
   }
 }
 
@@ -122,8 +165,12 @@ void Publication::publishFat(const ContactSystem& contact, Bodies& bodies, const
     }
     out.largestDisplacement = solid.largestDisplacement;
     out.volume = fat.volume().total();
-    out.toClear = fat.model().regions() > 0 ? fat.volume().inRegion(0) : 0.0;
+    const bool clears = model_.scene().fat[f].triangleDepth > 0.0;
+    out.toClear = clears ? fat.volume().inRegion(FatTissue::regionToClear) : 0.0;
+    out.uncleared = clears ? shareLeft(bodies, f, FatTissue::regionToClear) : 0.0;
   }
+  for (const VesselCover& cover : model_.covers())
+    result.vessel[cover.vessel].covered = shareLeft(bodies, cover.fat, cover.region);
 }
 
 void Publication::publishHand(const ContactSystem& contact, std::size_t h, State& state, HandResult& out,
@@ -180,6 +227,7 @@ void Publication::reportRunaway(const Bodies& bodies, const Activity& activity, 
 void Publication::run(const ContactSystem& contact, Surfaces& surfaces, Bodies& bodies, State& state,
                       Activity& activity, StepResult& result, StepLog& log) {
   publishOrgans(contact, bodies, activity, state, result);
+  publishConnective(state, result);
   publishVessels(contact, surfaces, bodies, activity, state, result, log);
   publishFat(contact, bodies, activity, state, result);
   grasping_.settle(surfaces, state, activity, result, log);

@@ -9,12 +9,12 @@
 
 namespace calot {
 
-/// Reads: everything that the stages before left. Writes: StepResult of organs, vessels, fat and hands; sleep counters;
+/// Reads: everything that the stages before left. Writes: StepResult of tissue and hands; sleep counters;
 /// when each touch began; grasps that slip or tear.
 class Publication {
  public:
-  /// @param grasping outlives this
-  Publication(const Model& model, Grasping& grasping) : model_(model), grasping_(grasping) {}
+  /// @param grasping outlives this. @param bodies whose fat is uncarved yet
+  Publication(const Model& model, Grasping& grasping, const Bodies& bodies);
   /// @pre surfaces are current but for what stage 8 changed
   void run(const ContactSystem& contact, Surfaces& surfaces, Bodies& bodies, State& state, Activity& activity,
            StepResult& result, StepLog& log);
@@ -35,8 +35,13 @@ class Publication {
                   StepResult& result) const;
   void publishHand(const ContactSystem& contact, std::size_t hand, State& state, HandResult& out, StepLog& log) const;
 
+  void publishConnective(const State& state, StepResult& result) const;
+  [[nodiscard]] double shareLeft(const Bodies& bodies, std::size_t fat, std::size_t region) const;
+
   const Model& model_;
   Grasping& grasping_;
+  /// Per body of fat: volumes of its regions before anything is carved (m^3).
+  std::vector<std::vector<double>> wholeRegion_;
 };
 
 }  // namespace calot

@@ -9,7 +9,6 @@
 #include "sim/step/contact_response.h"
 #include "sim/step/contact_solution.h"
 #include "sim/step/instrument_motion.h"
-#include "sim/step/procedure_stage.h"
 #include "sim/step/publication.h"
 #include "sim/step/sample_stage.h"
 #include "sim/step/tissue_effects.h"
@@ -22,10 +21,7 @@ namespace {
 
 StepResult emptyResult(const Model& model) {
   StepResult result;
-  result.organ.resize(model.organs().size());
-  result.connective.resize(model.connective().size());
-  result.vessel.resize(model.scene().vessels.size());
-  result.fat.resize(model.fat().size());
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::resize(model, result); });
   for (HandResult& hand : result.hand) hand.structureForce.resize(model.structures().size());
   return result;
 }
@@ -48,8 +44,7 @@ struct Stepper::Pipeline {
         contactSolution(m),
         contactResponse(m),
         tissueEffects(m),
-        publication(m, grasping),
-        procedureStage(m, bodies),
+        publication(m, grasping, bodies),
         result(emptyResult(m)) {}
 
   const Model& model;
@@ -67,7 +62,6 @@ struct Stepper::Pipeline {
   ContactResponse contactResponse;
   TissueEffects tissueEffects;
   Publication publication;
-  ProcedureStage procedureStage;
 
   ContactSystem contact;
   ContactSets contactSets;
@@ -100,7 +94,6 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   p.contactResponse.run(p.surfaces, p.bodies, p.activity, travels, p.contact, state, p.contactSets, p.result, log);
   p.tissueEffects.run(travels, p.surfaces, p.bodies, state, p.activity, p.result, log);
   p.publication.run(p.contact, p.surfaces, p.bodies, state, p.activity, p.result, log);
-  p.procedureStage.run(p.bodies, state, p.result, log);
   p.publication.reportRunaway(p.bodies, p.activity, p.contactResponse.diverged(), state, log);
 
   ++state.clock.step;
@@ -116,17 +109,8 @@ void Stepper::precompute() {
 const ContactSet& Stepper::contactSet(std::size_t hand) const { return p_->contactSets[hand]; }
 
 const StateDigest& Stepper::digest(const State& state) {
-  const Activity& a = p_->activity;
-  std::vector<bool> written(State::organsFrom, true);
-  const auto vessels = a.written.begin() + static_cast<std::ptrdiff_t>(p_->bodies.organs());
-  const auto fat = a.written.begin() + static_cast<std::ptrdiff_t>(p_->bodies.firstFat());
-  written.insert(written.end(), a.written.begin(), vessels);
-  written.insert(written.end(), a.frayed.begin(), a.frayed.end());
-  written.insert(written.end(), vessels, fat);
-  written.insert(written.end(), a.charred.begin(), a.charred.end());
-  written.insert(written.end(), fat, a.written.end());
-  written.insert(written.end(), a.carved.begin(), a.carved.end());
-  written.resize(written.size() + state.procedure.size(), true);
+  std::vector<bool> written(State::tissueFrom, true);
+  p_->activity.appendWritten(p_->bodies, written);
   const StateDigest& digest = p_->digest.update(state, written);
   assert(digest == digestOf(state));
   return digest;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// step(Model, State, samples) -> StepResult: ten stages, in the order of their headers' numbers.
+// step(Model, State, samples) -> StepResult: nine stages, in the order of their headers' numbers.
 #pragma once
 
 #include <memory>

@@ -12,13 +12,13 @@ Surfaces::Surfaces(const Model& model, Bodies& bodies, MakeBroadPhase make) : mo
     broad_.push_back(make != nullptr ? make() : std::make_unique<SortedGrid>(broadPhaseCell));
     const StructureModel& structure = model.structures()[s];
     switch (structure.kind) {
-      case StructureKind::organ:
+      case tissueId<OrganTissue>:
         skin_.push_back(std::make_unique<OrganSkin>(model, structure.index));
         break;
-      case StructureKind::vessel:
+      case tissueId<VesselTissue>:
         skin_.push_back(std::make_unique<TubeSkin>(model, structure.index, structure.branch));
         break;
-      case StructureKind::fat:
+      case tissueId<FatTissue>:
         skin_.push_back(std::make_unique<FatSkin>(bodies.fat(structure.index)));
         break;
     }

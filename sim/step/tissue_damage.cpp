@@ -11,22 +11,7 @@ namespace calot {
 namespace {
 
 /// EventKind::cutOpen's value: which sides are open.
-double openSides(const CutJudgement& cut) { return (cut.opensBefore ? 1.0 : 0.0) + (cut.opensAfter ? 2.0 : 0.0); }
-
-/// Clips that the scene's procedure wants beside a cut and that are not there.
-std::size_t missingClips(const Model& model, std::size_t structure, const CutJudgement& cut) {
-  const std::vector<ProcedureModel::Divide>& divide = model.procedure().divide;
-  std::size_t missing = 0;
-  for (std::size_t d = 0; d < divide.size(); ++d) {
-    if (divide[d].structure != structure) continue;
-    const DivideDescription& wanted = model.scene().procedure.divide[d];
-    const std::size_t patient = wanted.patientAtStart ? cut.before : cut.after;
-    const std::size_t specimen = wanted.patientAtStart ? cut.after : cut.before;
-    missing += wanted.patient - std::min<std::size_t>(patient, wanted.patient) + wanted.specimen -
-               std::min<std::size_t>(specimen, wanted.specimen);
-  }
-  return missing;
-}
+double openSides(const CutSides& cut) { return (cut.opensBefore ? 1.0 : 0.0) + (cut.opensAfter ? 2.0 : 0.0); }
 
 }  // namespace
 
@@ -43,7 +28,7 @@ void partVessel(const Model& model, std::size_t structure, const BeamPlace& wher
   const StructureModel& s = model.structures()[structure];
   const VesselTree& tree = model.vesselTrees()[s.index];
   BeamState& vessels = state.vessel[s.index];
-  const CutJudgement cut = judgeCut(tree.beams, vessels, where);
+  const CutSides cut = cutSides(tree.beams, vessels, where);
   const Vec3 place = centreLine(tree.beams, vessels, where).position;
   if (!part(vessels, where, kind == EventKind::vesselCut ? Parting::cut : Parting::burned)) return;
   activity.disturb(bodies, state, s.body);
@@ -51,8 +36,8 @@ void partVessel(const Model& model, std::size_t structure, const BeamPlace& wher
   log.emit(kind, hand, structure, place, where.place);
   if (openSides(cut) > 0.0) log.emit(EventKind::cutOpen, hand, structure, place, openSides(cut));
   if (kind == EventKind::vesselCut) {
-    const std::size_t missing = missingClips(model, structure, cut);
-    if (missing > 0) log.emit(EventKind::tooFewClips, hand, structure, place, static_cast<double>(missing));
+    log.emit(EventKind::clipsTowardsStart, hand, structure, place, static_cast<double>(cut.before));
+    log.emit(EventKind::clipsTowardsEnd, hand, structure, place, static_cast<double>(cut.after));
   }
   if (cut.throughClip) log.emit(EventKind::cutThroughClip, hand, structure, place, where.place);
 }
@@ -68,8 +53,8 @@ void reportTear(const Model& model, std::size_t tree, std::size_t element, State
   where.element = element;
   where.share = vessels.partedAt[element];
   where.place = branch.place[element - branch.firstElement] + where.share * torn.length;
-  vessels.parting[element] = Parting::none;  // judged as it was before
-  const CutJudgement cut = judgeCut(beams, vessels, where);
+  vessels.parting[element] = Parting::none;  // as it was before
+  const CutSides cut = cutSides(beams, vessels, where);
   vessels.parting[element] = Parting::torn;
   if (openSides(cut) > 0.0) {
     log.emit(EventKind::cutOpen, StepLog::noHand, model.organs().size() + vesselTree.vessel[where.branch],

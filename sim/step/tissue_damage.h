@@ -13,7 +13,7 @@ namespace calot {
 void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, double exposure, State& state,
                     Activity& activity, StepLog& log);
 
-/// Parts a vessel; reports it, what that leaves open, and clips that are missing beside a cut.
+/// Parts a vessel; reports it, what that leaves open, and the clips on either side of a cut.
 /// @param kind vesselCut or vesselBurned
 void partVessel(const Model& model, std::size_t structure, const BeamPlace& where, EventKind kind, std::size_t hand,
                 Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);

@@ -33,7 +33,7 @@ VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t
   double least = 1e300;
   for (std::size_t s = model_.organs().size(); s < model_.structures().size(); ++s) {
     const StructureModel& structure = model_.structures()[s];
-    if (structure.kind != StructureKind::vessel) continue;
+    if (structure.kind != tissueId<VesselTissue>) continue;
     const BeamModel& beams = model_.vesselTrees()[structure.index].beams;
     const BeamState& now = state.vessel[structure.index];
     const BeamModel::Branch& branch = beams.branches()[structure.branch];
@@ -110,7 +110,7 @@ void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& 
   attempt.depth = crossing.depth * crossing.sine;
   const Vec3 closing = crossing.frame.orientation.conjugate() * (h.simulatedOrientation * Vec3::UnitY());
   attempt.roll = arctangent2(closing[1], closing[0]);
-  const ClipJudgement seat = judgeClip(beams, vessels, attempt, {clip.leastGap, clip.leastJunctionGap});
+  const ClipSeat seat = clipSeat(beams, vessels, attempt);
   if (seat.missed) {
     drop();
     return;
@@ -121,12 +121,10 @@ void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& 
     log.emit(kind, hand, crossing.structure, crossing.frame.position, value);
   };
   report(EventKind::clipSet, seat.enclosed);
-  if (seat.halfOn) report(EventKind::clipHalfOn, seat.enclosed);
-  if (seat.onClip) report(EventKind::clipOnClip, -seat.clipGap);
-  if (seat.nearClip || seat.nearJunction || seat.onEdge) {
-    const double gap = std::min(seat.nearClip ? seat.clipGap : 1e300, seat.nearJunction ? seat.junctionGap : 1e300);
-    report(EventKind::clipTooNear, seat.onEdge ? 0.0 : gap);
-  }
+  report(EventKind::clipPlace, attempt.place.place);
+  if (seat.clip >= 0) report(EventKind::clipGap, seat.clipGap);
+  if (seat.junctionGap < ClipSeat::none) report(EventKind::clipJunctionGap, seat.junctionGap);
+  report(EventKind::clipEndGap, seat.endGap);
 }
 
 void VesselTools::closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity,

@@ -57,9 +57,8 @@ bool closes(const BeamState& state, std::size_t clip) {
   return state.clipClosure[clip] >= closedFrom && state.clipEnclosed[clip] >= enclosedFrom;
 }
 
-ClipJudgement judgeClip(const BeamModel& model, const BeamState& state, const ClipAttempt& attempt,
-                        const ClipRules& rules) {
-  ClipJudgement out;
+ClipSeat clipSeat(const BeamModel& model, const BeamState& state, const ClipAttempt& attempt) {
+  ClipSeat out;
   const std::size_t branch = attempt.place.branch;
   const BeamModel::Branch& b = model.branches()[branch];
   const double half = 0.5 * attempt.width;
@@ -69,10 +68,9 @@ ClipJudgement judgeClip(const BeamModel& model, const BeamState& state, const Cl
   const double between = std::min(attempt.depth + wide, attempt.legs) - std::max(attempt.depth - wide, 0.0);
   out.enclosed = std::clamp(between / (2.0 * wide), 0.0, 1.0);
   out.missed = !(out.enclosed > 0.0);
-  out.halfOn = !out.missed && out.enclosed < enclosedFrom;
 
   const Piece piece = pieceAround(model, state, branch, place);
-  out.onEdge = place - half < piece.from || place + half > piece.to;
+  out.endGap = std::min(place - half - piece.from, piece.to - (place + half));
   for (std::size_t c = 0; c < state.clips(); ++c) {
     const double other = state.clipPlace[c];
     if (state.clipBranch[c] != branch || other < piece.from || other > piece.to) continue;
@@ -85,9 +83,6 @@ ClipJudgement judgeClip(const BeamModel& model, const BeamState& state, const Cl
     if (junction < piece.from || junction > piece.to) continue;
     out.junctionGap = std::min(out.junctionGap, std::abs(junction - place) - half);
   }
-  out.onClip = out.clipGap < 0.0;
-  out.nearClip = !out.onClip && out.clipGap < rules.leastGap;
-  out.nearJunction = out.junctionGap < rules.leastJunctionGap;
   return out;
 }
 
@@ -144,8 +139,8 @@ PinchedSection pinchedSection(const TubeSection& section, double amount) {
   return {r + amount * (flat - r), r * (1.0 + amount * (0.5 * std::numbers::pi - 1.0))};
 }
 
-CutJudgement judgeCut(const BeamModel& model, const BeamState& state, const BeamPlace& cut) {
-  CutJudgement out;
+CutSides cutSides(const BeamModel& model, const BeamState& state, const BeamPlace& cut) {
+  CutSides out;
   const Piece piece = pieceAround(model, state, cut.branch, cut.place);
   double from = piece.from;
   double to = piece.to;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clips on vessels, and the geometry by which setting a clip and cutting a vessel are judged. Nothing here refuses:
-// whatever a hand can do can be done; the answers say what it was, and events are the caller's.
+// Clips on vessels: how one sits, and what a cut opens. Nothing here refuses: whatever a hand can do can be done; the
+// results describe it, and events are the caller's.
 //
-// Distances are arc lengths at rest along one branch, so pulling on a vessel changes no judgement. Clips on another
+// Distances are arc lengths at rest along one branch, so pulling on a vessel changes none of it. Clips on another
 // branch are not looked for.
 #pragma once
 
@@ -22,30 +22,22 @@ struct ClipAttempt {
   double closure = 1.0;  ///< 0 open to 1 closed
 };
 
-/// Scene data: from how near on is too near (m).
-struct ClipRules {
-  double leastGap = 0.0;          ///< between the edges of two clips
-  double leastJunctionGap = 0.0;  ///< between a clip's edge and a place where vessels meet
+/// How a clip would sit. Facts: what is wrong with it is judged elsewhere.
+struct ClipSeat {
+  static constexpr double none = 1e300;
+
+  double enclosed = 0.0;      ///< share of the flattened section (its width is pi r) between the legs, 0 to 1
+  bool missed = false;        ///< nothing between the legs
+  int clip = -1;              ///< nearest clip on the same piece; -1: none
+  double clipGap = none;      ///< to its edge, negative where they overlap (m)
+  double junctionGap = none;  ///< to the nearest junction on the same piece, negative across it (m)
+  double endGap = none;       ///< to the nearest end of the piece, parted or not, negative beyond it (m)
 };
 
-struct ClipJudgement {
-  double enclosed = 0.0;       ///< share of the flattened section (its width is pi r) between the legs, 0 to 1
-  bool missed = false;         ///< nothing between the legs
-  bool halfOn = false;         ///< something, but not all
-  bool onClip = false;         ///< overlaps a clip
-  bool nearClip = false;       ///< does not, but is nearer to one than the rules want
-  bool nearJunction = false;   ///< nearer to a junction than the rules want, or across it
-  bool onEdge = false;         ///< reaches beyond the edge of a parted or an ending vessel
-  int clip = -1;               ///< nearest clip on the same piece; -1: none
-  double clipGap = 1e300;      ///< to its edge, negative where they overlap (m)
-  double junctionGap = 1e300;  ///< to the nearest junction, negative across it (m)
-};
-
-ClipJudgement judgeClip(const BeamModel& model, const BeamState& state, const ClipAttempt& attempt,
-                        const ClipRules& rules);
+ClipSeat clipSeat(const BeamModel& model, const BeamState& state, const ClipAttempt& attempt);
 
 /// Sets a clip: it pinches the tube and, over its width, lets it neither stretch nor bend (fifty times as stiff,
-/// without force in the shape that the vessel has now). Its own mass is left out. @param enclosed of judgeClip(), above
+/// without force in the shape that the vessel has now). Its own mass is left out. @param enclosed of clipSeat(), above
 /// 0
 void setClip(const BeamModel& model, BeamState& state, const ClipAttempt& attempt, double enclosed);
 
@@ -70,7 +62,7 @@ struct PinchedSection {
 PinchedSection pinchedSection(const TubeSection& section, double amount);
 
 /// What a cut opens and between which clips it lies. "Before" is towards the branch's start, "after" towards its end.
-struct CutJudgement {
+struct CutSides {
   int clipBefore = -1;  ///< nearest closing clip on the same piece; -1: none
   int clipAfter = -1;
   std::size_t before = 0;  ///< closing clips between the cut and the next parting, junction or end
@@ -82,8 +74,8 @@ struct CutJudgement {
   bool opensAfter = false;
 };
 
-/// Judge before part(): the cut's own place must still be whole.
-CutJudgement judgeCut(const BeamModel& model, const BeamState& state, const BeamPlace& cut);
+/// To be asked before part(): the cut's own place must still be whole.
+CutSides cutSides(const BeamModel& model, const BeamState& state, const BeamPlace& cut);
 
 /// Is the lumen open from one place of a branch to another: no closing clip and no parting between?
 bool lumenOpen(const BeamModel& model, const BeamState& state, std::size_t branch, double from, double to);

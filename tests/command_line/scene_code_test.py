@@ -9,12 +9,12 @@ import sys
 
 import program
 
-# Classes and functions that only such a part of a scene needs.
+# Functions of what only such a part of a scene needs; as a template's argument (of std::variant, say) a class does not count.
 PARTS = {
-    "fat": r"calot::(?:FatBody|FatMotion|FatModel|CarvedField|CarvedSurface|CarvedContact|CubeMotion|Islands|"
+    "fat": r"fn=\(\d+\) calot::(?:FatBody|FatMotion|FatModel|CarvedField|CarvedSurface|CarvedContact|CubeMotion|Islands|"
     r"AdaptiveSurface|HexahedralElements|closestPointTransform)\b",
-    "vessels": r"calot::(?:BeamModel|BeamSolver|BlockTree|TubeSurface|TubeSkin|VesselBody|TieCoupling)\b",
-    "connective": r"calot::(?:ConnectiveBed|ConnectiveTissue)\b",
+    "vessels": r"fn=\(\d+\) calot::(?:BeamModel|BeamSolver|BlockTree|TubeSurface|TubeSkin|VesselBody|TieCoupling)\b",
+    "connective": r"fn=\(\d+\) calot::(?:ConnectiveBed|ConnectiveTissue)\b",
 }
 
 

@@ -45,7 +45,7 @@ class Liar final : public Observer {
         ticks[4].hand[1].force[2] += 1e-9;
         break;
       case About::digest:
-        digest.component[State::organsFrom] ^= 1U;
+        digest.component[State::tissueFrom] ^= 1U;
         digest.field[placeOf("organ.liver/position")] ^= 1U;
         break;
       case About::volume:

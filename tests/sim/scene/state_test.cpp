@@ -110,7 +110,7 @@ TEST_F(StateTest, IncrementalDigestHashesWhatIsMarked) {
   state.organ[1].position[3][1] += 1e-9;
   EXPECT_EQ(incremental.update(state, none), first) << "nothing marked, nothing hashed";
   std::vector<bool> ball = none;
-  ball[State::organsFrom + 1] = true;
+  ball[State::tissueFrom + 1] = true;
   EXPECT_EQ(incremental.update(state, ball), digestOf(state));
   state.hand[0].jaw += 0.1;
   incremental.reset();

@@ -148,7 +148,7 @@ TEST_F(StepperTest, FlushToZeroOfTheHostChangesNothing) {
 TEST_F(StepperTest, AnUntouchedOrganSleepsBitForBit) {
   test::Rig rig(*model_);
   const SolidState before = rig.state.organ[1];
-  const std::size_t component = State::organsFrom + 1;
+  const std::size_t component = State::tissueFrom + 1;
   const std::uint64_t digest = digestOf(rig.state).component[component];
   for (int i = 0; i < runLength; ++i) {
     const test::TipPair tips = test::contactRun(i);

@@ -6,7 +6,10 @@
 #include <utility>
 
 #include "sim/math/elementary.h"
-#include "sim/scene/scene_view_parts.h"
+#include "sim/scene/model.h"
+#include "sim/scene/scene_view.h"
+#include "sim/scene/state.h"
+#include "sim/tissue/tissue_viewer.h"
 #include "sim/vessel/centre_line.h"
 #include "sim/vessel/clips.h"
 #include "sim/vessel/tube_surface.h"
@@ -147,16 +150,35 @@ std::vector<bool> openFaces(const BeamModel& beams, const BeamState& vessels, st
     whole.parting[e] = Parting::none;
     const double share = vessels.partedAt[e];
     const double place = branch.place[element] + share * (branch.place[element + 1] - branch.place[element]);
-    const CutJudgement judged = judgeCut(beams, whole, {which, e, share, place});
+    const CutSides judged = cutSides(beams, whole, {which, e, share, place});
     open.push_back(judged.opensBefore);
     open.push_back(judged.opensAfter);
   }
   return open;
 }
 
-}  // namespace
+/// One vessel from view to view.
+class VesselView {
+ public:
+  /// @param structure of `model`, a vessel; both outlive this
+  VesselView(const Model& model, const StructureModel& structure);
 
-VesselViewer::VesselViewer(const Model& model, const StructureModel& structure)
+  /// Fills in all but name and appearance; places alone are worked out where nothing was parted since the last call.
+  void fill(const State& state, SurfaceView& surface);
+  [[nodiscard]] const StructureModel& structure() const { return structure_; }
+
+ private:
+  void layRest(const BeamState& vessels);
+  void addChar(const BeamState& vessels, SurfaceView& surface) const;
+
+  const Model& model_;
+  const StructureModel& structure_;
+  const VesselTree& tree_;
+  TubeSurface tube_;
+  std::vector<Vec3> rest_;  ///< of the tube, with its partings
+};
+
+VesselView::VesselView(const Model& model, const StructureModel& structure)
     : model_(model),
       structure_(structure),
       tree_(model.vesselTrees()[structure.index]),
@@ -164,14 +186,14 @@ VesselViewer::VesselViewer(const Model& model, const StructureModel& structure)
   layRest(restState(tree_.beams));
 }
 
-void VesselViewer::layRest(const BeamState& vessels) {
+void VesselView::layRest(const BeamState& vessels) {
   BeamState rest = restState(tree_.beams);
   rest.parting = vessels.parting;
   rest.partedAt = vessels.partedAt;
   tube_.place(rest, rest_);
 }
 
-void VesselViewer::addChar(const BeamState& vessels, SurfaceView& surface) const {
+void VesselView::addChar(const BeamState& vessels, SurfaceView& surface) const {
   const double through = model_.scene().vessels[tree_.vessel[structure_.branch]].burnThrough;
   for (std::size_t v = 0; v < tube_.vertices(); ++v) {
     const BeamPlace where = tube_.where(static_cast<int>(v));
@@ -179,7 +201,7 @@ void VesselViewer::addChar(const BeamState& vessels, SurfaceView& surface) const
   }
 }
 
-void VesselViewer::fill(const State& state, SurfaceView& surface) {
+void VesselView::fill(const State& state, SurfaceView& surface) {
   const BeamState& vessels = state.vessel[structure_.index];
   if (tube_.update(vessels)) layRest(vessels);
   tube_.place(vessels, surface.position);
@@ -216,6 +238,35 @@ void addClips(const Model& model, const State& state, SceneView& view) {
       view.clip.push_back(clip);
     }
   }
+}
+
+class VesselViewer final : public TissueViewer {
+ public:
+  explicit VesselViewer(const Model& model) : model_(model) {
+    for (const StructureModel& structure : model.structures()) {
+      if (structure.kind == tissueId<VesselTissue>) vessel_.emplace_back(model, structure);
+    }
+  }
+
+  void addTo(SceneView& view, const State& state) override {
+    for (VesselView& vessel : vessel_) {
+      SurfaceView& surface = view.surface.emplace_back();
+      surface.organ = vessel.structure().name;
+      surface.appearance = vessel.structure().appearance;
+      vessel.fill(state, surface);
+    }
+    addClips(model_, state, view);
+  }
+
+ private:
+  const Model& model_;
+  std::vector<VesselView> vessel_;
+};
+
+}  // namespace
+
+std::unique_ptr<TissueViewer> VesselTissue::makeViewer(const Model& model) {
+  return std::make_unique<VesselViewer>(model);
 }
 
 }  // namespace calot

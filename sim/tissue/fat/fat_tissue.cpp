@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The part of a Model that is built from fat: its field and cubes, and what ties it to organs and vessels.
+#include "sim/tissue/fat/fat_tissue.h"
+
 #include <algorithm>
 #include <limits>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "sim/geometry/closest_point.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/scene/model.h"
+#include "sim/scene/state.h"
 
 namespace calot {
 
@@ -39,10 +38,10 @@ bool isOverTriangle(const std::array<Vec3, 3>& corner, double depth, const Vec3&
   return true;
 }
 
-}  // namespace
-
-/// @return what is wrong with it, or nothing
-std::string Model::addFat(const SceneDescription& scene, const FatDescription& description) {
+/// A field and its cubes, and what ties them to organs and vessels. @return what is wrong with it, or nothing
+std::string addFat(const SceneDescription& scene, const FatDescription& description, Model& model) {
+  const std::vector<OrganModel>& organs = model.organs();
+  const std::vector<VesselTree>& trees = model.vesselTrees();
   const std::string what = "fat '" + description.name + "': ";
   std::vector<std::unique_ptr<SurfaceDistance>> surfaces;
   std::vector<FatPartner> partners;
@@ -56,18 +55,18 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
     FatPartner partner{attachment.to, {}, attachment.distance, attachment.stiffness, attachment.damping};
     Partner& to = known.emplace_back();
     bool found = false;
-    for (std::size_t o = 0; o < organs_.size() && !found; ++o) {
-      if (organs_[o].name != attachment.to) continue;
+    for (std::size_t o = 0; o < organs.size() && !found; ++o) {
+      if (organs[o].name != attachment.to) continue;
       const SurfaceDescription& surface = scene.organs[o].surface;
-      surfaces.push_back(std::make_unique<SurfaceDistance>(TriangleMesh{surface.vertex, surface.triangle}));
+      surfaces.push_back(std::make_unique<SurfaceDistance>(surface.mesh()));
       partner.distance = [distance = surfaces.back().get()](const Vec3& p) { return distance->signedDistance(p); };
       to = {false, o, 0};
       found = true;
     }
-    for (std::size_t t = 0; t < vesselTree_.size() && !found; ++t) {
-      for (std::size_t b = 0; b < vesselTree_[t].vessel.size() && !found; ++b) {
-        if (scene.vessels[vesselTree_[t].vessel[b]].name != attachment.to) continue;
-        partner.distance = [beams = &vesselTree_[t].beams, b](const Vec3& p) { return distanceFrom(*beams, b, p); };
+    for (std::size_t t = 0; t < trees.size() && !found; ++t) {
+      for (std::size_t b = 0; b < trees[t].vessel.size() && !found; ++b) {
+        if (scene.vessels[trees[t].vessel[b]].name != attachment.to) continue;
+        partner.distance = [beams = &trees[t].beams, b](const Vec3& p) { return distanceFrom(*beams, b, p); };
         to = {true, t, b};
         found = true;
       }
@@ -85,7 +84,7 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
   constexpr double coverDepth = 0.0015;  // m
   for (const DivideDescription& divide : scene.procedure.divide) {
     if (scene.procedure.fat != description.name) break;
-    for (const VesselTree& tree : vesselTree_) {
+    for (const VesselTree& tree : trees) {
       for (std::size_t b = 0; b < tree.vessel.size(); ++b) {
         if (scene.vessels[tree.vessel[b]].name != divide.vessel) continue;
         regions.push_back({divide.vessel, [beams = &tree.beams, b](const Vec3& p) {
@@ -94,32 +93,30 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
       }
     }
   }
-  const MaterialDescription& m = description.material;
   FatSettings settings;
   settings.cell = description.cellSize;
   settings.cellsPerCube = static_cast<int>(description.cellsPerCube);
-  settings.material = {lameConstants(m.youngModulus, m.poissonRatio), m.density, m.massDamping, m.stiffnessDamping};
+  settings.material = solidMaterial(description.material);
   std::string error;
-  std::unique_ptr<const FatModel> fat =
-      FatModel::make({description.surface.vertex, description.surface.triangle}, settings, partners, regions, error);
+  std::unique_ptr<const FatModel> fat = FatModel::make(description.surface.mesh(), settings, partners, regions, error);
   if (fat == nullptr) return what + error;
-  const std::size_t body = organs_.size() + vesselTree_.size() + fat_.size();
+  const std::size_t body = model.bodies();
   for (std::size_t p = 0; p < known.size(); ++p) {
     const std::span<const FatTie> ties = fat->ties(p);
     std::vector<Vec3> points;
     points.reserve(ties.size());
     for (const FatTie& tie : ties) points.push_back(tie.rest);
     std::vector<SolidPlace> places;
-    if (!known[p].vessel && !points.empty()) places = placesOnOrgan(known[p].index, points);
+    if (!known[p].vessel && !points.empty()) places = placesOnOrgan(organs[known[p].index], points);
     for (std::size_t i = 0; i < ties.size(); ++i) {
       Tie tie;
       tie.place[1] = ties[i].place;
       tie.stiffness = ties[i].stiffness;
       tie.damping = ties[i].damping;
-      tie.fat = fat_.size();
+      tie.fat = model.fat().size();
       tie.fatTie = fat->firstTie(p) + i;
       if (known[p].vessel) {
-        const BeamModel& beams = vesselTree_[known[p].index].beams;
+        const BeamModel& beams = trees[known[p].index].beams;
         const std::vector<int>& nodes = beams.branches()[known[p].branch].node;
         const auto away = [&](int n) {
           return (beams.rest()[static_cast<std::size_t>(n)] - ties[i].rest).squaredNorm();
@@ -127,7 +124,7 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
         const int nearest =
             *std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) { return away(a) < away(b); });
         const auto n = static_cast<std::size_t>(nearest);
-        tie.body = {organs_.size() + known[p].index, body};
+        tie.body = {organs.size() + known[p].index, body};
         tie.place[0].node[0] = nearest;
         tie.place[0].weight[0] = 1.0;
         tie.place[0].count = 1;
@@ -136,11 +133,48 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
         tie.body = {known[p].index, body};
         tie.place[0] = places[i];
       }
-      tie_.push_back(tie);
+      model.addTie(tie);
     }
   }
-  fat_.push_back(std::move(fat));
+  model.fatModel.push_back(std::move(fat));
   return {};
 }
+
+}  // namespace
+
+std::string FatTissue::build(const SceneDescription& scene, Model& model) {
+  for (const FatDescription& description : scene.fat) {
+    if (std::string fault = addFat(scene, description, model); !fault.empty()) return fault;
+  }
+  return {};
+}
+
+void FatTissue::listStructures(const Model& model, TissueId kind, std::size_t firstBody,
+                               std::vector<StructureModel>& structures) {
+  for (std::size_t f = 0; f < model.fat().size(); ++f) {
+    const FatDescription& d = model.scene().fat[f];
+    structures.push_back({d.name, d.appearance, kind, f, 0, firstBody + f, d.friction});
+  }
+}
+
+const std::string& FatTissue::nameOf(const Model& model, std::size_t index) { return model.scene().fat[index].name; }
+
+void FatTissue::resize(const Model& model, States& states) { states.fat.resize(model.fat().size()); }
+
+void FatTissue::start(const Model& model, States& states) {
+  for (const std::unique_ptr<const FatModel>& fat : model.fat()) {
+    states.fat.push_back(restState(*fat));
+    if (!model.scene().gravity.isZero(0.0)) states.fat.back().solid.quietSteps = 0;
+  }
+}
+
+bool FatTissue::fits(const Model& model, const States& states) {
+  for (std::size_t f = 0; f < states.fat.size(); ++f) {
+    if (!calot::fits(*model.fat()[f], states.fat[f])) return false;
+  }
+  return true;
+}
+
+void FatTissue::resize(const Model& model, Results& results) { results.fat.resize(model.fat().size()); }
 
 }  // namespace calot

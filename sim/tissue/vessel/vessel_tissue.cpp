@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The part of a Model that is built from vessels: trees of beams, and what ties their ends to organs.
+#include "sim/tissue/vessel/vessel_tissue.h"
+
 #include <algorithm>
-#include <string>
-#include <vector>
 
 #include "sim/scene/model.h"
+#include "sim/scene/state.h"
+#include "sim/vessel/centre_line.h"
 
 namespace calot {
 
@@ -31,21 +32,8 @@ SolidPlace placeOnNode(int node) {
 
 }  // namespace
 
-std::vector<SolidPlace> Model::placesOnOrgan(std::size_t organ, const std::vector<Vec3>& points) const {
-  const SolidModel& solid = organs_[organ].solid;
-  const Embedding embedding(points, {solid.rest(), solid.tetrahedra()});
-  std::vector<SolidPlace> places;
-  for (const Embedding::Anchor& anchor : embedding.anchors()) {
-    SolidPlace& place = places.emplace_back();
-    place.count = anchor.node.size();
-    std::copy(anchor.node.begin(), anchor.node.end(), place.node.begin());
-    std::copy(anchor.weight.begin(), anchor.weight.end(), place.weight.begin());
-  }
-  return places;
-}
-
-/// @return what is wrong with them, or nothing
-std::string Model::addVessels(const SceneDescription& scene) {
+std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
+  const std::vector<OrganModel>& organs = model.organs();
   struct Home {
     std::size_t tree = 0, branch = 0;
   };
@@ -83,17 +71,17 @@ std::string Model::addVessels(const SceneDescription& scene) {
     if (!fault.empty()) return what + fault;
   }
   for (std::size_t t = 0; t < branches.size(); ++t) {
-    vesselTree_.push_back({scene.vessels[vessel[t][0]].name, BeamModel(branches[t]), vessel[t]});
+    model.vesselTree.push_back({scene.vessels[vessel[t][0]].name, BeamModel(branches[t]), vessel[t]});
   }
   for (std::size_t v = 0; v < scene.vessels.size(); ++v) {
-    const BeamModel& beams = vesselTree_[home[v].tree].beams;
+    const BeamModel& beams = model.vesselTree[home[v].tree].beams;
     const BeamModel::Branch& branch = beams.branches()[home[v].branch];
     for (const bool atEnd : {false, true}) {
       const VesselEndDescription& end = atEnd ? scene.vessels[v].end : scene.vessels[v].start;
       if (end.kind != VesselEndDescription::Kind::organ) continue;
       std::size_t organ = 0;
-      while (organ < organs_.size() && organs_[organ].name != end.to) ++organ;
-      if (organ == organs_.size()) {
+      while (organ < organs.size() && organs[organ].name != end.to) ++organ;
+      if (organ == organs.size()) {
         return "vessel '" + scene.vessels[v].name + "': is grown to '" + end.to + "', which is no organ of the scene";
       }
       std::vector<int> grown;
@@ -104,45 +92,53 @@ std::string Model::addVessels(const SceneDescription& scene) {
       std::vector<Vec3> points;
       points.reserve(grown.size());
       for (const int node : grown) points.push_back(beams.rest()[static_cast<std::size_t>(node)]);
-      const std::vector<SolidPlace> places = placesOnOrgan(organ, points);
+      const std::vector<SolidPlace> places = placesOnOrgan(organs[organ], points);
       for (std::size_t i = 0; i < grown.size(); ++i) {
         Tie tie;
-        tie.body = {organ, organs_.size() + home[v].tree};
+        tie.body = {organ, organs.size() + home[v].tree};
         tie.place = {places[i], placeOnNode(grown[i])};
         tie.stiffness = end.stiffness / static_cast<double>(grown.size());
         tie.damping = end.damping / static_cast<double>(grown.size());
-        tie_.push_back(tie);
+        model.addTie(tie);
       }
     }
   }
   return {};
 }
 
-void Model::listStructures(const SceneDescription& scene) {
-  for (std::size_t o = 0; o < organs_.size(); ++o) {
-    const OrganDescription& d = scene.organs[o];
-    structure_.push_back({d.name, d.appearance, StructureKind::organ, o, 0, o, d.friction});
-  }
-  structure_.resize(organs_.size() + scene.vessels.size());
-  for (std::size_t f = 0; f < scene.fat.size(); ++f) {
-    const FatDescription& d = scene.fat[f];
-    structure_.push_back(
-        {d.name, d.appearance, StructureKind::fat, f, 0, organs_.size() + vesselTree_.size() + f, d.friction});
-  }
-  for (std::size_t t = 0; t < vesselTree_.size(); ++t) {
-    for (std::size_t b = 0; b < vesselTree_[t].vessel.size(); ++b) {
-      const std::size_t v = vesselTree_[t].vessel[b];
-      const VesselDescription& d = scene.vessels[v];
-      structure_[organs_.size() + v] = {d.name,    d.appearance, StructureKind::vessel, t, b, organs_.size() + t,
-                                        d.friction};
+void VesselTissue::listStructures(const Model& model, TissueId kind, std::size_t firstBody,
+                                  std::vector<StructureModel>& structures) {
+  const std::size_t first = structures.size();
+  structures.resize(first + model.scene().vessels.size());
+  for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
+    const VesselTree& tree = model.vesselTrees()[t];
+    for (std::size_t b = 0; b < tree.vessel.size(); ++b) {
+      const VesselDescription& d = model.scene().vessels[tree.vessel[b]];
+      structures[first + tree.vessel[b]] = {d.name, d.appearance, kind, t, b, firstBody + t, d.friction};
     }
   }
 }
 
-std::size_t Model::structureNamed(const std::string& name) const {
-  std::size_t s = 0;
-  while (s < structure_.size() && structure_[s].name != name) ++s;
-  return s;
+const std::string& VesselTissue::nameOf(const Model& model, std::size_t index) {
+  return model.vesselTrees()[index].name;
 }
+
+void VesselTissue::resize(const Model& model, States& states) { states.vessel.resize(model.vesselTrees().size()); }
+
+void VesselTissue::start(const Model& model, States& states) {
+  for (const VesselTree& tree : model.vesselTrees()) {
+    states.vessel.push_back(restState(tree.beams));
+    if (!model.scene().gravity.isZero(0.0)) states.vessel.back().quietSteps = 0;
+  }
+}
+
+bool VesselTissue::fits(const Model& model, const States& states) {
+  for (std::size_t t = 0; t < states.vessel.size(); ++t) {
+    if (!calot::fits(model.vesselTrees()[t].beams, states.vessel[t])) return false;
+  }
+  return true;
+}
+
+void VesselTissue::resize(const Model& model, Results& results) { results.vessel.resize(model.scene().vessels.size()); }
 
 }  // namespace calot

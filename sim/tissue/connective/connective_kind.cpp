@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/tissue/connective/connective_kind.h"
+
+#include <utility>
+
+#include "sim/connective/connective_bed.h"
+#include "sim/scene/model.h"
+#include "sim/scene/scene_view.h"
+#include "sim/scene/state.h"
+#include "sim/tissue/tissue_viewer.h"
+
+namespace calot {
+
+namespace {
+
+/// @return what is wrong with it, or nothing
+std::string addConnective(const SceneDescription& scene, const ConnectiveDescription& description, Model& model) {
+  const std::vector<OrganModel>& organs = model.organs();
+  const auto index = [&](const std::string& name) {
+    std::size_t o = 0;
+    while (o < organs.size() && organs[o].name != name) ++o;
+    return o;
+  };
+  const std::string what = "connective tissue '" + description.name + "': ";
+  const std::size_t a = index(description.first);
+  const std::size_t b = index(description.second);
+  for (const auto& [organ, name] : {std::pair{a, description.first}, std::pair{b, description.second}}) {
+    if (organ == organs.size()) return what + "the scene has no organ '" + name + "'";
+  }
+  if (a == b) return what + "joins organ '" + description.first + "' to itself";
+  const auto meshOf = [&](std::size_t o) {
+    return TetrahedralMesh{organs[o].solid.rest(), organs[o].solid.tetrahedra()};
+  };
+  const TriangleMesh skinA = scene.organs[a].surface.mesh();
+  const TriangleMesh skinB = scene.organs[b].surface.mesh();
+  const TetrahedralMesh meshA = meshOf(a);
+  const TetrahedralMesh meshB = meshOf(b);
+  ConnectiveBed bed = makeBed({skinA, meshA}, {skinB, meshB}, description.reach, description.strands);
+  if (!bed.ok()) return what + bed.error;
+  ConnectiveMaterial material;
+  material.stiffness = description.stiffness;
+  material.damping = description.damping;
+  material.strength = description.strength;
+  material.fadeTime = description.fadeTime;
+  model.connectiveModel.push_back(
+      {description.name, a, b, ConnectiveTissue(std::move(bed.strands), std::move(bed.sheets), material), {}});
+  return {};
+}
+
+class ConnectiveViewer final : public TissueViewer {
+ public:
+  explicit ConnectiveViewer(const Model& model) : model_(model) {}
+
+  void addTo(SceneView& view, const State& state) override {
+    for (std::size_t c = 0; c < model_.connective().size(); ++c) {
+      const ConnectiveModel& tie = model_.connective()[c];
+      const ConnectiveState& tissue = state.connective[c];
+      ConnectiveView& connective = view.connective.emplace_back();
+      connective.name = tie.name;
+      connective.condition = tissue.condition;
+      connective.sheet = tie.tissue.sheets();
+      for (const Strand& strand : tie.tissue.strands()) {
+        connective.strand.push_back(
+            {strand.a.of(state.organ[tie.a].position), strand.b.of(state.organ[tie.b].position)});
+      }
+      for (const double alpha : tissue.alpha) connective.alpha.push_back(static_cast<float>(alpha));
+    }
+  }
+
+ private:
+  const Model& model_;
+};
+
+}  // namespace
+
+std::string ConnectiveKind::build(const SceneDescription& scene, Model& model) {
+  for (const ConnectiveDescription& description : scene.connective) {
+    if (std::string fault = addConnective(scene, description, model); !fault.empty()) return fault;
+  }
+  return {};
+}
+
+const std::string& ConnectiveKind::nameOf(const Model& model, std::size_t index) {
+  return model.connective()[index].name;
+}
+
+void ConnectiveKind::resize(const Model& model, States& states) { states.connective.resize(model.connective().size()); }
+
+void ConnectiveKind::start(const Model& model, States& states) {
+  for (const ConnectiveModel& connective : model.connective())
+    states.connective.push_back(intactState(connective.tissue));
+}
+
+bool ConnectiveKind::fits(const Model& model, const States& states) {
+  for (std::size_t c = 0; c < states.connective.size(); ++c) {
+    const ConnectiveState& connective = states.connective[c];
+    const std::size_t strands = model.connective()[c].tissue.strands().size();
+    if (connective.condition.size() != strands || connective.alpha.size() != strands) return false;
+    for (std::size_t s = 0; s < strands; ++s) {
+      if (connective.condition[s] > StrandCondition::torn) return false;
+      if (!(connective.alpha[s] >= 0.0) || connective.alpha[s] > 1.0) return false;
+    }
+  }
+  return true;
+}
+
+void ConnectiveKind::resize(const Model& model, Results& results) {
+  results.connective.resize(model.connective().size());
+}
+
+std::unique_ptr<TissueViewer> ConnectiveKind::makeViewer(const Model& model) {
+  return std::make_unique<ConnectiveViewer>(model);
+}
+
+}  // namespace calot

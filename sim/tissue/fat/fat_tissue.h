@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fat: a potential field that the energised hook carves, on coarse cubes (sim/fat).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/fat/fat_model.h"
+#include "sim/fat/fat_state.h"
+#include "sim/tissue/material.h"
+#include "sim/tissue/result_field.h"
+#include "sim/tissue/structure.h"
+
+namespace calot {
+
+/// How fat hangs on an organ or a vessel: springs over what of it is no farther than `distance`.
+struct FatAttachmentDescription {
+  std::string to;           ///< name of an organ or a vessel
+  double distance = 0.002;  ///< from its rest surface (m)
+  double stiffness = 2e6;   ///< of a unit volume of fat that hangs on it (N/m^4)
+  double damping = 2e4;     ///< (N s/m^4)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("to", self.to);
+    visit("distance", self.distance);
+    visit("stiffness", self.stiffness);
+    visit("damping", self.damping);
+  }
+};
+
+/// Fat that the energised hook carves: a potential field over coarse cubes (sim/carving, sim/solid).
+struct FatDescription {
+  std::string name;
+  std::string appearance;
+  SurfaceDescription surface;
+  double cellSize = 0.00075;       ///< of the potential field (m)
+  std::uint32_t cellsPerCube = 3;  ///< edge of a mechanical cube in cells
+  MaterialDescription material{1000.0, 0.4, 920.0, 2.0, 0.01};
+  double friction = 0.1;  ///< Coulomb coefficient of an instrument on it
+  std::vector<FatAttachmentDescription> attachments;
+  /// What is to be cleared, at rest: what lies over or under this triangle (m), no farther from its plane than
+  std::array<Vec3, 3> triangle{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  double triangleDepth = 0.0;  ///< m; 0: nothing
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name);
+    visit("appearance", self.appearance);
+    visit("surface", self.surface);
+    visit("cellSize", self.cellSize);
+    visit("cellsPerCube", self.cellsPerCube);
+    visit("material", self.material);
+    visit("friction", self.friction);
+    visit("attachments", self.attachments);
+    visit("triangle", self.triangle);
+    visit("triangleDepth", self.triangleDepth);
+  }
+};
+
+/// One body of fat at the end of a step.
+struct FatResult {
+  double volume = 0.0;
+  double toClear = 0.0;
+  double carved = 0.0;
+  double islands = 0.0;
+  double largestDisplacement = 0.0;
+  double largestSpeed = 0.0;
+  double residual = 0.0;
+  std::uint32_t iterations = 0;
+  bool asleep = false;
+  double uncleared = 0.0;
+
+  template <class Visit>
+  static void fields(Visit&& visit) {
+    visit(ResultField{"volume", "m^3", "", 3, "that is left, in the reference configuration"}, &FatResult::volume);
+    visit(ResultField{"to_clear", "m^3", "", 3, "the part of it inside the region that is to be cleared"},
+          &FatResult::toClear);
+    visit(ResultField{"carved", "m^3", "", 3, "that the hook took in this step"}, &FatResult::carved);
+    visit(ResultField{"islands", "m^3", "", 3, "that came loose by that and left"}, &FatResult::islands);
+    visit(ResultField{"largest_displacement", "m", "", 3, "over its nodes, from the reference configuration"},
+          &FatResult::largestDisplacement);
+    visit(ResultField{"largest_speed", "m/s", "", 3, "over its nodes"}, &FatResult::largestSpeed);
+    visit(ResultField{"residual", "1", "", 3, "relative residual of the linear solve; 0 asleep"}, &FatResult::residual);
+    visit(ResultField{"iterations", "", "", 3, "of the linear solve; 0 asleep"}, &FatResult::iterations);
+    visit(ResultField{"asleep", "", "", 3, "1: untouched and idle, not solved in this step"}, &FatResult::asleep);
+    visit(ResultField{"uncleared", "1", "", 4,
+                      "to_clear as a share of what was there before anything was carved; 0 without such a region"},
+          &FatResult::uncleared);
+  }
+};
+
+class Model;
+struct SceneDescription;
+struct SceneView;
+struct State;
+class TissueViewer;
+
+/// What the core knows of fat; see sim/tissue/tissues.h for what each member is for.
+struct FatTissue {
+  using Result = FatResult;
+  static constexpr const char* componentPrefix = "fat.";
+  static constexpr bool hasStructures = true;
+  static constexpr ResultGroup results{"/observables/fat", 3, "one column a body of fat, in the order of `/scene/fat`"};
+
+  /// Region of a FatModel that is to be cleared, where its description marks one.
+  static constexpr std::size_t regionToClear = 0;
+
+  struct Descriptions {
+    std::vector<FatDescription> fat;
+
+    template <class Self, class Visitor>
+    static void fields(Self& self, Visitor& visit) {
+      visit("fat", self.fat);
+    }
+  };
+  struct Models {
+    std::vector<std::unique_ptr<const FatModel>> fatModel;
+
+    [[nodiscard]] const std::vector<std::unique_ptr<const FatModel>>& fat() const { return fatModel; }
+  };
+  struct States {
+    std::vector<FatState> fat;
+  };
+  struct Results {
+    std::vector<FatResult> fat;
+  };
+  struct Names {
+    std::vector<std::string> fat;
+  };
+
+  template <class Self, class Visit>
+  static void components(Self& self, Visit&& visit) {
+    for (std::size_t f = 0; f < self.fat.size(); ++f) visit("fat.", f, self.fat[f].solid);
+    for (std::size_t f = 0; f < self.fat.size(); ++f) visit("carved.", f, self.fat[f].carved);
+  }
+  static auto& resultsOf(auto& results) { return results.fat; }
+  static auto& namesOf(auto& names) { return names.fat; }
+
+  static std::string build(const SceneDescription& scene, Model& model);
+  static void listStructures(const Model& model, TissueId kind, std::size_t firstBody,
+                             std::vector<StructureModel>& structures);
+  static std::size_t bodies(const Models& models) { return models.fat().size(); }
+  static const std::string& nameOf(const Model& model, std::size_t index);
+  static void resize(const Model& model, States& states);
+  static void start(const Model& model, States& states);
+  static bool fits(const Model& model, const States& states);
+  static void resize(const Model& model, Results& results);
+  static std::unique_ptr<TissueViewer> makeViewer(const Model& model);
+};
+
+}  // namespace calot

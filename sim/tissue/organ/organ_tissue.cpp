@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/tissue/organ/organ_tissue.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "sim/geometry/surface_distance.h"
+#include "sim/scene/model.h"
+#include "sim/scene/state.h"
+
+namespace calot {
+
+namespace {
+
+/// Surfaces that anchors measure distances from, by the organ's name.
+using AnchorSurfaces = std::map<std::string, std::unique_ptr<SurfaceDistance>>;
+
+/// @return what is wrong, or nothing
+std::string findAnchorSurfaces(const SceneDescription& scene, AnchorSurfaces& surfaces) {
+  for (const OrganDescription& organ : scene.organs) {
+    for (const AnchorDescription& anchor : organ.anchors) {
+      if (!anchor.nearOrgan.empty()) surfaces[anchor.nearOrgan] = nullptr;
+    }
+  }
+  for (const OrganDescription& organ : scene.organs) {
+    const auto wanted = surfaces.find(organ.name);
+    if (wanted != surfaces.end()) wanted->second = std::make_unique<SurfaceDistance>(organ.surface.mesh());
+  }
+  for (const auto& [name, distance] : surfaces) {
+    if (distance == nullptr) return "an anchor names organ '" + name + "', which the scene does not have";
+  }
+  return {};
+}
+
+/// Nodes that the organ's anchors constrain.
+std::vector<bool> anchoredNodes(const OrganDescription& organ, const std::vector<Vec3>& nodes,
+                                const AnchorSurfaces& surfaces) {
+  std::vector<bool> fixed(nodes.size(), false);
+  for (const AnchorDescription& anchor : organ.anchors) {
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (anchor.nearOrgan.empty()) {
+        if ((nodes[n] - anchor.centre).norm() <= anchor.radius) fixed[n] = true;
+      } else if (surfaces.at(anchor.nearOrgan)->signedDistance(nodes[n]) <= anchor.distance) {
+        fixed[n] = true;
+      }
+    }
+  }
+  return fixed;
+}
+
+std::vector<double> vertexAreas(const SurfaceDescription& surface) {
+  std::vector<double> area(surface.vertex.size(), 0.0);
+  for (const Index3& t : surface.triangle) {
+    const Vec3& a = surface.vertex[static_cast<std::size_t>(t[0])];
+    const Vec3& b = surface.vertex[static_cast<std::size_t>(t[1])];
+    const Vec3& c = surface.vertex[static_cast<std::size_t>(t[2])];
+    const double third = (b - a).cross(c - a).norm() / 6.0;
+    for (int k = 0; k < 3; ++k) area[static_cast<std::size_t>(t[k])] += third;
+  }
+  return area;
+}
+
+}  // namespace
+
+std::string OrganTissue::build(const SceneDescription& scene, Model& model) {
+  AnchorSurfaces surfaces;
+  if (std::string fault = findAnchorSurfaces(scene, surfaces); !fault.empty()) return fault;
+  std::vector<OrganModel>& organs = model.organModel;
+  for (const OrganDescription& organ : scene.organs) {
+    StuffedMesh stuffed = stuffToCount(organ.surface.mesh(), static_cast<int>(organ.tetrahedra));
+    if (!stuffed.ok()) return "organ '" + organ.name + "': " + stuffed.error;
+    Embedding embedding(organ.surface.vertex, stuffed.mesh);
+    ContactSurface contact(organ.surface.vertex, organ.surface.triangle);
+    std::vector<Vec3>& nodes = stuffed.mesh.vertex;
+    const std::vector<bool> fixed = anchoredNodes(organ, nodes, surfaces);
+    SolidModel solid(std::move(nodes), std::move(stuffed.mesh.tetrahedron), fixed, solidMaterial(organ.material));
+    if (solid.freeNodes().empty()) return "organ '" + organ.name + "': its anchors hold every node";
+    organs.push_back({organ.name, organ.appearance, std::move(solid), organ.surface.vertex, std::move(embedding),
+                      std::move(contact), vertexAreas(organ.surface), stuffed.cellSize, stuffed.report});
+  }
+  for (std::size_t a = 0; a < organs.size(); ++a) {
+    for (std::size_t b = 0; b < organs.size(); ++b) {
+      if (a == b) continue;
+      model.tissuePair.push_back(
+          {a, b, SurfacePair(organs[a].surface, organs[a].skin, organs[b].surface, organs[b].skin)});
+    }
+  }
+  for (std::size_t o = 0; o < organs.size(); ++o) model.tissuePair.push_back({o, o, std::nullopt});
+  return {};
+}
+
+void OrganTissue::listStructures(const Model& model, TissueId kind, std::size_t firstBody,
+                                 std::vector<StructureModel>& structures) {
+  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    const OrganDescription& d = model.scene().organs[o];
+    structures.push_back({d.name, d.appearance, kind, o, 0, firstBody + o, d.friction});
+  }
+}
+
+const std::string& OrganTissue::nameOf(const Model& model, std::size_t index) { return model.organs()[index].name; }
+
+void OrganTissue::resize(const Model& model, States& states) {
+  states.organ.resize(model.organs().size());
+  states.charred.resize(model.organs().size());
+}
+
+void OrganTissue::start(const Model& model, States& states) {
+  for (const OrganModel& organ : model.organs()) {
+    states.organ.push_back(restState(organ.solid));
+    if (!model.scene().gravity.isZero(0.0)) states.organ.back().quietSteps = 0;
+    states.charred.emplace_back().exposure.assign(organ.skin.size(), 0.0F);
+  }
+}
+
+bool OrganTissue::fits(const Model& model, const States& states) {
+  for (std::size_t o = 0; o < states.organ.size(); ++o) {
+    const SolidModel& solid = model.organs()[o].solid;
+    const SolidState& organ = states.organ[o];
+    if (organ.position.size() != solid.nodes() || organ.velocity.size() != solid.nodes()) return false;
+    if (organ.rotation.size() != solid.groups()) return false;
+    if (states.charred[o].exposure.size() != model.organs()[o].skin.size()) return false;
+  }
+  return true;
+}
+
+void OrganTissue::resize(const Model& model, Results& results) { results.organ.resize(model.organs().size()); }
+
+std::vector<SolidPlace> placesOnOrgan(const OrganModel& organ, const std::vector<Vec3>& points) {
+  const Embedding embedding(points, {organ.solid.rest(), organ.solid.tetrahedra()});
+  std::vector<SolidPlace> places;
+  for (const Embedding::Anchor& anchor : embedding.anchors()) {
+    SolidPlace& place = places.emplace_back();
+    place.count = anchor.node.size();
+    std::copy(anchor.node.begin(), anchor.node.end(), place.node.begin());
+    std::copy(anchor.weight.begin(), anchor.weight.end(), place.weight.begin());
+  }
+  return places;
+}
+
+}  // namespace calot

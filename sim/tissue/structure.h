@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all kinds of tissue contribute to a Model: structures that can be touched, and ties between bodies.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "sim/math/linear.h"
+#include "sim/solid/solid.h"
+
+namespace calot {
+
+/// Position of a kind of tissue in the list of kinds (sim/tissue/tissues.h).
+using TissueId = std::uint8_t;
+
+/// What has a name and a skin, and can be touched: organs, then vessels, then fat, in the scene's order. Contacts,
+/// events and StepResult refer to structures by their index in this list.
+struct StructureModel {
+  std::string name;
+  std::string appearance;
+  TissueId kind = 0;
+  std::size_t index = 0;   ///< among organs, vessel trees, or bodies of fat
+  std::size_t branch = 0;  ///< of a vessel: in its tree
+  std::size_t body = 0;    ///< what it is solved with: organs, then vessel trees, then fat
+  double friction = 0.0;   ///< Coulomb coefficient of an instrument on it
+};
+
+/// A spring and a damper between material points of two bodies that coincide in the reference configuration.
+struct Tie {
+  static constexpr std::size_t none = ~std::size_t{0};
+
+  std::array<std::size_t, 2> body{};
+  std::array<SolidPlace, 2> place;
+  Vec3 offset = Vec3::Zero();  ///< of the first point from its node, in the node's frame; of vessels only (m)
+  std::size_t fat = none;      ///< body of fat with which it fades, as
+  std::size_t fatTie = 0;      ///< its tie of that number
+  double stiffness = 0.0;      ///< N/m
+  double damping = 0.0;        ///< N s/m
+};
+
+}  // namespace calot
