@@ -64,12 +64,15 @@ CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, 
 CheckpointCollector::~CheckpointCollector() = default;
 
 void CheckpointCollector::onStep(const recorder::StepRecord& record) {
+  take(record, storage_->judge.observe(record.result));
+}
+
+void CheckpointCollector::take(const recorder::StepRecord& record, const Judgement& judgement) {
   assert(!storage_->ended);
   for (const TickSamples& tick : record.samples) {
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
   }
   storage_->force.add(record);
-  const Judgement& judgement = storage_->judge.observe(record.result);
   storage_->phaseForce.add(record, judgement.phase);
   storage_->phases.add(judgement.phase, storage_->ticksPerStep);
   for (const Event& event : record.result.events) {

@@ -23,6 +23,8 @@ class CheckpointCollector final : public recorder::Observer {
   CheckpointCollector& operator=(const CheckpointCollector&) = delete;
 
   void onStep(const recorder::StepRecord& record) override;
+  /// The same with what somebody else judged of the step: of a run, take either this or onStep().
+  void take(const recorder::StepRecord& record, const Judgement& judgement);
   void onEnd(recorder::Outcome outcome) override;
 
   /// Every figure in the registry's order, subjects in the order of hands or organs. After onEnd() they are final;

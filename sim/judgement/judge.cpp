@@ -63,6 +63,11 @@ Judge::Judge(const SceneDescription& scene, const JudgementRules& rules) : rules
   now_.phase = hasFat_ ? Phase::identification : !divide_.empty() ? Phase::clipping : Phase::dissection;
 }
 
+bool Judge::isReported(const StepResult& result) const {
+  return (!hasFat_ || fat_ < result.fat.size()) && (!hasBed_ || bed_ < result.connective.size()) &&
+         std::all_of(divide_.begin(), divide_.end(), [&](const Divide& d) { return d.vessel < result.vessel.size(); });
+}
+
 bool Judge::isToDivide(std::size_t structure) const {
   return std::any_of(divide_.begin(), divide_.end(), [&](const Divide& d) { return d.structure == structure; });
 }
@@ -166,12 +171,13 @@ void Judge::countEvent(const std::vector<Event>& events, std::size_t at, Phase& 
 const Judgement& Judge::observe(const StepResult& result) {
   now_.events.clear();
   Phase phase = now_.phase;
-  if (present_) {
+  const bool judged = present_ && isReported(result);
+  if (judged) {
     now_.lowerThirdAttached = hasBed_ ? result.connective[bed_].lowerAttached : 0.0;
     if (!now_.criticalViewFrozen) judgeView(result);
   }
   for (std::size_t i = 0; i < result.events.size(); ++i) countEvent(result.events, i, phase);
-  if (!present_) return now_;
+  if (!judged) return now_;
   const bool allParted =
       std::all_of(divide_.begin(), divide_.end(), [&](const Divide& d) { return isParted(result, d.vessel); });
   if (hasFat_ && result.fat[fat_].carved > 0.0) phase = allParted ? Phase::dissection : Phase::identification;

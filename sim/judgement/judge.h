@@ -35,6 +35,8 @@ class Judge {
     std::array<std::size_t, 2> clips{};  ///< wanted towards its start and towards its end
   };
 
+  /// Are there results of all that the procedure names? Not before version 3 of StepResult.
+  [[nodiscard]] bool isReported(const StepResult& result) const;
   [[nodiscard]] bool isToDivide(std::size_t structure) const;
   [[nodiscard]] bool isParted(const StepResult& result, std::size_t vessel) const;
   void judgeView(const StepResult& result);

@@ -20,7 +20,7 @@ AttemptHeader headerOf(std::uint32_t version) {
     h.vessels = {"duct"};
     h.fat = {"fat"};
   }
-  h.layout.components = {"clock", "connective.bed", "procedure"};
+  h.layout.components = {"clock", "connective.bed"};
   return h;
 }
 
@@ -64,8 +64,7 @@ TEST(ResultComparison, SeesEveryChangeAndNamesIt) {
       {"vessels/partings[0]", [](StepResult& r) { r.vessel[0].partings = 1; }},
       {"vessels/largest_strain.size", [](StepResult& r) { r.vessel.clear(); }},
       {"fat/islands[0]", [](StepResult& r) { r.fat[0].islands = 1e-12; }},
-      {"procedure/phase", [](StepResult& r) { r.procedure.phase = Phase::cutting; }},
-      {"procedure/critical_errors", [](StepResult& r) { r.procedure.criticalErrors = 1; }},
+      {"fat/uncleared[0]", [](StepResult& r) { r.fat[0].uncleared = 0.5; }},
       {"contact/tissue_depth", [](StepResult& r) { r.contact.tissueDepth = 1e-6; }},
       {"misses", [](StepResult& r) { r.misses = miss::contact; }},
   };
@@ -113,7 +112,6 @@ TEST(ResultComparison, GoesByTheRecordingsVersion) {
   here.hand[0].clips = 8;
   here.organ[1].charredArea = 1.0;
   here.vessel[0].clips = 2;
-  here.procedure.errors = 4;
   here.hand[1].structureForce[3] = 9.0;
   ResultComparison compare(earlier);
   EXPECT_FALSE(compare(recorded, here));

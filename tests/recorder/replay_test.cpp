@@ -29,7 +29,8 @@ class Liar final : public Observer {
 
   /// Index of a field among the digests, liver being the first organ.
   static std::size_t placeOf(const std::string& name) {
-    const DigestLayout layout = digestLayout({{"liver"}, {}, {}, {}, false});
+    const Model::Built built = Model::build(loadScene(assets / "scenes" / "touch-liver.json").description);
+    const DigestLayout& layout = built.model->layout();
     std::size_t place = 0;
     while (layout.fields[place].name != name) ++place;
     return place;

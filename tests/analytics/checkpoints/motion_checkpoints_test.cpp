@@ -264,22 +264,20 @@ TEST(WorkingVolume, isThatOfTheEllipsoid) {
 }
 
 TEST(Phases, cutTheMotionAndAddUp) {
-  recorder::AttemptHeader h = header();
-  h.layout.components = {"procedure"};
-  CheckpointCollector collector(h, scene());
+  CheckpointCollector collector(header(), sceneWithProcedure());
   // Identification 0 to 4 s, clipping to 6 s, identification again to 7 s, dissection to 10 s; 10 mm/s throughout, and
   // a second of rest in dissection. No cutting.
-  feed(
+  feedPhases(
       collector, 1000,
       [](std::uint64_t tick, TickSamples& s, TickOutcome&) {
         const double t = 0.001 * static_cast<double>(tick);
         s.hand[0].position = Vec3(0.01 * (std::min(t, 8.0) + std::max(t - 9.0, 0.0)), 0.0, 0.0);
       },
-      [](std::uint64_t step, StepResult& r) {
-        r.procedure.phase = step < 400   ? Phase::identification
-                            : step < 600 ? Phase::clipping
-                            : step < 700 ? Phase::identification
-                                         : Phase::dissection;
+      [](std::uint64_t step) {
+        return step < 400   ? Phase::identification
+               : step < 600 ? Phase::clipping
+               : step < 700 ? Phase::identification
+                            : Phase::dissection;
       });
   collector.onEnd(recorder::Outcome::completed);
   EXPECT_DOUBLE_EQ(*valueOf(collector, "phase-duration", "identification").value, 5.0);

@@ -73,18 +73,18 @@ TEST(Cautery, aHookThatWasPutDownStillCounts) {
 
 TEST(CriticalView, isThatOfTheFirstClip) {
   Operation o;
-  o.now.procedure.triangleCleared = 2;
-  o.now.procedure.lowerThirdFreed = 1;
-  o.now.procedure.twoStructures = 2;
+  o.judged.triangleCleared = 2;
+  o.judged.lowerThirdFreed = 1;
+  o.judged.twoStructures = 2;
   o.step();
   EXPECT_EQ(*o.value("critical-view").value, 5.0) << "provisional";
-  o.now.procedure.criticalViewFrozen = true;
+  o.judged.criticalViewFrozen = true;
   o.step();
   o.end();
   EXPECT_EQ(*o.value("critical-view").value, 5.0);
   EXPECT_EQ(o.value("critical-view").note, "triangle 2, lower third 1, two structures 2");
   Operation never;
-  never.now.procedure.triangleCleared = 1;
+  never.judged.triangleCleared = 1;
   never.step();
   never.end(Outcome::abandoned);
   expectNotAvailable(never.value("critical-view"), "no clip was set: 1 of 6 points at the end");
@@ -94,14 +94,14 @@ TEST(CriticalErrors, areTheProcedures) {
   Operation o;
   o.step();
   EXPECT_EQ(*o.value("critical-errors").value, 0.0);
-  o.now.procedure.criticalErrors = 2;
+  o.judged.criticalErrors = 2;
   o.step();
   o.end();
   EXPECT_EQ(*o.value("critical-errors").value, 2.0);
   EXPECT_EQ(o.value("critical-errors").note, "fails the attempt");
-  recorder::AttemptHeader header = operationHeader();
-  header.layout.components = {"clock"};
-  Operation without(operationScene(), header);
+  SceneDescription scene = operationScene();
+  scene.procedure = {};
+  Operation without(scene);
   without.step();
   without.end();
   expectNotApplicable(without.value("critical-errors"), "the scene has no procedure");

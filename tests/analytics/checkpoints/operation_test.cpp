@@ -44,7 +44,7 @@ TEST(FatRemaining, isWhatTheFirstClipFinds) {
   o.now.vessel[1].clips = 1;
   carve(o, 0.1, 0.0);  // in the very step of the first clip: the last that counts
   // Back to identification after the first clip: no part of the figure, but told.
-  o.now.procedure.phase = Phase::identification;
+  o.judged.phase = Phase::identification;
   carve(o, 0.4, 2.0);
   o.now.vessel[1].clips = 0;  // even if no clip is there any more
   carve(o, 0.0, 1.0);
@@ -58,13 +58,13 @@ TEST(FatRemaining, isWhatTheFirstClipFinds) {
 
 TEST(FatRemaining, recurringPhasesBeforeTheFirstClipCount) {
   Operation o;
-  o.now.procedure.phase = Phase::identification;
+  o.judged.phase = Phase::identification;
   o.step();
   carve(o, 0.5, 0.0);
-  o.now.procedure.phase = Phase::clipping;  // a clip is dropped: an act of clipping, and no clip on anything
+  o.judged.phase = Phase::clipping;  // a clip is dropped: an act of clipping, and no clip on anything
   o.tell(EventKind::clipDropped, 1, 0, 7);
   o.step();
-  o.now.procedure.phase = Phase::identification;
+  o.judged.phase = Phase::identification;
   carve(o, 0.5, 0.0);
   o.now.vessel[3].clips = 1;
   o.step();

@@ -26,7 +26,7 @@ SceneDescription sparingScene() {
 
 /// Char on the first organ (cm^2) and fat taken (ml) in one step of a phase.
 void burn(Operation& o, Phase phase, double charred, double taken) {
-  o.now.procedure.phase = phase;
+  o.judged.phase = phase;
   o.now.organ[0].charredArea += charred * 1e-4;
   o.now.fat[0].volume -= taken * 1e-6;
   o.step();
@@ -71,7 +71,7 @@ TEST(BurnPerDissection, isPerAreaThatCameFreeInDissection) {
   Operation o;
   o.step();
   const auto free = [&](Phase phase, double attached, double charred) {
-    o.now.procedure.phase = phase;
+    o.judged.phase = phase;
     o.now.connective[0].attached = attached;
     o.now.connective[0].burned = 1.0 - attached;
     o.now.organ[1].charredArea += charred;
@@ -124,7 +124,7 @@ TEST(PhaseFigures, contactAndCurrentAreThoseOfThePhasesSteps) {
   Operation o;
   o.now.hand[1].instrument = InstrumentKind::hook;
   const auto go = [&](Phase phase, std::uint32_t touching, Cautery cautery, std::uint64_t steps) {
-    o.now.procedure.phase = phase;
+    o.judged.phase = phase;
     o.now.hand[1].touching = touching;
     o.now.hand[1].cautery = cautery;
     o.steps(steps);
@@ -145,19 +145,15 @@ TEST(PhaseFigures, contactAndCurrentAreThoseOfThePhasesSteps) {
 }
 
 TEST(PhaseFigures, forcesAreThoseOfThePhasesTicks) {
-  recorder::AttemptHeader h = header();
-  h.layout.components = {"procedure"};
-  CheckpointCollector collector(h, scene());
+  CheckpointCollector collector(header(), sceneWithProcedure());
   // 2 N for 3 s of identification, 5 N for 1 s of clipping, 1 N for 1 s of identification again.
   const auto newtons = [](std::uint64_t tick) { return tick < 3000 ? 2.0 : tick < 4000 ? 5.0 : 1.0; };
-  feed(
+  feedPhases(
       collector, 500,
       [&](std::uint64_t tick, TickSamples&, recorder::TickOutcome& o) {
         o.hand[0].force = Vec3(0.0, newtons(tick), 0.0);
       },
-      [](std::uint64_t step, StepResult& r) {
-        r.procedure.phase = step >= 300 && step < 400 ? Phase::clipping : Phase::identification;
-      });
+      [](std::uint64_t step) { return step >= 300 && step < 400 ? Phase::clipping : Phase::identification; });
   collector.onEnd(Outcome::completed);
   const auto number = [&](const char* name, const char* subject) { return *valueOf(collector, name, subject).value; };
   EXPECT_EQ(number("phase-force-maximum", "left identification"), 2.0);
@@ -183,7 +179,8 @@ TEST(PhaseFigures, ofTheOnlyPhaseAreThoseOfTheWholeAttempt) {
   result.vessel.resize(4);
   result.fat.resize(1);
   result.connective.resize(1);
-  result.procedure.phase = Phase::dissection;
+  Judgement judged;
+  judged.phase = Phase::dissection;
   result.hand[1].instrument = InstrumentKind::hook;
   for (std::uint64_t step = 0; step < 1000; ++step) {
     std::vector<TickSamples> samples(10);
@@ -202,7 +199,7 @@ TEST(PhaseFigures, ofTheOnlyPhaseAreThoseOfTheWholeAttempt) {
     result.hand[1].touching = draw() > 0.0 ? 1U << cysticDuct : 0U;
     result.hand[1].cautery = step % 50 < 20 ? Cautery::withoutContact : Cautery::off;
     const StateDigest digest;
-    collector.onStep({step, samples, ticks, result, digest, 0.0F, {}, {}});
+    collector.take({step, samples, ticks, result, digest, 0.0F, {}, {}}, judged);
   }
   collector.onEnd(Outcome::completed);
   std::size_t compared = 0;

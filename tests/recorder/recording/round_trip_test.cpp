@@ -8,7 +8,6 @@
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"
-#include "tests/recorder/recording/support/same_structures.h"
 #include "tests/recorder/recording/support/synthetic.h"
 
 namespace calot::recorder {
@@ -43,52 +42,7 @@ void expectSame(const Step& made, const RecordedStep& read) {
     EXPECT_TRUE(same(made.samples[t].camera.orientation, read.samples[t].camera.orientation));
     EXPECT_EQ(made.ticks[t].lateness, read.ticks[t].lateness);
   }
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const HandResult &a = made.result.hand[h], &b = read.result.hand[h];
-    EXPECT_TRUE(a.instrument == b.instrument && same(a.tipReal, b.tipReal) && same(a.tipSimulated, b.tipSimulated));
-    EXPECT_TRUE(same(a.orientation, b.orientation) && same(a.jaw, b.jaw) && same(a.insertion, b.insertion));
-    EXPECT_TRUE(same(a.contactForce, b.contactForce) && a.touching == b.touching);
-    EXPECT_EQ(a.structureForce, b.structureForce);
-    EXPECT_TRUE(a.cautery == b.cautery && a.clips == b.clips);
-  }
-  ASSERT_EQ(made.result.organ.size(), read.result.organ.size());
-  for (std::size_t o = 0; o < made.result.organ.size(); ++o) {
-    const OrganResult &a = made.result.organ[o], &b = read.result.organ[o];
-    EXPECT_TRUE(a.volume == b.volume && a.largestDisplacement == b.largestDisplacement &&
-                a.largestSpeed == b.largestSpeed);
-    EXPECT_TRUE(a.residual == b.residual && a.iterations == b.iterations && a.asleep == b.asleep);
-    EXPECT_EQ(a.charredArea, b.charredArea);
-  }
-  test::expectSameStructures(made.result, read.result);
-  ASSERT_EQ(made.result.connective.size(), read.result.connective.size());
-  for (std::size_t t = 0; t < made.result.connective.size(); ++t) {
-    const ConnectiveResult &a = made.result.connective[t], &b = read.result.connective[t];
-    EXPECT_TRUE(a.attached == b.attached && a.burned == b.burned && a.torn == b.torn);
-    EXPECT_TRUE(a.largestPull == b.largestPull && a.hookTouches == b.hookTouches);
-  }
-  EXPECT_EQ(made.result.step, read.result.step);
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const HandResult &a = made.result.hand[h], &b = read.result.hand[h];
-    EXPECT_TRUE(same(a.contactTorque, b.contactTorque) && a.grasping == b.grasping && same(a.graspForce, b.graspForce));
-  }
-  EXPECT_EQ(made.result.contact.blocks, read.result.contact.blocks);
-  EXPECT_EQ(made.result.contact.newtonSteps, read.result.contact.newtonSteps);
-  EXPECT_EQ(made.result.contact.passes, read.result.contact.passes);
-  EXPECT_EQ(made.result.contact.error, read.result.contact.error);
-  EXPECT_EQ(made.result.contact.violation, read.result.contact.violation);
-  EXPECT_EQ(made.result.contact.pinchedDepth, read.result.contact.pinchedDepth);
-  EXPECT_EQ(made.result.contact.tissueDepth, read.result.contact.tissueDepth);
-  EXPECT_EQ(made.result.contact.rows, read.result.contact.rows);
-  EXPECT_EQ(made.result.contact.iterations, read.result.contact.iterations);
-  EXPECT_EQ(made.result.contact.residual, read.result.contact.residual);
-  EXPECT_EQ(made.result.contact.largestDepth, read.result.contact.largestDepth);
-  EXPECT_EQ(made.result.misses, read.result.misses);
-  ASSERT_EQ(made.result.events.size(), read.result.events.size());
-  for (std::size_t e = 0; e < made.result.events.size(); ++e) {
-    const Event &a = made.result.events[e], &b = read.result.events[e];
-    EXPECT_TRUE(a.step == b.step && a.kind == b.kind && a.hand == b.hand && a.subject == b.subject);
-    EXPECT_TRUE(same(a.position, b.position) && same(a.value, b.value));
-  }
+  EXPECT_TRUE(made.result.isSameAs(read.result));
   EXPECT_EQ(made.digest, read.digest);
   EXPECT_EQ(made.lateness, read.lateness);
 }

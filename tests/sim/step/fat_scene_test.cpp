@@ -108,7 +108,7 @@ TEST_F(FatScene, RestIsRestAndSleeps) {
     EXPECT_NEAR(result.fat[0].toClear, 0.5 * result.fat[0].volume, 0.05 * result.fat[0].volume);
     EXPECT_EQ(result.fat[0].largestDisplacement, 0.0);
   }
-  EXPECT_EQ(model_->structures()[fatStructure].kind, StructureKind::fat);
+  EXPECT_EQ(model_->structures()[fatStructure].kind, tissueId<FatTissue>);
 }
 
 /// Pressed, it gives way, pushes back, carries the block with it; let go, it comes back.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim/judgement/judge.h"
 #include "sim/vessel/clips.h"
 #include "tests/sim/scene/support/scenes.h"
 
@@ -59,6 +60,7 @@ class VesselScene : public testing::Test {
   void SetUp() override {
     ASSERT_TRUE(model_);
     rig_ = std::make_unique<test::Rig>(*model_);
+    judge_ = std::make_unique<Judge>(model_->scene());
     act_ = {};
   }
 
@@ -76,7 +78,8 @@ class VesselScene : public testing::Test {
     tick.hand[1].position = model_->scene().hands[1].home;
     const StepResult& result =
         rig_->stepper.step(rig_->state, std::vector<TickSamples>(model_->scene().ticksPerStep, tick));
-    for (const Event& event : result.events) events_.push_back(event);
+    const Judgement& judgement = judge_->observe(result);
+    events_.insert(events_.end(), judgement.events.begin(), judgement.events.end());
     hardest_ = std::max(hardest_, result.hand[0].structureForce[duct]);
     EXPECT_EQ(rig_->stepper.digest(rig_->state), digestOf(rig_->state));
     return result;
@@ -117,6 +120,7 @@ class VesselScene : public testing::Test {
 
   static inline std::unique_ptr<const Model> model_;
   std::unique_ptr<test::Rig> rig_;
+  std::unique_ptr<Judge> judge_;
   Act act_;
   std::vector<Event> events_;
   double hardest_ = 0.0;  ///< of the instrument on the duct so far (N)

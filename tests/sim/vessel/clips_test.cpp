@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clips, cuts and tears: what they do to a vessel, and how they are judged.
+// Clips, cuts and tears: what they do to a vessel, and how clips sit.
 #include "sim/vessel/clips.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,6 @@
 
 namespace calot {
 namespace {
-
-constexpr ClipRules rules{0.001, 0.003};
 
 /// A straight tube of 40 mm along x, 2 mm wide, joined at its middle by a branch.
 BeamModel straightDuct() {
@@ -35,51 +33,47 @@ ClipAttempt clipAt(const BeamModel& model, double place, double depth = 0.004) {
   return {placeAt(model, 0, place), 0.0015, 0.008, depth, 0.0, 1.0};
 }
 
-TEST(Clips, AWellSetClipHasNoFault) {
+TEST(Clips, AWellSetClipEnclosesTheVesselAndIsNearNothing) {
   const BeamModel model = straightDuct();
   const BeamState state = restState(model);
-  const ClipJudgement j = judgeClip(model, state, clipAt(model, 0.010), rules);
-  EXPECT_EQ(j.enclosed, 1.0);
-  EXPECT_FALSE(j.missed || j.halfOn || j.onClip || j.nearClip || j.nearJunction || j.onEdge);
-  EXPECT_EQ(j.clip, -1);
-  EXPECT_NEAR(j.junctionGap, 0.010 - 0.00075, 1e-12);
+  const ClipSeat seat = clipSeat(model, state, clipAt(model, 0.010));
+  EXPECT_EQ(seat.enclosed, 1.0);
+  EXPECT_FALSE(seat.missed);
+  EXPECT_EQ(seat.clip, -1);
+  EXPECT_EQ(seat.clipGap, ClipSeat::none);
+  EXPECT_NEAR(seat.junctionGap, 0.010 - 0.00075, 1e-12);
+  EXPECT_NEAR(seat.endGap, 0.010 - 0.00075, 1e-12) << "to the vessel's start";
 }
 
 TEST(Clips, DepthDecidesWhetherTheSectionIsEnclosed) {
   const BeamModel model = straightDuct();
   const BeamState state = restState(model);
   const double wide = 0.5 * std::numbers::pi * 0.001;  // half the flattened width
-  EXPECT_FALSE(judgeClip(model, state, clipAt(model, 0.01, 1.001 * wide), rules).halfOn);
-  EXPECT_FALSE(judgeClip(model, state, clipAt(model, 0.01, 0.008 - 1.001 * wide), rules).halfOn);
-  // The tips reach the middle of the vessel: half of it.
-  const ClipJudgement half = judgeClip(model, state, clipAt(model, 0.01, 0.008), rules);
-  EXPECT_TRUE(half.halfOn);
-  EXPECT_NEAR(half.enclosed, 0.5, 1e-12);
-  EXPECT_TRUE(judgeClip(model, state, clipAt(model, 0.01, 0.008 + 1.01 * wide), rules).missed);
-  EXPECT_TRUE(judgeClip(model, state, clipAt(model, 0.01, -1.01 * wide), rules).missed);
+  const auto at = [&](double depth) { return clipSeat(model, state, clipAt(model, 0.01, depth)); };
+  EXPECT_EQ(at(1.001 * wide).enclosed, 1.0);
+  EXPECT_EQ(at(0.008 - 1.001 * wide).enclosed, 1.0);
+  EXPECT_NEAR(at(0.008).enclosed, 0.5, 1e-12) << "the tips reach the middle of the vessel: half of it";
+  EXPECT_FALSE(at(0.008).missed);
+  EXPECT_TRUE(at(0.008 + 1.01 * wide).missed);
+  EXPECT_TRUE(at(-1.01 * wide).missed);
 }
 
-TEST(Clips, OtherClipsJunctionsAndEdgesAreSeen) {
+TEST(Clips, OtherClipsJunctionsAndEndsAreSeen) {
   const BeamModel model = straightDuct();
   BeamState state = restState(model);
   setClip(model, state, clipAt(model, 0.008), 1.0);
-  EXPECT_TRUE(judgeClip(model, state, clipAt(model, 0.009), rules).onClip);
-  const ClipJudgement near = judgeClip(model, state, clipAt(model, 0.010), rules);
-  EXPECT_TRUE(near.nearClip);
-  EXPECT_FALSE(near.onClip);
-  EXPECT_EQ(near.clip, 0);
-  EXPECT_NEAR(near.clipGap, 0.0005, 1e-12);
-  EXPECT_FALSE(judgeClip(model, state, clipAt(model, 0.012), rules).nearClip);
-  EXPECT_TRUE(judgeClip(model, state, clipAt(model, 0.018), rules).nearJunction);
-  const ClipJudgement across = judgeClip(model, state, clipAt(model, 0.020), rules);
-  EXPECT_TRUE(across.nearJunction);
-  EXPECT_LT(across.junctionGap, 0.0);
-  EXPECT_TRUE(judgeClip(model, state, clipAt(model, 0.0395), rules).onEdge);
-  // A parting between them: neither the other clip nor the junction counts; the stump's edge does.
+  const auto at = [&](double place) { return clipSeat(model, state, clipAt(model, place)); };
+  EXPECT_NEAR(at(0.009).clipGap, -0.0005, 1e-12) << "they overlap";
+  EXPECT_EQ(at(0.010).clip, 0);
+  EXPECT_NEAR(at(0.010).clipGap, 0.0005, 1e-12);
+  EXPECT_NEAR(at(0.012).clipGap, 0.0025, 1e-12);
+  EXPECT_NEAR(at(0.018).junctionGap, 0.002 - 0.00075, 1e-12);
+  EXPECT_NEAR(at(0.020).junctionGap, -0.00075, 1e-12) << "across the junction";
+  EXPECT_NEAR(at(0.0395).endGap, -0.00025, 1e-12) << "beyond the end";
+  // A parting between them: neither the other clip nor the junction counts; the stump's end does.
   part(state, placeAt(model, 0, 0.0095), Parting::cut);
-  const ClipJudgement stump = judgeClip(model, state, clipAt(model, 0.010), rules);
-  EXPECT_EQ(stump.clip, -1);
-  EXPECT_TRUE(stump.onEdge);
+  EXPECT_EQ(at(0.010).clip, -1);
+  EXPECT_LT(at(0.010).endGap, 0.0);
 }
 
 TEST(Clips, AClippedWallNeitherStretchesNorMovesAlong) {
@@ -128,7 +122,7 @@ TEST(Cuts, BetweenClipsNothingOpens) {
   setClip(model, state, clipAt(model, 0.006), 1.0);
   setClip(model, state, clipAt(model, 0.009), 1.0);
   setClip(model, state, clipAt(model, 0.015), 1.0);
-  const CutJudgement cut = judgeCut(model, state, placeAt(model, 0, 0.012));
+  const CutSides cut = cutSides(model, state, placeAt(model, 0, 0.012));
   EXPECT_EQ(cut.clipBefore, 1);
   EXPECT_EQ(cut.clipAfter, 2);
   EXPECT_EQ(cut.before, 2U);
@@ -142,23 +136,23 @@ TEST(Cuts, BetweenClipsNothingOpens) {
 TEST(Cuts, OpenSidesLeak) {
   const BeamModel model = straightDuct();
   BeamState state = restState(model);
-  CutJudgement cut = judgeCut(model, state, placeAt(model, 0, 0.012));
+  CutSides cut = cutSides(model, state, placeAt(model, 0, 0.012));
   EXPECT_TRUE(cut.opensBefore && cut.opensAfter);
   // A clip that is half on, and one beyond the junction, close nothing.
   setClip(model, state, clipAt(model, 0.006), 0.7);
   setClip(model, state, clipAt(model, 0.030), 1.0);
-  cut = judgeCut(model, state, placeAt(model, 0, 0.012));
+  cut = cutSides(model, state, placeAt(model, 0, 0.012));
   EXPECT_TRUE(cut.opensBefore && cut.opensAfter);
   setClip(model, state, clipAt(model, 0.009), 1.0);
-  cut = judgeCut(model, state, placeAt(model, 0, 0.012));
+  cut = cutSides(model, state, placeAt(model, 0, 0.012));
   EXPECT_FALSE(cut.opensBefore);
   EXPECT_TRUE(cut.opensAfter);
   // Through the clip itself: it no longer closes anything.
-  cut = judgeCut(model, state, placeAt(model, 0, 0.0092));
+  cut = cutSides(model, state, placeAt(model, 0, 0.0092));
   EXPECT_TRUE(cut.throughClip && cut.opensBefore);
   // What is parted already has nothing behind it to leak.
   part(state, placeAt(model, 0, 0.015), Parting::cut);
-  cut = judgeCut(model, state, placeAt(model, 0, 0.012));
+  cut = cutSides(model, state, placeAt(model, 0, 0.012));
   EXPECT_FALSE(cut.opensAfter);
 }
 

@@ -43,6 +43,7 @@ inline SceneDescription operationScene() {
   FatDescription& f = s.fat.emplace_back();
   f.name = "fat";
   f.triangleDepth = 0.01;
+  s.procedure.specimen = "organ-b";
   ConnectiveDescription& bed = s.connective.emplace_back();
   bed.name = "bed";
   bed.first = "organ-b";
@@ -55,7 +56,7 @@ inline recorder::AttemptHeader operationHeader() {
   h.organs = {"organ-a", "organ-b"};
   h.vessels = {"v1", "v2", "v3", "v4"};
   h.fat = {"fat"};
-  h.layout.components = {"clock", "procedure"};
+  h.layout.components = {"clock"};
   return h;
 }
 
@@ -75,7 +76,7 @@ class Operation {
     for (HandResult& hand : now.hand) hand.instrument = InstrumentKind::grasper;
   }
 
-  /// One step as `now` is; events are of this step alone.
+  /// One step as `now` is, judged as `judged` is; events are of this step alone.
   void step() { steps(1); }
   void steps(std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -83,7 +84,8 @@ class Operation {
       const std::vector<recorder::TickOutcome> ticks(10);
       const StateDigest digest;
       now.step = next;
-      collector.onStep({next, samples, ticks, now, digest, 0.0F, {}, {}});
+      judged.events = now.events;
+      collector.take({next, samples, ticks, now, digest, 0.0F, {}, {}}, judged);
       ++next;
       now.events.clear();
     }
@@ -98,6 +100,7 @@ class Operation {
 
   CheckpointCollector collector;
   StepResult now;
+  Judgement judged;
   std::uint64_t next = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "sim/scene/version.h"
 
 namespace calot::analytics::support {
 
@@ -23,7 +24,7 @@ struct StepContent {
 
 inline recorder::AttemptHeader header() {
   recorder::AttemptHeader h;
-  h.stepResultVersion = 3;
+  h.stepResultVersion = stepResultVersion;
   h.organs = {"liver", "gallbladder"};
   return h;
 }
@@ -50,11 +51,11 @@ inline CheckpointValue valueOf(const CheckpointCollector& collector, const std::
   return {};
 }
 
-/// Runs `steps` steps through the observer; `fill(step, tick, sample, outcome)` sets each tick, `finish(step, result)`
-/// each step.
-inline void feed(recorder::Observer& observer, std::uint64_t steps,
-                 const std::function<void(std::uint64_t, TickSamples&, recorder::TickOutcome&)>& fill,
-                 const std::function<void(std::uint64_t, StepResult&)>& finish = {}) {
+using FillTick = std::function<void(std::uint64_t, TickSamples&, recorder::TickOutcome&)>;
+
+/// Hands `steps` steps to `take`; `fill(tick, sample, outcome)` sets each tick, `finish(step, result)` each step.
+inline void feedTo(const std::function<void(const recorder::StepRecord&)>& take, std::uint64_t steps,
+                   const FillTick& fill, const std::function<void(std::uint64_t, StepResult&)>& finish = {}) {
   const std::size_t ticksPerStep = 10;
   const StateDigest digest;
   for (std::uint64_t step = 0; step < steps; ++step) {
@@ -65,8 +66,32 @@ inline void feed(recorder::Observer& observer, std::uint64_t steps,
     content.result.step = step;
     content.result.organ.resize(2);
     if (finish) finish(step, content.result);
-    observer.onStep({step, content.samples, content.ticks, content.result, digest, 0.0F, {}, {}});
+    take({step, content.samples, content.ticks, content.result, digest, 0.0F, {}, {}});
   }
+}
+
+inline void feed(recorder::Observer& observer, std::uint64_t steps, const FillTick& fill,
+                 const std::function<void(std::uint64_t, StepResult&)>& finish = {}) {
+  feedTo([&](const recorder::StepRecord& record) { observer.onStep(record); }, steps, fill, finish);
+}
+
+/// The same with phases as a test wants them.
+inline void feedPhases(CheckpointCollector& collector, std::uint64_t steps, const FillTick& fill,
+                       const std::function<Phase(std::uint64_t)>& phaseOf) {
+  feedTo(
+      [&](const recorder::StepRecord& record) {
+        Judgement judgement;
+        judgement.phase = phaseOf(record.step);
+        collector.take(record, judgement);
+      },
+      steps, fill);
+}
+
+/// A scene whose procedure is to free the gallbladder.
+inline SceneDescription sceneWithProcedure() {
+  SceneDescription s = scene();
+  s.procedure.specimen = "gallbladder";
+  return s;
 }
 
 }  // namespace calot::analytics::support

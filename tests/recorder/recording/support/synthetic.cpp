@@ -22,6 +22,32 @@ Quat randomRotation(Random& r) {
   return q;
 }
 
+/// Fills every field of a result.
+struct RandomFields {
+  Random& r;
+
+  template <class T>
+  void one(const ResultGroup&, const ResultField&, T& value) {
+    fill(value);
+  }
+  template <class Part, class T>
+  void each(const ResultGroup&, const ResultField&, std::vector<Part>& parts, T Part::*member) {
+    for (Part& part : parts) fill(part.*member);
+  }
+
+ private:
+  void fill(double& value) { value = r.uniform(); }
+  void fill(std::uint32_t& value) { value = r.next(); }
+  void fill(bool& value) { value = r.next() % 2 == 0; }
+  void fill(Vec3& value) { value = randomVector(r); }
+  void fill(Quat& value) { value = randomRotation(r); }
+  void fill(InstrumentKind& value) { value = static_cast<InstrumentKind>(r.next() % 5); }
+  void fill(Cautery& value) { value = static_cast<Cautery>(r.next() % 3); }
+  void fill(std::vector<double>& values) {
+    for (double& value : values) fill(value);
+  }
+};
+
 double onGrid(double value, double steps) { return std::floor(value * steps + 0.5) / steps; }
 
 Vec3 onGrid(const Vec3& v, double steps) { return {onGrid(v.x(), steps), onGrid(v.y(), steps), onGrid(v.z(), steps)}; }
@@ -112,7 +138,6 @@ AttemptHeader withStructures(AttemptHeader header, std::size_t vessels, std::siz
     header.fat.push_back("fat" + std::to_string(f));
     add("fat.fat" + std::to_string(f));
   }
-  add("procedure");
   return header;
 }
 
@@ -141,51 +166,12 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
     s.ticks[t].lateness = static_cast<float>(r.uniform());
   }
   s.result.step = n;
-  for (HandResult& h : s.result.hand) {
-    h.instrument = static_cast<InstrumentKind>(r.next() % 5);
-    h.tipReal = randomVector(r);
-    h.tipSimulated = randomVector(r);
-    h.orientation = randomRotation(r);
-    h.jaw = r.uniform();
-    h.insertion = r.uniform();
-    h.contactForce = randomVector(r);
-    h.touching = r.next();
-    for (std::size_t o = 0; o < organs + header.vessels.size() + header.fat.size(); ++o)
-      h.structureForce.push_back(r.uniform());
-    h.contactTorque = r.uniform();
-    h.grasping = r.next();
-    h.graspForce = r.uniform();
-    h.cautery = static_cast<Cautery>(r.next() % 3);
-    h.clips = r.next();
-  }
-  for (std::size_t o = 0; o < organs; ++o) {
-    s.result.organ.push_back(
-        {r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next(), r.next() % 2 == 0, r.uniform()});
-  }
-  for (std::size_t v = 0; v < header.vessels.size(); ++v) {
-    s.result.vessel.push_back(
-        {r.uniform(), r.uniform(), r.uniform(), r.next(), r.next(), r.uniform(), r.next() % 2 == 0});
-  }
-  for (std::size_t f = 0; f < header.fat.size(); ++f) {
-    s.result.fat.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform(),
-                            r.next(), r.next() % 2 == 0});
-  }
-  if (hasProcedure(header)) {
-    s.result.procedure = {static_cast<Phase>(r.next() % 6),
-                          static_cast<std::uint8_t>(r.next() % 3),
-                          static_cast<std::uint8_t>(r.next() % 3),
-                          static_cast<std::uint8_t>(r.next() % 3),
-                          r.next() % 2 == 0,
-                          r.uniform(),
-                          r.next(),
-                          r.next()};
-  }
-  for (std::size_t t = 0; t < connectiveNames(header).size(); ++t) {
-    s.result.connective.push_back({r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.next()});
-  }
-  s.result.contact = {r.next(),    r.next(),    r.next(),    r.next(),    r.next(),   r.uniform(),
-                      r.uniform(), r.uniform(), r.uniform(), r.uniform(), r.uniform()};
-  s.result.misses = r.next();
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
+    if (Kind::results.since <= header.stepResultVersion) Kind::resultsOf(s.result).resize(namesOf<Kind>(header).size());
+  });
+  for (HandResult& h : s.result.hand) h.structureForce.resize(header.structures().size());
+  RandomFields random{r};
+  StepResult::fields(s.result, header.stepResultVersion, random);
   for (std::uint32_t e = r.next() % 3; e > 0; --e) {
     Event event;
     event.step = n;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The procedure as the core keeps it: phases, critical view, errors; and the assistant's pull.
+// The procedure as steps report it and the judge judges it: phases, critical view, errors; and the assistant's pull.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "sim/judgement/judge.h"
 #include "tests/sim/scene/support/scenes.h"
 
 namespace calot {
@@ -44,6 +45,7 @@ class Procedure : public testing::Test {
   void SetUp() override {
     ASSERT_TRUE(model_);
     rig_ = std::make_unique<test::Rig>(*model_);
+    judge_ = std::make_unique<Judge>(model_->scene());
   }
   const StepResult& step(const Vec3& tip, double jaw, InstrumentKind instrument, std::uint8_t buttons = 0) {
     TickSamples tick;
@@ -59,7 +61,8 @@ class Procedure : public testing::Test {
     tick.hand[1].position = model_->scene().hands[1].home;
     const StepResult& result =
         rig_->stepper.step(rig_->state, std::vector<TickSamples>(model_->scene().ticksPerStep, tick));
-    for (const Event& event : result.events) events_.push_back(event);
+    const Judgement& judgement = judge_->observe(result);
+    events_.insert(events_.end(), judgement.events.begin(), judgement.events.end());
     EXPECT_EQ(rig_->stepper.digest(rig_->state), digestOf(rig_->state));
     return result;
   }
@@ -71,7 +74,7 @@ class Procedure : public testing::Test {
     for (int i = 0; i <= 40; ++i)
       step(Vec3(x, y, height - below + (0.06 - height + below) * i / 40.0), 0.9, instrument);
   }
-  [[nodiscard]] const ProcedureState& now() const { return rig_->state.procedure[0]; }
+  [[nodiscard]] const Judgement& now() const { return judge_->judgement(); }
   [[nodiscard]] std::vector<Event> all(EventKind kind) const {
     std::vector<Event> found;
     std::copy_if(events_.begin(), events_.end(), std::back_inserter(found),
@@ -81,13 +84,14 @@ class Procedure : public testing::Test {
 
   static inline std::unique_ptr<const Model> model_;
   std::unique_ptr<test::Rig> rig_;
+  std::unique_ptr<Judge> judge_;
   std::vector<Event> events_;
 };
 
 TEST_F(Procedure, AsItShouldBe) {
   EXPECT_EQ(now().phase, Phase::clipping) << "there is no fat to be carved";
   for (const double x : {-0.024, -0.018, -0.006}) closeAt(InstrumentKind::clipApplier, x, -0.012);
-  EXPECT_TRUE(now().frozen);
+  EXPECT_TRUE(now().criticalViewFrozen);
   EXPECT_EQ(now().triangleCleared, 2);
   EXPECT_EQ(now().lowerThirdFreed, 2);
   EXPECT_EQ(now().twoStructures, 2);
@@ -120,15 +124,16 @@ TEST_F(Procedure, WhatIsToBeSparedIsACriticalError) {
   EXPECT_EQ(critical[0].value, static_cast<double>(EventKind::clipSet));
   EXPECT_EQ(critical[1].value, static_cast<double>(EventKind::vesselCut));
   EXPECT_EQ(now().criticalErrors, 2U);
-  EXPECT_EQ(step(Vec3(0.0, 0.0, 0.06), 0.9, InstrumentKind::scissors).procedure.criticalErrors, 2U);
+  step(Vec3(0.0, 0.0, 0.06), 0.9, InstrumentKind::scissors);
+  EXPECT_EQ(now().criticalErrors, 2U);
 }
 
 TEST_F(Procedure, AVesselThatIsCutBeforeTheFirstClipIsNotSeenAnyMore) {
   closeAt(InstrumentKind::scissors, -0.012, -0.012);
   EXPECT_EQ(now().twoStructures, 0);
-  EXPECT_FALSE(now().frozen);
+  EXPECT_FALSE(now().criticalViewFrozen);
   closeAt(InstrumentKind::clipApplier, 0.01, -0.012);
-  EXPECT_TRUE(now().frozen);
+  EXPECT_TRUE(now().criticalViewFrozen);
   EXPECT_EQ(now().twoStructures, 0);
 }
 
