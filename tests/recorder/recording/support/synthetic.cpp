@@ -143,7 +143,6 @@ AttemptHeader withStructures(AttemptHeader header, std::size_t vessels, std::siz
 
 Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed) {
   Random r(seed * 1000003 + n, 7);
-  const std::size_t organs = header.organs.size();
   Step s;
   s.samples.resize(header.ticksPerStep);
   s.ticks.resize(header.ticksPerStep);
