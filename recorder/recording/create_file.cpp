@@ -13,6 +13,7 @@
 #include "recorder/recording/header.h"
 #include "recorder/recording/superblock.h"
 #include "recorder/recording/types.h"
+#include "sim/scene/structure_limit.h"
 
 namespace calot::recorder {
 
@@ -239,8 +240,8 @@ void checkHeader(const AttemptHeader& header) {
   if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
   if (header.ticksPerStep < 1 || header.ticksPerStep > largestTicksPerStep) refuse("ticks a step must lie in 1..1000");
   if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");
-  if (header.organs.size() + header.vessels.size() + header.fat.size() > mostRecordedStructures)
-    refuse("more than 32 organs, vessels and bodies of fat");
+  if (header.organs.size() + header.vessels.size() + header.fat.size() > maxStructures)
+    refuse(fmt::format("more than {} structures (organs, vessels and bodies of fat)", maxStructures));
   if (!tellsOfStructures(header.stepResultVersion) && !(header.vessels.empty() && header.fat.empty()))
     refuse("vessels or fat in a version of StepResult that does not tell of them");
   if (header.layout.components.size() > 4096 || header.layout.fields.size() > 65536) refuse("too many digests");

@@ -6,6 +6,7 @@
 #include "recorder/formats/file_bytes.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/layout.h"
+#include "sim/scene/structure_limit.h"
 
 namespace calot::recorder {
 
@@ -195,12 +196,13 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   for (std::size_t i = 1; i <= info.nlinks; ++i)
     h.assets.push_back(reader.asset(fmt::format("/scene/assets/{:03}", i)));
 
-  h.organs = reader.names("/scene/organs", mostRecordedStructures);
+  h.organs = reader.names("/scene/organs", maxStructures);
   if (tellsOfStructures(h.stepResultVersion)) {
-    h.vessels = reader.names("/scene/vessels", mostRecordedStructures);
-    h.fat = reader.names("/scene/fat", mostRecordedStructures);
-    if (h.organs.size() + h.vessels.size() + h.fat.size() > mostRecordedStructures)
-      throw damaged(path, "/scene", "names more than 32 organs, vessels and bodies of fat");
+    h.vessels = reader.names("/scene/vessels", maxStructures);
+    h.fat = reader.names("/scene/fat", maxStructures);
+    if (h.organs.size() + h.vessels.size() + h.fat.size() > maxStructures)
+      throw damaged(path, "/scene",
+                    fmt::format("names more than {} structures (organs, vessels and bodies of fat)", maxStructures));
   }
   h.layout.components = reader.names("/steps/component_names", 4096);
   const std::vector<std::string> fields = reader.names("/steps/field_names", 65536);

@@ -10,6 +10,7 @@
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
 #include "sim/scene/samples.h"
+#include "sim/scene/structure_role.h"
 
 namespace calot {
 
@@ -63,6 +64,7 @@ struct AnchorDescription {
 struct OrganDescription {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   SurfaceDescription surface;
   std::uint32_t tetrahedra = 0;  ///< requested number
   MaterialDescription material;
@@ -74,6 +76,7 @@ struct OrganDescription {
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
     visit("appearance", self.appearance);
+    visit("role", self.role);
     visit("surface", self.surface);
     visit("tetrahedra", self.tetrahedra);
     visit("material", self.material);
@@ -86,6 +89,7 @@ struct OrganDescription {
 /// Connective tissue over the bed where one organ lies on another (sim/connective/connective_bed.h).
 struct ConnectiveDescription {
   std::string name;
+  StructureRole role = StructureRole::other;
   std::string first;            ///< organ whose surface the bed is part of
   std::string second;           ///< organ that it lies on
   double reach = 0.004;         ///< triangles of the first organ no farther from the second are the bed (m)
@@ -98,6 +102,7 @@ struct ConnectiveDescription {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
+    visit("role", self.role);
     visit("first", self.first);
     visit("second", self.second);
     visit("reach", self.reach);
@@ -135,6 +140,7 @@ struct VesselEndDescription {
 struct VesselDescription {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   std::vector<Vec3> path;        ///< points that the centre line passes at rest, from start to end, in W (m)
   std::uint32_t elements = 40;   ///< of equal length
   double radius = 0.0015;        ///< outer (m)
@@ -149,6 +155,7 @@ struct VesselDescription {
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
     visit("appearance", self.appearance);
+    visit("role", self.role);
     visit("path", self.path);
     visit("elements", self.elements);
     visit("radius", self.radius);
@@ -182,6 +189,7 @@ struct FatAttachmentDescription {
 struct FatDescription {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   SurfaceDescription surface;
   double cellSize = 0.00075;       ///< of the potential field (m)
   std::uint32_t cellsPerCube = 3;  ///< edge of a mechanical cube in cells
@@ -196,6 +204,7 @@ struct FatDescription {
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
     visit("appearance", self.appearance);
+    visit("role", self.role);
     visit("surface", self.surface);
     visit("cellSize", self.cellSize);
     visit("cellsPerCube", self.cellsPerCube);

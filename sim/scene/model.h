@@ -16,6 +16,7 @@
 #include "sim/geometry/mesh_to_count.h"
 #include "sim/scene/description.h"
 #include "sim/scene/digests.h"
+#include "sim/scene/structure_limit.h"
 #include "sim/solid/solid.h"
 #include "sim/vessel/beam_model.h"
 #include "sim/vessel/tube_surface.h"
@@ -42,19 +43,17 @@ struct VesselTree {
   std::vector<std::size_t> vessel;
 };
 
-/// A contact's name has four bits for its structure.
-inline constexpr std::size_t largestStructureCount = 16;
-
 /// Skins of vessels as contact and pictures have them.
 inline constexpr TubeSurface::Settings tubeSettings{8, 1};
 
 enum class StructureKind : std::uint8_t { organ, vessel, fat };
 
 /// What has a name and a skin, and can be touched: organs, then vessels, then fat, in the scene's order. Contacts,
-/// events and StepResult name structures by their place in this list.
+/// events and StepResult name structures by their place in this list; it has at most maxStructures.
 struct StructureModel {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   StructureKind kind = StructureKind::organ;
   std::size_t index = 0;   ///< among organs, vessel trees, or bodies of fat
   std::size_t branch = 0;  ///< of a vessel: in its tree

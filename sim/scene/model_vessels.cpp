@@ -121,20 +121,20 @@ std::string Model::addVessels(const SceneDescription& scene) {
 void Model::listStructures(const SceneDescription& scene) {
   for (std::size_t o = 0; o < organs_.size(); ++o) {
     const OrganDescription& d = scene.organs[o];
-    structure_.push_back({d.name, d.appearance, StructureKind::organ, o, 0, o, d.friction});
+    structure_.push_back({d.name, d.appearance, d.role, StructureKind::organ, o, 0, o, d.friction});
   }
   structure_.resize(organs_.size() + scene.vessels.size());
   for (std::size_t f = 0; f < scene.fat.size(); ++f) {
     const FatDescription& d = scene.fat[f];
     structure_.push_back(
-        {d.name, d.appearance, StructureKind::fat, f, 0, organs_.size() + vesselTree_.size() + f, d.friction});
+        {d.name, d.appearance, d.role, StructureKind::fat, f, 0, organs_.size() + vesselTree_.size() + f, d.friction});
   }
   for (std::size_t t = 0; t < vesselTree_.size(); ++t) {
     for (std::size_t b = 0; b < vesselTree_[t].vessel.size(); ++b) {
       const std::size_t v = vesselTree_[t].vessel[b];
       const VesselDescription& d = scene.vessels[v];
-      structure_[organs_.size() + v] = {d.name,    d.appearance, StructureKind::vessel, t, b, organs_.size() + t,
-                                        d.friction};
+      structure_[organs_.size() + v] = {d.name, d.appearance,       d.role,    StructureKind::vessel, t,
+                                        b,      organs_.size() + t, d.friction};
     }
   }
 }

@@ -38,6 +38,7 @@ SceneView SceneViewer::view(const State& state) {
     SurfaceView surface;
     surface.organ = organ.name;
     surface.appearance = organ.appearance;
+    surface.role = model.structures()[o].role;
     surface.rest = organ.skin;
     organ.embedding.map(state.organ[o].position, surface.position);
     surface.triangle = organ.surface.triangles();
@@ -54,6 +55,7 @@ SceneView SceneViewer::view(const State& state) {
     SurfaceView surface;
     surface.organ = structure.name;
     surface.appearance = structure.appearance;
+    surface.role = structure.role;
     if (structure.kind == StructureKind::vessel)
       vessel_[vessel++]->fill(state, surface);
     else
