@@ -49,9 +49,6 @@ const CheckpointDefinition& sumDefinition() {
   return d;
 }
 
-/// Bits of HandResult::touching.
-constexpr std::size_t largestOrgans = 32;
-
 class ContactTime final : public Checkpoint {
  public:
   ContactTime(const AttemptContext& context, bool sum)
@@ -62,7 +59,7 @@ class ContactTime final : public Checkpoint {
         steps_(context.structures.size(), 0) {}
 
   void onStep(const recorder::StepRecord& record) override {
-    for (std::size_t o = 0; o < std::min(steps_.size(), largestOrgans); ++o) {
+    for (std::size_t o = 0; o < steps_.size(); ++o) {
       std::uint64_t touching = 0;
       for (const HandResult& hand : record.result.hand) touching += hand.touching >> o & 1U;
       steps_[o] += sum_ ? touching : std::min<std::uint64_t>(touching, 1);
@@ -73,11 +70,6 @@ class ContactTime final : public Checkpoint {
     const CheckpointDefinition& d = sum_ ? sumDefinition() : unionDefinition();
     std::vector<CheckpointValue> result;
     for (std::size_t o = 0; o < organs_.size(); ++o) {
-      if (o >= largestOrgans) {
-        result.push_back(makeMissing(d, organs_[o], end.origin, Availability::notAvailable,
-                                     "contact is reported for the first 32 organs of a scene"));
-        continue;
-      }
       result.push_back(makeValue(d, organs_[o], end.origin,
                                  static_cast<double>(steps_[o] * ticksPerStep_) * tickSeconds_, stretchNote(end)));
     }
