@@ -26,7 +26,7 @@ const CheckpointDefinition& connectiveRemainingDefinition() {
       .version = 1,
       .definition =
           "R = area of the bed under torn strands at the end / area of the whole bed, once no strand is "
-          "attached any more; bed: connective tissue on an organ of appearance \"gallbladder\"",
+          "attached any more; bed: connective tissue of role cystic-plate",
       .paperReading =
           "Remaining connective tissue (%), in its text \"remaining connective tissue after the gallbladder "
           "removal\": what is neither burned away nor attached, as a share of the bed's initial area",

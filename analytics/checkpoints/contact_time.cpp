@@ -62,7 +62,7 @@ class ContactTime final : public Checkpoint {
         steps_(context.structures.size(), 0) {}
 
   void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
-    for (std::size_t o = 0; o < std::min(steps_.size(), largestOrgans); ++o) {
+    for (std::size_t o = 0; o < steps_.size(); ++o) {
       std::uint64_t touching = 0;
       for (const HandResult& hand : record.result.hand) touching += hand.touching >> o & 1U;
       steps_[o] += sum_ ? touching : std::min<std::uint64_t>(touching, 1);

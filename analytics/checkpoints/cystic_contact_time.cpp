@@ -27,7 +27,7 @@ const CheckpointDefinition& cysticContactTimeDefinition() {
       .version = 1,
       .definition =
           "C = step length * sum over instruments and cystic vessels #{steps at whose end a force acts between "
-          "the two}; cystic: an end is grown to an organ of appearance \"gallbladder\"",
+          "the two}; cystic: of role cystic-duct or cystic-artery",
       .paperReading =
           "Time colliding cystic ducts (s), in its text \"collision time with the cystic duct and artery\": "
           "both vessels; 41.57 s in a task of 38.86 s can only be a sum over vessels or instruments, and "

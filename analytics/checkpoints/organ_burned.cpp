@@ -33,7 +33,7 @@ const CheckpointDefinition& organBurnedDefinition() {
 }
 
 /// Organs that the paper's table asks for in any scene.
-constexpr const char* askedFor[] = {"liver", "gallbladder"};
+constexpr StructureRole askedFor[] = {StructureRole::liver, StructureRole::gallbladder};
 
 class OrganBurned final : public Checkpoint {
  public:
@@ -53,12 +53,12 @@ class OrganBurned final : public Checkpoint {
               ? makeValue(organBurnedDefinition(), organ_[o].name, end.origin, charred_[o] / organ_[o].skinArea)
               : makeMissing(organBurnedDefinition(), organ_[o].name, end.origin, Availability::notApplicable, tooOld_));
     }
-    for (const char* name : askedFor) {
+    for (const StructureRole role : askedFor) {
       const bool there =
-          std::any_of(organ_.begin(), organ_.end(), [&](const SceneFacts::Organ& organ) { return organ.name == name; });
+          std::any_of(organ_.begin(), organ_.end(), [&](const SceneFacts::Organ& organ) { return organ.role == role; });
       if (there) continue;
-      result.push_back(makeMissing(organBurnedDefinition(), name, end.origin, Availability::notApplicable,
-                                   fmt::format("the scene has no {}", name)));
+      result.push_back(makeMissing(organBurnedDefinition(), nameOf(role), end.origin, Availability::notApplicable,
+                                   fmt::format("the scene has no {}", nameOf(role))));
     }
     return result;
   }

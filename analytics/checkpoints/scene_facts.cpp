@@ -43,25 +43,17 @@ bool SceneFacts::hasCystic() const {
 }
 
 SceneFacts sceneFacts(const SceneDescription& scene) {
-  const auto isGallbladder = [&](const std::string& name) {
-    return std::any_of(scene.organs.begin(), scene.organs.end(), [&](const OrganDescription& organ) {
-      return organ.name == name && organ.appearance == "gallbladder";
-    });
-  };
-  const auto entersGallbladder = [&](const VesselEndDescription& end) {
-    return end.kind == VesselEndDescription::Kind::organ && isGallbladder(end.to);
-  };
   SceneFacts facts;
   for (const OrganDescription& organ : scene.organs) {
-    facts.organ.push_back({organ.name, areaOf(organ.surface), organ.burnThrough > 0.0});
+    facts.organ.push_back({organ.name, organ.role, areaOf(organ.surface), organ.burnThrough > 0.0});
   }
   for (const VesselDescription& vessel : scene.vessels) {
     const std::vector<std::string>& spare = scene.procedure.spare;
-    facts.vessel.push_back({vessel.name, entersGallbladder(vessel.start) || entersGallbladder(vessel.end),
-                            std::find(spare.begin(), spare.end(), vessel.name) != spare.end()});
+    facts.vessel.push_back(
+        {vessel.name, isCystic(vessel.role), std::find(spare.begin(), spare.end(), vessel.name) != spare.end()});
   }
   for (const ConnectiveDescription& tissue : scene.connective) {
-    const bool holds = isGallbladder(tissue.first) || isGallbladder(tissue.second);
+    const bool holds = tissue.role == StructureRole::cysticPlate;
     facts.connective.push_back({tissue.name, holds, holds ? bedAreaOf(scene, tissue) : 0.0});
   }
   facts.fat = scene.fat.size();

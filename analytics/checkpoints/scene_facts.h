@@ -10,25 +10,23 @@
 
 namespace calot::analytics {
 
-/// Taken from the scene's own data, never from names or numbers of structures: so any scene answers.
-///
-/// An organ is a gallbladder by its appearance ("gallbladder"). A vessel is *cystic* when one of its ends is grown to
-/// a gallbladder: by its appearance it is then the cystic duct ("duct") or the cystic artery ("artery"). All other
-/// vessels are to be spared.
+/// Taken from the scene's roles (StructureRole) and sizes, never from names, looks or numbers of structures: so they
+/// hold for any scene.
 struct SceneFacts {
   struct Organ {
     std::string name;
+    StructureRole role = StructureRole::other;
     double skinArea = 0.0;  ///< of its surface at rest (m^2)
     bool hasWall = false;   ///< it can be perforated
   };
   struct Vessel {
     std::string name;
-    bool cystic = false;
+    bool cystic = false;  ///< cystic duct or cystic artery
     bool spared = false;  ///< the procedure tells to spare it
   };
   struct Connective {
     std::string name;
-    bool holdsGallbladder = false;  ///< one of the two organs that it joins is a gallbladder
+    bool holdsGallbladder = false;  ///< it is a cystic plate
     double area = 0.0;              ///< of its bed at rest (m^2), where it holds a gallbladder (connective_bed.h)
   };
   /// In the scene's order: the columns of StepResult.

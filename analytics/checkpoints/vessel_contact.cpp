@@ -4,19 +4,13 @@
 #include <fmt/format.h>
 
 namespace calot::analytics {
-namespace {
-
-/// Bits of HandResult::touching.
-constexpr std::size_t touchingBits = 32;
-
-}  // namespace
 
 VesselContact::VesselContact(const AttemptContext& context, bool (*chosen)(const SceneFacts::Vessel&))
     : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {
   const std::vector<SceneFacts::Vessel>& vessels = context.scene.vessel;
   for (std::size_t v = 0; v < vessels.size(); ++v) {
     const std::size_t structure = context.scene.organ.size() + v;
-    if (!chosen(vessels[v]) || structure >= touchingBits) continue;
+    if (!chosen(vessels[v])) continue;
     bit_.push_back(std::uint32_t{1} << structure);
     names_.push_back(vessels[v].name);
   }

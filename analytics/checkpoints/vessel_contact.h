@@ -13,7 +13,7 @@ namespace calot::analytics {
 /// Steps at whose end instruments touch some of a scene's vessels.
 class VesselContact {
  public:
-  /// @param chosen which vessels; those beyond the 32 structures that `touching` tells of are left out.
+  /// @param chosen which vessels
   VesselContact(const AttemptContext& context, bool (*chosen)(const SceneFacts::Vessel&));
 
   void add(const StepResult& result);

@@ -60,7 +60,7 @@ std::vector<OpenEnd> openEnds(const SceneView& view) {
     for (const auto& [middle, fan] : fans) {
       if (!(fan.area.norm() > 0.0)) continue;
       const double radius = std::sqrt(0.5 * fan.area.norm() / std::numbers::pi);
-      ends.push_back({surface.position[at(middle)], fan.area.normalized(), radius, surface.appearance == "duct"});
+      ends.push_back({surface.position[at(middle)], fan.area.normalized(), radius, carriesBile(surface.role)});
     }
   }
   return ends;

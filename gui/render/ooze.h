@@ -15,7 +15,7 @@ struct OpenEnd {
   Vec3 position = Vec3::Zero();   ///< middle of the face in W (m)
   Vec3 outwards = Vec3::UnitZ();  ///< unit, away from the stump
   double radius = 0.0;            ///< of the face (m)
-  bool bile = false;              ///< leaves a duct; blood leaves any other vessel
+  bool bile = false;              ///< leaves a cystic or bile duct; blood leaves any other vessel
 };
 
 /// All open faces, by SurfaceView::face. @pre checkView(view) has passed

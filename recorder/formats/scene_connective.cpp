@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "recorder/formats/scene_names.h"
+#include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
 
 namespace calot::recorder {
@@ -33,6 +34,13 @@ std::vector<ConnectiveDescription> readConnective(const JsonPlace& place, const 
     tissue.first = organ("first");
     tissue.second = organ("second");
     if (tissue.first == tissue.second) object.at("second").fail("joins an organ to itself");
+    tissue.role = readRole(object, {StructureRole::cysticPlate});
+    const bool onGallbladder = std::any_of(organs.begin(), organs.end(), [&](const OrganDescription& o) {
+      return o.role == StructureRole::gallbladder && (o.name == tissue.first || o.name == tissue.second);
+    });
+    if (tissue.role == StructureRole::cysticPlate && !onGallbladder) {
+      object.at("role").fail("neither organ that it joins has the role gallbladder");
+    }
     object.read("reach", tissue.reach);
     object.read("strands", tissue.strands);
     object.read("stiffness", tissue.stiffness);

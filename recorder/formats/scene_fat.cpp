@@ -9,6 +9,7 @@
 #include "recorder/errors.h"
 #include "recorder/formats/mesh_report.h"
 #include "recorder/formats/scene_names.h"
+#include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
 #include "sim/geometry/brick_lattice.h"
 #include "sim/geometry/self_crossing.h"
@@ -103,11 +104,12 @@ std::vector<FatDescription> readFat(const JsonPlace& place, const std::vector<Or
     if (known(vessels, fat.name)) object.at("name").fail("a vessel has this name");
     if (known(all, fat.name)) object.at("name").fail("other fat has this name");
     fat.appearance = readName(object, "appearance");
+    fat.role = readRole(object, {StructureRole::triangleFat});
     object.read("cellSize", fat.cellSize);
     object.read("cellsPerCube", fat.cellsPerCube);
     fat.material = readMaterial(object.at("material"));
     object.read("friction", fat.friction);
-    for (const JsonPlace& one : object.at("attachments").list(0, mostBodies)) {
+    for (const JsonPlace& one : object.at("attachments").list(0, maxStructures)) {
       const FatAttachmentDescription attachment = readAttachment(one, organs, vessels);
       const bool twice = std::any_of(fat.attachments.begin(), fat.attachments.end(),
                                      [&](const FatAttachmentDescription& other) { return other.to == attachment.to; });

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -13,6 +14,7 @@
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_organs.h"
 #include "recorder/formats/scene_procedure.h"
+#include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
 #include "recorder/formats/scene_vessels.h"
 #include "sim/math/floating_point.h"
@@ -72,6 +74,17 @@ HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& work
   return hand;
 }
 
+void checkStructureCount(const JsonObject& object) {
+  std::size_t structures = 0;
+  for (const char* list : {"organs", "vessels", "fat"}) {
+    if (object.has(list)) structures += object.at(list).list(0, std::numeric_limits<std::size_t>::max()).size();
+  }
+  if (structures > maxStructures) {
+    object.fail(fmt::format("{} structures (organs, vessels and bodies of fat); at most {} are allowed", structures,
+                            maxStructures));
+  }
+}
+
 LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   const FloatingPointScope environment;  // numbers are read and the camera is turned the same in every process
   const nlohmann::json json = parseStrictJson(file.bytes, file.name);
@@ -103,7 +116,8 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   const JsonObject hands = object.at("hands").object(sceneRule("hands"));
   for (std::size_t h = 0; h < handCount; ++h) scene.hands[h] = readHand(hands.at(handNames[h]), scene.workspace);
 
-  for (const JsonPlace& organ : object.at("organs").list(1, mostBodies))
+  checkStructureCount(object);
+  for (const JsonPlace& organ : object.at("organs").list(1, maxStructures))
     scene.organs.push_back(readOrgan(organ, fetch));
   checkOrgans(object.at("organs"), scene.organs);
   if (object.has("connective")) scene.connective = readConnective(object.at("connective"), scene.organs);
@@ -111,9 +125,7 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   if (object.has("fat")) {
     scene.fat = readFat(object.at("fat"), scene.organs, scene.vessels, fetch, loaded.warnings);
   }
-  if (scene.organs.size() + scene.vessels.size() + scene.fat.size() > mostBodies) {
-    object.fail(fmt::format("more than {} organs, vessels and fat together", mostBodies));
-  }
+  if (!statesRoles(object)) deriveRoles(scene);
 
   if (object.has("procedure")) scene.procedure = readProcedure(object.at("procedure"), scene);
   if (object.has("retraction")) scene.retraction = readRetractions(object.at("retraction"), scene.organs);
@@ -143,7 +155,7 @@ LoadedScene loadScene(const fs::path& sceneFile) {
   const fs::path root = inScenes ? folder / ".." : folder;
   const std::string base = sceneFile.filename().string();
   std::vector<Asset> assets;
-  assets.reserve(mostBodies + 1);  // references to the elements stay good
+  assets.reserve(maxStructures + 1);  // references to the elements stay good
   assets.push_back({inScenes ? "scenes/" + base : base, {}});
   assets[0].bytes = readFileBytes(sceneFile, assets[0].name, largestMesh);
 

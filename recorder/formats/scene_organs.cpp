@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "recorder/formats/scene_names.h"
+#include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
 
 namespace calot::recorder {
@@ -35,6 +36,7 @@ OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
   OrganDescription organ;
   organ.name = readName(object, "name");
   organ.appearance = readName(object, "appearance");
+  organ.role = readRole(object, {StructureRole::liver, StructureRole::gallbladder});
   object.read("tetrahedra", organ.tetrahedra);
   object.read("friction", organ.friction);
   object.read("burnThrough", organ.burnThrough);
@@ -50,7 +52,7 @@ void checkOrgans(const JsonPlace& place, const std::vector<OrganDescription>& or
         std::find_if(organs.begin(), organs.end(), [&](const OrganDescription& o) { return o.name == name; });
     return static_cast<std::size_t>(found - organs.begin());
   };
-  const std::vector<JsonPlace> places = place.list(1, mostBodies);
+  const std::vector<JsonPlace> places = place.list(1, maxStructures);
   for (std::size_t i = 0; i < organs.size(); ++i) {
     const JsonObject object = places[i].object(sceneRule("organ"));
     if (index(organs[i].name) != i) object.at("name").fail("another organ has this name");

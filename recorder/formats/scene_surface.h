@@ -2,7 +2,6 @@
 // Surfaces and materials that a scene file names. Internal to this folder.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -10,11 +9,9 @@
 #include "recorder/identity.h"
 #include "sim/geometry/triangle_mesh.h"
 #include "sim/scene/description.h"
+#include "sim/tissue/structure_limit.h"
 
 namespace calot::recorder {
-
-/// Organs, vessels and fat together: each is a bit of HandResult::touching.
-inline constexpr std::size_t mostBodies = 16;
 
 /// Gives the asset of a name, or fails at the place that names it.
 using FetchAsset = std::function<const Asset&(const std::string& name, const JsonPlace& place)>;

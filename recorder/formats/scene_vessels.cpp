@@ -7,6 +7,7 @@
 #include <string>
 
 #include "recorder/formats/scene_names.h"
+#include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
 #include "recorder/formats/scene_surface.h"
 #include "sim/geometry/closest_point.h"
@@ -95,13 +96,15 @@ VesselEndDescription readEnd(const JsonPlace& place, const Vec3& point, bool isS
 
 std::vector<VesselDescription> readVessels(const JsonPlace& place, const std::vector<OrganDescription>& organs) {
   std::vector<VesselDescription> vessels;
-  for (const JsonPlace& item : place.list(0, mostBodies)) {
+  for (const JsonPlace& item : place.list(0, maxStructures)) {
     const JsonObject object = item.object(sceneRule("vessel"));
     VesselDescription vessel;
     vessel.name = readName(object, "name");
     if (find(organs, vessel.name) != nullptr) object.at("name").fail("an organ has this name");
     if (find(vessels, vessel.name) != nullptr) object.at("name").fail("another vessel has this name");
     vessel.appearance = readName(object, "appearance");
+    vessel.role = readRole(object, {StructureRole::cysticDuct, StructureRole::cysticArtery, StructureRole::bileDuct,
+                                    StructureRole::artery});
     vessel.path = readPath(object.at("path"));
     object.read("elements", vessel.elements);
     object.read("radius", vessel.radius);

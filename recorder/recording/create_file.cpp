@@ -238,7 +238,8 @@ void checkHeader(const AttemptHeader& header) {
   if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
   if (header.ticksPerStep < 1 || header.ticksPerStep > largestTicksPerStep) refuse("ticks a step must lie in 1..1000");
   if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");
-  if (header.structures().size() > mostRecordedStructures) refuse("more than 32 organs, vessels and bodies of fat");
+  if (header.structures().size() > maxStructures)
+    refuse(fmt::format("more than {} structures (organs, vessels and bodies of fat)", maxStructures));
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
     if constexpr (Kind::hasStructures) {
       if (Kind::results.since > header.stepResultVersion && !Kind::namesOf(header).empty())

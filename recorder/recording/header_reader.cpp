@@ -198,11 +198,12 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
     if constexpr (Kind::hasStructures) {
       if (Kind::results.since <= h.stepResultVersion)
-        Kind::namesOf(h) = reader.names(namesPath<Kind>(), mostRecordedStructures);
+        Kind::namesOf(h) = reader.names(namesPath<Kind>(), maxStructures);
     }
   });
-  if (h.structures().size() > mostRecordedStructures)
-    throw damaged(path, "/scene", "names more than 32 organs, vessels and bodies of fat");
+  if (h.structures().size() > maxStructures)
+    throw damaged(path, "/scene",
+                  fmt::format("names more than {} structures (organs, vessels and bodies of fat)", maxStructures));
   h.layout.components = reader.names("/steps/component_names", 4096);
   const std::vector<std::string> fields = reader.names("/steps/field_names", 65536);
   if (!fields.empty()) {

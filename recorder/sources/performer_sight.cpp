@@ -23,6 +23,13 @@ bool underFat(const SceneDescription& scene, const Vec3& p) {
   return false;
 }
 
+/// Name of the first tissue of that role, or nothing.
+template <class Tissue>
+std::string nameWithRole(const std::vector<Tissue>& all, StructureRole role) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Tissue& one) { return one.role == role; });
+  return found == all.end() ? std::string() : found->name;
+}
+
 }  // namespace
 
 const SurfaceView* PerformerSight::surfaceNamed(const SceneView& view, const std::string& name) {
@@ -48,14 +55,13 @@ std::vector<Vec3> PerformerSight::stationsOf(const std::vector<Vec3>& path) {
 PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker)
     : organs_(scene.organs.size()), specimen_(organs_), worker_(worker), eye_(scene.camera.position) {
   for (std::size_t h = 0; h < handCount; ++h) port_[h] = scene.hands[h].port;
-  if (!scene.connective.empty()) {
-    bed_ = scene.connective[0].name;
-    specimenName_ = scene.connective[0].first;
-  }
-  if (!scene.procedure.bed.empty()) bed_ = scene.procedure.bed;
-  if (!scene.procedure.specimen.empty()) specimenName_ = scene.procedure.specimen;
+  bed_ =
+      !scene.procedure.bed.empty() ? scene.procedure.bed : nameWithRole(scene.connective, StructureRole::cysticPlate);
   planVessels(scene);
-  if (!scene.fat.empty()) fat_ = scene.fat[0].name;
+  specimenName_ = scene.procedure.specimen;
+  if (specimenName_.empty() && !(bed_.empty() && vessel_.empty()))
+    specimenName_ = nameWithRole(scene.organs, StructureRole::gallbladder);
+  fat_ = nameWithRole(scene.fat, StructureRole::triangleFat);
   planColumns(scene);
   // A scene of fat alone is for clearing.
   divides_ = !vessel_.empty() && (fat_.empty() || !bed_.empty());
@@ -65,13 +71,11 @@ PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker
   if (hasSpecimen()) findSpecimen(scene);
 }
 
-/// What the procedure says is to be divided; where it says nothing, what ends in the specimen.
+/// What the procedure says is to be divided; without a procedure, the cystic vessels.
 void PerformerSight::planVessels(const SceneDescription& scene) {
   std::vector<DivideDescription> divide = scene.procedure.divide;
   for (const VesselDescription& v : scene.vessels) {
-    if (!scene.procedure.specimen.empty() || v.end.kind != VesselEndDescription::Kind::organ) continue;
-    if (specimenName_.empty()) specimenName_ = v.end.to;
-    if (v.end.to == specimenName_) divide.push_back({v.name});
+    if (scene.procedure.specimen.empty() && isCystic(v.role)) divide.push_back({v.name});
   }
   for (const DivideDescription& d : divide) {
     for (std::size_t i = 0; i < scene.vessels.size(); ++i) {

@@ -9,7 +9,7 @@ namespace calot {
 
 namespace {
 
-constexpr std::array<char, 8> magic{'C', 'A', 'L', 'O', 'T', 'F', 'L', '1'};
+constexpr std::array<char, 8> magic{'C', 'A', 'L', 'O', 'T', 'F', 'L', '2'};
 
 template <class Tick, class Visitor>
 void visitTick(Tick& tick, Visitor& visit) {

@@ -11,7 +11,7 @@
 namespace calot {
 
 /// Scene, State and the samples of the steps after it as plain bytes, for programs that link the core alone: the eight
-/// characters "CALOTFL1", the scene description, the State's bytes (as saveState() gives them, length first), the
+/// characters "CALOTFL2", the scene description, the State's bytes (as saveState() gives them, length first), the
 /// number of ticks, then for each tick both hands and the camera.
 struct FlatState {
   SceneDescription scene;

@@ -12,9 +12,9 @@ Model::Built Model::build(SceneDescription scene) {
   const FloatingPointScope floatingPoint;
   Built built;
   const std::size_t structures = scene.organs.size() + scene.vessels.size() + scene.fat.size();
-  if (structures > largestStructureCount) {
-    built.error = "a scene has at most " + std::to_string(largestStructureCount) +
-                  " organs, vessels and bodies of fat, this one has " + std::to_string(structures);
+  if (structures > maxStructures) {
+    built.error = std::to_string(structures) + " structures (organs, vessels and bodies of fat); at most " +
+                  std::to_string(maxStructures) + " are allowed";
     return built;
   }
   std::unique_ptr<Model> model(new Model);

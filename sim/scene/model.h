@@ -15,9 +15,6 @@
 
 namespace calot {
 
-/// A contact's key has four bits for its structure.
-inline constexpr std::size_t largestStructureCount = 16;
-
 /// Fat close around a vessel that the scene's procedure divides.
 struct VesselCover {
   std::size_t vessel = 0;  ///< of the scene's

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/scene/samples.h"
+#include "sim/tissue/structure_role.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot {

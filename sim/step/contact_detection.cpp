@@ -9,6 +9,14 @@
 
 namespace calot {
 
+namespace {
+
+/// A contact block's key has its structure in the bits from here up to the four of the instrument's part.
+constexpr unsigned structureShift = 52;
+static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
+
+}  // namespace
+
 void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State& state, std::size_t hand,
                                           std::size_t structure, const SurfaceContact& contact,
                                           std::vector<ContactBlock>& blocks) const {
@@ -21,7 +29,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   block.body = touched.body;
   block.structure = structure;
   block.place = surfaces.skin(structure).influence(contact.node, contact.weight);
-  block.key = contact.key | static_cast<std::uint64_t>(structure) << 52U;
+  block.key = contact.key | static_cast<std::uint64_t>(structure) << structureShift;
   // Slip along and across the shaft, as far as the surface allows.
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
   block.direction = {contact.normal, frame.col(0), frame.col(1)};

@@ -9,6 +9,8 @@
 
 #include "sim/math/linear.h"
 #include "sim/solid/solid.h"
+#include "sim/tissue/structure_limit.h"
+#include "sim/tissue/structure_role.h"
 
 namespace calot {
 
@@ -16,10 +18,11 @@ namespace calot {
 using TissueId = std::uint8_t;
 
 /// What has a name and a skin, and can be touched: organs, then vessels, then fat, in the scene's order. Contacts,
-/// events and StepResult refer to structures by their index in this list.
+/// events and StepResult refer to structures by their index in this list; it has at most maxStructures.
 struct StructureModel {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   TissueId kind = 0;
   std::size_t index = 0;   ///< among organs, vessel trees, or bodies of fat
   std::size_t branch = 0;  ///< of a vessel: in its tree

@@ -18,6 +18,7 @@ namespace calot {
 /// Connective tissue over the bed where one organ lies on another (sim/connective/connective_bed.h).
 struct ConnectiveDescription {
   std::string name;
+  StructureRole role = StructureRole::other;
   std::string first;            ///< organ whose surface the bed is part of
   std::string second;           ///< organ that it lies on
   double reach = 0.004;         ///< triangles of the first organ no farther from the second are the bed (m)
@@ -30,6 +31,7 @@ struct ConnectiveDescription {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
+    visit("role", self.role);
     visit("first", self.first);
     visit("second", self.second);
     visit("reach", self.reach);

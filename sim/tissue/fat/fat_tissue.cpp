@@ -153,7 +153,7 @@ void FatTissue::listStructures(const Model& model, TissueId kind, std::size_t fi
                                std::vector<StructureModel>& structures) {
   for (std::size_t f = 0; f < model.fat().size(); ++f) {
     const FatDescription& d = model.scene().fat[f];
-    structures.push_back({d.name, d.appearance, kind, f, 0, firstBody + f, d.friction});
+    structures.push_back({d.name, d.appearance, d.role, kind, f, 0, firstBody + f, d.friction});
   }
 }
 

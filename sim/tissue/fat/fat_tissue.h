@@ -36,6 +36,7 @@ struct FatAttachmentDescription {
 struct FatDescription {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   SurfaceDescription surface;
   double cellSize = 0.00075;       ///< of the potential field (m)
   std::uint32_t cellsPerCube = 3;  ///< edge of a mechanical cube in cells
@@ -50,6 +51,7 @@ struct FatDescription {
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
     visit("appearance", self.appearance);
+    visit("role", self.role);
     visit("surface", self.surface);
     visit("cellSize", self.cellSize);
     visit("cellsPerCube", self.cellsPerCube);

@@ -69,6 +69,7 @@ class FatViewer final : public TissueViewer {
       SurfaceView& surface = view.surface.emplace_back();
       surface.organ = description.name;
       surface.appearance = description.appearance;
+      surface.role = description.role;
       fat_[f]->fill(state.fat[f], surface);
     }
   }

@@ -94,7 +94,7 @@ void OrganTissue::listStructures(const Model& model, TissueId kind, std::size_t 
                                  std::vector<StructureModel>& structures) {
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     const OrganDescription& d = model.scene().organs[o];
-    structures.push_back({d.name, d.appearance, kind, o, 0, firstBody + o, d.friction});
+    structures.push_back({d.name, d.appearance, d.role, kind, o, 0, firstBody + o, d.friction});
   }
 }
 

@@ -39,6 +39,7 @@ struct AnchorDescription {
 struct OrganDescription {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   SurfaceDescription surface;
   std::uint32_t tetrahedra = 0;  ///< requested number
   MaterialDescription material;
@@ -50,6 +51,7 @@ struct OrganDescription {
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
     visit("appearance", self.appearance);
+    visit("role", self.role);
     visit("surface", self.surface);
     visit("tetrahedra", self.tetrahedra);
     visit("material", self.material);

@@ -18,6 +18,7 @@ class OrganViewer final : public TissueViewer {
       SurfaceView& surface = view.surface.emplace_back();
       surface.organ = organ.name;
       surface.appearance = organ.appearance;
+      surface.role = model_.structures()[o].role;
       surface.rest = organ.skin;
       organ.embedding.map(state.organ[o].position, surface.position);
       surface.triangle = organ.surface.triangles();

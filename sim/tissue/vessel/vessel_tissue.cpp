@@ -114,7 +114,7 @@ void VesselTissue::listStructures(const Model& model, TissueId kind, std::size_t
     const VesselTree& tree = model.vesselTrees()[t];
     for (std::size_t b = 0; b < tree.vessel.size(); ++b) {
       const VesselDescription& d = model.scene().vessels[tree.vessel[b]];
-      structures[first + tree.vessel[b]] = {d.name, d.appearance, kind, t, b, firstBody + t, d.friction};
+      structures[first + tree.vessel[b]] = {d.name, d.appearance, d.role, kind, t, b, firstBody + t, d.friction};
     }
   }
 }

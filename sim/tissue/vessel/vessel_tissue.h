@@ -42,6 +42,7 @@ struct VesselEndDescription {
 struct VesselDescription {
   std::string name;
   std::string appearance;
+  StructureRole role = StructureRole::other;
   std::vector<Vec3> path;        ///< points that the centre line passes at rest, from start to end, in W (m)
   std::uint32_t elements = 40;   ///< of equal length
   double radius = 0.0015;        ///< outer (m)
@@ -56,6 +57,7 @@ struct VesselDescription {
   static void fields(Self& self, Visitor& visit) {
     visit("name", self.name);
     visit("appearance", self.appearance);
+    visit("role", self.role);
     visit("path", self.path);
     visit("elements", self.elements);
     visit("radius", self.radius);

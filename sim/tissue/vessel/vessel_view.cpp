@@ -253,6 +253,7 @@ class VesselViewer final : public TissueViewer {
       SurfaceView& surface = view.surface.emplace_back();
       surface.organ = vessel.structure().name;
       surface.appearance = vessel.structure().appearance;
+      surface.role = vessel.structure().role;
       vessel.fill(state, surface);
     }
     addClips(model_, state, view);

@@ -21,9 +21,11 @@ constexpr int sides = 16;
 constexpr double radius = 0.002;
 
 /// The face of a stump: a disk that looks along x.
-SurfaceView stump(const std::string& appearance, float middle) {
+SurfaceView stump(StructureRole role, float middle) {
   SurfaceView surface;
-  surface.organ = surface.appearance = appearance;
+  surface.organ = "vessel";
+  surface.appearance = carriesBile(role) ? "duct" : "artery";
+  surface.role = role;
   surface.position.emplace_back(0.01, 0.0, 0.0);
   surface.face.push_back(middle);
   for (int k = 0; k < sides; ++k) {
@@ -46,11 +48,13 @@ double lowest(const Mesh& mesh) {
 
 TEST(Ooze, KnowsOpenFacesByTheirMiddles) {
   SceneView view;
-  view.surface = {stump("artery", 2.0F), stump("duct", 2.0F), stump("artery", 1.5F)};
+  view.surface = {stump(StructureRole::cysticArtery, 2.0F), stump(StructureRole::cysticDuct, 2.0F),
+                  stump(StructureRole::cysticArtery, 1.5F), stump(StructureRole::bileDuct, 2.0F)};
   const std::vector<OpenEnd> ends = openEnds(view);
-  ASSERT_EQ(ends.size(), 2U) << "a clip shuts the third one";
+  ASSERT_EQ(ends.size(), 3U) << "a clip shuts the third one";
   EXPECT_FALSE(ends[0].bile);
   EXPECT_TRUE(ends[1].bile);
+  EXPECT_TRUE(ends[2].bile);
   EXPECT_LT((ends[0].position - Vec3(0.01, 0.0, 0.0)).norm(), 1e-12);
   EXPECT_LT((ends[0].outwards - Vec3::UnitX()).norm(), 1e-12);
   // A regular polygon has n / (2 pi) sin(2 pi / n) of the area of its circle.
@@ -97,7 +101,7 @@ TEST(Ooze, StainsWhatIsBelowAndNothingElse) {
 /// A stump over a liver that slopes away below it, seen from the side.
 class OozePicture : public testing::Test {
  protected:
-  static SceneView scene(const std::string& vessel, float middle) {
+  static SceneView scene(StructureRole vessel, float middle) {
     SceneView view;
     view.verticalFieldOfView = 0.5;
     // x of C is y of W to the left, y of C is down, z of C looks along -x.
@@ -129,21 +133,21 @@ class OozePicture : public testing::Test {
 
 TEST_F(OozePicture, BloodRunsOverWhatIsBelowAnOpenArtery) {
   for (const Quality quality : {Quality::interactive, Quality::film}) {
-    const auto clean = below(scene("artery", 1.5F), quality);
-    const auto bloody = below(scene("artery", 2.0F), quality);
+    const auto clean = below(scene(StructureRole::artery, 1.5F), quality);
+    const auto bloody = below(scene(StructureRole::artery, 2.0F), quality);
     EXPECT_GT(bloody[0] / bloody[1], 1.25 * clean[0] / clean[1]) << "redder than liver";
   }
 }
 
 TEST_F(OozePicture, BileIsNotRed) {
-  const auto clean = below(scene("duct", 1.5F), Quality::film);
-  const auto bile = below(scene("duct", 2.0F), Quality::film);
+  const auto clean = below(scene(StructureRole::bileDuct, 1.5F), Quality::film);
+  const auto bile = below(scene(StructureRole::bileDuct, 2.0F), Quality::film);
   EXPECT_LT(bile[0] / bile[1], 0.8 * clean[0] / clean[1]);
 }
 
 TEST_F(OozePicture, TheSameViewGivesTheSameBytesAndAnotherTimeAnotherDrop) {
   Renderer renderer;
-  SceneView view = scene("artery", 2.0F);
+  SceneView view = scene(StructureRole::artery, 2.0F);
   const Image first = renderer.render(view, 200, 200, Quality::interactive);
   EXPECT_EQ(first.rgba, renderer.render(view, 200, 200, Quality::interactive).rgba);
   view.time = 3.0;

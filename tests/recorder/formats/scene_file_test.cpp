@@ -164,7 +164,8 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
        "scenes/small.json: /organs/0/material/density: a number is wanted, not string"},
       {"/organs/0/material/density", "", "scenes/small.json: /organs/0/material: the key \"density\" is missing"},
       {"/organs/0/colour", "1",
-       "scenes/small.json: /organs/0/colour: unknown key; known are name, appearance, mesh, tetrahedra, material, "
+       "scenes/small.json: /organs/0/colour: unknown key; known are name, appearance, role, mesh, tetrahedra, "
+       "material, "
        "friction, burnThrough, anchors"},
       {"/organs/0/tetrahedra", "9", "scenes/small.json: /organs/0/tetrahedra: 9 is not in [10, 1000000]"},
       {"/organs/0/tetrahedra", "100.5", "scenes/small.json: /organs/0/tetrahedra: a whole number is wanted"},

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "sim/tissue/structure_limit.h"
 #include "tests/recorder/formats/support/scene_with_vessels.h"
 
 namespace calot::recorder::test {
@@ -78,7 +79,7 @@ TEST(SceneVessels, everyFaultIsNamedWithItsPlace) {
        "/vessels/1/start/to: it lies 0.0199 m away; at most 0.005 m is allowed"},
       {"/vessels/0/start", "", "/vessels/0: the key \"start\" is missing"},
       {"/vessels/0/colour", "1",
-       "/vessels/0/colour: unknown key; known are name, appearance, path, elements, radius, wall, material, "
+       "/vessels/0/colour: unknown key; known are name, appearance, role, path, elements, radius, wall, material, "
        "ultimateStrain, burnThrough, friction, start, end"},
       {"/vessels", "{}", "/vessels: a list is wanted, not object"},
   };
@@ -87,12 +88,16 @@ TEST(SceneVessels, everyFaultIsNamedWithItsPlace) {
 
 TEST(SceneVessels, organsVesselsAndFatTogetherHaveALimit) {
   nlohmann::json scene = sceneWithVessels();
-  for (int i = 0; i < 13; ++i) {
+  const auto add = [&](int number) {
     nlohmann::json one = scene["vessels"][0];
-    one["name"] = std::string("twig-").append(std::to_string(i));
+    one["name"] = std::string("twig-").append(std::to_string(number));
     scene["vessels"].push_back(one);
-  }
-  EXPECT_EQ(faultOf([&] { load(scene); }), "scenes/small.json: /: more than 16 organs, vessels and fat together");
+  };
+  for (int i = 0; i < 12; ++i) add(i);
+  EXPECT_EQ(load(scene).description.vessels.size(), maxStructures - 2);
+  add(12);
+  EXPECT_EQ(faultOf([&] { load(scene); }),
+            "scenes/small.json: /: 17 structures (organs, vessels and bodies of fat); at most 16 are allowed");
 }
 
 TEST(SceneVessels, defaultsAreTheSchemas) {

@@ -147,15 +147,17 @@ TEST(EarlierVersion, CannotBeWrittenWithVesselsOrFat) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(Structures, AreAtMostTheBitsOfTouching) {
+TEST(Structures, AreAtMostThoseOfAScene) {
   const Folder folder;
-  EXPECT_THROW(RecordingWriter(folder / "r.h5", withStructures(makeHeader(10, 16), 16, 1)), Error);
+  EXPECT_THROW(RecordingWriter(folder / "r.h5", withStructures(makeHeader(10, 8), 8, 1)), Error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  test::writeRecording(folder / "r.h5", withStructures(makeHeader(10, 7), 8, 1), 3);
+  EXPECT_EQ(faultOf(folder / "r.h5"), "");
 }
 
 TEST(HostileNames, AreDamageAndNamed) {
   const Folder folder;
-  test::writeRecording(folder / "whole.h5", withStructures(makeHeader(10, 20), 6, 6), 30);
+  test::writeRecording(folder / "whole.h5", withStructures(makeHeader(10, 4), 6, 6), 30);
   ASSERT_EQ(faultOf(folder / "whole.h5"), "");
   const std::vector<std::string> six{"a", "b", "c", "d", "e", "f"};
   const std::vector<std::string> seven{"a", "b", "c", "d", "e", "f", "g"};
@@ -169,10 +171,10 @@ TEST(HostileNames, AreDamageAndNamed) {
       {"/scene/vessels", six, 0, "fixed-length"},
       {"/scene/vessels", {"a", "b", "c", "d", "e", std::string("f\0g", 3)}, 3, "zero inside"},
       {"/scene/vessels", six, 2000, "fixed-length"},
-      {"/scene/vessels", Names(33, "a"), 1, "shape"},
+      {"/scene/vessels", Names(17, "a"), 1, "shape"},
       {"/scene/vessels", {}, 1, "shape"},
-      {"/scene/vessels", seven, 1, "more than 32"},
-      {"/scene/fat", seven, 1, "more than 32"},
+      {"/scene/vessels", seven, 1, "more than 16"},
+      {"/scene/fat", seven, 1, "more than 16"},
       {"/scene/fat", {"a"}, 1, "wrong shape"},
       {"/scene/fat", {"a", "b", "c", "d", "e", "f"}, 0, "/scene/fat"},
       {"/scene/vessels", six, 1, "chain is broken at its start"},

@@ -26,6 +26,7 @@ SceneDescription padScene() {
   VesselDescription duct;
   duct.name = "duct";
   duct.appearance = "duct";
+  duct.role = StructureRole::cysticDuct;
   duct.path = {Vec3(-0.025, 0.0, test::blockTop + 0.005), Vec3(0.025, 0.0, test::blockTop + 0.005)};
   duct.material = {2e5, 0.45, 1050.0, 5.0, 0.01};
   duct.start.kind = duct.end.kind = VesselEndDescription::Kind::fixed;
@@ -101,6 +102,8 @@ TEST_F(Viewer, FatIsAClosedSurfaceAndSearedWhereItWasCarved) {
   const SceneView before = viewOf(*model_, rest), after = viewOf(*model_, carved);
   const SurfaceView& fat = named(after, "pad");
   EXPECT_EQ(fat.appearance, "fat");
+  EXPECT_EQ(fat.role, StructureRole::other);
+  EXPECT_EQ(named(after, "duct").role, StructureRole::cysticDuct);
   EXPECT_TRUE(closed(named(before, "pad")));
   EXPECT_TRUE(closed(fat));
   EXPECT_GT(volume(fat), 0.0);

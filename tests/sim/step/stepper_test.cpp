@@ -236,8 +236,8 @@ TEST(ModelBuild, SaysWhatIsWrongWithAScene) {
   open.organs[0].surface.triangle.pop_back();
   EXPECT_FALSE(Model::build(open).model) << "an open surface";
   SceneDescription many = test::blockScene(300);
-  many.organs.assign(largestStructureCount + 1, many.organs[0]);
-  EXPECT_FALSE(Model::build(many).model) << "seventeen organs";
+  many.organs.assign(maxStructures + 1, many.organs[0]);
+  EXPECT_EQ(Model::build(many).error, "17 structures (organs, vessels and bodies of fat); at most 16 are allowed");
 }
 
 }  // namespace

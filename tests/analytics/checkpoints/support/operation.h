@@ -2,9 +2,11 @@
 // An operation made by hand: a scene with everything, and steps that say what a test wants them to.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tests/analytics/checkpoints/support/steps.h"
 
@@ -21,31 +23,31 @@ enum Structure : std::uint16_t {
   fat = 6
 };
 
-/// The vessels' names say nothing: what they are follows from where they end.
+/// Names and looks say nothing: what a tissue is follows from its role.
 inline SceneDescription operationScene() {
   SceneDescription s = scene();
   s.organs[0].name = "organ-a";
-  s.organs[0].appearance = "liver";
   s.organs[1].name = "organ-b";
-  s.organs[1].appearance = "gallbladder";
   s.organs[1].burnThrough = 1.0;
-  const auto vessel = [&](const char* name, const char* appearance, const char* endsOn) {
+  for (OrganDescription& organ : s.organs) organ.appearance = "tissue";
+  const auto vessel = [&](const char* name, StructureRole role) {
     VesselDescription& v = s.vessels.emplace_back();
     v.name = name;
-    v.appearance = appearance;
+    v.role = role;
     v.start.kind = VesselEndDescription::Kind::fixed;
-    if (*endsOn != '\0') v.end = {VesselEndDescription::Kind::organ, endsOn};
   };
-  vessel("v1", "duct", "");
-  vessel("v2", "duct", "organ-b");
-  vessel("v3", "artery", "organ-a");
-  vessel("v4", "artery", "organ-b");
+  vessel("v1", StructureRole::bileDuct);
+  vessel("v2", StructureRole::cysticDuct);
+  vessel("v3", StructureRole::artery);
+  vessel("v4", StructureRole::cysticArtery);
   FatDescription& f = s.fat.emplace_back();
   f.name = "fat";
+  f.role = StructureRole::triangleFat;
   f.triangleDepth = 0.01;
   s.procedure.specimen = "organ-b";
   ConnectiveDescription& bed = s.connective.emplace_back();
   bed.name = "bed";
+  bed.role = StructureRole::cysticPlate;
   bed.first = "organ-b";
   bed.second = "organ-a";
   return s;
@@ -96,6 +98,11 @@ class Operation {
   void end(recorder::Outcome outcome = recorder::Outcome::completed) { collector.onEnd(outcome); }
   [[nodiscard]] CheckpointValue value(const std::string& name, const std::string& subject = "") const {
     return valueOf(collector, name, subject);
+  }
+  [[nodiscard]] bool has(const std::string& name, const std::string& subject) const {
+    const std::vector<CheckpointValue> values = collector.values();
+    return std::any_of(values.begin(), values.end(),
+                       [&](const CheckpointValue& v) { return v.name == name && v.subject == subject; });
   }
 
   CheckpointCollector collector;

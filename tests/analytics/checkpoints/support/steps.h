@@ -35,6 +35,7 @@ inline SceneDescription scene() {
   for (const char* name : {"liver", "gallbladder"}) {
     OrganDescription& organ = s.organs.emplace_back();
     organ.name = organ.appearance = name;
+    organ.role = s.organs.size() == 1 ? StructureRole::liver : StructureRole::gallbladder;
     organ.surface.vertex = {Vec3(0.0, 0.0, 0.0), Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.1, 0.0)};
     organ.surface.triangle = {Index3(0, 1, 2)};
   }

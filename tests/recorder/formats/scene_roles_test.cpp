@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Roles of a scene's structures: as the file states them, and as they are derived where it states none.
+#include "recorder/formats/scene_roles.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "sim/math/fields.h"
+#include "tests/recorder/formats/support/scene_with_vessels.h"
+
+namespace calot::recorder::test {
+namespace {
+
+using nlohmann::json;
+
+const std::filesystem::path sourceTree = CALOT_SOURCE_DIR;
+
+/// The scene with vessels, with a gallbladder and the tissue between it and the liver.
+json wholeScene() {
+  json scene = sceneWithVessels();
+  scene["organs"].push_back(scene["organs"][0]);
+  scene["organs"][1]["name"] = "bag";
+  scene["organs"][1]["appearance"] = "gallbladder";
+  scene["connective"] =
+      json::parse(R"([{"name": "bed", "first": "bag", "second": "liver", "reach": 0.004, "strands": 20}])");
+  return scene;
+}
+
+const std::map<std::string, std::string> definitionOfList{
+    {"organs", "organ"}, {"connective", "connective"}, {"vessels", "vessel"}, {"fat", "fat"}};
+
+void eraseRoles(json& scene) {
+  for (const auto& [list, definition] : definitionOfList) {
+    if (!scene.contains(list)) continue;
+    for (json& one : scene[list]) one.erase("role");
+  }
+}
+
+std::string faultOfRole(const char* pointer, const char* role) {
+  json scene = wholeScene();
+  scene["organs"][1]["role"] = "gallbladder";
+  scene[json::json_pointer(pointer)] = role;
+  return faultOf([&] { load(scene); });
+}
+
+TEST(SceneRoles, AreReadAsTheFileStatesThem) {
+  json file = wholeScene();
+  file["organs"][0]["role"] = "liver";
+  file["organs"][1]["role"] = "gallbladder";
+  file["connective"][0]["role"] = "cystic-plate";
+  file["vessels"][0]["role"] = "artery";  // whatever it looks like
+  file["vessels"][1]["role"] = "cystic-duct";
+  file["fat"][0]["role"] = "triangle-fat";
+  const SceneDescription scene = load(file).description;
+  EXPECT_EQ(scene.organs[0].role, StructureRole::liver);
+  EXPECT_EQ(scene.organs[1].role, StructureRole::gallbladder);
+  EXPECT_EQ(scene.connective[0].role, StructureRole::cysticPlate);
+  EXPECT_EQ(scene.vessels[0].role, StructureRole::artery);
+  EXPECT_EQ(scene.vessels[1].role, StructureRole::cysticDuct);
+  EXPECT_EQ(scene.fat[0].role, StructureRole::triangleFat);
+}
+
+TEST(SceneRoles, OneThatIsStatedKeepsTheOthersFromBeingDerived) {
+  json file = wholeScene();
+  file["vessels"][0]["role"] = "other";
+  const SceneDescription scene = load(file).description;
+  EXPECT_EQ(scene.organs[1].role, StructureRole::other) << "whatever it looks like";
+  EXPECT_EQ(scene.vessels[1].role, StructureRole::other);
+  EXPECT_EQ(scene.connective[0].role, StructureRole::other);
+  EXPECT_EQ(scene.fat[0].role, StructureRole::other);
+}
+
+TEST(SceneRoles, AreDerivedWhereNoneIsStated) {
+  json file = wholeScene();
+  json vein = file["vessels"][0];
+  vein["name"] = "vein";
+  vein["appearance"] = "vein";
+  file["vessels"].push_back(vein);
+  vein["name"] = "artery";
+  vein["appearance"] = "artery";
+  file["vessels"].push_back(vein);
+  json cystic = file["vessels"][1];
+  cystic["name"] = "cystic";
+  cystic["end"]["to"] = "bag";
+  file["vessels"].push_back(cystic);
+  cystic["name"] = "feeder";
+  cystic["appearance"] = "artery";
+  file["vessels"].push_back(cystic);
+  // From the gallbladder on, and ending nowhere.
+  file["vessels"].push_back(cystic);
+  json& begins = file["vessels"].back();
+  begins["name"] = "begins";
+  begins["path"] = json::parse("[[0, 0, 0], [-0.03, 0, 0]]");
+  begins["start"] = json::parse(R"({"kind": "organ", "to": "bag"})");
+  begins["end"] = json::parse(R"({"kind": "free"})");
+  const SceneDescription scene = load(file).description;
+  EXPECT_EQ(scene.organs[0].role, StructureRole::liver);
+  EXPECT_EQ(scene.organs[1].role, StructureRole::gallbladder);
+  EXPECT_EQ(scene.connective[0].role, StructureRole::cysticPlate);
+  EXPECT_EQ(scene.fat[0].role, StructureRole::triangleFat);
+  std::map<std::string, StructureRole> roles;
+  for (const VesselDescription& vessel : scene.vessels) roles[vessel.name] = vessel.role;
+  const std::map<std::string, StructureRole> expected{
+      {"trunk", StructureRole::bileDuct},     {"branch", StructureRole::bileDuct},
+      {"vein", StructureRole::other},         {"artery", StructureRole::artery},
+      {"cystic", StructureRole::cysticDuct},  {"feeder", StructureRole::cysticArtery},
+      {"begins", StructureRole::cysticArtery}};
+  EXPECT_EQ(roles, expected) << "\"branch\" is grown to an organ, but to the liver";
+}
+
+TEST(SceneRoles, UnknownOnesAreRefusedWithTheirPlace) {
+  EXPECT_EQ(faultOfRole("/organs/0/role", "stomach"),
+            "scenes/small.json: /organs/0/role: unknown word; known are gallbladder, liver, other");
+  EXPECT_EQ(faultOfRole("/organs/0/role", "cystic-duct"),
+            "scenes/small.json: /organs/0/role: unknown word; known are gallbladder, liver, other");
+  EXPECT_EQ(faultOfRole("/vessels/1/role", "liver"),
+            "scenes/small.json: /vessels/1/role: unknown word; known are artery, bile-duct, cystic-artery, "
+            "cystic-duct, other");
+  EXPECT_EQ(faultOfRole("/fat/0/role", ""), "scenes/small.json: /fat/0/role: the text is empty");
+  EXPECT_EQ(faultOfRole("/fat/0/role", "fat"),
+            "scenes/small.json: /fat/0/role: unknown word; known are other, triangle-fat");
+  EXPECT_EQ(faultOfRole("/connective/0/role", "bed"),
+            "scenes/small.json: /connective/0/role: unknown word; known are cystic-plate, other");
+  EXPECT_EQ(faultOfRole("/connective/0/role", "cystic-plate"), "(no fault)");
+  json scene = wholeScene();
+  scene["connective"][0]["role"] = "cystic-plate";
+  EXPECT_EQ(faultOf([&] { load(scene); }),
+            "scenes/small.json: /connective/0/role: neither organ that it joins has the role gallbladder");
+}
+
+/// The schema lists the same words: each of them is read, and no other role is.
+TEST(SceneRoles, AreThoseOfTheSchema) {
+  std::ifstream in(sourceTree / "schemas" / "scene.schema.json");
+  const json schema = json::parse(in).at("$defs");
+  for (const auto& [list, definition] : definitionOfList) {
+    const json& role = schema.at(definition).at("properties").at("role");
+    EXPECT_EQ(role.at("default"), nameOf(StructureRole::other));
+    const auto words = role.at("enum").get<std::set<std::string>>();
+    for (const StructureRoleName& known : structureRoleNames) {
+      const std::string fault = faultOfRole(("/" + list + "/0/role").c_str(), known.name);
+      EXPECT_EQ(fault == "(no fault)", words.count(known.name) == 1) << list << ": " << known.name << ": " << fault;
+    }
+  }
+}
+
+/// Recordings from before scenes had roles: what is derived is what the scenes state by now.
+TEST(SceneRoles, OfTheScenesThatComeWithItAreDerivedAsTheyAreStated) {
+  for (const char* name : {"touch-liver", "dissect-bed", "carve-fat", "clip-and-cut", "cholecystectomy"}) {
+    const LoadedScene stated = loadScene(sourceTree / "assets" / "scenes" / (std::string(name) + ".json"));
+    std::vector<Asset> assets = stated.assets;
+    json file = json::parse(reinterpret_cast<const char*>(assets[0].bytes.data()),
+                            reinterpret_cast<const char*>(assets[0].bytes.data()) + assets[0].bytes.size());
+    for (const auto& [list, definition] : definitionOfList) {
+      if (!file.contains(list)) continue;
+      for (const json& one : file[list]) {
+        EXPECT_NE(one.value("role", "other"), "other") << name << ": " << one.at("name");
+      }
+    }
+    eraseRoles(file);
+    assets[0].bytes = bytesOf(file.dump());
+    std::vector<std::byte> before, after;
+    ByteWriter(before).write(stated.description);
+    ByteWriter(after).write(sceneFromAssets(std::move(assets)).description);
+    EXPECT_TRUE(before == after) << name;
+  }
+}
+
+}  // namespace
+}  // namespace calot::recorder::test
