@@ -8,6 +8,7 @@
 
 #include "recorder/recording/layout.h"
 #include "recorder/recording/writer.h"
+#include "sim/instruments/instruments.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder::test {
@@ -28,6 +29,12 @@ Vec3 onGrid(const Vec3& v, double steps) { return {onGrid(v.x(), steps), onGrid(
 
 Quat onGrid(const Quat& q, double steps) {
   return {onGrid(q.w(), steps), onGrid(q.x(), steps), onGrid(q.y(), steps), onGrid(q.z(), steps)};
+}
+
+/// One of the instruments, or none.
+InstrumentKind anyInstrument(Random& r) {
+  const std::size_t k = r.next() % (instruments().size() + 1);
+  return k == 0 ? InstrumentKind::none : instruments()[k - 1]->kind;
 }
 
 }  // namespace
@@ -128,7 +135,7 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
       sample.position = randomVector(r);
       sample.orientation = randomRotation(r);
       sample.jaw = r.uniform();
-      sample.instrument = static_cast<InstrumentKind>(r.next() % 5);
+      sample.instrument = anyInstrument(r);
       sample.buttons = static_cast<std::uint8_t>(r.next());
       sample.valid = r.next() % 2 == 0;
       HandTick& tick = s.ticks[t].hand[h];
@@ -142,7 +149,7 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
   }
   s.result.step = n;
   for (HandResult& h : s.result.hand) {
-    h.instrument = static_cast<InstrumentKind>(r.next() % 5);
+    h.instrument = anyInstrument(r);
     h.tipReal = randomVector(r);
     h.tipSimulated = randomVector(r);
     h.orientation = randomRotation(r);
