@@ -6,6 +6,7 @@
 
 #include "gui/render/instrument_mesh.h"
 #include "sim/instruments/instrument_shape.h"
+#include "sim/instruments/instruments.h"
 
 namespace calot::gui {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "gui/render/clip_mesh.h"
 #include "gui/render/instrument_mesh.h"
+#include "sim/instruments/instruments.h"
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"
 
