@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/from_observables.h"
@@ -19,27 +21,50 @@ namespace {
 
 using Align = TextTable::Align;
 
-/// The figures of the closing table, in their display units.
-struct MainFigure {
-  const char* title;
-  const char* name;
-  const char* subject;
-};
-constexpr MainFigure mainFigures[] = {
-    {"elapsed s", "elapsed-time", ""},           {"path L mm", "path-length", "left"},
-    {"path R mm", "path-length", "right"},       {"fat %", "fat-remaining", ""},
-    {"in %", "fat-remaining-inside", ""},        {"out %", "fat-remaining-outside", ""},
-    {"cystic s", "cystic-contact-time", ""},     {"connective %", "connective-remaining", ""},
-    {"liver burned %", "organ-burned", "liver"}, {"gallbladder burned %", "organ-burned", "gallbladder"},
-    {"duration s", "attempt-duration", ""},
+using ValuesOfAttempts = std::map<std::string, std::vector<CheckpointValue>>;
+
+/// One column of the closing table.
+struct SummaryColumn {
+  const CheckpointDefinition* definition = nullptr;
+  std::string subject;
+  std::string title;  ///< "elapsed s", "path L mm", "liver burned %"
 };
 
-std::string figureText(const std::vector<CheckpointValue>& values, const MainFigure& figure) {
+std::string columnTitle(const CheckpointEntry& entry, const std::string& subject) {
+  const CheckpointDefinition& d = entry.definition;
+  const std::string_view word = entry.place.summaryTitle;
+  if (subject.empty()) return fmt::format("{} {}", word, d.displayUnit);
+  if (d.aggregation != Aggregation::hand) return fmt::format("{} {} {}", subject, word, d.displayUnit);
+  return fmt::format("{} {} {}", word, subject == handNames[0] ? "L" : "R", d.displayUnit);
+}
+
+/// The checkpoints that ask for columns, for every subject that some attempt has a value of.
+std::vector<SummaryColumn> summaryColumns(const ValuesOfAttempts& values) {
+  std::vector<SummaryColumn> columns;
+  for (const CheckpointEntry& entry : checkpointRegistry()) {
+    if (entry.place.summaryTitle.empty()) continue;
+    std::vector<std::pair<std::string, bool>> subjects;  // in the order of values, and whether one has a value
+    for (const auto& attempt : values) {
+      for (const CheckpointValue& v : attempt.second) {
+        if (v.name != entry.definition.name) continue;
+        const auto same = [&](const auto& subject) { return subject.first == v.subject; };
+        auto known = std::find_if(subjects.begin(), subjects.end(), same);
+        if (known == subjects.end()) known = subjects.insert(known, {v.subject, false});
+        known->second = known->second || v.value.has_value();
+      }
+    }
+    for (const auto& [subject, any] : subjects) {
+      if (any) columns.push_back({&entry.definition, subject, columnTitle(entry, subject)});
+    }
+  }
+  return columns;
+}
+
+std::string figureText(const std::vector<CheckpointValue>& values, const SummaryColumn& column) {
   for (const CheckpointValue& v : values) {
-    if (v.name != figure.name || v.subject != figure.subject) continue;
-    const CheckpointDefinition* definition = findCheckpoint(v.name);
+    if (v.name != column.definition->name || v.subject != column.subject) continue;
     if (!v.value) return v.availability == Availability::notApplicable ? "n/a" : "-";
-    return significant(*v.value * (definition != nullptr ? definition->displayFactor : 1.0));
+    return significant(*v.value * column.definition->displayFactor);
   }
   return "-";
 }
@@ -156,22 +181,13 @@ void printValues(const std::vector<CheckpointValue>& values, std::ostream& out) 
 }
 
 void printAttempts(const CohortDatabase& database, std::ostream& out) {
-  std::map<std::string, std::vector<CheckpointValue>> values;
+  ValuesOfAttempts values;
   for (AttemptValue& v : database.allValues()) values[v.attempt].push_back(std::move(v.value));
   std::vector<std::pair<std::string, Align>> columns{
       {"attempt", Align::left}, {"who", Align::left},          {"scene", Align::left},    {"mode", Align::left},
       {"outcome", Align::left}, {"verification", Align::left}, {"recording", Align::left}};
-  std::vector<MainFigure> figures;  // those that some attempt has
-  for (const MainFigure& figure : mainFigures) {
-    const bool any = std::any_of(values.begin(), values.end(), [&](const auto& attempt) {
-      return std::any_of(attempt.second.begin(), attempt.second.end(), [&](const CheckpointValue& v) {
-        return v.value && v.name == figure.name && v.subject == figure.subject;
-      });
-    });
-    if (!any) continue;
-    figures.push_back(figure);
-    columns.emplace_back(figure.title, Align::right);
-  }
+  const std::vector<SummaryColumn> figures = summaryColumns(values);
+  for (const SummaryColumn& figure : figures) columns.emplace_back(figure.title, Align::right);
   columns.emplace_back("", Align::left);
   TextTable table(columns);
   std::size_t synthetic = 0;
@@ -185,7 +201,7 @@ void printAttempts(const CohortDatabase& database, std::ostream& out) {
                                    a.complete ? wordFor(a.outcome) : "incomplete",
                                    nameOf(a.verification.verdict),
                                    a.fileName};
-    for (const MainFigure& figure : figures) cells.push_back(figureText(values[a.uuid], figure));
+    for (const SummaryColumn& figure : figures) cells.push_back(figureText(values[a.uuid], figure));
     cells.push_back(fmt::format("{}{}", a.synthetic ? "SYNTHETIC" : "", a.excluded ? " excluded" : ""));
     synthetic += a.synthetic ? 1 : 0;
     table.add(std::move(cells));

@@ -51,8 +51,8 @@ AttemptRecord recordOf(const AssessedAttempt& assessed);
 /// Every value of one attempt, in display units, or the reason why there is none.
 void printValues(const std::vector<CheckpointValue>& values, std::ostream& out);
 
-/// Closing table of `calot assess`: every attempt of the database with outcome, verification and the checkpoints of the
-/// paper's Table 2, without those that no attempt has; synthetic ones are marked.
+/// Closing table of `calot assess`: every attempt of the database with outcome, verification and the checkpoints that
+/// ask for columns there (CheckpointPlace::summaryTitle), without those that no attempt has; synthetic ones are marked.
 void printAttempts(const CohortDatabase& database, std::ostream& out);
 
 }  // namespace calot::analytics

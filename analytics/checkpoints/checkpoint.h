@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analytics/checkpoints/scene_facts.h"
@@ -126,8 +127,30 @@ class Checkpoint {
   [[nodiscard]] virtual std::vector<CheckpointValue> values(const AttemptEnd& end) const = 0;
 };
 
-/// An entry of the one list of checkpoints.
+/// Families of checkpoints, in the order in which tables show them.
+enum class CheckpointFamily : std::uint8_t {
+  paper,      ///< the paper's Table 2, in its order
+  motion,     ///< of the hands
+  phases,     ///< figures of each phase
+  contact,    ///< contact and force
+  safety,     ///< errors and safety
+  exactness,  ///< how exact the simulation was
+};
+
+/// Where tables show a checkpoint.
+struct CheckpointPlace {
+  CheckpointFamily family = CheckpointFamily::paper;
+  int rank = 0;  ///< within the family, ascending, none twice; steps of ten leave room between them
+  /// Word at the head of its columns in the closing table of attempts, in which it then stands: one column for the
+  /// attempt, or for each hand or organ. Empty: not in that table.
+  std::string_view summaryTitle = {};
+};
+
+/// One checkpoint: its declaration, and how to make it. Each file of analytics/checkpoints/figures defines a function,
+/// named after the file, that returns its entries: `pathLengthEntries` in path_length.cpp. CMake lists these functions
+/// for the registry (docs/extending.md).
 struct CheckpointEntry {
+  CheckpointPlace place;
   CheckpointDefinition definition;
   std::unique_ptr<Checkpoint> (*make)(const AttemptContext& context);
 };

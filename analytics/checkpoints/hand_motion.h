@@ -62,10 +62,13 @@ std::unique_ptr<Checkpoint> perHandAndPhase(const CheckpointDefinition& definiti
                                             const AttemptContext& context);
 
 /// The entry of the figure of each hand in each phase, declared as phaseDefinition() of the whole attempt's says.
+/// @param rank among the figures of phases
 template <const CheckpointDefinition& (*whole)(), MotionMeasure measure>
-CheckpointEntry phaseMotionEntry() {
+CheckpointEntry phaseMotionEntry(int rank) {
   static const CheckpointDefinition d = phaseDefinition(whole(), "points");
-  return {d, [](const AttemptContext& context) { return perHandAndPhase(d, measure, context); }};
+  return {{CheckpointFamily::phases, rank}, d, [](const AttemptContext& context) {
+            return perHandAndPhase(d, measure, context);
+          }};
 }
 
 }  // namespace calot::analytics

@@ -1,79 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/checkpoints/registry.h"
 
-#include "analytics/checkpoints/entries.h"
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "analytics/checkpoints/figure_files.h"
 
 namespace calot::analytics {
 
 const std::vector<CheckpointEntry>& checkpointRegistry() {
-  static const std::vector<CheckpointEntry> registry{
-      // The paper's Table 2, in its order.
-      elapsedTimeEntry(),
-      pathLengthEntry(),
-      fatRemainingEntry(),
-      fatRemainingInsideEntry(),
-      fatRemainingOutsideEntry(),
-      cysticContactTimeEntry(),
-      connectiveRemainingEntry(),
-      organBurnedEntry(),
-      // Motion.
-      attemptDurationEntry(),
-      depthPathEntry(),
-      angularPathEntry(),
-      speedMeanEntry(),
-      speedPercentileEntry(),
-      movementsEntry(),
-      movementStraightnessEntry(),
-      idleTimeEntry(),
-      idleTimeBothEntry(),
-      sparcEntry(),
-      logDimensionlessJerkEntry(),
-      movementJerkEntry(),
-      bimanualCorrelationEntry(),
-      bimanualLagEntry(),
-      handRatioEntry(),
-      workingVolumeEntry(),
-      motionRateEntry(),
-      // Phases.
-      phaseDurationEntry(),
-      phasePathLengthEntry(),
-      phaseDepthPathEntry(),
-      phaseAngularPathEntry(),
-      phaseSpeedMeanEntry(),
-      phaseMovementsEntry(),
-      phaseIdleTimeEntry(),
-      phaseSparcEntry(),
-      phaseLogDimensionlessJerkEntry(),
-      phaseWorkingVolumeEntry(),
-      phaseForceMaximumEntry(),
-      phaseForcePercentileEntry(),
-      phaseForceImpulseEntry(),
-      phaseCysticContactTimeEntry(),
-      phaseCauteryWithoutContactEntry(),
-      phaseCharredAreaEntry(),
-      // Contact, force.
-      contactTimeUnionEntry(),
-      contactTimeSumEntry(),
-      sparedContactUnionEntry(),
-      sparedContactSumEntry(),
-      forceMaximumEntry(),
-      forcePercentileEntry(),
-      forceMeanEntry(),
-      forceImpulseEntry(),
-      forceRateEntry(),
-      // Errors and safety.
-      clipErrorsEntry(),
-      cauteryWithoutContactEntry(),
-      connectiveTornEntry(),
-      organPerforationsEntry(),
-      burnPerBedEntry(),
-      burnPerFatEntry(),
-      burnPerDissectionEntry(),
-      criticalViewEntry(),
-      criticalErrorsEntry(),
-      // How exact the simulation was.
-      stepsMissedEntry(),
-  };
+  static const std::vector<CheckpointEntry> registry = [] {
+    std::vector<CheckpointEntry> list;
+    for (const EntriesOfFile entries : figureFiles()) {
+      std::vector<CheckpointEntry> those = entries();
+      list.insert(list.end(), std::make_move_iterator(those.begin()), std::make_move_iterator(those.end()));
+    }
+    std::sort(list.begin(), list.end(), [](const CheckpointEntry& a, const CheckpointEntry& b) {
+      return std::pair(a.place.family, a.place.rank) < std::pair(b.place.family, b.place.rank);
+    });
+    return list;
+  }();
   return registry;
 }
 

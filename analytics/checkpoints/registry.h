@@ -8,8 +8,7 @@
 
 namespace calot::analytics {
 
-/// Every checkpoint that this build knows, in the order in which tables show them. An explicit list: what is not in
-/// registry.cpp doesn't exist.
+/// Every checkpoint that this build knows, in the order in which tables show them: by family, then by rank.
 const std::vector<CheckpointEntry>& checkpointRegistry();
 
 /// The definition of a name, or null.

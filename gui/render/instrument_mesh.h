@@ -11,9 +11,8 @@ struct InstrumentPart {
               ///< (m)
 };
 
-/// Shaft from beyond the port to the tip, and what the kind of instrument carries there: two jaws opened by
-/// instrument.jaw between them (grasper, clip applier with a loaded clip, scissors), or an L hook. Sizes follow 5 mm
-/// instruments of the trade and scale with the shaft's radius.
+/// Shaft from beyond the port to the tip, and what the instrument carries there, jaws opened by instrument.jaw between
+/// them. Sizes follow 5 mm instruments of the trade and scale with the shaft's radius. Nothing where none is mounted.
 [[nodiscard]] std::vector<InstrumentPart> makeInstrument(const InstrumentView& instrument);
 
 }  // namespace calot::gui

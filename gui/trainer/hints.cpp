@@ -7,15 +7,23 @@
 #include <cmath>
 #include <cstddef>
 
+#include "sim/instruments/instruments.h"
+
 namespace calot::gui {
 namespace {
 
-bool mounted(const AttemptFigures& figures, InstrumentKind kind) {
-  return std::any_of(figures.hand.begin(), figures.hand.end(), [kind](const auto& h) { return h.instrument == kind; });
+bool acts(const AttemptFigures::Hand& hand, InstrumentAction action) {
+  return instrumentOf(hand.instrument).action == action;
 }
 
-std::string take(const AttemptFigures& figures, InstrumentKind kind) {
-  return mounted(figures, kind) ? "" : fmt::format("Take the {}. ", nameOf(kind));
+/// What to mount first, or nothing where a hand has an instrument that does this.
+std::string take(const AttemptFigures& figures, InstrumentAction action) {
+  if (std::any_of(figures.hand.begin(), figures.hand.end(), [action](const auto& h) { return acts(h, action); }))
+    return "";
+  for (const InstrumentDefinition* instrument : instruments()) {
+    if (instrument->action == action) return fmt::format("Take the {}. ", instrument->word);
+  }
+  return "";
 }
 
 const AttemptFigures::Vessel* vesselNamed(const SceneDescription& scene, const AttemptFigures& figures,
@@ -34,11 +42,11 @@ std::string vesselHint(const SceneDescription& scene, const AttemptFigures& figu
     const std::uint32_t clips = wanted.patient + wanted.specimen;
     if (vessel->clips < clips) {
       return fmt::format("{}Clip the {}: {} of {} clips are on, {} stay with the patient.",
-                         take(figures, InstrumentKind::clipApplier), spoken(wanted.vessel), vessel->clips, clips,
+                         take(figures, InstrumentAction::clip), spoken(wanted.vessel), vessel->clips, clips,
                          wanted.patient);
     }
     return fmt::format("{}Cut the {} between its clips, {} on the side that stays.",
-                       take(figures, InstrumentKind::scissors), spoken(wanted.vessel), wanted.patient);
+                       take(figures, InstrumentAction::cut), spoken(wanted.vessel), wanted.patient);
   }
   return {};
 }
@@ -47,7 +55,7 @@ std::string vesselHint(const SceneDescription& scene, const AttemptFigures& figu
 std::string viewHint(const SceneDescription& scene, const AttemptFigures& figures) {
   const ProcedureStatus& p = figures.procedure;
   if (p.criticalViewFrozen || p.criticalView() >= JudgementRules().satisfactory) return {};
-  const std::string hook = take(figures, InstrumentKind::hook);
+  const std::string hook = take(figures, InstrumentAction::burn);
   if (p.triangleCleared < 2) return hook + "Carve the fat off Calot's triangle: pull it tight and press the cut pedal.";
   if (p.twoStructures < 2) return hook + "Free the vessels that enter the gallbladder of the fat around them.";
   return fmt::format("{}Free the lower third of the {}: {:.0f} % of that third is still attached.", hook,
@@ -55,22 +63,6 @@ std::string viewHint(const SceneDescription& scene, const AttemptFigures& figure
 }
 
 }  // namespace
-
-const char* nameOf(InstrumentKind kind) {
-  switch (kind) {
-    case InstrumentKind::none:
-      return "nothing";
-    case InstrumentKind::grasper:
-      return "grasper";
-    case InstrumentKind::hook:
-      return "hook";
-    case InstrumentKind::clipApplier:
-      return "clip applier";
-    case InstrumentKind::scissors:
-      return "scissors";
-  }
-  return "";
-}
 
 bool isDone(const SceneDescription& scene, const AttemptFigures& figures) {
   return scene.procedure.specimen.empty() || figures.procedure.phase == Phase::done;
@@ -81,7 +73,8 @@ std::string hintFor(const SceneDescription& scene, const std::string& summary, c
   if (figures.procedure.phase == Phase::done) return "All is done. End the attempt when you are content.";
   for (std::size_t h = 0; h < handCount; ++h) {
     if (figures.hand[h].cautery == Cautery::withoutContact)
-      return fmt::format("The {} hook burns in the air: press the pedal on tissue only.", handNames[h]);
+      return fmt::format("The {} {} burns in the air: press the pedal on tissue only.", handNames[h],
+                         instrumentOf(figures.hand[h].instrument).word);
   }
   const bool toDivide =
       std::any_of(scene.procedure.divide.begin(), scene.procedure.divide.end(), [&](const DivideDescription& d) {
@@ -93,7 +86,7 @@ std::string hintFor(const SceneDescription& scene, const std::string& summary, c
     return view.empty() ? vesselHint(scene, figures) : view;
   }
   return fmt::format("{}Take the {} off its bed: pull it away and burn what is stretched. {:.0f} % is still attached.",
-                     take(figures, InstrumentKind::hook), spoken(scene.procedure.specimen),
+                     take(figures, InstrumentAction::burn), spoken(scene.procedure.specimen),
                      std::ceil(100.0 * figures.attached));
 }
 

@@ -17,7 +17,4 @@ namespace calot::gui {
 /// Is all done that the scene asks for? Always yes where it asks for nothing: then it is the trainee who says.
 [[nodiscard]] bool isDone(const SceneDescription& scene, const AttemptFigures& figures);
 
-/// "grasper", "clip applier", ...
-[[nodiscard]] const char* nameOf(InstrumentKind kind);
-
 }  // namespace calot::gui

@@ -6,6 +6,8 @@
 #include <Qt>
 #include <utility>
 
+#include "sim/instruments/instruments.h"
+
 namespace calot::gui {
 
 using recorder::MouseControl;
@@ -27,8 +29,45 @@ constexpr std::array<std::pair<int, MouseControl>, 14> controls{{{Qt::Key_Right,
                                                                  {Qt::Key_F, MouseControl::coagulate},
                                                                  {Qt::Key_E, MouseControl::fire},
                                                                  {Qt::Key_Shift, MouseControl::fine}}};
-constexpr std::array instruments{InstrumentKind::grasper, InstrumentKind::hook, InstrumentKind::clipApplier,
-                                 InstrumentKind::scissors};
+
+/// Keys of the instruments, in the order of their list: for the hand that is driven, and for the other one. A new
+/// instrument takes the next pair, so that no key ever changes its meaning.
+constexpr std::array<std::pair<int, int>, 5> instrumentKeys{{{Qt::Key_1, Qt::Key_5},
+                                                             {Qt::Key_2, Qt::Key_6},
+                                                             {Qt::Key_3, Qt::Key_7},
+                                                             {Qt::Key_4, Qt::Key_8},
+                                                             {Qt::Key_9, Qt::Key_0}}};
+
+/// What a key mounts, if it does.
+std::optional<KeyAction> mountOf(int key) {
+  for (std::size_t i = 0; i < std::min(instruments().size(), instrumentKeys.size()); ++i) {
+    const auto& [driven, other] = instrumentKeys[i];
+    if (key != driven && key != other) continue;
+    KeyAction action;
+    action.kind = KeyAction::Kind::mount;
+    action.instrument = instruments()[i]->kind;
+    action.otherHand = key == other;
+    return action;
+  }
+  return std::nullopt;
+}
+
+/// "1 2 3 4", "5 6 7 8" and "grasper, hook, clip applier, scissors". Keys are digits, whose codes are their letters.
+struct InstrumentHelp {
+  std::string driven, other, names;
+};
+InstrumentHelp instrumentHelp() {
+  InstrumentHelp out;
+  const auto append = [](std::string& list, const char* between, const std::string& item) {
+    list += (list.empty() ? std::string() : between) + item;
+  };
+  for (std::size_t i = 0; i < std::min(instruments().size(), instrumentKeys.size()); ++i) {
+    append(out.driven, " ", std::string(1, static_cast<char>(instrumentKeys[i].first)));
+    append(out.other, " ", std::string(1, static_cast<char>(instrumentKeys[i].second)));
+    append(out.names, ", ", instruments()[i]->word);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -40,13 +79,7 @@ std::optional<KeyAction> actionOf(int key) {
     action.control = control->second;
     return action;
   }
-  if (key >= Qt::Key_1 && key <= Qt::Key_8) {
-    const auto n = static_cast<std::size_t>(key - Qt::Key_1);
-    action.kind = KeyAction::Kind::mount;
-    action.instrument = instruments[n % instruments.size()];
-    action.otherHand = n >= instruments.size();
-    return action;
-  }
+  if (const std::optional<KeyAction> mount = mountOf(key)) return mount;
   switch (key) {
     case Qt::Key_Space:
       action.kind = KeyAction::Kind::switchHand;
@@ -64,6 +97,7 @@ std::optional<KeyAction> actionOf(int key) {
 }
 
 std::vector<KeyHelp> keyHelp(bool mouse, bool pauses) {
+  const InstrumentHelp instruments = instrumentHelp();
   std::vector<KeyHelp> out;
   if (mouse) {
     out = {{"Mouse, arrows", "move the tip"},
@@ -77,10 +111,10 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool pauses) {
            {"Space", "the other hand"},
            {"Shift", "slowly"},
            {"Ctrl", "move the mouse alone"},
-           {"1 2 3 4", "grasper, hook, clip applier, scissors"},
-           {"5 6 7 8", "the same for the other hand"}};
+           {instruments.driven, instruments.names},
+           {instruments.other, "the same for the other hand"}};
   } else {
-    out = {{"1 2 3 4", "right hand: grasper, hook, clip applier, scissors"}, {"5 6 7 8", "the same for the left hand"}};
+    out = {{instruments.driven, "right hand: " + instruments.names}, {instruments.other, "the same for the left hand"}};
   }
   if (pauses) out.push_back({"Escape", "pause, go on"});
   return out;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "recorder/sources/devices/mouse_input.h"
@@ -29,8 +30,8 @@ struct KeyAction {
 
 /// For the page of keys: "Space" and "the other hand".
 struct KeyHelp {
-  const char* keys;
-  const char* what;
+  std::string keys;
+  std::string what;
 };
 /// @param mouse both hands are driven by mouse and keyboard; else only instruments are exchanged and runs held
 /// @param pauses the mode has a pause

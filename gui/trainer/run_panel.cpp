@@ -46,11 +46,11 @@ QWidget* keyPage(bool mouse, bool pauses) {
   grid->setColumnStretch(1, 1);
   int row = 0;
   for (const KeyHelp& help : keyHelp(mouse, pauses)) {
-    auto* const keys = new QLabel(help.keys);
+    auto* const keys = new QLabel(QString::fromStdString(help.keys));
     QFont bold = keys->font();
     bold.setBold(true);
     keys->setFont(bold);
-    auto* const what = new QLabel(help.what);
+    auto* const what = new QLabel(QString::fromStdString(help.what));
     what->setWordWrap(true);
     grid->addWidget(keys, row, 0, Qt::AlignTop);
     grid->addWidget(what, row, 1, Qt::AlignTop);

@@ -6,6 +6,7 @@
 
 #include "gui/trainer/hints.h"
 #include "recorder/words.h"
+#include "sim/instruments/instruments.h"
 
 namespace calot::gui {
 namespace {
@@ -41,8 +42,9 @@ QString deadlineText(const AttemptFigures& figures) {
 QString handText(const AttemptFigures::Hand& hand, std::size_t which, bool driven) {
   QString text = driven ? QString::fromUtf8("▶ ") : QString();
   text += which == 0 ? "Left: " : "Right: ";
-  text += nameOf(hand.instrument);
-  if (hand.instrument == InstrumentKind::clipApplier)
+  const InstrumentDefinition& instrument = instrumentOf(hand.instrument);
+  text += instrument.word;
+  if (instrument.action == InstrumentAction::clip)
     text += hand.clips == 1 ? QString(", 1 clip left") : QString(", %1 clips left").arg(hand.clips);
   if (hand.holds) text += ", holds tissue";
   if (hand.cautery == Cautery::onTissue) text += ", burns";

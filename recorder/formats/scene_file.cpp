@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -17,6 +18,7 @@
 #include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
 #include "recorder/formats/scene_vessels.h"
+#include "sim/instruments/instruments.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
@@ -48,16 +50,18 @@ CameraSample readCamera(const JsonPlace& place, double& verticalFieldOfView) {
   return camera;
 }
 
+std::map<std::string, InstrumentKind> instrumentNames() {
+  std::map<std::string, InstrumentKind> names;
+  for (const InstrumentDefinition* instrument : instruments()) names.emplace(instrument->name, instrument->kind);
+  return names;
+}
+
 HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& workspace) {
   const JsonObject object = place.object(sceneRule("hand"));
   HandDescription hand;
   object.read("port", hand.port);
   object.read("home", hand.home);
-  hand.instrument = readWord<InstrumentKind>(object, "instrument",
-                                             {{"grasper", InstrumentKind::grasper},
-                                              {"hook", InstrumentKind::hook},
-                                              {"clip-applier", InstrumentKind::clipApplier},
-                                              {"scissors", InstrumentKind::scissors}});
+  hand.instrument = readWord(object, "instrument", instrumentNames());
   object.read("shaftRadius", hand.shaftRadius);
   object.read("couplingStiffness", hand.couplingStiffness);
   object.read("rollStiffness", hand.rollStiffness);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/instruments/instruments.h"
+
 namespace calot::recorder {
 
 namespace {
@@ -71,7 +73,10 @@ struct ExtractVisitor {
     ++index;
   }
   void operator()(const char*, const char*, const char*, InstrumentKind& value) {
-    choice(value, InstrumentKind::scissors, "is no known instrument");
+    const auto number = std::to_integer<unsigned>(*at());
+    if (!isInstrumentNumber(number)) fail("is no known instrument");
+    value = static_cast<InstrumentKind>(number);
+    ++index;
   }
   void operator()(const char*, const char*, const char*, Cautery& value) {
     choice(value, Cautery::onTissue, "is no known state of the cautery");

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recorder/sources/pointing.h"
+#include "sim/instruments/instruments.h"
 
 namespace calot::recorder {
 namespace {
@@ -173,7 +174,8 @@ bool WorkingMind::mount(InstrumentKind kind, double jaw) {
   const PerformerProfile::Motor& motor = tools_.profile.motor;
   const Vec3& home = tools_.scene.hands[hand_].home;
   const Vec3 out = hand().meant() - 0.02 * hand().shaft(hand().meant());
-  const double open = hand().instrument() == InstrumentKind::clipApplier ? 0.5 : 0.0;
+  const bool applier = instrumentOf(hand().instrument()).action == InstrumentAction::clip;
+  const double open = applier ? 0.5 : 0.0;
   go(out, motor.contactSpeed, open);
   go(home, motor.strokeSpeed, open, 0, exchangeRest);
   HandMove move;
@@ -261,7 +263,7 @@ void WorkingMind::decide(const Sight& sight) {
     rest.jaw = 0.0;
     rest.sure = true;
     rest.dwell = operation.hesitation * (0.5 + random_.uniform());
-    if (hand().instrument() == InstrumentKind::hook) hand().add(rest);
+    if (instrumentOf(hand().instrument()).action == InstrumentAction::burn) hand().add(rest);
   }
   switch (stage_) {
     case Stage::clear:

@@ -4,12 +4,9 @@
 //   |p - (nearest point of the capsule's segment)| - radius.
 //
 // Sizes are typical of 5 mm laparoscopic instruments and scale with the shaft's radius (a 10 mm clip applier is twice
-// as large). They are those of the pictures (gui/render/instrument_mesh.cpp): what is drawn stands out of this shape by
-// at most 0.9 mm, at the corners of the fork that holds the hinge (tests/gui/render/instrument_agreement_test.cpp).
-//   grasper       jaws 17 mm, 3.9 to 2.6 mm wide
-//   scissors      blades 15 mm, curved
-//   clip applier  jaws 16 mm at 5 mm, with a lift that leaves room for a clip
-//   hook          L hook: wire of 1.2 mm, toe 4.6 mm
+// as large); each instrument's stand in its definition. They are those of the pictures (gui/render/instruments): what
+// is drawn stands out of this shape by at most 0.9 mm, at the corners of the fork that holds the hinge
+// (tests/gui/render/instrument_agreement_test.cpp).
 #pragma once
 
 #include <array>
@@ -18,14 +15,20 @@
 #include <span>
 #include <utility>
 
+#include "sim/instruments/instruments.h"
 #include "sim/math/linear.h"
-#include "sim/scene/samples.h"
 
 namespace calot {
 
 /// All points within `radius` of segment p0-p1. In I or in W, as its owner says.
 struct Capsule {
-  enum class Part : std::uint8_t { shaft, neck, upperJaw, lowerJaw, hook };
+  enum class Part : std::uint8_t {
+    shaft,
+    neck,
+    upperJaw,
+    lowerJaw,
+    electrode,  ///< carries current where the instrument's action is to burn
+  };
 
   Vec3 p0 = Vec3::Zero();  ///< m
   Vec3 p1 = Vec3::Zero();  ///< m
@@ -56,12 +59,8 @@ class InstrumentShape {
   [[nodiscard]] double distance(const Vec3& p) const;
 
  private:
-  friend InstrumentShape instrumentShape(InstrumentKind kind, double jaw, double shaftRadius, double length);
+  friend class ShapeBuilder;
   friend InstrumentShape placed(const InstrumentShape& shape, const Pose& pose);
-  void add(const Vec3& p0, const Vec3& p1, double radius, Capsule::Part part);
-  void addJaw(const Vec3& p0, const Vec3& p1, double radius, double hinge, double cosine, double sine);
-  void addShaft(double end, double length, double radius);
-  void measure(double hinge);
 
   std::array<Capsule, capacity> capsule_{};
   std::size_t count_ = 0;
@@ -70,36 +69,14 @@ class InstrumentShape {
 };
 
 /// The shape in I. @param jaw opening angle (rad), symmetric about z in the plane y-z, clamped to [0, widestJaw]
-/// @param shaftRadius m @param length from the port to the tip (m). `InstrumentKind::none` has no capsules.
+/// @param shaftRadius m @param length from the port to the tip (m). Where nothing is mounted it has no capsules.
 InstrumentShape instrumentShape(InstrumentKind kind, double jaw, double shaftRadius, double length);
 
 /// The same shape in W. @param pose p_WI, q_WI
 InstrumentShape placed(const InstrumentShape& shape, const Pose& pose);
 
-/// Where a grasper holds tissue: between the toothed faces of its jaws, a wedge that closes with them.
-struct GraspRegion {
-  double hinge = 0.0;      ///< z_I of the hinge's line (m)
-  double from = 0.0;       ///< z_I where the teeth begin (m)
-  double to = 0.0;         ///< z_I where they end (m)
-  double halfWidth = 0.0;  ///< along x_I (m)
-  double slope = 0.0;      ///< tangent of half the jaw angle
-  double slack = 0.0;      ///< half the thickness that closed jaws leave to tissue (m)
-
-  /// The line between the closed jaws along which tissue is held, in I (m).
-  [[nodiscard]] std::pair<Vec3, Vec3> line() const { return {Vec3(0.0, 0.0, from), Vec3(0.0, 0.0, to)}; }
-  /// Is a point in I between the jaws?
-  [[nodiscard]] bool contains(const Vec3& p) const {
-    const double half = slack + slope * (p[2] - hinge);
-    return p[2] >= from && p[2] <= to && p[0] >= -halfWidth && p[0] <= halfWidth && p[1] >= -half && p[1] <= half;
-  }
-  /// Bounds of the region in I (m).
-  [[nodiscard]] Box box() const {
-    const double half = slack + slope * (to - hinge);
-    return {Vec3(-halfWidth, -half, from), Vec3(halfWidth, half, to)};
-  }
-};
-
-/// The region of a grasper. @param jaw rad, clamped as above; beyond 2 rad the region no longer widens
-GraspRegion graspRegion(double jaw, double shaftRadius);
+/// The line between the closed jaws along which an instrument of action `grasp` holds tissue, in I (m), from where the
+/// teeth begin to the tips. @param shaftRadius m
+std::pair<Vec3, Vec3> graspLine(const InstrumentDefinition& instrument, double shaftRadius);
 
 }  // namespace calot

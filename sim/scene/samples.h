@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "sim/instruments/instrument_list.h"
 #include "sim/math/linear.h"
 
 namespace calot {
@@ -12,8 +13,11 @@ enum class Hand : std::uint8_t { left = 0, right = 1 };
 inline constexpr int handCount = 2;
 inline constexpr std::array<const char*, handCount> handNames{"left", "right"};
 
-/// What is mounted on a hand's shaft. Numbers are stored in recordings and never reused.
-enum class InstrumentKind : std::uint8_t { none = 0, grasper = 1, hook = 2, clipApplier = 3, scissors = 4 };
+/// What is mounted on a hand's shaft: nothing, or one of the list in sim/instruments/instrument_list.h.
+/// `instrumentOf` (sim/instruments/instruments.h) gives all that is known of a kind.
+#define CALOT_INSTRUMENT_NUMBER(name, number) name = (number),
+enum class InstrumentKind : std::uint8_t { none = 0, CALOT_INSTRUMENTS(CALOT_INSTRUMENT_NUMBER) };
+#undef CALOT_INSTRUMENT_NUMBER
 
 /// Bits of InstrumentSample::buttons.
 namespace button {

@@ -16,6 +16,7 @@ namespace calot {
 struct SurfaceView {
   std::string organ;             ///< name in the scene: "liver", "cystic_duct"
   std::string appearance;        ///< "liver", "gallbladder", "duct", "artery", ...: which look the renderer gives it
+  StructureRole role = StructureRole::other;
   std::vector<Vec3> position;    ///< deformed vertices (m)
   std::vector<Vec3> rest;        ///< the same vertices at rest, for textures that stick to the tissue
   std::vector<Index3> triangle;  ///< outward (counter-clockwise from outside)

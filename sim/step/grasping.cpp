@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "sim/geometry/closest_point.h"
-#include "sim/step/jaws.h"
 #include "sim/step/tissue_damage.h"
 
 namespace calot {
@@ -21,7 +20,7 @@ constexpr double lostDistance = 0.005;  ///< a point that slipped so far out of 
 constexpr std::array<double, 3> stations{1.0, 0.65, 0.3};
 
 double gripOf(const HandState& hand) {
-  return std::clamp(1.0 - hand.realJaw / closedJaw, weakestGrip, 1.0) *
+  return std::clamp(1.0 - hand.realJaw / instrumentOf(hand.instrument).jaw.closed, weakestGrip, 1.0) *
          ((hand.buttons & button::lock) != 0 ? ratchetGrip : 1.0);
 }
 
@@ -79,7 +78,9 @@ void Grasping::release(Surfaces& surfaces, State& state, StepLog& log, ContactRe
   for (std::size_t hand = 0; hand < handCount; ++hand) removeStaleGrasps(surfaces, hand, state, log, contact);
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     const HandState& h = state.hand[hand];
-    if (h.grasped == noStructure || (h.instrument == InstrumentKind::grasper && h.realJaw <= openJaw)) continue;
+    const InstrumentDefinition& instrument = instrumentOf(h.instrument);
+    const bool holds = instrument.action == InstrumentAction::grasp && h.realJaw <= instrument.jaw.opened;
+    if (h.grasped == noStructure || holds) continue;
     end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, contact);
   }
 }
@@ -90,12 +91,13 @@ void Grasping::close(Surfaces& surfaces, State& state, StepLog& log) const {
 
 void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const {
   HandState& h = state.hand[hand];
-  if (h.realJaw > (h.instrument == InstrumentKind::scissors ? openBlades : openJaw)) h.jawsOpened = true;
-  if (h.instrument != InstrumentKind::grasper) return;
-  if (h.realJaw > closedJaw || !h.jawsOpened) return;
+  const InstrumentDefinition& instrument = instrumentOf(h.instrument);
+  if (h.realJaw > instrument.jaw.opened) h.jawsOpened = true;
+  if (instrument.action != InstrumentAction::grasp) return;
+  if (h.realJaw > instrument.jaw.closed || !h.jawsOpened) return;
   h.jawsOpened = false;
   const Pose tool = simulatedPose(h);
-  const auto [from, to] = graspRegion(closedJaw, model_.scene().hands[hand].shaftRadius).line();
+  const auto [from, to] = graspLine(instrument, model_.scene().hands[hand].shaftRadius);
   std::size_t structure = ContactBlock::none;
   std::vector<Vec3> held;
   for (const double station : stations) {
@@ -175,7 +177,7 @@ bool Grasping::slip(const Surfaces& surfaces, std::size_t hand, State& state) co
   const HandDescription& description = model_.scene().hands[hand];
   const double each = description.slipForce * gripOf(h) / static_cast<double>(h.graspNode.size());
   const Pose tool = simulatedPose(h);
-  const auto [from, to] = graspRegion(closedJaw, description.shaftRadius).line();
+  const auto [from, to] = graspLine(instrumentOf(h.instrument), description.shaftRadius);
   bool slipping = false;
   std::size_t kept = 0;
   for (std::size_t a = 0; a < h.graspNode.size(); ++a) {

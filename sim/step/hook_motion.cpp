@@ -10,7 +10,7 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
     sweeps[hand].clear();
     const HandState& h = state.hand[hand];
     const bool energised = (h.buttons & (button::cutPedal | button::coagulatePedal)) != 0;
-    if (h.instrument != InstrumentKind::hook || !energised) continue;
+    if (instrumentOf(h.instrument).action != InstrumentAction::burn || !energised) continue;
     const HandDescription& description = model.scene().hands[hand];
     const Pose now = simulatedPose(h);
     const InstrumentShape hook =
@@ -20,7 +20,7 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
     for (std::size_t k = 0; k < after.capsules().size(); ++k) {
       const Capsule& from = before.capsules()[k];
       const Capsule& to = after.capsules()[k];
-      if (to.part == Capsule::Part::hook) sweeps[hand].push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
+      if (to.part == Capsule::Part::electrode) sweeps[hand].push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
     }
   }
 }

@@ -17,8 +17,8 @@ constexpr double crushedDepth = 0.02;
 /// they clip; blunt bodies that closed on a tube which cannot give way would throw it about.
 bool isClosedOnClip(const Model& model, const State& state, const HandState& hand, std::size_t structure) {
   const StructureModel& s = model.structures()[structure];
-  if (hand.instrument != InstrumentKind::clipApplier || hand.jawsOpened || s.kind != tissueId<VesselTissue>)
-    return false;
+  if (s.kind != tissueId<VesselTissue> || hand.jawsOpened) return false;
+  if (instrumentOf(hand.instrument).action != InstrumentAction::clip) return false;
   const BeamModel& beams = model.vesselTrees()[s.index].beams;
   const BeamState& vessels = state.vessel[s.index];
   const double reach = 1.5 * model.scene().clip.legs;

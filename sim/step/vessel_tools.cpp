@@ -8,7 +8,6 @@
 
 #include "sim/geometry/closest_point.h"
 #include "sim/math/elementary.h"
-#include "sim/step/jaws.h"
 #include "sim/vessel/centre_line.h"
 #include "sim/vessel/clips.h"
 
@@ -19,8 +18,7 @@ namespace {
 /// Between jaws beside a vessel that they still close on (m). Larger: clips jump onto vessels; smaller: hands need more
 /// skill than in life. Assumed.
 constexpr double jawRoom = 0.002;
-constexpr double gripRoom = 0.0005;    ///< between blades and vessel where they count as touching (m). Assumed
-constexpr double bladeLength = 0.012;  ///< of scissors, from their tips (m)
+constexpr double gripRoom = 0.0005;  ///< between blades and vessel where they count as touching (m). Assumed
 
 }  // namespace
 
@@ -130,16 +128,17 @@ void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& 
 void VesselTools::closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity,
                            StepLog& log) {
   HandState& h = state.hand[hand];
-  const bool clips = h.instrument == InstrumentKind::clipApplier;
-  if (!h.jawsOpened || (!clips && h.instrument != InstrumentKind::scissors)) return;
-  const bool closed = h.realJaw <= closedJaw || (clips && (h.buttons & button::fire) != 0);
-  if (!closed && (clips || h.realJaw > openBlades)) return;
-  const Crossing crossing = vesselBetween(state, hand, clips ? model_.scene().clip.legs : bladeLength);
+  const InstrumentDefinition& instrument = instrumentOf(h.instrument);
+  const bool clips = instrument.action == InstrumentAction::clip;
+  if (!h.jawsOpened || (!clips && instrument.action != InstrumentAction::cut)) return;
+  const bool closed = h.realJaw <= instrument.jaw.closed || (clips && (h.buttons & button::fire) != 0);
+  if (!closed && (clips || h.realJaw > instrument.jaw.opened)) return;
+  const Crossing crossing = vesselBetween(state, hand, clips ? model_.scene().clip.legs : instrument.bladeLength);
   if (clips) {
     setClipOn(hand, crossing, bodies, state, activity, log);
   } else if (crossing.structure != ContactBlock::none && isGripped(state, hand, crossing)) {
     // Blades part what they enclose: the centre line must be between them.
-    if (crossing.depth >= 0.0 && crossing.depth <= bladeLength) {
+    if (crossing.depth >= 0.0 && crossing.depth <= instrument.bladeLength) {
       partVessel(model_, crossing.structure, crossing.place, EventKind::vesselCut, hand, bodies, surfaces, state,
                  activity, log);
     }

@@ -45,6 +45,22 @@ TEST(Registry, definitionsAreCompleteAndNamesUnique) {
   EXPECT_EQ(findCheckpoint("no-such"), nullptr);
 }
 
+/// By family, then by rank, none twice: reports have one order, whatever the order of files.
+TEST(Registry, everyCheckpointHasAPlaceOfItsOwn) {
+  const std::vector<CheckpointEntry>& registry = checkpointRegistry();
+  ASSERT_GE(registry.size(), 60U);
+  for (std::size_t i = 1; i < registry.size(); ++i) {
+    const CheckpointPlace &before = registry[i - 1].place, &place = registry[i].place;
+    EXPECT_LT(std::pair(before.family, before.rank), std::pair(place.family, place.rank))
+        << registry[i - 1].definition.name << ", " << registry[i].definition.name;
+  }
+  for (const CheckpointEntry& entry : registry) {
+    EXPECT_GT(entry.place.rank, 0) << entry.definition.name;
+    EXPECT_EQ(entry.place.family == CheckpointFamily::phases, isOfPhases(entry.definition)) << entry.definition.name;
+    EXPECT_TRUE(entry.place.summaryTitle.empty() || !isOfPhases(entry.definition)) << entry.definition.name;
+  }
+}
+
 TEST(Registry, everyValueHasItsDefinitionsTermsAndAnAllowedOrigin) {
   for (const Origin origin : {Origin::resimulated, Origin::observables}) {
     CheckpointCollector collector(header(), scene(), origin);
@@ -63,21 +79,21 @@ TEST(Registry, everyValueHasItsDefinitionsTermsAndAnAllowedOrigin) {
   }
 }
 
-/// The documentation's section of a checkpoint holds the words of the code.
+/// The documentation's section of a checkpoint holds the words of the code, and sections stand in the registry's order.
 TEST(Registry, docsAgree) {
   std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/metrics.md");
   ASSERT_TRUE(file);
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  std::set<std::string> documented;
+  std::vector<std::string> documented;
   for (std::size_t at = text.find("\n## `"); at != std::string::npos; at = text.find("\n## `", at + 1)) {
-    documented.insert(text.substr(at + 5, text.find('`', at + 5) - at - 5));
+    documented.push_back(text.substr(at + 5, text.find('`', at + 5) - at - 5));
   }
-  std::set<std::string> known;
+  std::vector<std::string> known;
   for (const CheckpointEntry& entry : checkpointRegistry()) {
     const CheckpointDefinition& d = entry.definition;
-    known.insert(d.name);
+    known.push_back(d.name);
     const std::size_t from = text.find(fmt::format("\n## `{}`", d.name));
-    if (from == std::string::npos) continue;  // the sets below differ then
+    if (from == std::string::npos) continue;  // the lists below differ then
     const std::string section = text.substr(from, text.find("\n## ", from + 1) - from);
     const auto holds = [&](const std::string& row, std::string words) {
       // A bar inside a cell of a Markdown table is escaped.

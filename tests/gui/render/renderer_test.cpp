@@ -16,6 +16,7 @@
 #include "gui/render/picture.h"
 #include "gui/render/png_file.h"
 #include "recorder/errors.h"
+#include "sim/instruments/instruments.h"
 #include "tests/gui/render/support/shapes.h"
 
 namespace calot::gui {
@@ -216,8 +217,9 @@ TEST(Renderer, OpenJawsCoverMoreThanClosedOnes) {
 
 TEST(Renderer, EveryInstrumentIsDrawnAndDifferent) {
   std::vector<std::vector<std::uint8_t>> seen;
-  for (const InstrumentKind kind : {InstrumentKind::none, InstrumentKind::grasper, InstrumentKind::hook,
-                                    InstrumentKind::clipApplier, InstrumentKind::scissors}) {
+  std::vector<InstrumentKind> kinds{InstrumentKind::none};
+  for (const InstrumentDefinition* each : instruments()) kinds.push_back(each->kind);
+  for (const InstrumentKind kind : kinds) {
     SceneView view = emptyView();
     view.instrument[1].kind = kind;
     view.instrument[1].pose.position = Vec3(0.01, 0.0, 0.06);

@@ -9,6 +9,7 @@
 
 #include "gui/render/clip_mesh.h"
 #include "gui/render/instrument_mesh.h"
+#include "sim/instruments/instruments.h"
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"
 
@@ -87,14 +88,13 @@ TEST(Sight, ATriangleIsTurnedAwayFromTheLensAndTheLight) {
 /// Instruments and clips are drawn from outside alone.
 TEST(Meshes, TurnTheirTrianglesOutwards) {
   const auto volume = [](const Mesh& mesh) { return test::volume(mesh.position, mesh.triangle); };
-  for (const InstrumentKind kind :
-       {InstrumentKind::grasper, InstrumentKind::hook, InstrumentKind::clipApplier, InstrumentKind::scissors}) {
+  for (const InstrumentDefinition* each : instruments()) {
     InstrumentView instrument;
-    instrument.kind = kind;
+    instrument.kind = each->kind;
     instrument.port = Vec3(0.0, 0.0, -0.1);
     instrument.jaw = 0.5;
     for (const InstrumentPart& part : makeInstrument(instrument)) {
-      EXPECT_GT(volume(part.mesh), 0.0) << static_cast<int>(kind);
+      EXPECT_GT(volume(part.mesh), 0.0) << each->name;
       int outwards = 0;
       const auto at = [&](int v) { return part.mesh.position[static_cast<std::size_t>(v)]; };
       for (const Index3& t : part.mesh.triangle)

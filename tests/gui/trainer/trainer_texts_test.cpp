@@ -9,6 +9,7 @@
 
 #include "gui/trainer/hints.h"
 #include "gui/trainer/key_bindings.h"
+#include "sim/instruments/instruments.h"
 
 namespace calot::gui {
 namespace {
@@ -222,8 +223,24 @@ TEST(KeyBindings, EveryKeyOnceAndEveryControlHasOne) {
     }
   }
   EXPECT_EQ(controls.size(), recorder::mouseControls);
-  EXPECT_EQ(mounts.size(), 8U) << "four instruments for either hand";
+  EXPECT_EQ(mounts.size(), 2 * instruments().size()) << "every instrument for either hand";
   EXPECT_FALSE(actionOf(Qt::Key_Tab)) << "leads out of the picture";
+}
+
+TEST(KeyBindings, HelpNamesEveryInstrumentInTheOrderOfItsKeys) {
+  const auto what = [](const std::vector<KeyHelp>& help, const std::string& keys) -> std::string {
+    for (const KeyHelp& row : help) {
+      if (row.keys.rfind(keys, 0) == 0) return row.what;
+    }
+    return "(no such row)";
+  };
+  const std::vector<KeyHelp> mouse = keyHelp(true, false), device = keyHelp(false, false);
+  EXPECT_EQ(what(mouse, "1 2 3 4").rfind("grasper, hook, clip applier, scissors", 0), 0U);
+  EXPECT_EQ(what(device, "1 2 3 4").rfind("right hand: grasper, hook, clip applier, scissors", 0), 0U);
+  EXPECT_EQ(what(mouse, "5 6 7 8"), "the same for the other hand");
+  EXPECT_EQ(what(device, "5 6 7 8"), "the same for the left hand");
+  for (const InstrumentDefinition* each : instruments())
+    EXPECT_NE(what(mouse, "1 2 3 4").find(each->word), std::string::npos) << each->word;
 }
 
 }  // namespace

@@ -8,10 +8,12 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "recorder/errors.h"
 #include "recorder/formats/scene_rules.h"
+#include "sim/instruments/instruments.h"
 
 namespace calot::recorder {
 namespace {
@@ -282,6 +284,20 @@ TEST(SceneFile, flippedBitsNeverCrashAndFaultsStayOneLine) {
     if (faultOf([&] { load(text); }) != "(no fault)") ++refused;
   }
   EXPECT_GT(refused, static_cast<int>(whole.size()));
+}
+
+/// The name of every instrument is known, and the schema lets it through.
+TEST(SceneFile, mountsEveryInstrument) {
+  std::ifstream in(fs::path(CALOT_SOURCE_DIR) / "schemas" / "scene.schema.json");
+  const json schema = json::parse(in);
+  const std::regex pattern(
+      schema.at("$defs").at("hand").at("properties").at("instrument").at("pattern").get<std::string>());
+  for (const InstrumentDefinition* each : instruments()) {
+    json scene = validScene();
+    scene["hands"]["right"]["instrument"] = each->name;
+    EXPECT_EQ(load(scene.dump()).description.hands[1].instrument, each->kind) << each->name;
+    EXPECT_TRUE(std::regex_match(each->name, pattern)) << each->name;
+  }
 }
 
 // Loader and published schema: the same kinds of object, keys, required keys and bounds.

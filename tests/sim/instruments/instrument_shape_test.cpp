@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "sim/math/random.h"
 
@@ -14,8 +15,13 @@ namespace {
 
 constexpr double radius = 0.0025;
 constexpr double length = 0.15;
-constexpr InstrumentKind kinds[] = {InstrumentKind::grasper, InstrumentKind::hook, InstrumentKind::clipApplier,
-                                    InstrumentKind::scissors};
+
+std::vector<InstrumentKind> allKinds() {
+  std::vector<InstrumentKind> kinds;
+  for (const InstrumentDefinition* each : instruments()) kinds.push_back(each->kind);
+  return kinds;
+}
+const std::vector<InstrumentKind> kinds = allKinds();
 
 Vec3 randomNear(Random& random) {
   return {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.06, 0.02)};
@@ -76,7 +82,8 @@ TEST(InstrumentShape, PiecesKeepTheirNumbers) {
 TEST(InstrumentShape, JawsOpenSymmetricallyAcrossTheHinge) {
   SCOPED_TRACE("seed 321");
   Random random(321);
-  for (const InstrumentKind kind : {InstrumentKind::grasper, InstrumentKind::clipApplier, InstrumentKind::scissors}) {
+  for (const InstrumentKind kind : kinds) {
+    if (instrumentOf(kind).jawLength == 0.0) continue;
     for (const double jaw : {0.0, 0.4, 1.2}) {
       const InstrumentShape shape = instrumentShape(kind, jaw, radius, length);
       for (int i = 0; i < 200; ++i) {
@@ -118,7 +125,7 @@ TEST(InstrumentShape, MotionsAreBoundedByTheReaches) {
       const Vec3 q = randomNear(random);
       EXPECT_LE(std::abs(a.distance(p) - a.distance(q)), (p - q).norm() * (1.0 + 1e-12));
     }
-    if (kind == InstrumentKind::hook) {
+    if (instrumentOf(kind).action == InstrumentAction::burn) {
       EXPECT_GT(tight, 0.3) << "the toe sweeps round";
     }
   }
@@ -150,31 +157,20 @@ TEST(InstrumentShape, AHookIsAnL) {
   EXPECT_LT(shape.distance(Vec3(0.0, 0.0, -0.006)), 0.0) << "the straight part";
 }
 
-TEST(GraspRegion, LiesBetweenTheJaws) {
-  SCOPED_TRACE("seed 324");
-  Random random(324);
-  for (const double jaw : {0.0, 0.3, 1.0}) {
-    const InstrumentShape shape = instrumentShape(InstrumentKind::grasper, jaw, radius, length);
-    const GraspRegion region = graspRegion(jaw, radius);
-    const auto [from, to] = region.line();
-    EXPECT_TRUE(region.contains(from));
-    EXPECT_TRUE(region.contains(0.5 * (from + to)));
-    EXPECT_FALSE(region.contains(to + 0.001 * Vec3::UnitZ()));
-    EXPECT_FALSE(region.contains(Vec3(0.003, 0.0, -0.005)));
-    int within = 0;
-    for (int i = 0; i < 200000; ++i) {
-      const Vec3 p = randomNear(random);
-      if (!region.contains(p)) continue;
-      ++within;
-      EXPECT_GE(shape.distance(p), -0.00075) << "no deeper in a jaw than the axis of one of its bars";
-      Box point;
-      point.include(p);
-      EXPECT_TRUE(region.box().overlaps(point));
+TEST(GraspLine, LiesBetweenTheTeeth) {
+  for (const double scale : {1.0, 2.0}) {
+    const auto [from, to] = graspLine(instrument::grasper, scale * radius);
+    EXPECT_EQ(to, Vec3::Zero()) << "the tips";
+    EXPECT_EQ(from.head<2>(), Vec3::Zero().head<2>());
+    EXPECT_NEAR(from[2], -0.0136 * scale, 1e-15) << "where the teeth begin";
+    const InstrumentShape closed = instrumentShape(InstrumentKind::grasper, 0.0, scale * radius, length);
+    const InstrumentShape open = instrumentShape(InstrumentKind::grasper, 1.0, scale * radius, length);
+    for (const double share : {0.1, 0.5, 1.0}) {
+      const Vec3 p = from + share * (to - from);
+      EXPECT_LT(std::abs(closed.distance(p)), 0.001 * scale) << "at the faces of closed jaws";
+      EXPECT_GT(open.distance(p), 0.0005 * scale) << "free between open ones";
     }
-    EXPECT_GT(within, 20);
   }
-  EXPECT_FALSE(graspRegion(0.0, radius).contains(Vec3(0.0, 0.003, -0.004)));
-  EXPECT_TRUE(graspRegion(1.0, radius).contains(Vec3(0.0, 0.003, -0.004)));
 }
 
 }  // namespace

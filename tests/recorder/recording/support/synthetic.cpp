@@ -8,6 +8,7 @@
 
 #include "recorder/recording/layout.h"
 #include "recorder/recording/writer.h"
+#include "sim/instruments/instruments.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder::test {
@@ -20,6 +21,12 @@ Quat randomRotation(Random& r) {
   Quat q(r.uniform(0.1, 1.0), r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0));
   q.normalize();
   return q;
+}
+
+/// One of the instruments, or none.
+InstrumentKind anyInstrument(Random& r) {
+  const std::size_t k = r.next() % (instruments().size() + 1);
+  return k == 0 ? InstrumentKind::none : instruments()[k - 1]->kind;
 }
 
 /// Fills every field of a result.
@@ -41,7 +48,7 @@ struct RandomFields {
   void fill(bool& value) { value = r.next() % 2 == 0; }
   void fill(Vec3& value) { value = randomVector(r); }
   void fill(Quat& value) { value = randomRotation(r); }
-  void fill(InstrumentKind& value) { value = static_cast<InstrumentKind>(r.next() % 5); }
+  void fill(InstrumentKind& value) { value = anyInstrument(r); }
   void fill(Cautery& value) { value = static_cast<Cautery>(r.next() % 3); }
   void fill(std::vector<double>& values) {
     for (double& value : values) fill(value);
@@ -152,7 +159,7 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
       sample.position = randomVector(r);
       sample.orientation = randomRotation(r);
       sample.jaw = r.uniform();
-      sample.instrument = static_cast<InstrumentKind>(r.next() % 5);
+      sample.instrument = anyInstrument(r);
       sample.buttons = static_cast<std::uint8_t>(r.next());
       sample.valid = r.next() % 2 == 0;
       HandTick& tick = s.ticks[t].hand[h];

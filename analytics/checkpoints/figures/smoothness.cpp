@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Smoothness of the tip's motion: spectral arc length, and log dimensionless jerk of the whole and of its movements.
+#include "analytics/checkpoints/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include "analytics/checkpoints/hand_motion.h"
+#include "analytics/checkpoints/movements.h"
+#include "analytics/checkpoints/smoothness.h"
+
+namespace calot::analytics {
+namespace {
+
+/// Shorter segments (s) say nothing of a band that begins near 0 Hz.
+constexpr double leastSegment = 1.0;
+
+const CheckpointDefinition& sparcDefinition() {
+  static const CheckpointDefinition d = motionDefinition(
+      "sparc", "Spectral arc length (SPARC)", "1", Direction::higher,
+      "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, at most 10 Hz, with M >= "
+      "0.05; "
+      "M the amplitude spectrum of v as a share of M(0 Hz), zeros added up to 2^(ceil(log2 n) + 4) values; v as in "
+      "speed-mean; of segments of 1 s or longer, averaged by their length");
+  return d;
+}
+
+const CheckpointDefinition& jerkDefinition() {
+  static const CheckpointDefinition d = motionDefinition(
+      "log-dimensionless-jerk", "Log dimensionless jerk (LDLJ of the speed profile)", "1", Direction::higher,
+      "-ln(T^3 / v_peak^2 * sum (v'')^2 dt), v'' = (v(k+1) - 2 v(k) + v(k-1)) / dt^2, T = n dt, v as in speed-mean; of "
+      "segments of 1 s or longer, averaged by their length");
+  return d;
+}
+
+const CheckpointDefinition& movementDefinition() {
+  static const CheckpointDefinition d = motionDefinition(
+      "movement-jerk", "Log dimensionless jerk of a movement (mean)", "1", Direction::higher,
+      "mean over movements of log-dimensionless-jerk of each; movements as in movements, and outwards to where v "
+      "stops falling or falls below 5 mm/s");
+  return d;
+}
+
+using OfSpeed = std::optional<double> (*)(std::span<const double>, double);
+
+Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
+  if (largestSpeed(motion) < leastSpeed) return Measured::notApplicable("the hand did not move: no speed of 0.1 mm/s");
+  double sum = 0.0, points = 0.0;
+  std::size_t segments = 0;
+  for (const MotionSegment& segment : motion.segments) {
+    if (segment.speed.size() < pointsOf(leastSegment)) continue;
+    const std::optional<double> value = figure(segment.speed, motionRate);
+    if (!value) continue;
+    sum += *value * static_cast<double>(segment.speed.size());
+    points += static_cast<double>(segment.speed.size());
+    ++segments;
+  }
+  if (segments == 0) return Measured::notAvailable("no measured motion of 1 s or longer");
+  return Measured::of(sum / points, segments > 1 ? fmt::format("mean of {} segments", segments) : "");
+}
+
+std::string tooSlow(const Motion& motion, double wanted) {
+  if (motion.rate >= wanted || (motion.rate == 0.0 && largestSpeed(motion) < leastSpeed)) return {};
+  return fmt::format("effective rate {:.1f} Hz; {:g} Hz is wanted", motion.rate,
+                     wanted < 30.0 && wanted > 29.0 ? 30.0 : wanted);
+}
+
+Measured sparc(const Motion& motion) {
+  // Slower samples say nothing of frequencies up to 10 Hz.
+  if (std::string why = tooSlow(motion, 2.0 * sparcHighest); !why.empty())
+    return Measured::notAvailable(std::move(why));
+  return ofLongSegments(motion, spectralArcLength);
+}
+
+Measured jerk(const Motion& motion) {
+  if (std::string why = tooSlow(motion, leastJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
+  return ofLongSegments(motion, logDimensionlessJerk);
+}
+
+/// A movement with its beginning and end: cut off at 50 mm/s it would seem smoother than any movement can be.
+Stretch widened(const std::vector<double>& speed, Stretch movement) {
+  while (movement.begin > 0 && speed[movement.begin - 1] < speed[movement.begin] &&
+         speed[movement.begin - 1] >= idleSpeed)
+    --movement.begin;
+  while (movement.end < speed.size() && speed[movement.end] < speed[movement.end - 1] &&
+         speed[movement.end] >= idleSpeed)
+    ++movement.end;
+  return movement;
+}
+
+Measured jerkOfMovements(const Motion& motion) {
+  if (std::string why = tooSlow(motion, leastJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
+  double sum = 0.0;
+  std::size_t movements = 0;
+  for (const MotionSegment& segment : motion.segments) {
+    for (const Stretch& movement : movementsOf(segment)) {
+      const Stretch whole = widened(segment.speed, movement);
+      const std::span<const double> speed(segment.speed.data() + whole.begin, whole.points());
+      const std::optional<double> value = logDimensionlessJerk(speed, motionRate);
+      if (!value) continue;
+      sum += *value;
+      ++movements;
+    }
+  }
+  if (movements == 0) return Measured::notApplicable("no movement of 50 mm/s for 0.2 s");
+  return Measured::of(sum / static_cast<double>(movements), fmt::format("{} movements", movements));
+}
+
+}  // namespace
+
+std::vector<CheckpointEntry> smoothnessEntries() {
+  return {{{CheckpointFamily::motion, 100},
+           sparcDefinition(),
+           [](const AttemptContext&) { return perHand(sparcDefinition(), sparc); }},
+          phaseMotionEntry<sparcDefinition, sparc>(80),
+          {{CheckpointFamily::motion, 110},
+           jerkDefinition(),
+           [](const AttemptContext&) { return perHand(jerkDefinition(), jerk); }},
+          phaseMotionEntry<jerkDefinition, jerk>(90),
+          {{CheckpointFamily::motion, 120}, movementDefinition(), [](const AttemptContext&) {
+             return perHand(movementDefinition(), jerkOfMovements);
+           }}};
+}
+
+}  // namespace calot::analytics
