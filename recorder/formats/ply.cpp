@@ -53,10 +53,9 @@ class PlyBody {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    const std::string place = header_.format == PlyFormat::ascii
-                                  ? fmt::format("{}:{}", name_, line_)
-                                  : fmt::format("{}: {} {}", name_, element_->name, number_);
-    throw Error(ErrorKind::damaged, place + ": " + what);
+    const std::string place = header_.format == PlyFormat::ascii ? fmt::format("line {}", line_)
+                                                                 : fmt::format("{} {}", element_->name, number_);
+    throw Error(ErrorKind::damaged, Where{name_, place}, what);
   }
 
   std::string_view nextWord() {

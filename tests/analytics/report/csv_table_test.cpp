@@ -15,7 +15,7 @@ namespace {
 using Cells = std::vector<std::string>;
 
 void expectRefusal(ErrorKind kind, const std::string& text, const std::string& words) {
-  support::expectRefusal(code, "t.csv: " + words, [&] { (void)parseCsvTable(text, "t.csv").column("a"); });
+  support::expectRefusal(kind, "t.csv: " + words, [&] { (void)parseCsvTable(text, "t.csv").column("a"); });
 }
 
 TEST(CsvTable, readsWhatRfc4180Allows) {

@@ -24,7 +24,9 @@ void expectRefusal(ErrorKind kind, const std::string& words, Call call,
     EXPECT_EQ(static_cast<int>(error.kind()), static_cast<int>(kind)) << error.what();
     EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    if (remedies) EXPECT_EQ(error.remedies(), *remedies) << error.what();
+    if (remedies) {
+      EXPECT_EQ(error.remedies(), *remedies) << error.what();
+    }
   }
 }
 
