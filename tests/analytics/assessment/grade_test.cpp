@@ -99,7 +99,7 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   request_.checkpoints = {"path-length"};
   expectRefusal(ErrorKind::refused, "path-length right has no pass mark", [&] { made(); });
   request_.checkpoints = {"sparc"};
-  expectRefusal(ErrorKind::invalid, "no such figure", [&] { made(); });
+  expectRefusal(ErrorKind::invalid, "have no figure \"", [&] { made(); }, {{Remedy::nameCheckpoints}});
   request_.checkpoints.clear();
   request_.leastPassed = 2;
   expectRefusal(ErrorKind::refused, "asks for 2 of 1", [&] { made(); });
