@@ -42,7 +42,7 @@ struct Assessment {
 /// @param cutoff of the motion filter (Hz); values that are stored are of the default
 Assessment assessRecording(const std::string& file, unsigned threads, double cutoff = 6.0);
 
-/// One transaction; idempotent. @throws Error 3 on a conflict (CohortDatabase::storeAttempt).
+/// One transaction; idempotent. @throws Error (refused) on a conflict (CohortDatabase::storeAttempt).
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed);
 
 /// The row that store() writes.

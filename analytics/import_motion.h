@@ -28,7 +28,7 @@ struct MotionDeclaration {
 AttemptRecord recordOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration);
 
 /// Computes the motion's checkpoints and stores them; one transaction, idempotent.
-/// @return what was stored, and whether it was there already. @throws Error 3 on a conflict
+/// @return what was stored, and whether it was there already. @throws Error (refused) on a conflict
 /// (CohortDatabase::storeAttempt).
 struct StoredMotion {
   Imported imported = Imported::unchanged;

@@ -20,20 +20,22 @@ class Found {
   Found(const std::vector<std::filesystem::path>& places, recorder::WorkerPool& pool, Regrade& result) {
     std::vector<std::filesystem::path> files = recorder::filesUnder(places);
     std::vector<std::optional<recorder::RecordingIdentity>> identity(files.size());
-    std::vector<std::string> fault(files.size());
+    std::vector<std::optional<Error>> fault(files.size());
     const auto look = [&](std::size_t i) {
       const bool named = std::find(places.begin(), places.end(), files[i]) != places.end();
       if (!named && !recorder::looksLikeHdf5(files[i])) return;
       try {
         identity[i] = recorder::identify(files[i]);
+      } catch (const Error& e) {
+        fault[i] = e;
       } catch (const std::exception& e) {
-        fault[i] = e.what();
+        fault[i] = Error(ErrorKind::failure, Where{files[i].string()}, e.what());
       }
     };
     pool.run(files.size(), look);
     for (std::size_t i = 0; i < files.size(); ++i) {
       if (identity[i]) byUuid_[identity[i]->attempt].push_back({files[i], *identity[i]});
-      if (!fault[i].empty()) result.notRead.push_back(fault[i]);
+      if (fault[i]) result.notRead.push_back(*fault[i]);
     }
   }
 
@@ -79,10 +81,12 @@ void storeOne(CohortDatabase& database, Work& work) {
   RegradedAttempt& r = *work.result;
   if (work.failure) std::rethrow_exception(work.failure);
   const recorder::ReplayReport& report = work.assessment->report;
-  r.code = report.code();
-  if (report.verdict != recorder::ReplayVerdict::exact) r.message = report.message;
+  r.fault = report.fault();
+  if (r.fault) r.message = report.message;
+  r.remedies = report.remedies;
   if (!work.assessment->attempt) {
     r.how = Regraded::unreadable;
+    r.message = fmt::format("{}: {}", r.file, report.message);
     return;
   }
   AssessedAttempt& assessed = *work.assessment->attempt;
@@ -100,10 +104,11 @@ void storeOne(CohortDatabase& database, Work& work) {
     r.changes = changesOf(before, database.values(r.uuid));
     r.how = imported == Imported::unchanged && r.changes.empty() ? Regraded::unchanged : Regraded::changed;
   } catch (const Error& e) {
-    if (e.code() != ExitCode::no) throw;
+    if (e.kind() != ErrorKind::refused) throw;
     r.how = Regraded::conflict;
-    r.code = ExitCode::no;
+    r.fault = e.kind();
     r.message = e.what();
+    r.remedies = e.remedies();
   }
 }
 
@@ -129,14 +134,6 @@ std::vector<ValueChange> changesOf(const std::vector<CheckpointValue>& before,
   return changes;
 }
 
-ExitCode Regrade::code() const {
-  for (const ExitCode code : {ExitCode::failure, ExitCode::damaged, ExitCode::no, ExitCode::undecided}) {
-    if (std::any_of(attempts.begin(), attempts.end(), [&](const RegradedAttempt& a) { return a.code == code; }))
-      return code;
-  }
-  return ExitCode::yes;
-}
-
 Regrade regrade(const std::string& path, const std::vector<std::filesystem::path>& places, unsigned jobs,
                 const std::function<void(std::uint64_t done, std::uint64_t of)>& progress) {
   CohortDatabase database(path, CohortDatabase::Access::write);
@@ -155,9 +152,10 @@ Regrade regrade(const std::string& path, const std::vector<std::filesystem::path
       works.push_back({&rows[i], &r, std::nullopt, nullptr});
     } else if (rows[i].simulationVersion == 0) {
       r.how = Regraded::motion;
-      r.message = "motion without a recording; run `calot import` on its file";
+      r.message = "motion without a recording";
+      r.remedies = {Remedy::importAgain};
     } else {
-      r.code = ExitCode::damaged;
+      r.fault = ErrorKind::damaged;
       r.message = fmt::format("the recording {} is in none of the places", rows[i].fileName);
     }
   }

@@ -25,7 +25,7 @@ enum class Regraded : std::uint8_t {
   unchanged,
   changed,
   missing,     ///< its recording is in none of the places
-  motion,      ///< motion without a scene: there is no recording, `calot import` computes it anew
+  motion,      ///< motion without a scene: there is no recording, only importing it again computes it anew
   unreadable,  ///< its recording is damaged
   conflict,    ///< its recording diverged, or is not the one that the cohort holds
 };
@@ -34,17 +34,15 @@ struct RegradedAttempt {
   std::string uuid;
   std::string file;  ///< as the cohort knows it; where it was found, its path
   Regraded how = Regraded::missing;
-  ExitCode code = ExitCode::yes;
-  std::string message;  ///< why, where it could not be done, or not in full
+  std::optional<ErrorKind> fault;  ///< what kind of error stands in the way; none: it could be judged
+  std::string message;             ///< why, where it could not be done, or not in full
+  std::vector<Remedy> remedies;
   std::vector<ValueChange> changes;
 };
 
 struct Regrade {
   std::vector<RegradedAttempt> attempts;  ///< by start, then uuid
-  std::vector<std::string> notRead;       ///< files in the places that are no recordings, or damaged
-
-  /// The worst of all: 1, 4, 3, 5, 0.
-  [[nodiscard]] ExitCode code() const;
+  std::vector<Error> notRead;             ///< of files in the places that are no recordings, or damaged
 };
 
 /// Re-simulates the recording of every attempt, `jobs` at a time, and brings verification and values up to date; what a

@@ -56,7 +56,7 @@ WithdrawalFiles findFiles(const Withdrawal& w, const std::string& database, cons
     try {
       identity[i] = recorder::identify(files[i]);
     } catch (const Error& e) {
-      if (e.code() == ExitCode::failure) throw;  // damaged, or another kind of file: its bytes are searched
+      if (e.kind() == ErrorKind::failure) throw;  // damaged, or another kind of file: its bytes are searched
     }
   }
   const auto gone = [&](const recorder::RecordingIdentity& id) {

@@ -25,6 +25,7 @@ class BlendedSource final : public SampleSource {
   SourceStatus status() override { return source_.status(); }
   void rest() override { source_.rest(); }
   [[nodiscard]] Observer* watcher() override { return source_.watcher(); }
+  [[nodiscard]] DeviceSource* device() override { return source_.device(); }
   [[nodiscard]] Outcome ending() const override { return source_.ending(); }
   [[nodiscard]] std::string statusText() const override { return source_.statusText(); }
 

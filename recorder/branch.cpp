@@ -16,13 +16,13 @@ void refuseParent(const Recording& parent, const ChainVerdict& chain) {
   const AttemptHeader& header = parent.header();
   const std::string name = parent.path().string();
   if (chain.intact && header.simulationVersion != simulationVersion) {
-    throw Error(ExitCode::undecided,
-                fmt::format("{}: recorded with simulation version {}, this build has {}: it cannot be branched here",
-                            name, header.simulationVersion, simulationVersion));
+    throw Error(ErrorKind::undecided, Where{name},
+                fmt::format("recorded with simulation version {}, this build has {}: it cannot be branched here",
+                            header.simulationVersion, simulationVersion));
   }
-  if (!chain.intact) throw Error(ExitCode::no, fmt::format("{}: content chain broken: {}", name, chain.what));
+  if (!chain.intact) throw Error(ErrorKind::refused, Where{name}, fmt::format("content chain broken: {}", chain.what));
   if (header.mode == Mode::assessment) {
-    throw Error(ExitCode::no, fmt::format("{}: made in assessment mode, which has no branches", name));
+    throw Error(ErrorKind::refused, Where{name}, "made in assessment mode, which has no branches");
   }
 }
 
@@ -32,12 +32,12 @@ std::uint64_t forkStepAt(const Recording& parent, double time) {
   // A time that was written in decimals means the step's end that is next to it, not the one before.
   const double steps = std::floor(time / stepSeconds + 1e-6);
   if (!(steps >= 1.0)) {
-    throw Error(ExitCode::usage, fmt::format("{}: --at {}: the fork lies at the end of the first step, {} s, or later",
-                                             parent.path().string(), time, stepSeconds));
+    throw Error(ErrorKind::invalid, Where{parent.path().string(), fmt::format("fork at {} s", time)},
+                fmt::format("it lies at the end of the first step, {} s, or later", stepSeconds), {Remedy::moveFork});
   }
   if (steps > static_cast<double>(parent.stepCount())) {
-    throw Error(ExitCode::usage,
-                fmt::format("{}: --at {}: the recording ends at {} s", parent.path().string(), time, parent.seconds()));
+    throw Error(ErrorKind::invalid, Where{parent.path().string(), fmt::format("fork at {} s", time)},
+                fmt::format("the recording ends at {} s", parent.seconds()), {Remedy::moveFork});
   }
   return static_cast<std::uint64_t>(steps) - 1;
 }
@@ -61,7 +61,7 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
 void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
   if (const auto divergence = follow(parent, session, forkStep + 1, progress)) {
-    throw Error(ExitCode::no, fmt::format("{}: {}", parent.path().string(), describe(*divergence)));
+    throw Error(ErrorKind::refused, Where{parent.path().string()}, describe(*divergence));
   }
 }
 

@@ -13,12 +13,12 @@
 
 namespace calot::recorder {
 
-/// Is this a recording that can be branched here? @throws Error: no (3) for a broken chain or one made in assessment
+/// Is this a recording that can be branched here? @throws Error: refused for a broken chain or one made in assessment
 /// mode; undecided (5) for another simulation version.
 void refuseParent(const Recording& parent, const ChainVerdict& chain);
 
 /// The last step that a branch shares with its parent: the one that is over at `time`.
-/// @param time of the parent's attempt (s) @throws Error (usage) where that is not a number, before the end of the
+/// @param time of the parent's attempt (s) @throws Error (invalid) where that is not a number, before the end of the
 /// first step, or beyond the recording's end.
 std::uint64_t forkStepAt(const Recording& parent, double time);
 
@@ -28,7 +28,7 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
 
 /// Re-simulates the parent's steps up to and with the fork step, with the contact sets and lateness that were logged,
 /// so that forces and events are the same. Observers of the session are told of each.
-/// @throws Error (no) at the first difference from the parent's digests, forces, observables, events or keyframes.
+/// @throws Error (refused) at the first difference from the parent's digests, forces, observables, events or keyframes.
 /// @pre the session is new, with the parent's model and seed
 void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
@@ -37,7 +37,7 @@ void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
 /// this object unless publish() came before.
 class BranchFile {
  public:
-  /// @throws Error (usage) where the target is there and force is not set.
+  /// @throws Error (invalid) where the target is there and force is not set.
   BranchFile(std::filesystem::path target, bool force);
   ~BranchFile();
   BranchFile(const BranchFile&) = delete;

@@ -159,9 +159,9 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   const bool otherVersion = header.simulationVersion != simulationVersion;
   if (otherVersion && !settings.anyway && chain.intact) {
     report.verdict = ReplayVerdict::undecided;
-    report.message = fmt::format(
-        "recorded with simulation version {}, this build has {}: cannot decide (--anyway replays and reports)",
-        header.simulationVersion, simulationVersion);
+    report.message = fmt::format("recorded with simulation version {}, this build has {}: cannot decide",
+                                 header.simulationVersion, simulationVersion);
+    report.remedies = {Remedy::replayAnyway};
     return;
   }
   const std::unique_ptr<const Model> model = modelOf(recording);
@@ -204,27 +204,33 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
 
 }  // namespace
 
-ExitCode ReplayReport::code() const {
+std::optional<ErrorKind> ReplayReport::fault() const {
   switch (verdict) {
     case ReplayVerdict::exact:
-      return ExitCode::yes;
+      break;
     case ReplayVerdict::diverged:
-      return ExitCode::no;
+      return ErrorKind::refused;
     case ReplayVerdict::damaged:
-      return ExitCode::damaged;
+      return ErrorKind::damaged;
     case ReplayVerdict::undecided:
-      return ExitCode::undecided;
+      return ErrorKind::undecided;
   }
-  return ExitCode::failure;
+  return std::nullopt;
 }
 
 std::unique_ptr<const Model> modelOf(const Recording& recording) {
   LoadedScene scene = sceneFromAssets(recording.header().assets);
   Model::Built built = Model::build(std::move(scene.description));
   if (!built.model) {
-    throw Error(ExitCode::damaged, fmt::format("{}: /scene: {}", recording.path().string(), built.error));
+    throw Error(ErrorKind::damaged, Where{recording.path().string(), "/scene"}, built.error);
   }
   return std::move(built.model);
+}
+
+std::string messageWithout(const std::filesystem::path& recording, const Error& error) {
+  const Where& where = error.where();
+  if (where.file != recording.string() && where.file != recording.filename().string()) return error.what();
+  return where.place.empty() ? error.fault() : where.place + ": " + error.fault();
 }
 
 ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySettings& settings) {
@@ -236,9 +242,10 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
     Recording recording(path);
     judge(recording, chain, settings, report);
   } catch (const Error& e) {
-    if (e.code() != ExitCode::damaged && e.code() != ExitCode::undecided) throw;
-    report.verdict = e.code() == ExitCode::damaged ? ReplayVerdict::damaged : ReplayVerdict::undecided;
-    report.message = e.what();
+    if (e.kind() != ErrorKind::damaged && e.kind() != ErrorKind::undecided) throw;
+    report.verdict = e.kind() == ErrorKind::damaged ? ReplayVerdict::damaged : ReplayVerdict::undecided;
+    report.message = messageWithout(path, e);
+    report.remedies = e.remedies();
   }
   report.wallSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
@@ -258,9 +265,8 @@ void Seeker::seek(std::uint64_t step) {
     if (nearest) {
       const Keyframe keyframe = recording_.keyframe(*nearest);
       if (!session_->restore(keyframe)) {
-        throw Error(ExitCode::damaged,
-                    fmt::format("{}: /keyframes: the one of step {} is no State of the scene's model",
-                                recording_.path().string(), keyframe.step));
+        throw Error(ErrorKind::damaged, Where{recording_.path().string(), "/keyframes"},
+                    fmt::format("the one of step {} is no State of the scene's model", keyframe.step));
       }
     }
   }
@@ -271,7 +277,7 @@ void Seeker::advance() {
   try {
     rerun(*session_, recording_.step(session_->steps()));
   } catch (const std::out_of_range& e) {
-    throw Error(ExitCode::damaged, fmt::format("{}: /ticks: {}", recording_.path().string(), e.what()));
+    throw Error(ErrorKind::damaged, Where{recording_.path().string(), "/ticks"}, e.what());
   }
 }
 

@@ -46,9 +46,11 @@ struct ReplayReport {
   std::string chainFault;  ///< where the chain breaks, or empty
   std::optional<Divergence> divergence;
   std::optional<bool> reproducible;  ///< a second run differed at the same place in the same way
-  std::string message;               ///< one line for people
+  std::string message;               ///< one line for people; does not name the recording
+  std::vector<Remedy> remedies;      ///< of what stands in the way
 
-  [[nodiscard]] ExitCode code() const;
+  /// What kind of error a verdict other than exact is.
+  [[nodiscard]] std::optional<ErrorKind> fault() const;
 };
 
 struct ReplaySettings {
@@ -58,6 +60,10 @@ struct ReplaySettings {
   std::function<std::vector<Observer*>(const AttemptHeader&, const Model&)> observers;
   std::function<void(std::uint64_t step, std::uint64_t of)> progress;
 };
+
+/// An error as the message of this recording's report, which names the recording itself. Another file that the error
+/// lies in stays named.
+std::string messageWithout(const std::filesystem::path& recording, const Error& error);
 
 /// Judges one recording. Does not throw for the recording's faults: they are in the report.
 ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySettings& settings);

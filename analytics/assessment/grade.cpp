@@ -23,15 +23,15 @@ bool same(const CheckpointValue& v, const NormCheckpoint& mark) {
 void askForComparable(const AttemptRow& a, const Norm& norm, bool mixKeys, const std::string& name) {
   if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged ||
       a.verification.verdict == Verdict::notChecked)
-    throw Error(ExitCode::no, fmt::format("{}: attempt {} is {}: it has no figures to grade", name, a.uuid,
-                                          nameOf(a.verification.verdict)));
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("attempt {} is {}: it has no figures to grade", a.uuid, nameOf(a.verification.verdict)));
   if (!a.complete || a.outcome == recorder::Outcome::running)
-    throw Error(ExitCode::no, fmt::format("{}: attempt {} is incomplete and is not graded", name, a.uuid));
+    throw Error(ErrorKind::refused, Where{name}, fmt::format("attempt {} is incomplete and is not graded", a.uuid));
   if (a.comparabilityKey != norm.comparabilityKey && !mixKeys)
-    throw Error(ExitCode::no,
-                fmt::format("{}: attempt {} ({}) does not compare with norm {} {} ({}); --mix-keys does "
-                            "it all the same",
-                            name, a.uuid, a.comparabilityKey, norm.name, norm.version, norm.comparabilityKey));
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("attempt {} ({}) does not compare with norm {} {} ({})", a.uuid, a.comparabilityKey,
+                            norm.name, norm.version, norm.comparabilityKey),
+                {Remedy::mixKeys});
 }
 
 void judge(GradedFigure& figure, const CheckpointValue* value, const Norm& norm, std::size_t position) {

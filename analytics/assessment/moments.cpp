@@ -79,8 +79,8 @@ std::vector<FigureMoments> findMoments(recorder::Recording& recording,
   for (std::uint64_t n = 0; n < steps; ++n) {
     const recorder::RecordedStep& step = recording.step(n);
     if (step.result.organ.size() != scene.organs.size())
-      throw Error(ExitCode::damaged, fmt::format("{}: /observables: has other organs than the scene in /scene",
-                                                 recording.path().string()));
+      throw Error(ErrorKind::damaged, Where{recording.path().string(), "/observables"},
+                  "has other organs than the scene in /scene");
     collector.onStep({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}});
     if (n + 1 == steps) collector.onEnd(recording.outcome());
     if ((n + 1) % window != 0 && n + 1 != steps) continue;

@@ -35,8 +35,9 @@ std::vector<AttemptRow> judged(std::vector<AttemptRow> attempts, const std::vect
     if (at->second > 0) ++votes[r.attempt].second;
   }
   if (votes.empty())
-    throw Error(ExitCode::no, fmt::format("{}: no attempt was rated with form {} and its item \"{}\" (calot rate)",
-                                          name, form, competenceItem));
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("no attempt was rated with form {} and its item \"{}\"", form, competenceItem),
+                {Remedy::rateAttempts});
   std::set<std::string> seen;
   for (AttemptRow& a : attempts) {  // by start
     const auto at = votes.find(a.uuid);
@@ -100,10 +101,9 @@ std::vector<std::pair<const CheckpointDefinition*, std::string>> collectValues(N
     if (!item.value.value || !std::isfinite(*item.value.value) || definition->name == "critical-errors") continue;
     if (!isAskedFor(*definition, item.value.subject, request)) continue;
     if (item.value.version != definition->version)
-      throw Error(ExitCode::no,
-                  fmt::format("{}: attempt {} has {} of version {}, this program computes {}; assess its "
-                              "recording again",
-                              name, item.attempt, definition->name, item.value.version, definition->version));
+      throw Error(ErrorKind::refused, Where{name},
+                  fmt::format("attempt {} has {} of version {}, this program computes {}; assess its recording again",
+                              item.attempt, definition->name, item.value.version, definition->version));
     const std::pair figure(definition, item.value.subject);
     std::size_t position =
         static_cast<std::size_t>(std::find(figures.begin(), figures.end(), figure) - figures.begin());
@@ -124,19 +124,21 @@ void declareRule(Norm& norm, const NormRequest& request, const std::string& name
       const std::string figure = figureName(mark.checkpoint, mark.subject);
       if (wanted != figure && wanted != mark.checkpoint) continue;
       found = true;
-      if (!mark.cut) throw Error(ExitCode::no, fmt::format("{}: {} has no pass mark: {}", name, figure, mark.reason));
+      if (!mark.cut)
+        throw Error(ErrorKind::refused, Where{name}, fmt::format("{} has no pass mark: {}", figure, mark.reason));
       mark.inRule = true;
     }
     if (!found)
-      throw Error(ExitCode::usage,
-                  fmt::format("norm: --checkpoints {}: the members have no such figure that judges", wanted));
+      throw Error(ErrorKind::invalid, fmt::format("norm: the members have no figure \"{}\" that judges", wanted),
+                  {Remedy::nameCheckpoints});
   }
   const auto inRule = static_cast<std::size_t>(
       std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }));
-  if (inRule == 0) throw Error(ExitCode::no, fmt::format("{}: no figure has a pass mark", name));
+  if (inRule == 0) throw Error(ErrorKind::refused, Where{name}, "no figure has a pass mark");
   norm.leastPassed = request.leastPassed;
   if (norm.leastPassed > inRule)
-    throw Error(ExitCode::no, fmt::format("{}: the rule asks for {} of {} figures", name, norm.leastPassed, inRule));
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("the rule asks for {} of {} figures", norm.leastPassed, inRule));
 }
 
 }  // namespace
@@ -148,10 +150,10 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
                        return c < 0x80 && (std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.');
                      });
   if (!plain)
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
   if (request.who.attemptRule == AttemptRule::mean)
-    throw Error(ExitCode::usage, "norm: a mean of attempts is no attempt; take --attempt-rule first");
+    throw Error(ErrorKind::invalid, "norm: a mean of attempts is no attempt", {Remedy::takeFirst});
   StudyOptions who = request.who;
   std::vector<AttemptRow> candidates = attempts;
   Norm norm;
@@ -163,8 +165,9 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
   }
   const Study study = makeStudy(candidates, values, who, name);
   if (study.better.empty())
-    throw Error(ExitCode::usage, fmt::format("norm: say with --better which of {} and {} is competent", study.groups[0],
-                                             study.groups[1]));
+    throw Error(ErrorKind::invalid,
+                fmt::format("norm: which of {} and {} is competent is not said", study.groups[0], study.groups[1]),
+                {Remedy::nameBetterGroup});
   if (norm.judgedBy.empty()) {
     norm.judgedBy = fmt::format("{} {} against {}", who.grouping == Grouping::group ? "group" : "performers",
                                 study.better, study.better == study.groups[0] ? study.groups[1] : study.groups[0]);
@@ -174,7 +177,7 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
   norm.seed = request.seed;
   norm.synthetic = study.synthetic;
   if (study.keys.size() != 1)
-    throw Error(ExitCode::no, fmt::format("{}: a norm is of one comparability key; choose it with --key", name));
+    throw Error(ErrorKind::refused, Where{name}, "a norm is of one comparability key", {Remedy::chooseKey});
   norm.comparabilityKey = study.keys[0];
   for (const AttemptRow& a : candidates) {
     const auto group = study.groupOf.find(a.uuid);

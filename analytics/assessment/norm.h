@@ -32,8 +32,8 @@ inline constexpr const char* competenceItem = "competent";
 /// the log scale where all are positive; figures that judge nothing, and critical errors, which are asked first, have
 /// none.
 /// @param name of where they are from, for errors
-/// @throws Error 3 as makeStudy(), where raters judged nobody or all alike, a figure of the rule has no cut, or the
-/// rule wants more than there are; Error 2 for a name that is none.
+/// @throws Error (refused) as makeStudy(), where raters judged nobody or all alike, a figure of the rule has no cut, or
+/// the rule wants more than there are; Error (invalid) for a name that is none.
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
 

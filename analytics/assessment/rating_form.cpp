@@ -111,7 +111,7 @@ std::map<std::string, int> answersOf(const RatingForm& form,
   std::map<std::string, int> answers;
   std::set<std::string> seen;
   const auto fail = [&](const std::string& key, const std::string& what) {
-    throw Error(ExitCode::usage, fmt::format("form {}: item \"{}\": {}", form.name, shown(key), what));
+    throw Error(ErrorKind::invalid, fmt::format("form {}: item \"{}\": {}", form.name, shown(key), what));
   };
   for (const auto& [key, score] : given) {
     if (std::none_of(items.begin(), items.end(), [&k = key](const FormItem& item) { return item.key == k; })) {
@@ -131,7 +131,7 @@ std::map<std::string, int> answersOf(const RatingForm& form,
   for (const FormItem& item : items) {
     if (seen.count(item.key) == 0) fail(item.key, "not answered (- where it was left blank)");
   }
-  if (answers.empty()) throw Error(ExitCode::usage, fmt::format("form {}: every item was left blank", form.name));
+  if (answers.empty()) throw Error(ErrorKind::invalid, fmt::format("form {}: every item was left blank", form.name));
   return answers;
 }
 

@@ -45,8 +45,8 @@ const std::vector<recorder::ObjectRule>& ratingFormRules();
 RatingForm readRatingForm(const std::filesystem::path& file);
 RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& file);
 
-/// A score for every item, none where it was left blank. @throws Error (usage) naming the item: unknown, not answered,
-/// no whole number of the scale, given twice, or all blank.
+/// A score for every item, none where it was left blank. @throws Error (invalid) naming the item: unknown, not
+/// answered, no whole number of the scale, given twice, or all blank.
 /// @param given pairs of key and score; the score of one that was left blank is "-"
 std::map<std::string, int> answersOf(const RatingForm& form,
                                      const std::vector<std::pair<std::string, std::string>>& given);

@@ -20,9 +20,8 @@ std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recordin
     // Columns are counted by the header, structures by the scene: a checkpoint goes by the scene's.
     if (step.result.organ.size() != scene.organs.size() ||
         (header.stepResultVersion >= 2 && step.result.connective.size() != scene.connective.size())) {
-      throw Error(ExitCode::damaged,
-                  fmt::format("{}: /observables: has other organs or connective tissues than the scene in /scene",
-                              recording.path().string()));
+      throw Error(ErrorKind::damaged, Where{recording.path().string(), "/observables"},
+                  "has other organs or connective tissues than the scene in /scene");
     }
     collector.onStep({step.step, step.samples, step.ticks, results.of(step), step.digest, step.lateness, {}, {}});
   }

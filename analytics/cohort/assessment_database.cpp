@@ -14,16 +14,15 @@ using namespace tables;
 
 namespace {
 
-/// Adds the form, or finds it. @throws Error 3 where this version is another text.
+/// Adds the form, or finds it. @throws Error (refused) where this version is another text.
 std::int64_t formId(SQLite::Database& db, const std::string& path, const StoredDocument& form) {
   SQLite::Statement find(db, "SELECT id, sha256 FROM form WHERE name = ? AND version = ?");
   SQLite::bind(find, form.name, form.version);
   if (find.executeStep()) {
     if (text(find.getColumn(1)) != form.sha256) {
-      throw Error(ExitCode::no,
-                  fmt::format("{}: form {} version {} is there with another wording; a changed form has a higher "
-                              "version",
-                              path, form.name, form.version));
+      throw Error(ErrorKind::refused, Where{path},
+                  fmt::format("form {} version {} is there with another wording; a changed form has a higher version",
+                              form.name, form.version));
     }
     return find.getColumn(0).getInt64();
   }
@@ -57,7 +56,7 @@ AssessmentDatabase::~AssessmentDatabase() = default;
 
 RegisteredProtocol AssessmentDatabase::registerProtocol(const StoredDocument& protocol, const std::string& by,
                                                         bool& added) {
-  if (by.empty()) throw Error(ExitCode::usage, "protocol: name who registers it");
+  if (by.empty()) throw Error(ErrorKind::invalid, "protocol: name who registers it");
   return guarded(storage_->path, [&] {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
@@ -67,10 +66,10 @@ RegisteredProtocol AssessmentDatabase::registerProtocol(const StoredDocument& pr
         return known;
       }
       if (known.version >= protocol.version) {
-        throw Error(ExitCode::no,
-                    fmt::format("{}: protocol {} version {} was registered on {} with another text; a changed "
-                                "protocol has a higher version",
-                                storage_->path, known.name, known.version, known.registeredUtc));
+        throw Error(ErrorKind::refused, Where{storage_->path},
+                    fmt::format("protocol {} version {} was registered on {} with another text; a changed protocol has "
+                                "a higher version",
+                                known.name, known.version, known.registeredUtc));
       }
     }
     RegisteredProtocol fresh{protocol, nowUtc(), by};
@@ -109,7 +108,7 @@ void AssessmentDatabase::storeRating(const StoredDocument& form, const Rating& r
     const std::int64_t subject = ofAttempt ? attemptId(db, rating.attempt) : participantId(db, rating.participant);
     const std::string about = ofAttempt ? "attempt " + recorder::shown(rating.attempt)
                                         : fmt::format("participant \"{}\"", rating.participant);
-    if (subject < 0) throw Error(ExitCode::no, fmt::format("{}: no {}", storage_->path, about));
+    if (subject < 0) throw Error(ErrorKind::refused, Where{storage_->path}, fmt::format("no {}", about));
     const char* table = ofAttempt ? "rating" : "questionnaire";
     const char* whose = ofAttempt ? "form = ?1 AND attempt = ?2 AND rater = ?3" : "form = ?1 AND participant = ?2";
     const auto bind = [&](SQLite::Statement& statement) {
@@ -121,9 +120,10 @@ void AssessmentDatabase::storeRating(const StoredDocument& form, const Rating& r
     bind(find);
     if (find.executeStep()) {
       if (!replace) {
-        throw Error(ExitCode::no, fmt::format("{}: {} was rated with {} on {} already{}; --force replaces it",
-                                              storage_->path, about, form.name, text(find.getColumn(0)),
-                                              ofAttempt ? fmt::format(" by \"{}\"", rating.rater) : ""));
+        throw Error(ErrorKind::refused, Where{storage_->path},
+                    fmt::format("{} was rated with {} on {} already{}", about, form.name, text(find.getColumn(0)),
+                                ofAttempt ? fmt::format(" by \"{}\"", rating.rater) : ""),
+                    {Remedy::replaceExisting});
       }
       find.reset();
       SQLite::Statement clear(db, fmt::format("DELETE FROM {} WHERE {}", table, whose));

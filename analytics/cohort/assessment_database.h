@@ -88,25 +88,29 @@ class AssessmentDatabase {
 
   /// Stores a protocol with the time of now. The same text again changes nothing and answers with what is there.
   /// @param[out] added whether it is new
-  /// @throws Error 3 where this version, or a higher one, is there with another text; Error 2 where nobody registers.
+  /// @throws Error (refused) where this version, or a higher one, is there with another text; Error (invalid) where
+  /// nobody registers.
   RegisteredProtocol registerProtocol(const StoredDocument& protocol, const std::string& by, bool& added);
   /// By version; of all names by name where none is given.
   [[nodiscard]] std::vector<RegisteredProtocol> protocols(const std::string& name = "") const;
 
   /// Stores one filled form and the form itself where it is not there yet.
-  /// @throws Error 3 where this form's version is there with another text, there is no such attempt or participant, or
-  /// the same rater (participant) has filled it before and `replace` is not set; Error 2 for a malformed rater.
+  /// @throws Error (refused) where this form's version is there with another text, there is no such attempt or
+  /// participant, or the same rater (participant) has filled it before and `replace` is not set; Error (invalid) for a
+  /// malformed rater.
   void storeRating(const StoredDocument& form, const Rating& rating, bool replace);
   [[nodiscard]] std::vector<Rating> ratings() const;        ///< by form, version, attempt, rater, participant
   [[nodiscard]] std::vector<StoredDocument> forms() const;  ///< by name, version
 
   /// Stores a norm as the next version of its name. @return that version
-  /// @throws Error 3 where a member's attempt is not there; Error 2 for a malformed name, or where nobody makes it.
+  /// @throws Error (refused) where a member's attempt is not there; Error (invalid) for a malformed name, or where
+  /// nobody makes it.
   std::uint32_t storeNorm(const Norm& norm);
   [[nodiscard]] std::vector<Norm> norms() const;  ///< by name, version; whole
-  /// The newest version where none is given. @throws Error 3 where there is none.
+  /// The newest version where none is given. @throws Error (refused) where there is none.
   [[nodiscard]] Norm norm(const std::string& name, std::uint32_t version = 0) const;
-  /// @throws Error 3 where there is no such norm; Error 2 where the statement or who attaches it is empty.
+  /// @throws Error (refused) where there is no such norm; Error (invalid) where the statement or who attaches it is
+  /// empty.
   void attachEvidence(const Norm& norm, const NormEvidence& evidence);
 
  private:

@@ -54,9 +54,8 @@ void CohortDatabase::addParticipant(const Participant& p) {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     if (participantId(db, p.pseudonym) >= 0) {
-      throw Error(ExitCode::no,
-                  fmt::format("{}: participant \"{}\" is there already; use `participant set` to change it", path(),
-                              p.pseudonym));
+      throw Error(ErrorKind::refused, Where{path()}, fmt::format("participant \"{}\" is there already", p.pseudonym),
+                  {Remedy::changeParticipant});
     }
     writeDetails(db, insertParticipant(db, p), p.experience, p.consent);
     audit(db, "participant-add", p.pseudonym,
@@ -72,7 +71,8 @@ void CohortDatabase::setParticipant(const std::string& pseudonym, const Particip
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const std::int64_t id = participantId(db, pseudonym);
     if (id < 0) {
-      throw Error(ExitCode::no, fmt::format("{}: no participant \"{}\"; use `participant add`", path(), pseudonym));
+      throw Error(ErrorKind::refused, Where{path()}, fmt::format("no participant \"{}\"", pseudonym),
+                  {Remedy::addParticipant});
     }
     std::string detail;
     const auto set = [&](const char* column, const char* word, const std::optional<std::string>& value) {
@@ -154,7 +154,7 @@ void CohortDatabase::storeValues(const std::string& attempt, const std::vector<C
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path(), attempt));
+    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
     if (replaceValues(db, id, values)) audit(db, "attempt-values", attempt, fmt::format("{} values", values.size()));
     transaction.commit();
   });
@@ -164,8 +164,8 @@ namespace {
 
 void checkDecision(const std::string& reason, const std::string& by) {
   const auto blank = [](const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; };
-  if (blank(by)) throw Error(ExitCode::usage, "exclusion: name who decides");
-  if (blank(reason)) throw Error(ExitCode::usage, "exclusion: a reason is wanted");
+  if (blank(by)) throw Error(ErrorKind::invalid, "exclusion: name who decides");
+  if (blank(reason)) throw Error(ErrorKind::invalid, "exclusion: a reason is wanted");
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ void CohortDatabase::excludeAttempt(const std::string& attempt, const std::strin
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path(), attempt));
+    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
     SQLite::Statement put(db,
                           "INSERT INTO exclusion VALUES (?, ?, ?, ?) ON CONFLICT DO UPDATE SET reason = "
                           "excluded.reason, excluded_by = excluded.excluded_by, excluded_utc = excluded.excluded_utc");
@@ -193,10 +193,11 @@ void CohortDatabase::includeAttempt(const std::string& attempt, const std::strin
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path(), attempt));
+    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
     SQLite::Statement clear(db, "DELETE FROM exclusion WHERE attempt = ?");
     clear.bind(1, id);
-    if (clear.exec() == 0) throw Error(ExitCode::no, fmt::format("{}: attempt {} is not excluded", path(), attempt));
+    if (clear.exec() == 0)
+      throw Error(ErrorKind::refused, Where{path()}, fmt::format("attempt {} is not excluded", attempt));
     audit(db, "attempt-include", attempt, fmt::format("{} (by {})", reason, by));
     transaction.commit();
   });
@@ -210,12 +211,12 @@ std::string CohortDatabase::attemptNamed(const std::string& text) const {
     find.bind(1, static_cast<std::int64_t>(text.size()));
     find.bind(2, text);
     if (text.empty() || !find.executeStep()) {
-      throw Error(ExitCode::no, fmt::format("{}: no attempt \"{}\"", path(), text));
+      throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt \"{}\"", text));
     }
     std::string uuid = find.getColumn(0).getString();
     if (find.executeStep()) {
-      throw Error(ExitCode::no,
-                  fmt::format("{}: more than one attempt begins with \"{}\"; give more of its uuid", path(), text));
+      throw Error(ErrorKind::refused, Where{path()},
+                  fmt::format("more than one attempt begins with \"{}\"; give more of its uuid", text));
     }
     return uuid;
   });

@@ -135,10 +135,10 @@ class CohortDatabase {
   [[nodiscard]] int schemaVersion() const;
   [[nodiscard]] const std::string& path() const;
 
-  /// Adds a participant. @throws Error 3 if the pseudonym is taken; Error 2 for an empty or malformed pseudonym or
-  /// date.
+  /// Adds a participant. @throws Error (refused) if the pseudonym is taken; Error (invalid) for an empty or malformed
+  /// pseudonym or date.
   void addParticipant(const Participant& participant);
-  /// Changes what is given. @throws Error 3 if there is no such participant.
+  /// Changes what is given. @throws Error (refused) if there is no such participant.
   void setParticipant(const std::string& pseudonym, const ParticipantChange& change);
   [[nodiscard]] std::optional<Participant> participant(const std::string& pseudonym) const;
   [[nodiscard]] std::vector<Participant> participants() const;  ///< by pseudonym
@@ -146,21 +146,21 @@ class CohortDatabase {
   /// Adds the attempt with its values, or brings what is known of the same recording up to date (a recovered or longer
   /// file of the same uuid); one transaction. Running it again changes nothing. A participant unknown so far is added
   /// without group.
-  /// @throws Error 3 "conflict" when the same uuid came in before with another content of the same length, or with
-  /// another scene, seed, participant or operator; or when it, or what it branches from, was withdrawn.
+  /// @throws Error (refused) "conflict" when the same uuid came in before with another content of the same length, or
+  /// with another scene, seed, participant or operator; or when it, or what it branches from, was withdrawn.
   Imported storeAttempt(const AttemptRecord& attempt, const std::vector<CheckpointValue>& values);
   /// The same without values.
   Imported upsertAttempt(const AttemptRecord& attempt);
-  /// Replaces the attempt's values. @throws Error 3 if there is no such attempt.
+  /// Replaces the attempt's values. @throws Error (refused) if there is no such attempt.
   void storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values);
 
-  /// Marks an attempt as excluded from studies, or replaces the mark; audited. @throws Error 2 without reason or name;
-  /// 3 if there is no such attempt.
+  /// Marks an attempt as excluded from studies, or replaces the mark; audited. @throws Error (invalid) without reason
+  /// or name; (refused) if there is no such attempt.
   void excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
   /// Takes the mark away; audited. @throws Error as excludeAttempt, and 3 if the attempt is not excluded.
   void includeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
 
-  /// The uuid that begins with `text`. @throws Error 3 if there is none, or more than one.
+  /// The uuid that begins with `text`. @throws Error (refused) if there is none, or more than one.
   [[nodiscard]] std::string attemptNamed(const std::string& text) const;
   [[nodiscard]] std::vector<AttemptRow> listAttempts() const;  ///< by start, then uuid
   [[nodiscard]] std::optional<AttemptRow> attempt(const std::string& uuid) const;

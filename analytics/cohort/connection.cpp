@@ -23,13 +23,13 @@ bool checkFile(const std::string& path, Access access) {
   const bool exists = std::filesystem::exists(status);
   if (!exists) {
     if (access == Access::create) return false;
-    throw Error(ExitCode::damaged, fmt::format("{}: no such cohort database", path));
+    throw Error(ErrorKind::damaged, Where{path}, "no such cohort database");
   }
   if (!std::filesystem::is_regular_file(status)) {
-    throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (not a file)", path));
+    throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (not a file)");
   }
   if (access != Access::create && std::filesystem::file_size(path, error) == 0) {
-    throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (empty file)", path));
+    throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (empty file)");
   }
   return true;
 }
@@ -89,15 +89,15 @@ int schemaOf(SQLite::Database& db, const std::string& path) {
   const bool empty = db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
   if (application == 0 && version == 0 && empty) return 0;
   if (application != cohortApplicationId) {
-    throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (another program's SQLite file)", path));
+    throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (another program's SQLite file)");
   }
   const int known = static_cast<int>(cohortMigrations().size());
   if (version > known) {
-    throw Error(
-        ExitCode::undecided,
-        fmt::format("{}: cohort schema {} is newer than this program's {}; use a newer Calot", path, version, known));
+    throw Error(ErrorKind::undecided, Where{path},
+                fmt::format("cohort schema {} is newer than this program's {}; use a newer Calot", version, known));
   }
-  if (version < 1) throw Error(ExitCode::damaged, fmt::format("{}: cohort schema {} does not exist", path, version));
+  if (version < 1)
+    throw Error(ErrorKind::damaged, Where{path}, fmt::format("cohort schema {} does not exist", version));
   return version;
 }
 
@@ -123,14 +123,15 @@ void backUp(SQLite::Database& db, const std::string& path, int version) {
     fs::rename(fresh, kept);
   } catch (const SQLite::Exception& error) {
     fs::remove(fresh, ignored);
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be backed up before its schema is brought up to date ({}); "
-                                               "nothing was changed, free space beside it and run again",
-                                               path, error.what()));
+    throw Error(ErrorKind::failure, Where{path},
+                fmt::format("cannot be backed up before its schema is brought up to date ({}); nothing was changed, "
+                            "free space beside it and run again",
+                            error.what()));
   } catch (const fs::filesystem_error& error) {
     fs::remove(fresh, ignored);
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be backed up before its schema is brought up to date ({}); "
-                                               "nothing was changed",
-                                               path, error.code().message()));
+    throw Error(ErrorKind::failure, Where{path},
+                fmt::format("cannot be backed up before its schema is brought up to date ({}); nothing was changed",
+                            error.code().message()));
   }
 }
 
@@ -161,16 +162,16 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
     }();
     const int known = static_cast<int>(cohortMigrations().size());
     if (access == Access::read) {
-      if (version == 0) throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (no tables)", path));
+      if (version == 0) throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
       if (version < known) {
-        throw Error(ExitCode::failure,
-                    fmt::format("{}: cohort schema {} must be brought to {} first; run any command that writes to it",
-                                path, version, known));
+        throw Error(ErrorKind::failure, Where{path},
+                    fmt::format("cohort schema {} must be brought to {} first; run any command that writes to it",
+                                version, known));
       }
       return db;
     }
     if (version == 0 && access != Access::create) {
-      throw Error(ExitCode::damaged, fmt::format("{}: not a cohort database (no tables)", path));
+      throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
     }
     if (sqlite3_db_readonly(db->getHandle(), "main") == 1) throw databaseError(SQLITE_READONLY, "", path);
     setWriteAheadLog(*db, patience);

@@ -17,10 +17,10 @@ void checkAttempt(const AttemptRecord& a, const std::string& path) {
     uuid = hyphen ? c == '-' : (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
   }
   if (!uuid)
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: attempt \"{}\" is not a uuid", a.fileName.empty() ? path : a.fileName, a.uuid));
+    throw Error(ErrorKind::damaged, Where{a.fileName.empty() ? path : a.fileName},
+                fmt::format("attempt \"{}\" is not a uuid", a.uuid));
   if (a.steps > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) || !(a.stepSeconds > 0.0)) {
-    throw Error(ExitCode::damaged, fmt::format("{}: number or length of steps is out of range", a.fileName));
+    throw Error(ErrorKind::damaged, Where{a.fileName}, "number or length of steps is out of range");
   }
   if (!a.participant.empty()) checkPseudonym(a.participant);
 }
@@ -91,8 +91,8 @@ void writeSignature(SQLite::Database& db, std::int64_t id, const AttemptRecord& 
 void refuseWithdrawn(SQLite::Database& db, const std::string& path, const AttemptRecord& a) {
   for (const std::string* uuid : {&a.uuid, &a.parent}) {
     if (!uuid->empty() && isWithdrawn(db, *uuid)) {
-      throw Error(ExitCode::no,
-                  fmt::format("{}: {} was withdrawn from {}; it is not taken in again, delete the file", a.fileName,
+      throw Error(ErrorKind::refused, Where{a.fileName},
+                  fmt::format("{} was withdrawn from {}; it is not taken in again, delete the file",
                               uuid == &a.uuid ? "its attempt" : "what it branches from", path));
     }
   }
@@ -154,9 +154,9 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
 Imported updateAttempt(SQLite::Database& db, const std::string& path, const AttemptRow& known, const AttemptRecord& a,
                        const std::vector<CheckpointValue>* values) {
   const auto conflict = [&](const std::string& what) {
-    return Error(ExitCode::no,
-                 fmt::format("{}: conflict: attempt {} is in {} already, from {}, {}; nothing was changed", a.fileName,
-                             a.uuid, path, known.fileName, what));
+    return Error(ErrorKind::refused, Where{a.fileName},
+                 fmt::format("conflict: attempt {} is in {} already, from {}, {}; nothing was changed", a.uuid, path,
+                             known.fileName, what));
   };
   const bool judged = a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged;
   const bool trusted = known.verification.verdict == Verdict::verified;

@@ -43,8 +43,8 @@ class SealingKey {
              std::uint64_t passes, std::uint64_t memory) {
     if (crypto_pwhash(key_.data(), key_.size(), passphrase.data(), passphrase.size(), salt, passes,
                       static_cast<std::size_t>(memory), crypto_pwhash_ALG_ARGON2ID13) != 0) {
-      throw Error(ExitCode::failure, fmt::format("{}: not enough memory for the passphrase ({} MiB are wanted)",
-                                                 path.string(), memory >> 20U));
+      throw Error(ErrorKind::failure, Where{path.string()},
+                  fmt::format("not enough memory for the passphrase ({} MiB are wanted)", memory >> 20U));
     }
   }
   ~SealingKey() { sodium_memzero(key_.data(), key_.size()); }
@@ -60,8 +60,8 @@ class SealingKey {
 
 KeyFile::KeyFile(std::filesystem::path path, std::string passphrase)
     : path_(std::move(path)), passphrase_(std::move(passphrase)) {
-  if (sodium_init() < 0) throw Error(ExitCode::failure, "libsodium cannot be initialised");
-  if (passphrase_.empty()) throw Error(ExitCode::usage, fmt::format("{}: its passphrase is empty", path_.string()));
+  if (sodium_init() < 0) throw Error(ErrorKind::failure, "libsodium cannot be initialised");
+  if (passphrase_.empty()) throw Error(ErrorKind::invalid, Where{path_.string()}, "its passphrase is empty");
   std::error_code error;
   if (std::filesystem::exists(path_, error)) open();
 }
@@ -73,9 +73,7 @@ KeyFile::~KeyFile() {
 
 void KeyFile::open() {
   const std::string file = recorder::readSecret(path_, mostBytes);
-  const auto damaged = [&] {
-    return Error(ExitCode::damaged, fmt::format("{}: not a key file, or damaged", path_.string()));
-  };
+  const auto damaged = [&] { return Error(ErrorKind::damaged, Where{path_.string()}, "not a key file, or damaged"); };
   if (file.size() < headBytes + crypto_secretbox_MACBYTES || file.compare(0, magic.size(), magic) != 0) throw damaged();
   const std::uint64_t passes = numberAt(file, magic.size()), memory = numberAt(file, magic.size() + 8);
   if (passes < crypto_pwhash_OPSLIMIT_MIN || passes > mostPasses || memory < crypto_pwhash_MEMLIMIT_MIN ||
@@ -87,8 +85,8 @@ void KeyFile::open() {
   std::string text(file.size() - headBytes - crypto_secretbox_MACBYTES, '\0');
   if (crypto_secretbox_open_easy(reinterpret_cast<unsigned char*>(text.data()), bytesOf(file, headBytes),
                                  file.size() - headBytes, bytesOf(file, nonceAt), key.get()) != 0) {
-    throw Error(ExitCode::no,
-                fmt::format("{}: the passphrase is not this file's, or the file was changed", path_.string()));
+    throw Error(ErrorKind::refused, Where{path_.string()},
+                "the passphrase is not this file's, or the file was changed");
   }
   const json names = json::parse(text, nullptr, false);
   sodium_memzero(text.data(), text.size());
@@ -101,12 +99,12 @@ void KeyFile::open() {
 
 void KeyFile::add(const std::string& pseudonym, const std::string& name) {
   tables::checkPseudonym(pseudonym);
-  if (name.empty()) throw Error(ExitCode::usage, fmt::format("{}: a name is wanted", pseudonym));
+  if (name.empty()) throw Error(ErrorKind::invalid, fmt::format("{}: a name is wanted", pseudonym));
   const auto [at, fresh] = names_.emplace(pseudonym, name);
   if (!fresh && at->second == name) return;
   if (!fresh) {
-    throw Error(ExitCode::no, fmt::format("{}: \"{}\" stands for someone else already; remove that entry first",
-                                          path_.string(), pseudonym));
+    throw Error(ErrorKind::refused, Where{path_.string()},
+                fmt::format("\"{}\" stands for someone else already; remove that entry first", pseudonym));
   }
   save();
 }
@@ -128,7 +126,7 @@ void KeyFile::save() const {
   try {
     text = json(names_).dump();
   } catch (const json::exception&) {
-    throw Error(ExitCode::usage, fmt::format("{}: a name is no UTF-8 text", path_.string()));
+    throw Error(ErrorKind::invalid, Where{path_.string()}, "a name is no UTF-8 text");
   }
   std::string sealed(text.size() + crypto_secretbox_MACBYTES, '\0');
   crypto_secretbox_easy(reinterpret_cast<unsigned char*>(sealed.data()), bytesOf(text), text.size(), nonce.data(),

@@ -16,8 +16,9 @@ namespace calot::analytics {
 /// a backup holds of an older one is not reached.
 class KeyFile {
  public:
-  /// Opens a file; one that is not there is empty. @throws Error 3 the passphrase is not the file's; 4 no such
-  /// file, or damaged; 2 others than its owner may read it, or the passphrase is empty; 1 no memory.
+  /// Opens a file; one that is not there is empty. @throws Error (refused) the passphrase is not the file's; (damaged)
+  /// no such file, or damaged; (invalid) others than its owner may read it, or the passphrase is empty; (failure) no
+  /// memory.
   KeyFile(std::filesystem::path path, std::string passphrase);
   ~KeyFile();
   KeyFile(const KeyFile&) = delete;
@@ -25,9 +26,9 @@ class KeyFile {
 
   [[nodiscard]] const std::map<std::string, std::string>& names() const { return names_; }
 
-  /// @throws Error 3 where the pseudonym has another name already; 1 where the file cannot be written.
+  /// @throws Error (refused) where the pseudonym has another name already; (failure) where the file cannot be written.
   void add(const std::string& pseudonym, const std::string& name);
-  /// @returns false where it was not there. @throws Error 1 where the file cannot be written.
+  /// @returns false where it was not there. @throws Error (failure) where the file cannot be written.
   bool remove(const std::string& pseudonym);
 
  private:

@@ -93,7 +93,7 @@ class Merge {
       try {
         mergeAttempt(a, number[a.uuid]);
       } catch (const Error& error) {
-        if (error.code() != ExitCode::no) throw;
+        if (error.kind() != ErrorKind::refused) throw;
         result_.conflicts.emplace_back(error.what());
         continue;
       }
@@ -253,7 +253,7 @@ class Merge {
 CohortMerge mergeCohorts(const std::string& into, const std::string& from) {
   std::error_code ignored;
   if (std::filesystem::equivalent(into, from, ignored))
-    throw Error(ExitCode::usage, fmt::format("{}: is {}; name two databases", from, into));
+    throw Error(ErrorKind::invalid, Where{from}, fmt::format("is {}; name two databases", into));
   constexpr auto patience = std::chrono::seconds(10);
   const auto source = guarded(from, [&] { return openCohort(from, CohortDatabase::Access::read, patience); });
   return guarded(into, [&] {

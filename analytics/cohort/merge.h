@@ -23,7 +23,7 @@ struct CohortMerge {
 /// pseudonym, a uuid, a name; never the numbers of rows. Of an attempt in both, the longer recording counts and the
 /// values that are there stay. Doing it again changes nothing. Where both say different things of one row, that is a
 /// conflict, every one is reported, and nothing is merged.
-/// @throws Error as CohortDatabase does; 2 where both are one file.
+/// @throws Error as CohortDatabase does; (invalid) where both are one file.
 CohortMerge mergeCohorts(const std::string& into, const std::string& from);
 
 }  // namespace calot::analytics

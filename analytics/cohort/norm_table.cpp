@@ -54,7 +54,7 @@ void writeMembers(SQLite::Database& db, const std::string& path, std::int64_t id
   SQLite::Statement value(db, "INSERT INTO norm_value VALUES (?, ?, ?, ?, ?)");
   for (const NormMember& m : norm.members) {
     const std::int64_t attempt = attemptId(db, m.attempt);
-    if (attempt < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path, m.attempt));
+    if (attempt < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no attempt {}", m.attempt));
     put.reset();
     SQLite::bind(put, id, attempt, m.competent ? 1 : 0);
     put.exec();
@@ -123,7 +123,7 @@ void readEvidence(SQLite::Database& db, std::int64_t id, Norm& norm) {
 }  // namespace
 
 std::uint32_t AssessmentDatabase::storeNorm(const Norm& norm) {
-  if (norm.by.empty()) throw Error(ExitCode::usage, "norm: name who makes it");
+  if (norm.by.empty()) throw Error(ErrorKind::invalid, "norm: name who makes it");
   checkPseudonym(norm.name);
   return guarded(storage_->path, [&] {
     SQLite::Database& db = *storage_->db;
@@ -187,21 +187,22 @@ Norm AssessmentDatabase::norm(const std::string& name, std::uint32_t version) co
     if (norm.name == name && (version == 0 || norm.version == version)) found = std::move(norm);
   }
   if (found) return std::move(*found);
-  throw Error(ExitCode::no,
-              fmt::format("{}: no norm \"{}\"{} (there are: {})", storage_->path, recorder::shown(name),
+  throw Error(ErrorKind::refused, Where{storage_->path},
+              fmt::format("no norm \"{}\"{} (there are: {})", recorder::shown(name),
                           version == 0 ? "" : fmt::format(" version {}", version), known.empty() ? "none" : known));
 }
 
 void AssessmentDatabase::attachEvidence(const Norm& norm, const NormEvidence& evidence) {
-  if (evidence.statement.empty()) throw Error(ExitCode::usage, "norm: say what the evidence shows");
-  if (evidence.by.empty()) throw Error(ExitCode::usage, "norm: name who attaches the evidence");
+  if (evidence.statement.empty()) throw Error(ErrorKind::invalid, "norm: say what the evidence shows");
+  if (evidence.by.empty()) throw Error(ErrorKind::invalid, "norm: name who attaches the evidence");
   guarded(storage_->path, [&] {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     SQLite::Statement find(db, "SELECT id FROM norm WHERE name = ? AND version = ?");
     SQLite::bind(find, norm.name, norm.version);
     if (!find.executeStep())
-      throw Error(ExitCode::no, fmt::format("{}: no norm \"{}\" version {}", storage_->path, norm.name, norm.version));
+      throw Error(ErrorKind::refused, Where{storage_->path},
+                  fmt::format("no norm \"{}\" version {}", norm.name, norm.version));
     SQLite::Statement put(db,
                           "INSERT INTO norm_evidence (norm, statement, file_name, sha256, attached_by, attached_utc) "
                           "VALUES (?, ?, ?, ?, ?, ?)");

@@ -19,7 +19,7 @@ void checkPseudonym(const std::string& pseudonym) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   if (pseudonym.empty() || pseudonym.size() > 64 || pseudonym.front() == ' ' || pseudonym.back() == ' ' ||
       std::any_of(pseudonym.begin(), pseudonym.end(), control)) {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 "participant: a pseudonym has 1 to 64 characters, no control characters and no blank at its ends");
   }
 }
@@ -43,7 +43,8 @@ void checkDate(const std::string& purpose, const std::string& date) {
                                        std::chrono::day(static_cast<unsigned>(d)))
                .ok();
   }
-  if (!good) throw Error(ExitCode::usage, fmt::format("consent {}: \"{}\" is not a date (YYYY-MM-DD)", purpose, date));
+  if (!good)
+    throw Error(ErrorKind::invalid, fmt::format("consent {}: \"{}\" is not a date (YYYY-MM-DD)", purpose, date));
 }
 
 }  // namespace
@@ -51,10 +52,10 @@ void checkDate(const std::string& purpose, const std::string& date) {
 void checkDetails(const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent) {
   for (const auto& item : experience) {
-    if (item.first.empty()) throw Error(ExitCode::usage, "experience: a criterion needs a name (criterion=value)");
+    if (item.first.empty()) throw Error(ErrorKind::invalid, "experience: a criterion needs a name (criterion=value)");
   }
   for (const auto& item : consent) {
-    if (item.first.empty()) throw Error(ExitCode::usage, "consent: a purpose needs a name (purpose:YYYY-MM-DD)");
+    if (item.first.empty()) throw Error(ErrorKind::invalid, "consent: a purpose needs a name (purpose:YYYY-MM-DD)");
     checkDate(item.first, item.second);
   }
 }

@@ -20,7 +20,7 @@ void checkName(const char* what, const std::string& name) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   if (name.empty() || name.size() > 64 || name.front() == ' ' || name.back() == ' ' ||
       std::any_of(name.begin(), name.end(), control)) {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 fmt::format("{}: a name has 1 to 64 characters, no control characters and no blank at its ends", what));
   }
 }
@@ -81,9 +81,10 @@ void setStation(const std::string& path, const std::string& name, const std::opt
       const SQLite::Column column = known.getColumn(0);
       const bool there = !column.isNull();
       if (there && std::memcmp(column.getBlob(), key->data(), key->size()) != 0) {
-        throw Error(ExitCode::no, fmt::format("{}: station \"{}\" has another key already; a station with a new key "
-                                              "needs a new name, so that old signatures keep their meaning",
-                                              path, name));
+        throw Error(ErrorKind::refused, Where{path},
+                    fmt::format("station \"{}\" has another key already; a station with a new key needs a new name, so "
+                                "that old signatures keep their meaning",
+                                name));
       }
       if (!there) {
         SQLite::Statement set(db, "UPDATE station SET public_key = ? WHERE name = ?");
@@ -105,7 +106,7 @@ void setCohort(const std::string& path, const std::string& name, const std::opti
     const auto each = [&](const std::vector<std::string>& who, const char* sql, const char* word) {
       for (const std::string& pseudonym : who) {
         const std::int64_t id = participantId(db, pseudonym);
-        if (id < 0) throw Error(ExitCode::no, fmt::format("{}: no participant \"{}\"", path, pseudonym));
+        if (id < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no participant \"{}\"", pseudonym));
         SQLite::Statement one(db, sql);
         SQLite::bind(one, name, id);
         if (one.exec() == 0) continue;

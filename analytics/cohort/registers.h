@@ -35,8 +35,8 @@ struct Registers {
 Registers readRegisters(const std::string& path);
 
 /// Each adds the name where it is new, changes what is given, and writes an audit row where something changed.
-/// @throws Error 2 for an empty or malformed name; 3 for a participant that is not there. A station's key that is
-/// there already is not replaced by another: 3.
+/// @throws Error (invalid) for an empty or malformed name; (refused) for a participant that is not there. A station's
+/// key that is there already is not replaced by another: (refused).
 void setSite(const std::string& path, const std::string& name, const std::optional<std::string>& note);
 void setArm(const std::string& path, const std::string& name, const std::optional<std::string>& note);
 void setStation(const std::string& path, const std::string& name, const std::optional<std::string>& site,

@@ -17,32 +17,30 @@ Error databaseError(int sqliteCode, const std::string& words, const std::string&
   const std::string message = printable(words);
   switch (sqliteCode & 0xFF) {
     case SQLITE_NOTADB:
-      return {ExitCode::damaged, fmt::format("{}: not a cohort database (not an SQLite file)", path)};
+      return {ErrorKind::damaged, Where{path}, "not a cohort database (not an SQLite file)"};
     case SQLITE_CORRUPT:
-      return {ExitCode::damaged,
-              fmt::format("{}: damaged database ({}); restore a copy, or assess the recordings into a new one", path,
-                          message)};
+      return {ErrorKind::damaged, Where{path},
+              fmt::format("damaged database ({}); restore a copy, or assess the recordings into a new one", message)};
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return {ExitCode::failure, fmt::format("{}: in use by another program; try again when it has finished", path)};
+      return {ErrorKind::failure, Where{path}, "in use by another program; try again when it has finished"};
     case SQLITE_READONLY:
-      return {ExitCode::failure,
-              fmt::format("{}: can't be written; check the permissions of the file and its folder", path)};
+      return {ErrorKind::failure, Where{path}, "can't be written; check the permissions of the file and its folder"};
     case SQLITE_FULL:
-      return {ExitCode::failure, fmt::format("{}: disk full; nothing was changed, free space and run again", path)};
+      return {ErrorKind::failure, Where{path}, "disk full; nothing was changed, free space and run again"};
     case SQLITE_IOERR:
-      return {ExitCode::failure,
-              fmt::format("{}: reading or writing failed ({}); nothing was changed, check the disk and run again", path,
-                          message)};
+      return {
+          ErrorKind::failure, Where{path},
+          fmt::format("reading or writing failed ({}); nothing was changed, check the disk and run again", message)};
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_AUTH:
-      return {ExitCode::failure,
-              fmt::format("{}: can't be opened; check that the folder exists and the permissions", path)};
+      return {ErrorKind::failure, Where{path}, "can't be opened; check that the folder exists and the permissions"};
     case SQLITE_ERROR:
-      return {ExitCode::damaged, fmt::format("{}: its tables are not those of a cohort database ({})", path, message)};
+      return {ErrorKind::damaged, Where{path},
+              fmt::format("its tables are not those of a cohort database ({})", message)};
     default:
-      return {ExitCode::failure, fmt::format("{}: database failure ({})", path, message)};
+      return {ErrorKind::failure, Where{path}, fmt::format("database failure ({})", message)};
   }
 }
 

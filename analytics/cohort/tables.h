@@ -32,9 +32,9 @@ inline std::string text(const SQLite::Column& column) { return column.getString(
 
 void audit(SQLite::Database& db, const std::string& action, const std::string& subject, const std::string& detail);
 
-/// @throws Error 2.
+/// @throws Error (invalid).
 void checkPseudonym(const std::string& pseudonym);
-/// Names of criteria and purposes, dates of consent. @throws Error 2.
+/// Names of criteria and purposes, dates of consent. @throws Error (invalid).
 void checkDetails(const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent);
 /// -1: there is none.
@@ -49,7 +49,7 @@ std::int64_t attemptId(SQLite::Database& db, const std::string& uuid);
 std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& uuid);
 /// By start, then uuid.
 std::vector<AttemptRow> readAttempts(SQLite::Database& db);
-/// @throws Error 4 for what no recording can say.
+/// @throws Error (damaged) for what no recording can say.
 void checkAttempt(const AttemptRecord& attempt, const std::string& path);
 /// CohortDatabase::storeAttempt() without its transaction; null: values are left alone.
 Imported importAttempt(SQLite::Database& db, const std::string& path, const AttemptRecord& attempt,

@@ -112,9 +112,9 @@ void removeBackups(const std::string& path) {
     if (entry.path().filename().string().rfind(stem, 0) != 0) continue;
     std::error_code failed;
     if (!std::filesystem::remove(entry.path(), failed) || failed) {
-      throw Error(ExitCode::failure,
-                  fmt::format("{}: cannot be removed ({}); it holds what was withdrawn, remove it by hand",
-                              entry.path().string(), failed.message()));
+      throw Error(
+          ErrorKind::failure, Where{entry.path().string()},
+          fmt::format("cannot be removed ({}); it holds what was withdrawn, remove it by hand", failed.message()));
     }
   }
 }
@@ -125,9 +125,8 @@ void rebuild(SQLite::Database& db, const std::string& path) {
     SQLite::Statement run(db, "PRAGMA wal_checkpoint(TRUNCATE)");
     run.executeStep();
     if (run.getColumn(0).getInt() != 0) {
-      throw Error(ExitCode::failure, fmt::format("{}: another program reads it, so that its log cannot be emptied; end "
-                                                 "that program and run `calot cohort scrub` on it",
-                                                 path));
+      throw Error(ErrorKind::failure, Where{path}, "another program reads it, so that its log cannot be emptied",
+                  {Remedy::emptyLog});
     }
   };
   checkpoint();

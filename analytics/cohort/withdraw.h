@@ -39,7 +39,8 @@ Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym,
 /// Takes it away, in one transaction: every row that hangs on the attempts (and, of scope `all`, on the participant),
 /// the words of audit rows that name them; leaves a tombstone. What was deleted is overwritten, the database is rebuilt
 /// and its log emptied; backups that migrations left beside it are removed, as they hold the rows, too.
-/// @returns the tombstone's id. @throws Error as CohortDatabase does; 1 where another program keeps the log busy.
+/// @returns the tombstone's id. @throws Error as CohortDatabase does; (failure) where another program keeps the log
+/// busy.
 std::string withdraw(const std::string& path, const Withdrawal& withdrawal);
 
 /// Overwrites what earlier deletions left in the file and in its log, and removes the backups of migrations.

@@ -49,7 +49,7 @@ void recordExport(const std::string& path, const std::string& kind, const std::s
     SQLite::Statement link(db, "INSERT INTO export_attempt VALUES (?, ?) ON CONFLICT DO NOTHING");
     for (const std::string& uuid : attempts) {
       const std::int64_t attempt = attemptId(db, uuid);
-      if (attempt < 0) throw Error(ExitCode::no, fmt::format("{}: no attempt {}", path, uuid));
+      if (attempt < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no attempt {}", uuid));
       link.reset();
       SQLite::bind(link, id, attempt);
       link.exec();

@@ -83,7 +83,7 @@ class Writer {
 
   void put(FolderOutput& output, const std::string& name, const std::string& text) {
     if (const std::string kind = originals_.firstIn(text, vocabulary_); !kind.empty()) {
-      throw Error(ExitCode::no,
+      throw Error(ErrorKind::refused,
                   fmt::format("{} would hold {} as it is in the database; nothing is handed out. Look for "
                               "it among groups, arms, criteria of experience and reasons",
                               name, kind));
@@ -248,8 +248,8 @@ Bundle writeBundle(const std::string& database, const std::string& folder, const
     list += fmt::format("{}{} {}", list.empty() ? ": " : ", ", left[i], bundleReasons()[i]);
   }
   if (taken.empty())
-    throw Error(ExitCode::no,
-                fmt::format("{}: none of {} attempts can be handed out{}", database, bundle.recruited, list));
+    throw Error(ErrorKind::refused, Where{database},
+                fmt::format("none of {} attempts can be handed out{}", bundle.recruited, list));
   Writer(source, taken).write(output, bundle, options.scope);
   std::vector<std::string> uuids;
   uuids.reserve(taken.size());

@@ -39,8 +39,8 @@ struct Bundle {
 ///
 /// Before the folder gets its name, every cell and word in it is looked up among the originals, and what is handed out
 /// is noted in the database for withdrawals: where the one finds something or the other fails, there is no bundle.
-/// @throws Error as CohortDatabase and FolderOutput do; Error 3 where nothing is left to hand out, or an original name
-/// is found, with the file and what kind of name it is.
+/// @throws Error as CohortDatabase and FolderOutput do; Error (refused) where nothing is left to hand out, or an
+/// original name is found, with the file and what kind of name it is.
 Bundle writeBundle(const std::string& database, const std::string& folder, const BundleOptions& options);
 
 }  // namespace calot::analytics

@@ -20,13 +20,13 @@ FolderOutput::FolderOutput(const fs::path& path) : path_(path) {
   if (path_.filename().empty()) path_ = path_.parent_path();  // "out/"
   std::error_code ignored;
   if (path_.empty() || fs::exists(fs::symlink_status(path_, ignored)))
-    throw Error(ExitCode::usage, fmt::format("{}: already exists; name a folder that does not", path.string()));
+    throw Error(ErrorKind::invalid, Where{path.string()}, "already exists; name a folder that does not");
   const fs::path above = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
   if (!fs::is_directory(above, ignored))
-    throw Error(ExitCode::usage, fmt::format("{}: folder {} does not exist", path.string(), above.string()));
+    throw Error(ErrorKind::invalid, Where{path.string()}, fmt::format("folder {} does not exist", above.string()));
   std::string pattern = path_.string() + ".part-XXXXXX";
   if (::mkdtemp(pattern.data()) == nullptr)
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be made: {}", path_.string(), std::strerror(errno)));
+    throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("cannot be made: {}", std::strerror(errno)));
   temporary_ = pattern;
 }
 
@@ -43,7 +43,8 @@ void FolderOutput::add(const std::string& name, std::string_view text) {
 void FolderOutput::finish() {
   std::error_code error;
   fs::rename(temporary_, path_, error);
-  if (error) throw Error(ExitCode::failure, fmt::format("{}: cannot be named: {}", path_.string(), error.message()));
+  if (error)
+    throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("cannot be named: {}", error.message()));
   temporary_.clear();
 }
 

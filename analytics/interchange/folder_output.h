@@ -19,8 +19,8 @@ struct WrittenFile {
 /// and six letters, which goes when this does.
 class FolderOutput {
  public:
-  /// @throws Error (usage) where there is something of this name, or no folder to put it in; (failure) where it cannot
-  /// be made.
+  /// @throws Error (invalid) where there is something of this name, or no folder to put it in; (failure) where it
+  /// cannot be made.
   explicit FolderOutput(const std::filesystem::path& path);
   ~FolderOutput();
   FolderOutput(const FolderOutput&) = delete;

@@ -21,7 +21,7 @@ std::string_view trimmed(std::string_view cell) {
 }
 
 [[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& what) {
-  throw Error(ExitCode::damaged, fmt::format("{}: line {}: {}", path, line, what));
+  throw Error(ErrorKind::damaged, Where{path, fmt::format("line {}", line)}, what);
 }
 
 /// Takes records off a text, one after the other.
@@ -100,12 +100,12 @@ std::size_t CsvTable::column(const std::string& name) const {
   if (at == columns.end()) {
     std::string list;
     for (const std::string& c : columns) list += (list.empty() ? "" : ", ") + recorder::shown(c);
-    throw Error(ExitCode::usage, fmt::format("{}: line 1: there is no column \"{}\" (there are: {})", path,
-                                             recorder::shown(name), list));
+    throw Error(ErrorKind::invalid, Where{path, "line 1"},
+                fmt::format("there is no column \"{}\" (there are: {})", recorder::shown(name), list));
   }
   if (std::find(at + 1, columns.end(), name) != columns.end()) {
-    throw Error(ExitCode::usage,
-                fmt::format("{}: line 1: two columns are called \"{}\"; rename one", path, recorder::shown(name)));
+    throw Error(ErrorKind::invalid, Where{path, "line 1"},
+                fmt::format("two columns are called \"{}\"; rename one", recorder::shown(name)));
   }
   return static_cast<std::size_t>(at - columns.begin());
 }
@@ -113,12 +113,12 @@ std::size_t CsvTable::column(const std::string& name) const {
 CsvTable parseCsvTable(std::string_view text, const std::string& path) {
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
   if (text.find('\0') != std::string_view::npos)
-    throw Error(ExitCode::damaged, fmt::format("{}: is no table of text (CSV)", path));
+    throw Error(ErrorKind::damaged, Where{path}, "is no table of text (CSV)");
   Records records(text, path);
   CsvTable table;
   table.path = path;
   CsvRow row;
-  if (!records.next(row)) throw Error(ExitCode::damaged, fmt::format("{}: line 1: is empty; a header is needed", path));
+  if (!records.next(row)) throw Error(ErrorKind::damaged, Where{path, "line 1"}, "is empty; a header is needed");
   table.columns = std::move(row.cells);
   if (table.columns.size() == 1) {
     fail(path, row.line,
@@ -138,9 +138,9 @@ CsvTable readCsvTable(const std::string& path) {
   std::error_code ignored;
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path, ignored))
-    throw Error(ExitCode::damaged, fmt::format("{}: cannot be read; name a CSV file", path));
+    throw Error(ErrorKind::damaged, Where{path}, "cannot be read; name a CSV file");
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (file.bad()) throw Error(ExitCode::damaged, fmt::format("{}: cannot be read", path));
+  if (file.bad()) throw Error(ErrorKind::damaged, Where{path}, "cannot be read");
   return parseCsvTable(text, path);
 }
 

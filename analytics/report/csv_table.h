@@ -19,7 +19,7 @@ struct CsvTable {
   std::vector<std::string> columns;
   std::vector<CsvRow> rows;  ///< each with as many cells as there are columns
 
-  /// @throws Error 2 where there is no such column, or more than one.
+  /// @throws Error (invalid) where there is no such column, or more than one.
   [[nodiscard]] std::size_t column(const std::string& name) const;
   [[nodiscard]] bool has(const std::string& name) const;
 };
@@ -27,7 +27,7 @@ struct CsvTable {
 /// Reads a whole file: UTF-8 with or without a byte order mark, lines ending in LF or CRLF, cells in double quotes
 /// where they hold commas, quotes or line breaks. Blanks around a cell without quotes are dropped; empty lines are
 /// passed over.
-/// @throws Error 4, naming file, line and what is wrong.
+/// @throws Error (damaged), naming file, line and what is wrong.
 CsvTable readCsvTable(const std::string& path);
 
 /// The same of text at hand.

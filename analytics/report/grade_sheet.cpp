@@ -136,7 +136,8 @@ TextSpan span(const std::string& recording, const Moment& m) {
   return {momentText(m), fmt::format("{}#t={:.2f},{:.2f}", recording, m.begin, m.end)};
 }
 
-void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& recording) {
+void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& recording,
+                  const std::string& howToDraw) {
   BulletList list;
   for (const double t : g.criticalTimes) {
     list.items.push_back(
@@ -157,8 +158,7 @@ void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& r
   document.parts.emplace_back(Heading{"Moments"});
   document.parts.emplace_back(std::move(list));
   if (!recording.empty())
-    document.add("A link names the recording and the seconds; calot render " + recording +
-                 " --at SECONDS -o F.png draws a moment.");
+    document.add("A link names the recording and the seconds." + (howToDraw.empty() ? "" : " " + howToDraw));
 }
 
 Json figureJson(const GradedFigure& f) {
@@ -234,11 +234,11 @@ std::string gradeJson(const Grade& g) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-ReportDocument gradeDocument(const Grade& g, const std::string& recording) {
+ReportDocument gradeDocument(const Grade& g, const std::string& recording, const std::string& howToDraw) {
   ReportDocument document{title(g), synthetic(g), {}};
   for (const std::string& line : opening(g)) document.add(line);
   document.parts.emplace_back(figuresTable(g));
-  addMomentsTo(document, g, recording);
+  addMomentsTo(document, g, recording, howToDraw);
   if (ReportTable history = historyTable(g); !history.rows.empty()) {
     document.parts.emplace_back(std::move(history));
     document.add(curveNote);

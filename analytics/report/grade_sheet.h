@@ -14,6 +14,7 @@ void printGrade(const Grade& grade, std::ostream& out);
 std::string gradeJson(const Grade& grade);
 /// @param recording how the sheet names the recording, for links to its moments ("a.h5#t=12,13", a media fragment);
 /// empty: none
-ReportDocument gradeDocument(const Grade& grade, const std::string& recording);
+/// @param howToDraw a sentence on how the program draws a moment of it; may be empty
+ReportDocument gradeDocument(const Grade& grade, const std::string& recording, const std::string& howToDraw);
 
 }  // namespace calot::analytics

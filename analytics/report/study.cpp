@@ -67,17 +67,18 @@ std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow
     study.participants[g] = people[g].size();
     for (auto& [person, list] : people[g]) {
       if (g == 1 && people[0].count(person) > 0) {
-        throw Error(ExitCode::no,
-                    fmt::format("{}: participant \"{}\" is in both groups, which must be independent", name, person));
+        throw Error(ErrorKind::refused, Where{name},
+                    fmt::format("participant \"{}\" is in both groups, which must be independent", person));
       }
       if (list.size() > 1 && several++ == 0) whose = fmt::format("\"{}\" has {}", person, list.size());
       if (list.size() > 1 && options.attemptRule == AttemptRule::first) {
         std::stable_sort(list.begin(), list.end(),
                          [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
         if (list[0]->startUtc == list[1]->startUtc) {
-          throw Error(ExitCode::no, fmt::format("{}: two attempts of participant \"{}\" start at {}: neither is the "
-                                                "first; take --attempt-rule mean, or exclude one",
-                                                name, person, list[0]->startUtc));
+          throw Error(ErrorKind::refused, Where{name},
+                      fmt::format("two attempts of participant \"{}\" start at {}: neither is the first", person,
+                                  list[0]->startUtc),
+                      {Remedy::takeMean, Remedy::exclude});
         }
         later += list.size() - 1;
         list.erase(list.begin() + 1, list.end());
@@ -94,10 +95,10 @@ std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow
     }
   }
   if (several > 0 && !options.attemptRule) {
-    throw Error(ExitCode::no,
-                fmt::format("{}: participant {} attempts ({} participant{} with several), which are not independent; "
-                            "declare --attempt-rule first or mean",
-                            name, whose, several, several == 1 ? "" : "s"));
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("participant {} attempts ({} participant{} with several), which are not independent", whose,
+                            several, several == 1 ? "" : "s"),
+                {Remedy::chooseAttemptRule});
   }
   study.attemptRule = several == 0                                ? "one attempt each"
                       : options.attemptRule == AttemptRule::first ? "the first of a participant's attempts"
@@ -113,9 +114,10 @@ void askForOneKey(Study& study, const StudyOptions& options, const std::string& 
   if (!options.mixKeys) {
     std::string list;
     for (const auto& key : study.keys) list += (list.empty() ? "" : "; ") + key;
-    throw Error(ExitCode::no, fmt::format("{}: the attempts don't compare, they have {} comparability keys ({}); "
-                                          "choose one with --key, or ask for --mix-keys",
-                                          name, study.keys.size(), list));
+    throw Error(
+        ErrorKind::refused, Where{name},
+        fmt::format("the attempts don't compare, they have {} comparability keys ({})", study.keys.size(), list),
+        {Remedy::chooseKey, Remedy::mixKeys});
   }
   study.remarks.push_back(
       fmt::format("Attempts of {} comparability keys are mixed, as asked: differences between groups may be "
@@ -171,15 +173,17 @@ std::vector<std::string> unaskedPhases(const StudyOptions& options) {
   return unasked;
 }
 
-/// @throws Error 2 where there is no such cohort.
+/// @throws Error (invalid) where there is no such cohort.
 std::set<std::string> participantsOf(const std::string& path, const std::string& cohort) {
   std::string list;
   for (const NamedCohort& c : readRegisters(path).cohorts) {
     if (c.name == cohort) return {c.participants.begin(), c.participants.end()};
     list += (list.empty() ? "" : ", ") + c.name;
   }
-  throw Error(ExitCode::usage, fmt::format("{}: there is no cohort \"{}\" (there are: {}); calot cohort name makes one",
-                                           path, recorder::shown(cohort), list.empty() ? "none" : list));
+  throw Error(
+      ErrorKind::invalid, Where{path},
+      fmt::format("there is no cohort \"{}\" (there are: {})", recorder::shown(cohort), list.empty() ? "none" : list),
+      {Remedy::nameCohort});
 }
 
 }  // namespace
@@ -266,11 +270,9 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     const Column& column = columns[key];
     if (column.versions.size() > 1) {
       if (!options.mixKeys) {
-        throw Error(
-            ExitCode::no,
-            fmt::format(
-                "{}: checkpoint {} has values of {} versions; assess the older recordings again, or ask for --mix-keys",
-                name, key.first, column.versions.size()));
+        throw Error(ErrorKind::refused, Where{name},
+                    fmt::format("checkpoint {} has values of {} versions", key.first, column.versions.size()),
+                    {Remedy::assessAgain, Remedy::mixKeys});
       }
       study.remarks.push_back(
           fmt::format("Values of {} versions of {} are mixed, as asked.", column.versions.size(), key.first));
@@ -285,8 +287,8 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   }
   const bool phases = std::any_of(study.rows.begin(), study.rows.end(),
                                   [](const StudyRow& row) { return row.checkpoint == phaseDuration; });
-  if (phases && !unasked.empty())
-    study.remarks.emplace_back("Other checkpoints of single phases are left out; --phases takes them in.");
+  study.phasesLeftOut = phases && !unasked.empty();
+  if (study.phasesLeftOut) study.remarks.emplace_back("Other checkpoints of single phases are left out.");
   for (StudyRow& row : study.rows) compareGroups(row, study, duration);
   finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   addPublished(study);

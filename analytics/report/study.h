@@ -169,6 +169,7 @@ struct Study {
   std::uint64_t analysed = 0;        ///< attempts
   std::vector<AbsentRow> absent;     ///< of a table with occasions, by participant
   std::vector<std::string> remarks;  ///< what a reader must know, whole sentences
+  bool phasesLeftOut = false;        ///< checkpoints of single phases, other than how long the phases lasted
   std::string family;                ///< which p values are adjusted for each other, a sentence
   std::vector<StudyRow> rows;
   std::string publishedSource;  ///< of the paper's means
@@ -181,8 +182,8 @@ struct Study {
 /// `StudyChoices::attemptRule`; a performer's attempt without participant counts as one synthetic participant.
 /// Practice, branches, goldens, excluded attempts, unfinished recordings, technical failures and recordings that did
 /// not verify stay out, counted in the flow.
-/// @throws Error 3 when there are not two groups, a participant has several attempts and there is no rule, or
-/// comparability keys or checkpoint versions would mix; Error 2 for a name that is none, of a cohort too.
+/// @throws Error (refused) when there are not two groups, a participant has several attempts and there is no rule, or
+/// comparability keys or checkpoint versions would mix; Error (invalid) for a name that is none, of a cohort too.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
 
 /// The same of attempts and values at hand: CohortDatabase::listAttempts() and allValues(). @param name of where they

@@ -143,7 +143,7 @@ void writeStudyCsv(const Study& study, const std::string& folder, bool force) {
   std::error_code error;
   std::filesystem::create_directories(root, error);
   if (error || !std::filesystem::is_directory(root, error)) {
-    throw Error(ExitCode::failure, fmt::format("{}: the folder can't be made", folder));
+    throw Error(ErrorKind::failure, Where{folder}, "the folder can't be made");
   }
   std::vector<std::pair<const char*, std::string>> files{
       {"study.csv", summaryTable(study)}, {"values.csv", valuesTable(study)}, {"flow.csv", flowFile(study)}};

@@ -24,8 +24,7 @@ void explainColumns(const Study& study, std::vector<std::string>& notes) {
   if (study.better.empty()) {
     notes.push_back(
         fmt::format("A: P({} larger) + P(equal) / 2, the area under the ROC curve, score interval; no hypothesis: "
-                    "nobody said which "
-                    "group is expected to do better (--better GROUP).",
+                    "nobody said which group is expected to do better.",
                     a));
   } else {
     notes.push_back(fmt::format(

@@ -19,7 +19,7 @@ std::string studyJson(const Study& study);
 /// Writes study.csv (a row a checkpoint), values.csv (a row a participant and checkpoint), flow.csv and, where forms
 /// were filled in, ratings.csv (a row an item and group) into a folder, which is made; files that are there are kept
 /// unless `force`.
-/// @throws Error 2 when a file is there already, Error 1 when writing fails.
+/// @throws Error (invalid) when a file is there already, Error (failure) when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
 
 /// The same content as the text, a box plot with all points for each row, and of each form that was filled in how its

@@ -138,7 +138,8 @@ void adjustFamily(Study& study, const StudyChoices& choices) {
   }
   for (const std::string& name : choices.family) {
     if (std::none_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return r.checkpoint == name; })) {
-      throw Error(ExitCode::usage, fmt::format("study: --family {}: the study has no such row", name));
+      throw Error(ErrorKind::invalid, fmt::format("study: its family of hypotheses: there is no row \"{}\"", name),
+                  {Remedy::nameFamily});
     }
   }
   const std::size_t tests = adjust(
@@ -174,30 +175,34 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
   std::sort(names.begin(), names.end(), groupBefore);
   if (!choices.groups.empty()) {
     if (choices.groups.size() != 2 || choices.groups[0] == choices.groups[1]) {
-      throw Error(ExitCode::usage, "study: --groups takes two different names");
+      throw Error(ErrorKind::invalid, "study: its groups are two, with different names", {Remedy::nameGroups});
     }
     for (const std::string& name : choices.groups) {
       if (present.count(name) == 0) {
-        throw Error(ExitCode::no, fmt::format("{}: nothing for the study in group \"{}\" (there are: {}){}", path, name,
-                                              names.empty() ? "none" : joined(names), left));
+        throw Error(ErrorKind::refused, Where{path},
+                    fmt::format("nothing for the study in group \"{}\" (there are: {}){}", name,
+                                names.empty() ? "none" : joined(names), left));
       }
     }
     return {choices.groups[0], choices.groups[1]};
   }
   if (names.size() == 2) return {names[0], names[1]};
   if (names.size() > 2) {
-    throw Error(ExitCode::no,
-                fmt::format("{}: {} groups ({}); name two with --groups A,B", path, names.size(), joined(names)));
+    throw Error(ErrorKind::refused, Where{path}, fmt::format("{} groups ({})", names.size(), joined(names)),
+                {Remedy::nameGroups});
   }
-  throw Error(ExitCode::no, fmt::format("{}: a study needs two groups, {}{}", path,
-                                        names.empty() ? "none is left" : "only " + names[0] + " is there", left));
+  throw Error(ErrorKind::refused, Where{path},
+              fmt::format("a study needs two groups, {}{}",
+                          names.empty() ? "none is left" : "only " + names[0] + " is there", left));
 }
 
 std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices) {
   if (!choices.better.empty()) {
     if (choices.better != groups[0] && choices.better != groups[1]) {
-      throw Error(ExitCode::usage,
-                  fmt::format("study: --better {}: the groups are {} and {}", choices.better, groups[0], groups[1]));
+      throw Error(ErrorKind::invalid,
+                  fmt::format("study: the better group is to be \"{}\", but the groups are {} and {}", choices.better,
+                              groups[0], groups[1]),
+                  {Remedy::nameBetterGroup});
     }
     return choices.better;
   }

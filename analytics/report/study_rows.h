@@ -18,11 +18,12 @@ bool groupBefore(const std::string& a, const std::string& b);
 
 /// The two groups to compare.
 /// @param present units by group; @param left what the error says of those that stay out, or empty
-/// @throws Error 2 for names that are not two different ones, Error 3 where there are not two groups.
+/// @throws Error (invalid) for names that are not two different ones, Error (refused) where there are not two groups.
 std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
                                         const StudyChoices& choices, const std::string& path, const std::string& left);
 
-/// The group that is expected to do better, or empty. @throws Error 2 where `choices.better` is none of the two.
+/// The group that is expected to do better, or empty. @throws Error (invalid) where `choices.better` is none of the
+/// two.
 std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices);
 
 /// One value of a participant's attempt.
@@ -52,7 +53,7 @@ void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<
 
 /// Adjusts over the family of the protocol, or without one of the choices, says which it is, and turns warnings of rows
 /// into remarks.
-/// @throws Error 2 where a name of `choices.family` is no row.
+/// @throws Error (invalid) where a name of `choices.family` is no row.
 void finishRows(Study& study, const StudyChoices& choices, const Protocol* protocol = nullptr);
 
 }  // namespace calot::analytics

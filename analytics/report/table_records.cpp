@@ -19,7 +19,8 @@ using recorder::shown;
 constexpr double largest = 1e100;
 
 [[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
-  throw Error(ExitCode::damaged, fmt::format("{}: line {}: column \"{}\": {}", table.path, line, shown(column), what));
+  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", line)},
+              fmt::format("column \"{}\": {}", shown(column), what));
 }
 
 /// Names are printed: a line break or another control character in one would forge what is read there.
@@ -45,9 +46,9 @@ std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& 
     if (const std::size_t colon = text.rfind(':'); !table.has(text) && colon != std::string::npos) {
       const std::string word = text.substr(colon + 1);
       if (word != "lower" && word != "higher") {
-        throw Error(ExitCode::usage, fmt::format("study: --outcome {}: behind the colon stands what is better, lower "
-                                                 "or higher",
-                                                 shown(text)));
+        throw Error(
+            ErrorKind::invalid,
+            fmt::format("study: outcome \"{}\": behind the colon stands what is better, lower or higher", shown(text)));
       }
       outcome = {text.substr(0, colon), word == "lower" ? Direction::lower : Direction::higher, 0};
     }
@@ -55,7 +56,7 @@ std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& 
     askForPlainName(table, 1, outcome.name, outcome.name);
     for (const Outcome& other : outcomes) {
       if (other.column == outcome.column)
-        throw Error(ExitCode::usage, fmt::format("study: --outcome {}: is named twice", shown(outcome.name)));
+        throw Error(ErrorKind::invalid, fmt::format("study: outcome \"{}\" is named twice", shown(outcome.name)));
     }
     outcomes.push_back(outcome);
   }
@@ -104,8 +105,8 @@ void askForOccasion(const CsvTable& table, const std::vector<Record>& records, c
   if (occasion.empty() || known.count(occasion) > 0) return;
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + shown(name);
-  throw Error(ExitCode::usage,
-              fmt::format("{}: there is no occasion \"{}\" (there are: {})", table.path, shown(occasion), list));
+  throw Error(ErrorKind::invalid, Where{table.path},
+              fmt::format("there is no occasion \"{}\" (there are: {})", shown(occasion), list));
 }
 
 }  // namespace calot::analytics

@@ -26,15 +26,15 @@ struct Record {
   std::vector<std::optional<double>> values;  ///< by outcome
 };
 
-/// @throws Error 2 for a column that is not there or is named twice, or a word behind the colon that is none.
+/// @throws Error (invalid) for a column that is not there or is named twice, or a word behind the colon that is none.
 std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options);
 
-/// @throws Error 2 for a column that is not there; Error 4, naming line and column, for a row without participant or
-/// occasion, a name with control characters, a cell that is no finite number.
+/// @throws Error (invalid) for a column that is not there; Error (damaged), naming line and column, for a row without
+/// participant or occasion, a name with control characters, a cell that is no finite number.
 std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
                               const std::vector<Outcome>& outcomes);
 
-/// @throws Error 2 where an occasion is named that no row has.
+/// @throws Error (invalid) where an occasion is named that no row has.
 void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion);
 
 }  // namespace calot::analytics

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <set>
 
 #include "analytics/report/study_protocol.h"
@@ -39,13 +40,11 @@ std::uint64_t applyRule(std::array<Rows, 2>& rows, const CsvTable& table, const 
   }
   several = several || repeated > 0;
   if (example == nullptr) return later;
-  throw Error(
-      ExitCode::no,
-      fmt::format("{}: line {}: participant \"{}\" has {} rows{} ({} participant{} with several), which are not "
-                  "independent; choose one occasion (--occasion-column, --occasion) or declare --attempt-rule "
-                  "first or mean",
-                  table.path, (*example)[1]->line, shown((*example)[0]->participant), example->size(),
-                  options.occasion.empty() ? "" : " at one occasion", repeated, repeated == 1 ? "" : "s"));
+  throw Error(ErrorKind::refused, Where{table.path, fmt::format("line {}", (*example)[1]->line)},
+              fmt::format("participant \"{}\" has {} rows{} ({} participant{} with several), which are not independent",
+                          shown((*example)[0]->participant), example->size(),
+                          options.occasion.empty() ? "" : " at one occasion", repeated, repeated == 1 ? "" : "s"),
+              {Remedy::chooseOccasion, Remedy::chooseAttemptRule});
 }
 
 void nameAbsent(Study& study, const std::map<std::string, std::string>& groupOf, const std::vector<Record>& records) {
@@ -107,18 +106,25 @@ StudySample sampleOf(const std::array<Rows, 2>& rows, std::size_t outcome) {
 }
 
 void checkOptions(const TableStudyOptions& options) {
-  const auto fail = [](const char* what) { throw Error(ExitCode::usage, fmt::format("study: {}", what)); };
-  if (options.participantColumn.empty()) fail("--table needs --participant-column");
-  if (options.groupColumn.empty()) fail("--table needs --group-column");
+  const auto fail = [](const std::string& what, std::initializer_list<Remedy> remedies) {
+    throw Error(ErrorKind::invalid, "study: " + what, remedies);
+  };
+  if (options.participantColumn.empty())
+    fail("which column of the table names the participant is not said", {Remedy::nameParticipantColumn});
+  if (options.groupColumn.empty())
+    fail("which column of the table names the group is not said", {Remedy::nameGroupColumn});
   if (options.outcomes.empty()) {
-    fail(options.protocol ? "--table has no column for any hypothesis of the protocol; name one with --outcome"
-                          : "--table needs at least one --outcome");
+    fail(options.protocol ? "the table has no column for any hypothesis of the protocol"
+                          : "a table needs at least one outcome",
+         {Remedy::nameOutcome});
   }
   if (options.occasionColumns.empty() && !(options.occasion + options.baselineOccasion).empty())
-    fail("--occasion and --baseline-occasion need --occasion-column");
+    fail("an occasion needs the column that names occasions", {Remedy::nameOccasionColumn});
   if (options.baselineOccasion.empty()) return;
-  if (options.occasion.empty()) fail("--baseline-occasion needs --occasion");
-  if (options.occasion == options.baselineOccasion) fail("the baseline's occasion is the outcome's");
+  if (options.occasion.empty())
+    fail("a baseline needs the occasion that it is the baseline of", {Remedy::nameOccasion});
+  if (options.occasion == options.baselineOccasion)
+    fail("the baseline's occasion is the outcome's", {Remedy::nameOccasion});
 }
 
 /// What the protocol makes of the options.
@@ -174,10 +180,9 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
       continue;
     }
     if (const auto [known, added] = groupOf.emplace(r.participant, r.group); !added && known->second != r.group) {
-      throw Error(ExitCode::no,
-                  fmt::format("{}: line {}: participant \"{}\" is in both groups ({}, {}), which must be "
-                              "independent",
-                              table.path, r.line, shown(r.participant), shown(known->second), shown(r.group)));
+      throw Error(ErrorKind::refused, Where{table.path, fmt::format("line {}", r.line)},
+                  fmt::format("participant \"{}\" is in both groups ({}, {}), which must be independent",
+                              shown(r.participant), shown(known->second), shown(r.group)));
     }
     const auto g = static_cast<std::size_t>(at - study.groups.begin());
     if (options.occasion.empty() || r.occasion == options.occasion) {

@@ -27,9 +27,9 @@ struct TableStudyOptions : StudyChoices {
 /// at an occasion where others have one is named. With a baseline the outcome is also compared by analysis of
 /// covariance. A protocol's hypothesis is about the column of its outcome's name, or of its checkpoint's and subject's
 /// ("path-length left"); the study stays exploratory, for a table does not say when its figures came about.
-/// @throws Error 2 for a column or occasion that is not there, Error 4 for a cell that is no finite number, Error 3
-/// when there are not two independent groups or a participant has several rows and there is no rule: rows of one person
-/// are not independent.
+/// @throws Error (invalid) for a column or occasion that is not there, Error (damaged) for a cell that is no finite
+/// number, Error (refused) when there are not two independent groups or a participant has several rows and there is no
+/// rule: rows of one person are not independent.
 Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options);
 
 }  // namespace calot::analytics

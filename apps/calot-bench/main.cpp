@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <regex>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "apps/common/program.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "tests/bench/benchmarks.h"
@@ -26,7 +25,7 @@ void checkFilter(std::string filter) {
   try {
     const std::regex expression(filter, std::regex::extended);
   } catch (const std::regex_error&) {
-    throw calot::Error(calot::ExitCode::usage,
+    throw calot::Error(calot::ErrorKind::invalid,
                        fmt::format("--benchmark_filter: '{}' is no regular expression", filter));
   }
 }
@@ -56,7 +55,7 @@ int run(int argc, char** argv) {
     options.parse(std::move(ours));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return options.exit(error);
-    throw calot::Error(calot::ExitCode::usage, fmt::format("{}; try --help", error.what()));
+    throw calot::Error(calot::ErrorKind::invalid, fmt::format("{}; try --help", error.what()));
   }
   if (!output.empty()) calot::recorder::refuseOutput(output, force);
 
@@ -64,12 +63,12 @@ int run(int argc, char** argv) {
   theirs.push_back(nullptr);
   benchmark::Initialize(&count, theirs.data());
   if (count > 1) {
-    throw calot::Error(calot::ExitCode::usage,
+    throw calot::Error(calot::ErrorKind::invalid,
                        fmt::format("{}: no option of Google Benchmark's, or no value of it; try --help", theirs[1]));
   }
   calot::bench::registerAll();
   // Where no name fits the filter, the library has said so.
-  if (benchmark::RunSpecifiedBenchmarks() == 0) return static_cast<int>(calot::ExitCode::usage);
+  if (benchmark::RunSpecifiedBenchmarks() == 0) return static_cast<int>(calot::apps::ExitCode::usage);
   if (!output.empty()) calot::recorder::writeText(output, calot::bench::figures().json(), force);
   return 0;
 }
@@ -77,13 +76,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const calot::Error& error) {
-    fmt::print(stderr, "calot-bench: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "calot-bench: {}\n", error.what());
-    return static_cast<int>(calot::ExitCode::failure);
-  }
+  return calot::apps::runProgram("calot-bench", [&] { return run(argc, argv); });
 }

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot-dashboard: options, then the window.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <QApplication>
 #include <string>
 
+#include "apps/calot-dashboard/assess_program.h"
+#include "apps/common/program.h"
 #include "apps/window/start_checks.h"
 #include "gui/dashboard/dashboard_window.h"
-#include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 
 namespace {
+
+constexpr const char* programName = "calot-dashboard";
 
 int run(int argc, char** argv) {
   CLI::App options{"Shows the attempts and checkpoints of a cohort database."};
@@ -28,8 +27,7 @@ int run(int argc, char** argv) {
     options.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return options.exit(error);
-    fmt::print(stderr, "calot-dashboard: {}; try --help\n", error.what());
-    return static_cast<int>(calot::ExitCode::usage);
+    return calot::apps::endWith(calot::apps::ExitCode::usage, programName, std::string(error.what()) + "; try --help");
   }
 
   // A file that cannot be opened is told before there is a window, and needs none.
@@ -41,7 +39,7 @@ int run(int argc, char** argv) {
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
   const std::filesystem::path program = QCoreApplication::applicationDirPath().toStdString();
-  calot::gui::DashboardWindow window(calot::recorder::assetRoots(program, CALOT_ASSETS));
+  calot::gui::DashboardWindow window(calot::apps::assessProgram(), calot::recorder::assetRoots(program, CALOT_ASSETS));
   if (document) window.setDocument(document);
   window.show();
   if (!pictures.empty()) {
@@ -54,13 +52,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const calot::Error& error) {
-    fmt::print(stderr, "calot-dashboard: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "calot-dashboard: {}\n", error.what());
-    return static_cast<int>(calot::ExitCode::failure);
-  }
+  return calot::apps::runProgram(programName, [&] { return run(argc, argv); });
 }

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <QApplication>
@@ -17,6 +16,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
+#include "apps/common/program.h"
 #include "apps/window/start_checks.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/trainer_window.h"
@@ -24,6 +24,8 @@
 
 namespace calot::apps {
 namespace {
+
+constexpr const char* programName = "calot-trainer";
 
 struct Options {
   SourceOptions source;
@@ -88,7 +90,7 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   who.mode = attempt.mode;
   if (who.device.name.empty() && who.performer.empty()) {
     if (attempt.mode == recorder::Mode::assessment) {
-      throw Error(ExitCode::usage,
+      throw Error(ErrorKind::invalid,
                   "--mode assessment: mouse and keyboard cannot be calibrated; name a --device and its --calibration");
     }
     setup.mouse = std::make_shared<recorder::MouseInput>();
@@ -107,7 +109,7 @@ std::optional<recorder::LoadedScene> sceneOf(const std::string& name) {
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(name, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot-trainer: warning: {}\n", warning);
   const Model::Built built = Model::build(scene.description);
-  if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", name, built.error));
+  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", name, built.error));
   return scene;
 }
 
@@ -119,8 +121,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    fmt::print(stderr, "calot-trainer: {}; try --help\n", error.what());
-    return static_cast<int>(ExitCode::usage);
+    return endWith(ExitCode::usage, programName, std::string(error.what()) + "; try --help");
   }
   stopOnSignals();
   std::optional<recorder::LoadedScene> scene = sceneOf(o.scene);
@@ -129,7 +130,7 @@ int run(int argc, char** argv) {
   if (!scene || !o.pictures.empty()) setup.scenes = gui::sceneChoices(assetFolders(), faults);
   for (const std::string& fault : faults) fmt::print(stderr, "calot-trainer: {}\n", fault);
   if (!scene && setup.scenes.empty())
-    throw Error(ExitCode::usage, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
+    throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
   requireScreen();
 
   QApplication application(argc, argv);
@@ -157,13 +158,5 @@ int run(int argc, char** argv) {
 }  // namespace calot::apps
 
 int main(int argc, char** argv) {
-  try {
-    return calot::apps::run(argc, argv);
-  } catch (const calot::Error& error) {
-    fmt::print(stderr, "calot-trainer: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "calot-trainer: {}\n", error.what());
-    return static_cast<int>(calot::ExitCode::failure);
-  }
+  return calot::apps::runProgram(calot::apps::programName, [&] { return calot::apps::run(argc, argv); });
 }

@@ -14,7 +14,7 @@ std::unique_ptr<recorder::SampleSource> OptionsInput::open(const SceneDescriptio
 }
 
 void OptionsInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
-  if (auto* const device = dynamic_cast<recorder::DeviceSource*>(&source); device != nullptr) device->setOutFrom(start);
+  if (auto* const device = source.device(); device != nullptr) device->setOutFrom(start);
 }
 
 void OptionsInput::drive(recorder::SampleSource& source, recorder::RunSettings& run) { driveDevice(source, run); }

@@ -27,7 +27,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
     window.savePicture(QString::fromStdString(folder + "/" + name + ".png"));
   };
   const auto wanted = [](bool there, const char* what) {
-    if (!there) throw Error(ExitCode::failure, std::string("--pictures: ") + what);
+    if (!there) throw Error(ErrorKind::failure, std::string("--pictures: ") + what);
   };
   window.chooseScene();
   save("greeting");

@@ -77,12 +77,13 @@ int assess(const AssessOptions& o) {
     try {
       reports.push_back(assessOne(file, o, database ? &*database : nullptr, stored));
     } catch (const Error& e) {
-      if (e.code() != ExitCode::no) throw;
+      if (e.kind() != ErrorKind::refused) throw;
       // A conflict with what the cohort holds is this file's answer; the others are still assessed.
       recorder::ReplayReport report;
       report.path = file;
       report.verdict = recorder::ReplayVerdict::diverged;
-      report.message = e.what();
+      report.message = recorder::messageWithout(file, e);
+      report.remedies = e.remedies();
       reports.push_back(report);
     }
     progress.show(reports.size(), o.files.size());

@@ -8,6 +8,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/commands.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {

@@ -46,7 +46,7 @@ class LastPose final : public recorder::Observer {
 };
 
 int branch(const BranchOptions& o) {
-  if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
   stopOnSignals();
   const double at = parseTime(o.at);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
@@ -73,7 +73,7 @@ int branch(const BranchOptions& o) {
         session.end(recorder::Outcome::technicalFailure);
         writer.finish();  // says why
       }
-      if (stopRequested()) throw Error(ExitCode::failure, fmt::format("{}: stopped before the fork", o.output));
+      if (stopRequested()) throw Error(ErrorKind::failure, fmt::format("{}: stopped before the fork", o.output));
       progress.show(step, of);
     });
   }

@@ -16,6 +16,7 @@
 #include "apps/calot/cohort_exports.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -57,7 +58,7 @@ void addMerge(CLI::App& parent, Run& run) {
       }
       for (const std::string& conflict : m.conflicts) fmt::print(stderr, "calot: conflict: {}\n", conflict);
       if (m.conflicts.empty()) return static_cast<int>(ExitCode::yes);
-      throw Error(ExitCode::no,
+      throw Error(ErrorKind::refused,
                   fmt::format("{}: {} conflicts with {}; nothing was merged", o->into, m.conflicts.size(), o->from));
     };
   });
@@ -90,7 +91,7 @@ void addCheck(CLI::App& parent, Run& run) {
         for (const std::string& fault : c.faults) std::cout << fault << '\n';
       }
       if (c.faults.empty()) return static_cast<int>(ExitCode::yes);
-      throw Error(ExitCode::damaged,
+      throw Error(ErrorKind::damaged,
                   fmt::format("{}: {} faults, the first: {}; restore a copy, or assess the recordings into a new one",
                               o->cohort, c.faults.size(), c.faults.front()));
     };

@@ -10,6 +10,7 @@
 
 #include "analytics/interchange/cohort_bundle.h"
 #include "analytics/interchange/cohort_tables.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {

@@ -19,7 +19,7 @@ void addTools(CLI::App& command, DeviceOptions& options) {
 }
 
 std::array<std::string, handCount> toolsOf(const DeviceOptions& options) {
-  if (options.tools.size() != handCount) throw Error(ExitCode::usage, "--tools: two names are wanted: LEFT,RIGHT");
+  if (options.tools.size() != handCount) throw Error(ErrorKind::invalid, "--tools: two names are wanted: LEFT,RIGHT");
   std::array<std::string, handCount> out;
   for (std::size_t h = 0; h < handCount; ++h) out[h] = options.tools[h] == "-" ? "" : options.tools[h];
   return out;
@@ -28,7 +28,8 @@ std::array<std::string, handCount> toolsOf(const DeviceOptions& options) {
 std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& options, const SceneDescription& scene,
                                                          recorder::Mode mode, const std::atomic<bool>* stop) {
   if (mode == recorder::Mode::assessment && options.calibration.empty()) {
-    throw Error(ExitCode::usage, "--device: an assessment needs --calibration (calot devices calibrate measures one)");
+    throw Error(ErrorKind::invalid,
+                "--device: an assessment needs --calibration (calot devices calibrate measures one)");
   }
   recorder::OpenedDevice opened = recorder::openDevice(options.name, toolsOf(options));
   recorder::DeviceSourceSettings settings;
@@ -45,9 +46,9 @@ std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& op
 }
 
 void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run) {
-  auto* device = dynamic_cast<recorder::DeviceSource*>(&source);
+  auto* device = source.device();
   if (device == nullptr) return;
-  const recorder::DeviceCapabilities& can = device->device().info().capabilities;
+  const recorder::DeviceCapabilities& can = device->deviceInfo().capabilities;
   run.paced = run.paced || can.realTime;
   if (can.actuated == 0) return;
   run.feedback = [device](const recorder::TickOutcome& tick) {
@@ -58,12 +59,11 @@ void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run) {
 }
 
 void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) {
-  if (auto* device = dynamic_cast<recorder::DeviceSource*>(&source); device != nullptr)
-    writer.takeRawSamples(device->rawSamples(), firstTick);
+  if (auto* device = source.device(); device != nullptr) writer.takeRawSamples(device->rawSamples(), firstTick);
 }
 
-void tellDevice(const recorder::SampleSource& source) {
-  const auto* device = dynamic_cast<const recorder::DeviceSource*>(&source);
+void tellDevice(recorder::SampleSource& source) {
+  const auto* device = source.device();
   if (device == nullptr) return;
   const recorder::DeviceCounts& counts = device->counts();
   fmt::print("{}: {} samples, {} invalid, gone {} times\n", device->provenance().device, counts.samples, counts.invalid,

@@ -26,12 +26,12 @@ struct DeviceOptions {
 /// --tools, which commands share. @param options outlives the parsing.
 void addTools(CLI::App& command, DeviceOptions& options);
 
-/// Left and right; "-" stands for none. @throws Error (usage) unless there are two.
+/// Left and right; "-" stands for none. @throws Error (invalid) unless there are two.
 std::array<std::string, handCount> toolsOf(const DeviceOptions& options);
 
 /// Opens the device, takes its calibration, waits for its first samples (at most ten seconds).
-/// @throws Error: usage, for names, and for an assessment without calibration; no, for a calibration that is not to be
-/// used; damaged, for files; failure, where the device is not there or says nothing.
+/// @throws Error: invalid, for names, and for an assessment without calibration; refused, for a calibration that is not
+/// to be used; damaged, for files; failure, where the device is not there or says nothing.
 std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& options, const SceneDescription& scene,
                                                          recorder::Mode mode, const std::atomic<bool>* stop);
 
@@ -44,6 +44,6 @@ void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run);
 void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick = 0);
 
 /// Where the source is a device: what came from it, on stdout.
-void tellDevice(const recorder::SampleSource& source);
+void tellDevice(recorder::SampleSource& source);
 
 }  // namespace calot::apps

@@ -73,7 +73,7 @@ class GuidedRecording {
     fmt::print("{}\npress Enter to begin: ", step.text);
     std::fflush(stdout);
     std::string line;
-    if (!std::getline(std::cin, line) || stopRequested()) throw Error(ExitCode::failure, "calibrate: broken off");
+    if (!std::getline(std::cin, line) || stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
     recorder::DeviceInput skipped;
     pump_.drain(skipped);
     const std::int64_t begin = recorder::monotonicNanoseconds();
@@ -81,7 +81,7 @@ class GuidedRecording {
     const std::size_t before = stream_.samples.size();
     Progress progress("measuring, seconds");
     while (recorder::monotonicNanoseconds() < begin + length) {
-      if (stopRequested()) throw Error(ExitCode::failure, "calibrate: broken off");
+      if (stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       take(begin);
       progress.show(static_cast<std::uint64_t>((recorder::monotonicNanoseconds() - begin) / 1'000'000'000),
@@ -92,7 +92,7 @@ class GuidedRecording {
     for (const char* phase : step.phases) stream_.phases.push_back({phase, time_, time_ + length});
     time_ += length;
     if (stream_.samples.size() == before)
-      throw Error(ExitCode::failure, fmt::format("{}: no sample came", device_.info().detail));
+      throw Error(ErrorKind::failure, fmt::format("{}: no sample came", device_.info().detail));
   }
 
   [[nodiscard]] const recorder::DeviceScript& stream() const { return stream_; }
@@ -115,7 +115,7 @@ class GuidedRecording {
 
 recorder::DeviceScript guided(recorder::Device& device, double strokeMillimetres) {
   if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
-    throw Error(ExitCode::usage, "calibrate: the guided steps need a terminal; --from FILE takes a recorded stream");
+    throw Error(ErrorKind::invalid, "calibrate: the guided steps need a terminal; --from FILE takes a recorded stream");
   stopOnSignals();
   GuidedRecording recording(device);
   recording.run({{"rest"}, "1. Put the tools down and touch nothing (5 s).", 5.0});
@@ -171,7 +171,7 @@ int calibrate(const CalibrateOptions& o) {
   if (!o.stream.empty()) recorder::refuseOutput(o.stream, o.force);
   const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device));
   if (o.from.empty() && opened.tickClock) {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 fmt::format("calibrate {}: a device without real time is measured with --from FILE", o.device.name));
   }
   const recorder::DeviceScript stream =
@@ -187,7 +187,7 @@ int calibrate(const CalibrateOptions& o) {
   else
     printCalibration(calibration, faults);
   if (faults.empty()) return 0;
-  throw Error(ExitCode::no, fmt::format("{}: the calibration failed: {}", o.output, faults.front()));
+  throw Error(ErrorKind::refused, fmt::format("{}: the calibration failed: {}", o.output, faults.front()));
 }
 
 struct ServeOptions {

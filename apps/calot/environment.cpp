@@ -42,15 +42,16 @@ std::filesystem::path findAsset(const std::string& name, const std::string& fold
   std::error_code ignored;
   if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
     if (std::filesystem::is_regular_file(name, ignored)) return name;
-    throw Error(ExitCode::damaged, fmt::format("{}: there is no such file", recorder::shown(name)));
+    throw Error(ErrorKind::damaged, fmt::format("{}: there is no such file", recorder::shown(name)));
   }
   std::string known;
   for (const std::filesystem::path& file : listAssets(folder)) {
     if (file.stem() == name) return file;
     known += (known.empty() ? "" : ", ") + file.stem().string();
   }
-  throw Error(ExitCode::usage, fmt::format("there is no {} \"{}\"; {}", what, recorder::shown(name),
-                                           known.empty() ? "none was found (set CALOT_ASSETS)" : "there are " + known));
+  throw Error(ErrorKind::invalid,
+              fmt::format("there is no {} \"{}\"; {}", what, recorder::shown(name),
+                          known.empty() ? "none was found (set CALOT_ASSETS)" : "there are " + known));
 }
 
 Progress::Progress(std::string what, bool quiet)
@@ -100,7 +101,7 @@ double parseTime(const std::string& text) {
   }
   good = good && number(rest, seconds);
   if (!good)
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 fmt::format("'{}' is no time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
   return 60.0 * minutes + seconds;
 }

@@ -13,7 +13,7 @@ namespace calot::apps {
 std::vector<std::filesystem::path> assetFolders();
 
 /// A JSON file of the assets by its name ("goals"), or any file by its path ("mine/goals.json").
-/// @param folder of the assets: "forms". @param what messages call it: "form". @throws Error (usage)
+/// @param folder of the assets: "forms". @param what messages call it: "form". @throws Error (invalid)
 std::filesystem::path findAsset(const std::string& name, const std::string& folder, const std::string& what);
 /// All of them, by name.
 std::vector<std::filesystem::path> listAssets(const std::string& folder);
@@ -39,10 +39,10 @@ class Progress {
 /// @return empty, or the fault
 std::string wholeNumber(const std::string& text);
 
-/// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (usage)
+/// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (invalid)
 double parseTime(const std::string& text);
 
-/// Refuses a target that is there, is a folder, or lies in none. @throws Error (usage)
+/// Refuses a target that is there, is a folder, or lies in none. @throws Error (invalid)
 void refuseExisting(const std::filesystem::path& file, bool force);
 
 }  // namespace calot::apps

@@ -7,6 +7,7 @@
 
 #include "analytics/cohort/withdraw.h"
 #include "apps/calot/commands.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/recording/export_csv.h"
 
@@ -39,7 +40,7 @@ void addExport(CLI::App& app, Run& run) {
       for (const auto& file : files) fmt::print("{}\n", file.string());
       if (!recording.complete()) fmt::print("incomplete\n");
       // What was asked for is there; that it was changed since it was recorded is the answer.
-      if (!chain.intact) throw Error(ExitCode::no, fmt::format("{}: {}", options->file, chain.what));
+      if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", options->file, chain.what));
       return static_cast<int>(ExitCode::yes);
     };
   });

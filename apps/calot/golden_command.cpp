@@ -13,6 +13,7 @@
 #include "apps/calot/golden_values.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/stop_request.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 
@@ -31,7 +32,7 @@ std::filesystem::path folderOf(const GoldenOptions& o) {
   for (const std::filesystem::path& root : assetFolders()) {
     if (std::filesystem::exists(root / "golden" / "golden.json")) return root / "golden";
   }
-  throw Error(ExitCode::damaged, "golden: no asset folder holds golden/golden.json: name one with --folder");
+  throw Error(ErrorKind::damaged, "golden: no asset folder holds golden/golden.json: name one with --folder");
 }
 
 int check(const GoldenOptions& o) {
@@ -54,7 +55,7 @@ int check(const GoldenOptions& o) {
       for (const std::string& line : checked.changed) fmt::print("    {}\n", line);
     }
   }
-  if (reports.empty()) throw Error(ExitCode::usage, fmt::format("golden: --only {}: not in the list", o.only));
+  if (reports.empty()) throw Error(ErrorKind::invalid, fmt::format("golden: --only {}: not in the list", o.only));
   if (o.json) std::cout << rows.dump(2) << '\n';
   return static_cast<int>(worstOf(reports));
 }

@@ -61,7 +61,7 @@ std::optional<std::string> git(const std::vector<std::string>& arguments) {
 GoldenEntry recordEntry(const GoldenEntry& entry, const std::filesystem::path& file) {
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(entry.scene, assetFolders()));
   const Model::Built built = Model::build(scene.description);
-  if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", entry.scene, built.error));
+  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", entry.scene, built.error));
   SourceOptions who;
   who.performer = entry.performer;
   const std::unique_ptr<recorder::SampleSource> source = makeSource(who, built.model->scene(), entry.seed);
@@ -81,7 +81,7 @@ GoldenEntry recordEntry(const GoldenEntry& entry, const std::filesystem::path& f
   run.stop = &stopRequested();
   recorder::runAttempt(session, *source, run);
   writer.finish();
-  if (stopRequested()) throw Error(ExitCode::failure, "golden: stopped; nothing was replaced");
+  if (stopRequested()) throw Error(ErrorKind::failure, "golden: stopped; nothing was replaced");
   GoldenEntry made = entry;
   made.values = goldenValues(collector.values());
   return made;
@@ -100,7 +100,7 @@ struct Temporary {
 
 const std::string& requiredReason(const std::string& reason) {
   if (reason.find_first_not_of(" \t\n") == std::string::npos)
-    throw Error(ExitCode::usage, "golden: --reason: say why the recordings or their values change");
+    throw Error(ErrorKind::invalid, "golden: --reason: say why the recordings or their values change");
   return reason;
 }
 
@@ -109,7 +109,7 @@ void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, c
   const bool complete = std::all_of(list.recordings.begin(), list.recordings.end(),
                                     [&](const GoldenEntry& e) { return std::filesystem::exists(folder / e.file); });
   if (complete && list.simulationVersion >= simulationVersion) {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 fmt::format("golden: the recordings are of simulation version {} and so is this build: what changes "
                             "them raises simulationVersion (sim/scene/version.h) first",
                             list.simulationVersion));
@@ -118,13 +118,13 @@ void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, c
   const std::optional<std::string> changes =
       git({"-C", folder.string(), "status", "--porcelain", "--", ":/", ":(exclude)."});
   if (!changes) {
-    throw Error(ExitCode::usage, fmt::format("golden: {} lies in no git work tree, or git is not there: golden "
-                                             "recordings belong to a revision",
-                                             folder.string()));
+    throw Error(ErrorKind::invalid, fmt::format("golden: {} lies in no git work tree, or git is not there: golden "
+                                                "recordings belong to a revision",
+                                                folder.string()));
   }
   if (!changes->empty()) {
-    throw Error(ExitCode::usage, fmt::format("golden: the work tree has changes ({}): commit them first",
-                                             changes->substr(0, changes->find('\n'))));
+    throw Error(ErrorKind::invalid, fmt::format("golden: the work tree has changes ({}): commit them first",
+                                                changes->substr(0, changes->find('\n'))));
   }
 }
 

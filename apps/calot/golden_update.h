@@ -11,11 +11,11 @@
 
 namespace calot::apps {
 
-/// The reason given. @throws Error (usage) where it says nothing.
+/// The reason given. @throws Error (invalid) where it says nothing.
 const std::string& requiredReason(const std::string& reason);
 
-/// What may stand in the way of an update. @throws Error (usage): the reason is empty; or all recordings are there and
-/// of this build's simulation version; or the work tree that holds `folder` has changes outside of it, or is none.
+/// What may stand in the way of an update. @throws Error (invalid): the reason is empty; or all recordings are there
+/// and of this build's simulation version; or the work tree that holds `folder` has changes outside of it, or is none.
 void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, const std::string& reason);
 
 /// Runs every recording of the list anew, then replaces files and list together. @param told after each one: the

@@ -88,10 +88,11 @@ void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now)
     if (after != nullptr ? sameBits(after->value, before.value) || after->version > before.version
                          : definition == nullptr || definition->version > before.version)
       continue;
-    throw Error(ExitCode::no, fmt::format("golden: {}: {} has another value ({} -> {}) and still definition version "
-                                          "{}: raise the version or mend the checkpoint",
-                                          entry.file, titleOf(before), shown(before),
-                                          after == nullptr ? "none" : shown(*after), before.version));
+    throw Error(ErrorKind::refused,
+                fmt::format("golden: {}: {} has another value ({} -> {}) and still definition version "
+                            "{}: raise the version or mend the checkpoint",
+                            entry.file, titleOf(before), shown(before), after == nullptr ? "none" : shown(*after),
+                            before.version));
   }
 }
 

@@ -30,7 +30,7 @@ GoldenReplay replayGolden(const std::filesystem::path& file, const GoldenEntry& 
 
 /// Whether the list may take over a recording's values: each that changed has a definition of a higher version, each
 /// that is gone belongs to a checkpoint that there is no longer, new ones are welcome.
-/// @throws Error (no: 3) naming the first value that changed without its definition.
+/// @throws Error (refused) naming the first value that changed without its definition.
 void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now);
 
 }  // namespace calot::apps

@@ -15,6 +15,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/report_files.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/text_words.h"
@@ -38,12 +39,12 @@ analytics::AttemptRow attemptOf(const std::vector<analytics::AttemptRow>& attemp
   for (const analytics::AttemptRow& a : attempts) {
     if (a.uuid.rfind(o.attempt, 0) != 0) continue;
     if (found != nullptr)
-      throw Error(ExitCode::usage,
+      throw Error(ErrorKind::invalid,
                   fmt::format("grade: --attempt {}: several attempts begin so", recorder::shown(o.attempt)));
     found = &a;
   }
   if (found == nullptr || o.attempt.empty())
-    throw Error(ExitCode::no, fmt::format("{}: no attempt {}", o.database, recorder::shown(o.attempt)));
+    throw Error(ErrorKind::refused, fmt::format("{}: no attempt {}", o.database, recorder::shown(o.attempt)));
   return *found;
 }
 
@@ -52,9 +53,10 @@ analytics::Norm normOf(const analytics::AssessmentDatabase& database, const Grad
   if (!o.norm.empty()) return database.norm(o.norm, o.version);
   std::vector<analytics::Norm> norms = database.norms();
   if (norms.empty())
-    throw Error(ExitCode::no, fmt::format("{}: there is no norm yet; make one with calot norm create", o.database));
+    throw Error(ErrorKind::refused,
+                fmt::format("{}: there is no norm yet; make one with calot norm create", o.database));
   if (std::any_of(norms.begin(), norms.end(), [&](const auto& n) { return n.name != norms[0].name; }))
-    throw Error(ExitCode::usage, "grade: there are several norms; name one with --norm");
+    throw Error(ErrorKind::invalid, "grade: there are several norms; name one with --norm");
   return database.norm(norms[0].name, o.version);
 }
 
@@ -75,11 +77,11 @@ void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeO
     return;
   }
   if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact)
-    throw Error(ExitCode::no, fmt::format("{}: its content chain is broken ({})", file.string(), chain.what));
+    throw Error(ErrorKind::refused, Where{file.string()}, fmt::format("its content chain is broken ({})", chain.what));
   recorder::Recording recording(file);
   if (recording.header().attempt != grade.attempt.uuid)
-    throw Error(ExitCode::no, fmt::format("{}: is of attempt {}, not {}", file.string(), recording.header().attempt,
-                                          grade.attempt.uuid));
+    throw Error(ErrorKind::refused, Where{file.string()},
+                fmt::format("is of attempt {}, not {}", recording.header().attempt, grade.attempt.uuid));
   if (recording.header().purpose == "golden") {
     grade.momentsMissing = "a golden recording holds no results of its steps";
     return;
@@ -101,7 +103,9 @@ int grade(const GradeOptions& o) {
   analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
   const fs::path recording = recordingOf(attempt, o);
   lookAtRecording(result, recording, o);
-  writeReport(analytics::gradeDocument(result, recording.filename().string()), o.html, o.pdf, o.force);
+  const std::string name = recording.filename().string();
+  const std::string howToDraw = fmt::format("calot render {} --at SECONDS -o F.png draws a moment.", name);
+  writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force);
   if (o.json) {
     std::cout << analytics::gradeJson(result) << '\n';
   } else {

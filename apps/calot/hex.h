@@ -19,7 +19,7 @@ std::string toHex(const std::array<Byte, N>& bytes) {
   return text;
 }
 
-/// @throws Error (usage) naming the option, unless the text is N bytes in hexadecimal.
+/// @throws Error (invalid) naming the option, unless the text is N bytes in hexadecimal.
 template <std::size_t N>
 std::array<std::byte, N> fromHex(const std::string& text, const char* option) {
   std::array<std::byte, N> bytes{};
@@ -31,7 +31,7 @@ std::array<std::byte, N> fromHex(const std::string& text, const char* option) {
     good = error == std::errc() && end == begin + 2;
     bytes[i] = static_cast<std::byte>(value);
   }
-  if (!good) throw Error(ExitCode::usage, fmt::format("{}: {} hexadecimal digits are wanted", option, 2 * N));
+  if (!good) throw Error(ErrorKind::invalid, fmt::format("{}: {} hexadecimal digits are wanted", option, 2 * N));
   return bytes;
 }
 

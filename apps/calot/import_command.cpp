@@ -14,6 +14,8 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/value_report.h"
+#include "apps/common/advice.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/devices/calibration.h"
@@ -43,8 +45,7 @@ struct Result {
 recorder::TrackedMotion read(const std::string& file, const std::optional<recorder::ColumnMap>& map) {
   if (map) return recorder::readCsvMotion(file, *map);
   if (std::filesystem::path(file).extension() == ".csv")
-    throw Error(ExitCode::usage,
-                fmt::format("{}: a CSV file needs --columns MAP.json, which says what is in it", file));
+    throw Error(ErrorKind::invalid, Where{file}, "a CSV file needs --columns MAP.json, which says what is in it");
   return recorder::trackedMotion(recorder::readKinematics(file));
 }
 
@@ -65,10 +66,11 @@ Result importOne(const std::string& file, const ImportOptions& o, const std::opt
     result.values = std::move(stored.values);
   } catch (const Error& e) {
     // A wrong command line and a database that cannot be used end it all; a bad file is its own answer.
-    if (e.code() == ExitCode::usage || e.code() == ExitCode::failure || (result.motion && e.code() != ExitCode::no))
+    if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
+        (result.motion && e.kind() != ErrorKind::refused))
       throw;
-    result.code = e.code();
-    result.error = e.what();
+    result.code = codeOf(e.kind());
+    result.error = messageOf(e);
   }
   return result;
 }

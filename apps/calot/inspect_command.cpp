@@ -8,6 +8,7 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/raw_statistics.h"
@@ -174,9 +175,10 @@ void addInspect(CLI::App& app, Run& run) {
         const auto wanted = fromHex<32>(options->key, "--public-key");
         const auto& signature = recording.signature();
         const bool by = signature && signature->value && toHex(signature->publicKey) == toHex(wanted);
-        if (!by && chain.intact) throw Error(ExitCode::no, fmt::format("{}: not signed by that key", options->file));
+        if (!by && chain.intact)
+          throw Error(ErrorKind::refused, fmt::format("{}: not signed by that key", options->file));
       }
-      if (!chain.intact) throw Error(ExitCode::no, fmt::format("{}: {}", options->file, chain.what));
+      if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", options->file, chain.what));
       return static_cast<int>(ExitCode::yes);
     };
   });

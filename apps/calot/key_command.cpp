@@ -9,6 +9,7 @@
 #include "analytics/cohort/key_file.h"
 #include "apps/calot/passphrase.h"
 #include "apps/calot/withdraw_command.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -30,11 +31,11 @@ std::string nameOf(const KeyOptions& o) {
   if (!o.name.empty()) return o.name;
   std::string line;
   std::getline(std::cin, line);
-  if (line.empty()) throw Error(ExitCode::usage, "key add: the name is wanted on stdin, or as --name");
+  if (line.empty()) throw Error(ErrorKind::invalid, "key add: the name is wanted on stdin, or as --name");
   return line;
 }
 
-Error noFile(const std::string& file) { return {ExitCode::damaged, fmt::format("{}: no such key file", file)}; }
+Error noFile(const std::string& file) { return {ErrorKind::damaged, Where{file}, "no such key file"}; }
 
 }  // namespace
 
@@ -64,7 +65,7 @@ void addKey(CLI::App& participant, Run& run) {
       if (!std::filesystem::exists(shown->file)) throw noFile(shown->file);
       const analytics::KeyFile file(shown->file, readPassphrase(shown->passphraseFile));
       if (!shown->pseudonym.empty() && file.names().count(shown->pseudonym) == 0)
-        throw Error(ExitCode::no, fmt::format("{}: no entry \"{}\"", shown->file, shown->pseudonym));
+        throw Error(ErrorKind::refused, fmt::format("{}: no entry \"{}\"", shown->file, shown->pseudonym));
       for (const auto& [pseudonym, name] : file.names()) {
         if (shown->pseudonym.empty() || shown->pseudonym == pseudonym) std::cout << pseudonym << '\t' << name << '\n';
       }
@@ -80,7 +81,7 @@ void addKey(CLI::App& participant, Run& run) {
       if (!std::filesystem::exists(removed->file)) throw noFile(removed->file);
       analytics::KeyFile file(removed->file, readPassphrase(removed->passphraseFile));
       if (!file.remove(removed->pseudonym))
-        throw Error(ExitCode::no, fmt::format("{}: no entry \"{}\"", removed->file, removed->pseudonym));
+        throw Error(ErrorKind::refused, fmt::format("{}: no entry \"{}\"", removed->file, removed->pseudonym));
       std::cout << fmt::format("{}: {} removed\n", removed->file, removed->pseudonym);
       return static_cast<int>(ExitCode::yes);
     };

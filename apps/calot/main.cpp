@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <exception>
-#include <iostream>
-#include <new>
+#include <string>
 
 #include "apps/calot/commands.h"
+#include "apps/common/program.h"
 #include "recorder/attempt.h"
-#include "recorder/errors.h"
 #include "sim/scene/version.h"
-
-namespace {
-
-int fail(calot::ExitCode code, const std::string& message) {
-  std::cerr << "calot: " << message << '\n';
-  return static_cast<int>(code);
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   using namespace calot;
@@ -37,7 +26,8 @@ int main(int argc, char** argv) {
     return !app.get_subcommands([&word](const CLI::App* command) { return command->get_name() == word; }).empty();
   };
   if (argc > 1 && argv[1][0] != '-' && !isCommand(argv[1])) {
-    return fail(ExitCode::usage, std::string("there is no command '") + argv[1] + "' (try: calot --help)");
+    return apps::endWith(apps::ExitCode::usage, "calot",
+                         std::string("there is no command '") + argv[1] + "' (try: calot --help)");
   }
   try {
     app.parse(argc, argv);
@@ -48,15 +38,7 @@ int main(int argc, char** argv) {
       at = at->get_subcommands().front();
       name += " " + at->get_name();
     }
-    return fail(ExitCode::usage, std::string(e.what()) + " (try: " + name + " --help)");
+    return apps::endWith(apps::ExitCode::usage, "calot", std::string(e.what()) + " (try: " + name + " --help)");
   }
-  try {
-    return run();
-  } catch (const Error& e) {
-    return fail(e.code(), e.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::failure, "not enough memory");
-  } catch (const std::exception& e) {
-    return fail(ExitCode::failure, e.what());
-  }
+  return apps::runProgram("calot", run);
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/calot/commands.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/mesh_report.h"
 #include "recorder/formats/surface_file.h"
@@ -26,10 +27,10 @@ struct MeshOptions {
 
 int meshSurface(const MeshOptions& options) {
   if (!recorder::isSurfaceName(options.input)) {
-    throw Error(ExitCode::usage, options.input + ": surfaces are read from .obj, .stl and .ply files");
+    throw Error(ErrorKind::invalid, options.input + ": surfaces are read from .obj, .stl and .ply files");
   }
   if (!options.output.ends_with(".vtk"))
-    throw Error(ExitCode::usage, options.output + ": the output's name must end in .vtk");
+    throw Error(ErrorKind::invalid, options.output + ": the output's name must end in .vtk");
   recorder::refuseOutput(options.output, options.force);
 
   recorder::MeshReport report;
@@ -45,7 +46,7 @@ int meshSurface(const MeshOptions& options) {
     report.output = options.output;
   }
   fmt::print("{}", options.json ? recorder::meshReportJson(report) : recorder::meshReportText(report));
-  if (!report.stuffed.ok()) throw Error(ExitCode::no, options.input + ": " + report.stuffed.error);
+  if (!report.stuffed.ok()) throw Error(ErrorKind::refused, options.input + ": " + report.stuffed.error);
   return static_cast<int>(ExitCode::yes);
 }
 

@@ -18,6 +18,7 @@
 #include "analytics/report/study_tables.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/text_words.h"
@@ -46,7 +47,8 @@ std::uint32_t leastOf(const std::string& rule) {
   const bool counted = rule.rfind(prefix, 0) == 0;
   const long long least = counted ? recorder::readWholeNumber(rule.substr(prefix.size()), fault) : 0;
   if (!fault.empty() || least < 1 || least > 1000)
-    throw Error(ExitCode::usage, fmt::format("norm: --rule {}: all, or at-least:K is wanted", recorder::shown(rule)));
+    throw Error(ErrorKind::invalid,
+                fmt::format("norm: --rule {}: all, or at-least:K is wanted", recorder::shown(rule)));
   return static_cast<std::uint32_t>(least);
 }
 

@@ -11,6 +11,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/withdraw_command.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -21,17 +22,17 @@ struct ParticipantOptions {
   std::vector<std::string> experience, consent;
 };
 
-/// "name<mark>value" pairs. @throws Error 2.
+/// "name<mark>value" pairs. @throws Error (invalid).
 std::map<std::string, std::string> pairs(const std::vector<std::string>& items, char mark, const char* option,
                                          const char* form) {
   std::map<std::string, std::string> result;
   for (const std::string& item : items) {
     const std::size_t at = item.find(mark);
     if (at == std::string::npos || at == 0 || at + 1 == item.size()) {
-      throw Error(ExitCode::usage, fmt::format("{} {}: expected {}", option, item, form));
+      throw Error(ErrorKind::invalid, fmt::format("{} {}: expected {}", option, item, form));
     }
     if (!result.emplace(item.substr(0, at), item.substr(at + 1)).second) {
-      throw Error(ExitCode::usage, fmt::format("{} {}: {} is given twice", option, item, item.substr(0, at)));
+      throw Error(ErrorKind::invalid, fmt::format("{} {}: {} is given twice", option, item, item.substr(0, at)));
     }
   }
   return result;

@@ -33,7 +33,7 @@ std::string readPassphrase(const std::string& file) {
     fmt::print(stderr, "\n");
   }
   if (line.empty()) {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 "the key file's passphrase is wanted: --passphrase-file F, CALOT_KEY_PASSPHRASE, or a terminal");
   }
   return line;

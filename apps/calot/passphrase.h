@@ -6,7 +6,7 @@
 namespace calot::apps {
 
 /// From the first line of `file`, where one is named; else from the environment (CALOT_KEY_PASSPHRASE); else typed on
-/// the terminal, unseen. @throws Error (usage) where there is none of them.
+/// the terminal, unseen. @throws Error (invalid) where there is none of them.
 std::string readPassphrase(const std::string& file);
 
 }  // namespace calot::apps

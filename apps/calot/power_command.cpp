@@ -14,6 +14,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/power_plan.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {

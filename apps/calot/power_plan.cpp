@@ -63,7 +63,7 @@ void drawFrom(PlannedStudy& planned, StudySource& source) {
     const bool inFamily = study.protocol ? row.role == analytics::Role::primary : row.holm.has_value();
     if (inFamily && row.test) rows.push_back(&row);
   }
-  if (rows.empty()) throw Error(ExitCode::no, fmt::format("{}: no figure has a test to plan for", study.where));
+  if (rows.empty()) throw Error(ErrorKind::refused, fmt::format("{}: no figure has a test to plan for", study.where));
   analytics::PowerPopulation& population = planned.plan.population.emplace();
   std::array<std::map<std::string, std::vector<std::optional<double>>>, 2> people;
   for (std::size_t c = 0; c < rows.size(); ++c) {
@@ -89,7 +89,7 @@ void drawFrom(PlannedStudy& planned, StudySource& source) {
 
 }  // namespace
 
-void failPower(const std::string& what) { throw Error(ExitCode::usage, "power: " + what); }
+void failPower(const std::string& what) { throw Error(ErrorKind::invalid, "power: " + what); }
 
 std::vector<std::size_t> sizesOf(const std::string& text) {
   const auto number = [&](const std::string& word) {

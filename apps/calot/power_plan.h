@@ -35,13 +35,13 @@ struct PlannedStudy {
   bool synthetic = false;
 };
 
-/// @throws Error (usage) "power: WHAT".
+/// @throws Error (invalid) "power: WHAT".
 [[noreturn]] void failPower(const std::string& what);
 
-/// "5:30:5", "12" or "8,10,15": people in the first group. @throws Error (usage)
+/// "5:30:5", "12" or "8,10,15": people in the first group. @throws Error (invalid)
 std::vector<std::size_t> sizesOf(const std::string& text);
 
-/// @throws Error (usage) for words that say nothing or too much, and as studyOf().
+/// @throws Error (invalid) for words that say nothing or too much, and as studyOf().
 PlannedStudy planOf(PowerOptions& options);
 
 }  // namespace calot::apps

@@ -12,6 +12,7 @@
 #include "analytics/cohort/assessment_database.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {

@@ -15,6 +15,7 @@
 #include "analytics/report/ratings_json.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/json_reader.h"
@@ -33,7 +34,7 @@ struct RateOptions {
   bool forms = false, json = false, force = false;
 };
 
-[[noreturn]] void fail(const std::string& what) { throw Error(ExitCode::usage, "rate: " + what); }
+[[noreturn]] void fail(const std::string& what) { throw Error(ErrorKind::invalid, "rate: " + what); }
 
 int listForms(const RateOptions& o) {
   Json rows = Json::array();
@@ -67,11 +68,11 @@ Given readAnswers(const std::string& file) {
   const std::string name = path.filename().string();
   const nlohmann::json json =
       recorder::parseStrictJson(recorder::readFileBytes(path, name, std::size_t{1} << 20U), name);
-  if (!json.is_object()) throw Error(ExitCode::damaged, name + ": /: an object of items and scores is wanted");
+  if (!json.is_object()) throw Error(ErrorKind::damaged, Where{name}, "/: an object of items and scores is wanted");
   Given given;
   for (const auto& item : json.items()) {
     if (!item.value().is_null() && !item.value().is_number_integer())
-      throw Error(ExitCode::damaged, fmt::format("{}: an item's score is a whole number, or null", name));
+      throw Error(ErrorKind::damaged, Where{name}, "an item's score is a whole number, or null");
     given.emplace_back(item.key(), item.value().is_null() ? "-" : item.value().dump());
   }
   return given;

@@ -31,14 +31,14 @@ struct RecordOptions {
 };
 
 int record(const RecordOptions& o) {
-  if (!std::isfinite(o.seconds)) throw Error(ExitCode::usage, "--seconds: a number is wanted");
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
   stopOnSignals();
   refuseExisting(o.output, o.force);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
   const Model::Built built = Model::build(scene.description);
-  if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", o.scene, built.error));
+  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", o.scene, built.error));
   SourceOptions who = o.source;
   who.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
   const std::unique_ptr<recorder::SampleSource> source = makeSource(who, built.model->scene(), o.seed);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/calot/commands.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/recording/recover.h"
 

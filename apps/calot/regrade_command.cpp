@@ -15,6 +15,8 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/value_report.h"
+#include "apps/common/advice.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -82,6 +84,7 @@ ordered_json jsonOf(const analytics::Regrade& regrade) {
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     ordered_json row = {{"attempt", a.uuid}, {"file", a.file}, {"result", nameOf(a.how)}};
     if (!a.message.empty()) row["message"] = a.message;
+    if (!a.remedies.empty()) row["advice"] = advice(a.remedies);
     row["changes"] = ordered_json::array();
     for (const analytics::ValueChange& c : a.changes) {
       ordered_json change = {{"name", c.any().name}, {"subject", c.any().subject}};
@@ -91,7 +94,8 @@ ordered_json jsonOf(const analytics::Regrade& regrade) {
     }
     out["attempts"].push_back(row);
   }
-  out["not_read"] = regrade.notRead;
+  out["not_read"] = ordered_json::array();
+  for (const Error& fault : regrade.notRead) out["not_read"].push_back(messageOf(fault));
   return out;
 }
 
@@ -125,7 +129,7 @@ void print(const analytics::Regrade& regrade) {
     if (counts[how] > 0) std::cout << fmt::format(", {} {}", counts[how], nameOf(how));
   }
   std::cout << '\n';
-  for (const std::string& file : regrade.notRead) std::cout << "not read: " << file << '\n';
+  for (const Error& fault : regrade.notRead) std::cout << "not read: " << messageOf(fault) << '\n';
   std::cout << std::flush;
 }
 
@@ -143,11 +147,14 @@ int regrade(const RegradeOptions& o) {
   } else {
     print(regrade);
   }
+  std::vector<ExitCode> codes;
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
-    if (a.code != ExitCode::yes)
-      fmt::print(stderr, "calot: {}: attempt {}: {}: {}\n", o.cohort, a.uuid, nameOf(a.how), a.message);
+    codes.push_back(codeOf(a.fault));
+    if (a.fault)
+      fmt::print(stderr, "calot: {}: attempt {}: {}: {}\n", o.cohort, a.uuid, nameOf(a.how),
+                 advised(a.message, a.remedies));
   }
-  return static_cast<int>(regrade.code());
+  return static_cast<int>(worstOf(codes));
 }
 
 }  // namespace

@@ -30,19 +30,19 @@ gui::Quality qualityOf(const std::string& word, bool film) {
   return word == "film" ? gui::Quality::film : gui::Quality::interactive;
 }
 
-/// A picture has one moment, a film two. @throws Error (usage)
+/// A picture has one moment, a film two. @throws Error (invalid)
 void refuseMixed(const RenderOptions& o, bool film) {
-  if (film && o.at) throw Error(ExitCode::usage, "--at is for pictures; a film has --from and --to");
+  if (film && o.at) throw Error(ErrorKind::invalid, "--at is for pictures; a film has --from and --to");
   if (!film && (o.from || o.to))
-    throw Error(ExitCode::usage, "--from and --to are for films (.mp4, .mkv); a picture has --at");
-  if (!o.beside && !o.align.empty()) throw Error(ExitCode::usage, "--align needs --beside");
+    throw Error(ErrorKind::invalid, "--from and --to are for films (.mp4, .mkv); a picture has --at");
+  if (!o.beside && !o.align.empty()) throw Error(ErrorKind::invalid, "--align needs --beside");
 }
 
 int render(const RenderOptions& o) {
   const std::filesystem::path output(o.output);
   const bool film = output.extension() == ".mp4" || output.extension() == ".mkv";
   if (!film && output.extension() != ".png") {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 fmt::format("{}: pictures are written as .png, films as .mp4 or .mkv", output.string()));
   }
   refuseExisting(output, o.force);
@@ -78,7 +78,7 @@ int render(const RenderOptions& o) {
   stopOnSignals();
   Progress bar("frames");
   const std::int64_t frames = gui::writeFilm(o.recording, output, settings, [&](std::uint64_t done, std::uint64_t of) {
-    if (stopRequested()) throw Error(ExitCode::failure, o.output + ": stopped before its end; nothing is left of it");
+    if (stopRequested()) throw Error(ErrorKind::failure, o.output + ": stopped before its end; nothing is left of it");
     bar.show(done, of);
   });
   fmt::print("{}: {} frames, {:.2f} s\n", o.output, frames, static_cast<double>(frames) / settings.fps);

@@ -3,7 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "apps/common/advice.h"
+#include "apps/common/exit_code.h"
 
 namespace calot::apps {
 
@@ -33,10 +34,7 @@ void printReport(const recorder::ReplayReport& r) {
     if (r.misses.any > 0) fmt::print("{}: {}\n", r.path.string(), describe(r.misses));
     return;
   }
-  // A damaged file's message names the file already.
-  const std::string name = r.path.string();
-  const bool named = r.message.rfind(name, 0) == 0;
-  fmt::print(stderr, "calot: {}{}\n", named ? "" : name + ": ", r.message);
+  fmt::print(stderr, "calot: {}: {}\n", r.path.string(), advised(r.message, r.remedies));
 }
 
 nlohmann::ordered_json missesJson(const recorder::StepMisses& m) {
@@ -55,7 +53,8 @@ nlohmann::json reportJson(const recorder::ReplayReport& r) {
                       {"simulation_version", r.simulationVersion},
                       {"chain_intact", r.chainIntact},
                       {"message", r.message},
-                      {"exit_code", static_cast<int>(r.code())}};
+                      {"exit_code", static_cast<int>(codeOf(r.fault()))}};
+  if (!r.remedies.empty()) json["advice"] = advice(r.remedies);
   if (r.divergence) {
     nlohmann::json d{{"step", r.divergence->step},
                      {"component", r.divergence->component},
@@ -68,17 +67,10 @@ nlohmann::json reportJson(const recorder::ReplayReport& r) {
   return json;
 }
 
-ExitCode worstOf(const std::vector<ExitCode>& codes) {
-  for (const ExitCode code : {ExitCode::failure, ExitCode::damaged, ExitCode::no, ExitCode::undecided}) {
-    if (std::find(codes.begin(), codes.end(), code) != codes.end()) return code;
-  }
-  return ExitCode::yes;
-}
-
 ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports) {
   std::vector<ExitCode> codes;
   codes.reserve(reports.size());
-  for (const recorder::ReplayReport& report : reports) codes.push_back(report.code());
+  for (const recorder::ReplayReport& report : reports) codes.push_back(codeOf(report.fault()));
   return worstOf(codes);
 }
 

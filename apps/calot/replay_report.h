@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "apps/common/exit_code.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
@@ -17,8 +18,7 @@ nlohmann::json reportJson(const recorder::ReplayReport& report);
 /// How many steps missed a tolerance, by what was missed.
 nlohmann::ordered_json missesJson(const recorder::StepMisses& misses);
 
-/// Exit code over many inputs: the first present of 1, 4, 3, 5, 0.
-ExitCode worstOf(const std::vector<ExitCode>& codes);
+/// Exit code over many recordings, as worstOf of their codes.
 ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports);
 
 }  // namespace calot::apps

@@ -71,13 +71,13 @@ int tell(const FinishedRun& run, bool json) {
   }
   if (run.report.disagreements > 0) {
     throw Error(
-        ExitCode::failure,
+        ErrorKind::failure,
         fmt::format("{}: {} ticks got other forces on the haptic thread than when computed again; the recording "
                     "will not replay",
                     run.file, run.report.disagreements));
   }
   if (!run.report.fault.empty()) {
-    throw Error(ExitCode::failure, fmt::format("{}: {}", run.file, run.report.fault));
+    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, run.report.fault));
   }
   return 0;
 }

@@ -8,6 +8,8 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/common/advice.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/scene/model.h"
@@ -74,7 +76,7 @@ void printJson(std::vector<recorder::LoadedScene> scenes) {
                 {"ticksPerStep", scene.description.ticksPerStep}};
     const std::string name = scene.description.name;
     const Model::Built built = Model::build(std::move(scene.description));
-    if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", name, built.error));
+    if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", name, built.error));
     addCounts(*built.model, row);
     list.push_back(std::move(row));
   }
@@ -91,7 +93,7 @@ void addScenes(CLI::App& app, Run& run) {
     run = [asJson] {
       const std::vector<std::filesystem::path> files = recorder::listScenes(assetFolders());
       if (files.empty())
-        throw Error(ExitCode::usage, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
+        throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
       std::vector<recorder::LoadedScene> scenes;
       // A scene that cannot be read is named, and the others are listed all the same.
       bool damaged = false;
@@ -102,8 +104,8 @@ void addScenes(CLI::App& app, Run& run) {
             fmt::print(stderr, "calot: warning: {}\n", warning);
           }
         } catch (const Error& fault) {
-          if (fault.code() != ExitCode::damaged) throw;
-          fmt::print(stderr, "calot: {}\n", fault.what());
+          if (fault.kind() != ErrorKind::damaged) throw;
+          fmt::print(stderr, "calot: {}\n", messageOf(fault));
           damaged = true;
         }
       }

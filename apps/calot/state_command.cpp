@@ -6,6 +6,7 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/live/worker_pool.h"
@@ -32,8 +33,8 @@ int state(const StateOptions& o) {
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.step >= recording.stepCount()) {
-    throw Error(ExitCode::usage, fmt::format("{}: has steps 0 to {}, not {}", o.recording,
-                                             static_cast<std::int64_t>(recording.stepCount()) - 1, o.step));
+    throw Error(ErrorKind::invalid, fmt::format("{}: has steps 0 to {}, not {}", o.recording,
+                                                static_cast<std::int64_t>(recording.stepCount()) - 1, o.step));
   }
   recorder::WorkerPool pool(1);
   recorder::Seeker seeker(recording, pool);

@@ -8,6 +8,7 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/recording/station_key.h"
 

@@ -23,7 +23,7 @@ std::optional<recorder::StationKey> stationKeyOf(const std::string& file) {
 std::string stationOf(const std::string& named, const std::optional<recorder::StationKey>& key) {
   if (!key) return named;
   if (!named.empty() && named != key->station)
-    throw Error(ExitCode::usage, fmt::format("--station {}: the key is that of station {}", named, key->station));
+    throw Error(ErrorKind::invalid, fmt::format("--station {}: the key is that of station {}", named, key->station));
   return key->station;
 }
 

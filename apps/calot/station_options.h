@@ -17,7 +17,7 @@ void addStationKey(CLI::App& command, std::string& file);
 /// @throws Error as recorder::readStationKey
 std::optional<recorder::StationKey> stationKeyOf(const std::string& file);
 
-/// The station that a recording names. @throws Error (usage) where the key is another station's.
+/// The station that a recording names. @throws Error (invalid) where the key is another station's.
 std::string stationOf(const std::string& named, const std::optional<recorder::StationKey>& key);
 
 }  // namespace calot::apps

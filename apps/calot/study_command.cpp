@@ -13,6 +13,8 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/report_files.h"
 #include "apps/calot/study_options.h"
+#include "apps/common/advice.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 
@@ -45,7 +47,7 @@ void noteExports(const ParsedStudyOptions& options, const analytics::Study& stud
       if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
     }
   } catch (const Error& e) {
-    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << e.what() << '\n';
+    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << messageOf(e) << '\n';
   }
 }
 

@@ -54,9 +54,7 @@ void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table
       ->needs(&table);
 }
 
-}  // namespace
-
-analytics::Study studyOf(StudySource& options) {
+analytics::Study plainStudyOf(StudySource& options) {
   if (!options.attemptRule.empty()) {
     options.choices.attemptRule =
         options.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
@@ -67,7 +65,7 @@ analytics::Study studyOf(StudySource& options) {
       options.elsewhere.protocol = analytics::readProtocol(findAsset(options.protocol, "protocols", "protocol"));
     return analytics::makeTableStudy(analytics::readCsvTable(options.table), options.elsewhere);
   }
-  if (options.database.empty()) throw Error(ExitCode::usage, "name a cohort database, or a table with --table");
+  if (options.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
   static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;
   options.cohort.grouping =
       options.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
@@ -81,6 +79,15 @@ analytics::Study studyOf(StudySource& options) {
   }
   analytics::Study study = analytics::makeStudy(analytics::CohortDatabase(options.database, read), options.cohort);
   analytics::addRatings(study, assessment);
+  return study;
+}
+
+}  // namespace
+
+analytics::Study studyOf(StudySource& options) {
+  analytics::Study study = plainStudyOf(options);
+  if (study.better.empty()) study.remarks.emplace_back("--better GROUP says which group is expected to do better.");
+  if (study.phasesLeftOut) study.remarks.emplace_back("--phases takes in the other checkpoints of single phases.");
   return study;
 }
 

@@ -20,7 +20,7 @@ struct StudySource {
 /// Adds the cohort or --table, and who and what of it is compared.
 void addStudySource(CLI::App& command, StudySource& source);
 
-/// @throws Error as makeStudy() and makeTableStudy(); (usage) where neither a cohort nor a table is named.
+/// @throws Error as makeStudy() and makeTableStudy(); (invalid) where neither a cohort nor a table is named.
 analytics::Study studyOf(StudySource& source);
 
 }  // namespace calot::apps

@@ -53,9 +53,9 @@ void addStoring(CLI::App& command, std::string& cohort, double& cutoff) {
 
 void checkStored(const std::string& cohort, double cutoff) {
   if (cohort.empty() && cutoff == 0.0)
-    throw Error(ExitCode::usage, "--cohort: a database for the values is wanted (or --cutoff, to see them only)");
+    throw Error(ErrorKind::invalid, "--cohort: a database for the values is wanted (or --cutoff, to see them only)");
   if (!cohort.empty() && cutoff != 0.0) {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 "--cutoff: values of a cohort have one filter, 6 Hz; leave out --cohort to see those of another");
   }
 }

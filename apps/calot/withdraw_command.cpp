@@ -14,6 +14,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/withdrawal_files.h"
 #include "apps/calot/passphrase.h"
+#include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -29,18 +30,18 @@ struct WithdrawOptions {
 
 void checkStores(const WithdrawOptions& o) {
   if (o.folders.empty() != o.noFolders)
-    throw Error(ExitCode::usage, "withdraw: name the folders of recordings (--recordings), or say --no-recordings");
+    throw Error(ErrorKind::invalid, "withdraw: name the folders of recordings (--recordings), or say --no-recordings");
   if (o.scope == "all" && o.key.empty() != o.noKey)
-    throw Error(ExitCode::usage, "withdraw: name the key file (--key), or say --no-key");
+    throw Error(ErrorKind::invalid, "withdraw: name the key file (--key), or say --no-key");
 }
 
 void removeFile(const fs::path& file) {
   std::error_code error;
   fs::remove(file, error);
   if (error) {
-    throw Error(ExitCode::failure,
-                fmt::format("{}: cannot be removed: {}; what comes after it was not touched, run again when it can",
-                            file.string(), error.message()));
+    throw Error(ErrorKind::failure, Where{file.string()},
+                fmt::format("cannot be removed: {}; what comes after it was not touched, run again when it can",
+                            error.message()));
   }
 }
 
@@ -77,7 +78,8 @@ int withdraw(const WithdrawOptions& o) {
   if (!o.key.empty()) key = std::make_unique<analytics::KeyFile>(o.key, readPassphrase(o.passphraseFile));
   const bool named = key && scope == analytics::WithdrawalScope::all && key->names().count(o.pseudonym) > 0;
   if (!w.known && files.remove.empty() && !named)
-    throw Error(ExitCode::no, fmt::format("{}: no participant \"{}\", and nothing left of one", o.cohort, o.pseudonym));
+    throw Error(ErrorKind::refused,
+                fmt::format("{}: no participant \"{}\", and nothing left of one", o.cohort, o.pseudonym));
   tell(w, files);
   if (named) std::cout << "entry of the key file " << o.key << '\n';
   if (o.dryRun) {

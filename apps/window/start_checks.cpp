@@ -25,13 +25,13 @@ std::string variable(const char* name) {
 void requireFolder(const std::string& folder, const std::string& what) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored))
-    throw Error(ExitCode::usage, fmt::format("{}: is no folder; {} go into one that exists", folder, what));
+    throw Error(ErrorKind::invalid, Where{folder}, fmt::format("is no folder; {} go into one that exists", what));
   // Rights alone do not tell: a file system may take no files, or be for reading only.
   std::string trial = folder + "/.calot-XXXXXX";
   const int file = ::mkstemp(trial.data());
   if (file < 0)
-    throw Error(ExitCode::failure,
-                fmt::format("{}: {} cannot be written there: {}", folder, what, std::strerror(errno)));
+    throw Error(ErrorKind::failure, Where{folder},
+                fmt::format("{} cannot be written there: {}", what, std::strerror(errno)));
   ::close(file);
   ::unlink(trial.c_str());
 }
@@ -40,7 +40,7 @@ void requireScreen() {
   const std::string platform = variable("QT_QPA_PLATFORM");
   const bool onScreen = platform.empty() || platform.starts_with("xcb") || platform.starts_with("wayland");
   if (onScreen && variable("DISPLAY").empty() && variable("WAYLAND_DISPLAY").empty())
-    throw Error(ExitCode::failure,
+    throw Error(ErrorKind::failure,
                 "there is no screen to show a window on (DISPLAY is not set); xvfb-run gives a virtual one");
 }
 

@@ -7,7 +7,7 @@
 namespace calot::apps {
 
 /// @param what is written there: "recordings"
-/// @throws Error (usage) where there is no such folder, (failure) where nothing can be written in it
+/// @throws Error (invalid) where there is no such folder, (failure) where nothing can be written in it
 void requireFolder(const std::string& folder, const std::string& what);
 
 /// Qt itself ends the program with several lines where it finds no screen.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/program.h"
 #include "assets/organs/fat_shape.h"
 #include "assets/organs/organ_shapes.h"
 #include "assets/organs/vessel_paths.h"
@@ -35,10 +36,10 @@ int run(const std::filesystem::path& folder, bool check, bool force) {
   for (const Organ& organ : organs) {
     const SurfaceReport report = inspectSurface(organ.mesh);
     if (!report.closedManifold() || report.components != 1) {
-      throw Error(ExitCode::failure, organ.file + ": the shape's surface is not one closed manifold");
+      throw Error(ErrorKind::failure, organ.file + ": the shape's surface is not one closed manifold");
     }
     if (findSelfCrossing(organ.mesh).pairs > 0) {
-      throw Error(ExitCode::failure, organ.file + ": the shape's surface passes through itself");
+      throw Error(ErrorKind::failure, organ.file + ": the shape's surface passes through itself");
     }
     const Vec3 size = 1000.0 * (report.box.upper - report.box.lower);
     fmt::print("{}: {} triangles, {:.1f} mL, {:.0f} x {:.0f} x {:.0f} mm\n", organ.file, report.triangles,
@@ -53,7 +54,7 @@ int run(const std::filesystem::path& folder, bool check, bool force) {
     const bool same = std::equal(found.begin(), found.end(), wanted.begin(), wanted.end(),
                                  [](std::byte x, char y) { return x == static_cast<std::byte>(y); });
     fmt::print("{}: {}\n", path.string(), same ? "as made" : "differs");
-    if (!same) result = static_cast<int>(ExitCode::no);
+    if (!same) result = static_cast<int>(apps::ExitCode::no);
   }
   return result;
 }
@@ -69,7 +70,7 @@ int printVessels() {
     }
     fmt::print("]\n");
   }
-  return static_cast<int>(ExitCode::yes);
+  return static_cast<int>(apps::ExitCode::yes);
 }
 
 }  // namespace
@@ -87,17 +88,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(calot::ExitCode::usage);
+    return app.exit(error) == 0 ? 0 : static_cast<int>(calot::apps::ExitCode::usage);
   }
-  try {
+  return calot::apps::runProgram("calot-organs", [&] {
     if (vessels) return printVessels();
-    if (folder.empty()) throw calot::Error(calot::ExitCode::usage, "name the folder, or ask for --vessels");
+    if (folder.empty()) throw calot::Error(calot::ErrorKind::invalid, "name the folder, or ask for --vessels");
     return run(folder, check, force);
-  } catch (const calot::Error& error) {
-    fmt::print(stderr, "calot-organs: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "calot-organs: {}\n", error.what());
-    return static_cast<int>(calot::ExitCode::failure);
-  }
+  });
 }

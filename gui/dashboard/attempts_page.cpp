@@ -16,6 +16,7 @@
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/table_view.h"
 #include "gui/dashboard/words.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -181,7 +182,7 @@ void AttemptsPage::showSelected() {
     checkpoints_.setValues(document_->values(attempt->uuid));
   } catch (const Error& error) {
     checkpoints_.setValues({});
-    emit problem(QString::fromUtf8(error.what()));
+    emit problem(QString::fromStdString(problemText(error)));
   }
   emit selectionChanged();
 }

@@ -11,6 +11,7 @@
 
 #include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/words.h"
+#include "gui/words/problem_words.h"
 
 namespace calot::gui {
 
@@ -75,7 +76,7 @@ void ComparePage::readValues() {
     try {
       *values = CohortDocument(path).allValues();
     } catch (const std::exception& error) {
-      fault = QString::fromUtf8(error.what());
+      fault = QString::fromStdString(problemText(error));
     }
     return [this, values, fault] {
       if (!fault.isEmpty()) emit problem(fault);

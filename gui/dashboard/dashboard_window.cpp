@@ -28,6 +28,7 @@
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "gui/dashboard/trainee_page.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -45,11 +46,12 @@ QStringList localFiles(const QMimeData& data) {
 
 }  // namespace
 
-DashboardWindow::DashboardWindow(const std::vector<std::filesystem::path>& assetFolders, QWidget* parent)
+DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
+                                 QWidget* parent)
     : QMainWindow(parent),
       problem_(new QLabel),
       stack_(new QStackedWidget),
-      greeting_(new GreetingPage),
+      greeting_(new GreetingPage(program)),
       tabs_(new QTabWidget),
       attempts_(new AttemptsPage),
       attempt_(new AttemptPage),
@@ -58,7 +60,8 @@ DashboardWindow::DashboardWindow(const std::vector<std::filesystem::path>& asset
       trainee_(new TraineePage),
       pair_(new PairPage),
       rating_(new RatingPage),
-      undo_(new QUndoStack(this)) {
+      undo_(new QUndoStack(this)),
+      imports_(program) {
   setWindowTitle("Calot");
   resize(1280, 860);
   setAcceptDrops(true);
@@ -202,7 +205,7 @@ bool DashboardWindow::openDatabase(const QString& path) {
     setDocument(std::make_shared<const CohortDocument>(path.toStdString()));
     return true;
   } catch (const Error& error) {
-    showProblem(QString::fromUtf8(error.what()));
+    showProblem(QString::fromStdString(problemText(error)));
     return false;
   }
 }
@@ -211,7 +214,7 @@ bool DashboardWindow::createDatabase(const QString& path) {
   try {
     const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create);
   } catch (const Error& error) {
-    showProblem(QString::fromUtf8(error.what()));
+    showProblem(QString::fromStdString(problemText(error)));
     return false;
   }
   return openDatabase(path);
@@ -224,7 +227,7 @@ void DashboardWindow::reload() {
       auto document = std::make_shared<const CohortDocument>(path);
       return [this, document] { setDocument(document); };
     } catch (const std::exception& error) {
-      return [this, text = QString::fromUtf8(error.what())] { showProblem(text); };
+      return [this, text = QString::fromStdString(problemText(error))] { showProblem(text); };
     }
   });
 }

@@ -34,8 +34,10 @@ class TraineePage;
 class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
+  /// @param program what imports recordings
   /// @param assetFolders that may hold forms (recorder::assetRoots)
-  explicit DashboardWindow(const std::vector<std::filesystem::path>& assetFolders = {}, QWidget* parent = nullptr);
+  explicit DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders = {},
+                           QWidget* parent = nullptr);
   ~DashboardWindow() override;
 
   /// Shows an open document. @pre not null

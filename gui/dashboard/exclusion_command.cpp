@@ -2,6 +2,7 @@
 #include "gui/dashboard/exclusion_command.h"
 
 #include "analytics/cohort/cohort_database.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -24,7 +25,7 @@ void ExclusionCommand::apply(bool exclude, const std::string& reason) {
   } catch (const Error& error) {
     // What could not be done leaves nothing to undo.
     setObsolete(true);
-    done_(QString::fromUtf8(error.what()));
+    done_(QString::fromStdString(problemText(error)));
   }
 }
 

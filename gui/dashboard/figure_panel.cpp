@@ -13,6 +13,7 @@
 #include "gui/dashboard/band_delegate.h"
 #include "gui/dashboard/figure_standing.h"
 #include "gui/dashboard/table_view.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -70,7 +71,7 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
     values_ = document_->values(attempt.uuid);
   } catch (const Error& error) {
     values_.clear();
-    emit problem(QString::fromUtf8(error.what()));
+    emit problem(QString::fromStdString(problemText(error)));
   }
   figures_.setValues(values_);
   {

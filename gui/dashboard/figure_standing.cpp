@@ -8,6 +8,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/statistics/descriptive.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -75,7 +76,7 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
     standing.verdict = grade->verdict;
     standing.judged = true;
   } catch (const Error& error) {
-    standing.verdict = std::string("Not judged: ") + error.what();
+    standing.verdict = "Not judged: " + problemText(error);
   }
   for (std::size_t f = 0; f < norm.checkpoints.size(); ++f) {
     const analytics::NormCheckpoint& mark = norm.checkpoints[f];

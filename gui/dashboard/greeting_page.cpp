@@ -4,10 +4,12 @@
 #include <QBoxLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <utility>
 
 namespace calot::gui {
 
-GreetingPage::GreetingPage(QWidget* parent) : QWidget(parent), title_(new QLabel), text_(new QLabel), import_(nullptr) {
+GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
+    : QWidget(parent), program_(std::move(program)), title_(new QLabel), text_(new QLabel), import_(nullptr) {
   auto* layout = new QVBoxLayout(this);
   layout->addStretch(1);
   QFont large = font();
@@ -46,7 +48,8 @@ void GreetingPage::explainNoDatabase() {
   title_->setText("Welcome to Calot");
   text_->setText(
       "A cohort database holds attempts and their checkpoints.\nOpen one, make a new one, or drop one here. On the "
-      "command line:\n\ncalot assess recording.h5 --cohort cohort.db");
+      "command line:\n\n" +
+      program_.typed("cohort.db"));
   import_->hide();
 }
 
@@ -55,8 +58,8 @@ void GreetingPage::explainEmptyDatabase(const QString& fileName) {
   text_->setText(
       fileName +
       " is a cohort database without attempts.\nImport recordings, or drop them here: each is simulated again, "
-      "verified and measured. On the command line:\n\ncalot assess recording.h5 --cohort " +
-      fileName);
+      "verified and measured. On the command line:\n\n" +
+      program_.typed(fileName));
   import_->show();
 }
 

@@ -3,6 +3,8 @@
 
 #include <QWidget>
 
+#include "gui/dashboard/assess_program.h"
+
 class QLabel;
 class QPushButton;
 
@@ -12,7 +14,7 @@ namespace calot::gui {
 class GreetingPage : public QWidget {
   Q_OBJECT
  public:
-  explicit GreetingPage(QWidget* parent = nullptr);
+  explicit GreetingPage(AssessProgram program, QWidget* parent = nullptr);
   void explainNoDatabase();
   void explainEmptyDatabase(const QString& fileName);
 
@@ -22,6 +24,7 @@ class GreetingPage : public QWidget {
   void importRequested();
 
  private:
+  AssessProgram program_;
   QLabel* title_;
   QLabel* text_;
   QPushButton* import_;

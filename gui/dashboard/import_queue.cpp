@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "gui/view/thread_rank.h"
-#include "recorder/errors.h"
 
 namespace calot::gui {
 namespace {
@@ -38,8 +37,8 @@ QString lastLine(const QByteArray& text) {
 
 }  // namespace
 
-ImportResult importResultOf(const QString& file, int exitCode, bool crashed, const QByteArray& output,
-                            const QByteArray& errors) {
+ImportResult importResultOf(const AssessProgram& program, const QString& file, int exitCode, bool crashed,
+                            const QByteArray& output, const QByteArray& errors) {
   ImportResult result;
   result.file = file;
   if (crashed) {
@@ -50,8 +49,7 @@ ImportResult importResultOf(const QString& file, int exitCode, bool crashed, con
   if (row.isEmpty()) {
     result.text = lastLine(errors);
     if (result.text.isEmpty()) result.text = QString("no answer (exit code %1)").arg(exitCode);
-    if (exitCode == static_cast<int>(ExitCode::damaged) || exitCode == static_cast<int>(ExitCode::no))
-      result.kind = ImportResult::Kind::refused;
+    if (program.refused(exitCode)) result.kind = ImportResult::Kind::refused;
     return result;
   }
   const QString stored = row["stored"].toString();
@@ -75,13 +73,13 @@ QStringList recordingsIn(const QStringList& paths) {
   return files;
 }
 
-ImportQueue::ImportQueue(QObject* parent) : QObject(parent) {
+ImportQueue::ImportQueue(AssessProgram how, QObject* parent) : QObject(parent), how_(std::move(how)) {
   process_.setChildProcessModifier([] { stepBack(behindInterface); });
   connect(&process_, &QProcess::readyReadStandardOutput, this, [this] { collect(); });
   connect(&process_, &QProcess::readyReadStandardError, this, [this] { collect(); });
   connect(&process_, &QProcess::finished, this, [this](int code, QProcess::ExitStatus status) {
     collect();
-    finishCurrent(importResultOf(current_, code, status == QProcess::CrashExit, output_, errors_));
+    finishCurrent(importResultOf(how_, current_, code, status == QProcess::CrashExit, output_, errors_));
   });
   connect(&process_, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {
     if (error != QProcess::FailedToStart) return;  // the others end with finished()
@@ -132,8 +130,7 @@ void ImportQueue::startNext() {
   clock_.start();
   emit progressed();
   // An absolute path: no file's name is an option.
-  process_.start(program_, {"assess", QFileInfo(current_).absoluteFilePath(), "--cohort", database_, "--threads",
-                            QString::number(threads_), "--json"});
+  process_.start(program_, how_.arguments(QFileInfo(current_).absoluteFilePath(), database_, threads_));
   process_.closeWriteChannel();
 }
 

@@ -6,6 +6,8 @@
 #include <QProcess>
 #include <QStringList>
 
+#include "gui/dashboard/assess_program.h"
+
 namespace calot::gui {
 
 /// What became of one recording.
@@ -20,19 +22,20 @@ struct ImportResult {
   QString text;  ///< "✓ verified, new in the cohort"; or why not
 };
 
-/// What `calot assess --json` said of one file. @param crashed it did not end by itself
-ImportResult importResultOf(const QString& file, int exitCode, bool crashed, const QByteArray& output,
-                            const QByteArray& errors);
+/// What the program said of one file, in JSON. @param crashed it did not end by itself
+ImportResult importResultOf(const AssessProgram& program, const QString& file, int exitCode, bool crashed,
+                            const QByteArray& output, const QByteArray& errors);
 
 /// The recordings behind what was dropped or chosen: files as they are, of folders the *.h5 in them, by name.
 QStringList recordingsIn(const QStringList& paths);
 
-/// Assesses recordings into a cohort, one after the other, each by `calot assess` in a process of its own: whatever a
-/// file does to the program that reads it, the window stays.
+/// Assesses recordings into a cohort, one after the other, each by the assessing program in a process of its own:
+/// whatever a file does to the program that reads it, the window stays.
 class ImportQueue : public QObject {
   Q_OBJECT
  public:
-  explicit ImportQueue(QObject* parent = nullptr);
+  /// @param how the program is called
+  explicit ImportQueue(AssessProgram how, QObject* parent = nullptr);
   ~ImportQueue() override;
 
   /// Which program and which database the next recordings go through. @pre not busy()
@@ -58,6 +61,7 @@ class ImportQueue : public QObject {
   void finishCurrent(ImportResult result);
   void collect();
 
+  AssessProgram how_;
   QString program_, database_;
   int threads_ = 1;
   QStringList waiting_;

@@ -30,14 +30,16 @@ recorder::Recording openRecording(const fs::path& file, const std::string& attem
   const std::string name = file.filename().string();
   const std::string& found = recording.header().attempt;
   if (!attempt.empty() && found != attempt)
-    throw Error(ExitCode::no, fmt::format("{}: is the recording of attempt {}, not of {}", name, found, attempt));
-  if (!chain.intact) throw Error(ExitCode::no, fmt::format("{}: its content chain is broken ({})", name, chain.what));
-  if (recording.stepCount() == 0) throw Error(ExitCode::damaged, fmt::format("{}: holds no step to show", name));
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("is the recording of attempt {}, not of {}", found, attempt));
+  if (!chain.intact)
+    throw Error(ErrorKind::refused, Where{name}, fmt::format("its content chain is broken ({})", chain.what));
+  if (recording.stepCount() == 0) throw Error(ErrorKind::damaged, Where{name}, "holds no step to show");
   const std::uint32_t version = recording.header().simulationVersion;
   if (version != simulationVersion)
-    throw Error(ExitCode::undecided,
-                fmt::format("{}: was made by simulation version {}; this program has version {} and cannot repeat it",
-                            name, version, simulationVersion));
+    throw Error(ErrorKind::undecided, Where{name},
+                fmt::format("was made by simulation version {}; this program has version {} and cannot repeat it",
+                            version, simulationVersion));
   return recording;
 }
 

@@ -18,8 +18,8 @@ std::filesystem::path findRecording(const analytics::AttemptRow& attempt, const 
 /// Opens a recording to be shown. A child process reads all of it first, so that a file that breaks the reading library
 /// takes no window with it.
 /// @param attempt uuid that it must have; empty: any
-/// @throws Error as recorder::probe(); 3 for another attempt's recording or a broken content chain; 4 without any step;
-/// 5 for one of another simulation version, which this program cannot simulate.
+/// @throws Error as recorder::probe(); (refused) for another attempt's recording or a broken content chain; (damaged)
+/// without any step; (undecided) for one of another simulation version, which this program cannot simulate.
 recorder::Recording openRecording(const std::filesystem::path& file, const std::string& attempt);
 
 }  // namespace calot::gui

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -22,7 +23,7 @@ KnownForms readForms(const std::vector<fs::path>& folders) {
     try {
       known.forms.push_back(analytics::readRatingForm(entry.second));
     } catch (const Error& error) {
-      known.faults.emplace_back(error.what());
+      known.faults.emplace_back(problemText(error));
     }
   }
   return known;
@@ -30,10 +31,10 @@ KnownForms readForms(const std::vector<fs::path>& folders) {
 
 void RatingDraft::store(const std::string& database, const std::string& attempt, const std::string& rater,
                         const std::string& participant, bool replace) const {
-  if (form_.ofAttempts && attempt.empty()) throw Error(ExitCode::usage, "Choose the attempt that is rated.");
-  if (form_.ofAttempts && rater.empty()) throw Error(ExitCode::usage, "Say who rates, by a pseudonym.");
+  if (form_.ofAttempts && attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
+  if (form_.ofAttempts && rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
   if (!form_.ofAttempts && participant.empty())
-    throw Error(ExitCode::usage, "Choose the participant who fills in the form.");
+    throw Error(ErrorKind::invalid, "Choose the participant who fills in the form.");
   std::vector<std::pair<std::string, std::string>> given;
   for (const auto& [item, score] : answers_) given.emplace_back(item, score ? std::to_string(*score) : "-");
   analytics::Rating rating;

@@ -32,7 +32,7 @@ class RatingDraft {
   [[nodiscard]] const analytics::RatingForm& form() const { return form_; }
 
   /// Stores it as `calot rate` does. @param attempt, rater of a form about attempts; @param participant of the others
-  /// @throws Error (usage) for an item without answer, all blank, or a missing name; 3 as
+  /// @throws Error (invalid) for an item without answer, all blank, or a missing name; (refused) as
   /// AssessmentDatabase::storeRating
   void store(const std::string& database, const std::string& attempt, const std::string& rater,
              const std::string& participant, bool replace) const;

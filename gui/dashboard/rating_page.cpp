@@ -15,6 +15,7 @@
 
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/settings.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -121,7 +122,7 @@ void RatingPage::readPeople() {
     try {
       for (const std::string& name : document_->participants()) participant_->addItem(QString::fromStdString(name));
     } catch (const Error& error) {
-      emit problem(QString::fromUtf8(error.what()));
+      emit problem(QString::fromStdString(problemText(error)));
     }
     participant_->setCurrentIndex(std::max(0, participant_->findText(before)));
   }
@@ -231,7 +232,7 @@ void RatingPage::showEarlier() {
       earlier = earlierRating(document_->ratings(), shown, attempt_ ? attempt_->uuid : std::string(),
                               rater_->text().toStdString(), participant_->currentText().toStdString());
     } catch (const Error& error) {
-      emit problem(QString::fromUtf8(error.what()));
+      emit problem(QString::fromStdString(problemText(error)));
     }
   }
   replaces_ = earlier.has_value();
@@ -270,7 +271,7 @@ void RatingPage::store() {
     showState();
     state_->setText("Stored. " + state_->text());
   } catch (const Error& error) {
-    emit problem(QString::fromUtf8(error.what()));
+    emit problem(QString::fromStdString(problemText(error)));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <QMetaObject>
 
 #include "gui/view/thread_rank.h"
+#include "gui/words/problem_words.h"
 
 namespace calot::gui {
 namespace {
@@ -67,7 +68,8 @@ void RecordingReader::run(const Back& back, const std::filesystem::path& file, c
   } catch (const BrokenOff&) {
     return;
   } catch (const std::exception& error) {
-    tell(back, [text = QString::fromUtf8(error.what())](RecordingReader& reader) { emit reader.failed(text); });
+    tell(back,
+         [text = QString::fromStdString(problemText(error))](RecordingReader& reader) { emit reader.failed(text); });
   }
 }
 

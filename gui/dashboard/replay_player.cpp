@@ -10,6 +10,7 @@
 #include "gui/dashboard/open_recording.h"
 #include "gui/dashboard/replay_plan.h"
 #include "gui/view/thread_rank.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/replay.h"
@@ -232,7 +233,7 @@ void ReplayPlayer::run() {
   try {
     Run(*this).loop();
   } catch (const std::exception& error) {
-    receiver_.failed(error.what());
+    receiver_.failed(problemText(error));
   }
 }
 

@@ -16,6 +16,7 @@
 #include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/roc_chart.h"
 #include "gui/dashboard/words.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -249,7 +250,7 @@ void StudyPage::exportCsv(const QString& folder) {
     const std::string warning = exportStudyCsv(*study_, document_->path(), folder.toStdString(), true);
     state_->setText(warning.empty() ? "Written: " + folder : QString::fromStdString(warning));
   } catch (const Error& error) {
-    emit problem(QString::fromUtf8(error.what()));
+    emit problem(QString::fromStdString(problemText(error)));
   }
 }
 
@@ -258,7 +259,7 @@ void StudyPage::exportHtml(const QString& file) {
     const std::string warning = exportStudyHtml(*study_, document_->path(), file.toStdString(), true);
     state_->setText(warning.empty() ? "Written: " + file : QString::fromStdString(warning));
   } catch (const Error& error) {
-    emit problem(QString::fromUtf8(error.what()));
+    emit problem(QString::fromStdString(problemText(error)));
   }
 }
 

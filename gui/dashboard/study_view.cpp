@@ -11,6 +11,7 @@
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 #include "analytics/statistics/descriptive.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 
@@ -53,7 +54,7 @@ std::string noteExport(const analytics::Study& study, const std::string& databas
     analytics::recordExport(database, kind, target, attempts);
     return {};
   } catch (const Error& error) {
-    return std::string("What was written is not noted for withdrawals: ") + error.what();
+    return "What was written is not noted for withdrawals: " + problemText(error);
   }
 }
 
@@ -73,7 +74,7 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request) {
     analytics::addRatings(study, analytics::AssessmentDatabase(database, Access::read));
     return {std::move(study), {}};
   } catch (const std::exception& error) {
-    return {std::nullopt, error.what()};
+    return {std::nullopt, problemText(error)};
   }
 }
 

@@ -13,6 +13,7 @@
 
 #include "gui/dashboard/history_chart.h"
 #include "gui/dashboard/words.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -122,7 +123,7 @@ void TraineePage::readValues() {
     try {
       read->values = CohortDocument(path).allValues();
     } catch (const std::exception& error) {
-      read->fault = QString::fromUtf8(error.what());
+      read->fault = QString::fromStdString(problemText(error));
     }
     return [this, read] {
       if (!read->fault.isEmpty()) emit problem(read->fault);
@@ -169,7 +170,7 @@ void TraineePage::redraw() {
   try {
     norms = &document_->norms();
   } catch (const Error& error) {
-    emit problem(QString::fromUtf8(error.what()));
+    emit problem(QString::fromStdString(problemText(error)));
   }
   const Figure& shown = figures_[static_cast<std::size_t>(figure)];
   const TraineeHistory history =

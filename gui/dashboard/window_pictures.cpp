@@ -44,7 +44,7 @@ void waitFor(const std::function<bool()>& condition) {
 void DashboardWindow::savePicture(QWidget& page, const QString& file) {
   QCoreApplication::processEvents();
   if (!page.grab().save(file, "PNG"))
-    throw Error(ExitCode::failure, file.toStdString() + ": cannot write the picture; does the folder exist?");
+    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
 }
 
 void DashboardWindow::savePictures(const QString& folder) {

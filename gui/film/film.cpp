@@ -116,22 +116,21 @@ class Cutter {
 /// Length of a recording that has something to draw (s).
 double secondsOf(const std::filesystem::path& recording) {
   const recorder::Recording opened(recording);
-  if (opened.stepCount() == 0)
-    throw Error(ExitCode::damaged, fmt::format("{}: holds no step to draw", recording.string()));
+  if (opened.stepCount() == 0) throw Error(ErrorKind::damaged, Where{recording.string()}, "holds no step to draw");
   return opened.seconds();
 }
 
 void checkTime(const std::filesystem::path& recording, double time, double seconds) {
   if (time > seconds)
-    throw Error(ExitCode::usage,
-                fmt::format("{}: is {:.2f} s long, there is nothing at {:.2f} s", recording.string(), seconds, time));
+    throw Error(ErrorKind::invalid, Where{recording.string()},
+                fmt::format("is {:.2f} s long, there is nothing at {:.2f} s", seconds, time));
 }
 
 void checkBeside(const FilmSettings& settings) {
   if (!settings.beside) return;
   static_cast<void>(secondsOf(*settings.beside));
   if (settings.size.width % 4 != 0)
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::invalid,
                 fmt::format("{} pixels wide: two recordings side by side need a multiple of 4", settings.size.width));
 }
 
@@ -141,14 +140,14 @@ void checkFilm(const std::filesystem::path& recording, const std::filesystem::pa
                const FilmSettings& settings) {
   FilmWriter::check(output, settings.size.width, settings.size.height, settings.fps);
   if (!(settings.speed >= 0.01 && settings.speed <= 100.0))
-    throw Error(ExitCode::usage, fmt::format("{} times as fast: a film goes 0.01 to 100 times", settings.speed));
+    throw Error(ErrorKind::invalid, fmt::format("{} times as fast: a film goes 0.01 to 100 times", settings.speed));
   checkBeside(settings);
   const double seconds = secondsOf(recording);
   const double to = settings.to.value_or(seconds);
   checkTime(recording, to, seconds);
   if (settings.from >= to)
-    throw Error(ExitCode::usage,
-                fmt::format("{}: from {:.2f} s to {:.2f} s there is nothing", recording.string(), settings.from, to));
+    throw Error(ErrorKind::invalid, Where{recording.string()},
+                fmt::format("from {:.2f} s to {:.2f} s there is nothing", settings.from, to));
 }
 
 void checkMoment(const std::filesystem::path& recording, const FilmSettings& settings) {

@@ -30,7 +30,7 @@ struct FilmSettings {
 };
 
 /// What the functions below would refuse of their arguments, before anything is done.
-/// @throws calot::Error: usage for settings out of range; damaged where a recording cannot be read or holds no step
+/// @throws calot::Error: invalid for settings out of range; damaged where a recording cannot be read or holds no step
 void checkFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
                const FilmSettings& settings);
 void checkMoment(const std::filesystem::path& recording, const FilmSettings& settings);
@@ -40,7 +40,7 @@ void checkMoment(const std::filesystem::path& recording, const FilmSettings& set
 /// @param output .mp4 or .mkv; replaced if it is there
 /// @param progress is told after every picture; what it throws stops the film
 /// @return the number of pictures
-/// @throws calot::Error: usage for settings out of range; damaged where a recording cannot be read; failure where the
+/// @throws calot::Error: invalid for settings out of range; damaged where a recording cannot be read; failure where the
 /// film cannot be written. Nothing is left behind then.
 std::int64_t writeFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
                        const FilmSettings& settings,

@@ -22,8 +22,8 @@ class FilmSource {
   };
 
   /// @pre the recording holds a step
-  /// @throws calot::Error: damaged where the file cannot be read, or its scene cannot be built; usage where an overlay
-  /// needs what a golden recording has not
+  /// @throws calot::Error: damaged where the file cannot be read, or its scene cannot be built; invalid where an
+  /// overlay needs what a golden recording has not
   FilmSource(const std::filesystem::path& recording, const Overlays& overlays);
 
   [[nodiscard]] double seconds() const { return recording_.seconds(); }

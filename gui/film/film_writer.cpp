@@ -60,7 +60,7 @@ struct FilmWriter::Impl {
   bool finished = false;
 
   [[noreturn]] void fail(const std::string& why) const {
-    throw Error(ExitCode::failure, fmt::format("{}: cannot write the film: {}", file.string(), why));
+    throw Error(ErrorKind::failure, Where{file.string()}, fmt::format("cannot write the film: {}", why));
   }
   void need(int result) const {
     if (result < 0) fail(reasonOf(result));
@@ -143,11 +143,11 @@ struct FilmWriter::Impl {
 
 void FilmWriter::check(const std::filesystem::path& file, int width, int height, int fps) {
   if (file.extension() != ".mp4" && file.extension() != ".mkv")
-    throw Error(ExitCode::usage, fmt::format("{}: films are written as .mp4 or .mkv", file.string()));
+    throw Error(ErrorKind::invalid, Where{file.string()}, "films are written as .mp4 or .mkv");
   if (width % 2 != 0 || height % 2 != 0)
-    throw Error(ExitCode::usage, fmt::format("{}x{}: width and height of a film are even", width, height));
+    throw Error(ErrorKind::invalid, fmt::format("{}x{}: width and height of a film are even", width, height));
   if (fps < 1 || fps > fastest)
-    throw Error(ExitCode::usage, fmt::format("{} frames a second: a film has 1 to {}", fps, fastest));
+    throw Error(ErrorKind::invalid, fmt::format("{} frames a second: a film has 1 to {}", fps, fastest));
 }
 
 FilmWriter::FilmWriter(const std::filesystem::path& file, int width, int height, int fps)

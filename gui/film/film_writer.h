@@ -20,14 +20,14 @@ class FilmWriter {
  public:
   /// @param file ends with .mp4 or .mkv
   /// @param fps pictures a second, 1 to 120
-  /// @throws calot::Error: usage for another ending, an odd width or height (colour is stored for two by two pixels) or
-  /// a rate out of range; failure where libav has no encoder or the file cannot be written
+  /// @throws calot::Error: invalid for another ending, an odd width or height (colour is stored for two by two pixels)
+  /// or a rate out of range; failure where libav has no encoder or the file cannot be written
   FilmWriter(const std::filesystem::path& file, int width, int height, int fps);
   ~FilmWriter();
   FilmWriter(const FilmWriter&) = delete;
   FilmWriter& operator=(const FilmWriter&) = delete;
 
-  /// What the constructor would say of its arguments, before long work. @throws calot::Error (usage)
+  /// What the constructor would say of its arguments, before long work. @throws calot::Error (invalid)
   static void check(const std::filesystem::path& file, int width, int height, int fps);
 
   /// The next picture; its alpha is ignored. @pre of the film's size @throws calot::Error (failure)

@@ -81,7 +81,8 @@ Lettering::Lettering(int pixels) : impl_(std::make_unique<Impl>()) {
                      FT_New_Face(impl_->library, fontFile, 0, &impl_->face) == 0 &&
                      FT_Set_Pixel_Sizes(impl_->face, 0, static_cast<FT_UInt>(std::max(pixels, 6))) == 0;
   if (!ready)
-    throw Error(ExitCode::failure, std::string(fontFile) + ": cannot be read; install the package fonts-dejavu-core");
+    throw Error(ErrorKind::failure, Where{std::string(fontFile)},
+                "cannot be read; install the package fonts-dejavu-core");
   impl_->height = static_cast<int>((impl_->face->size->metrics.height + 63) / 64);
   impl_->ascent = static_cast<int>((impl_->face->size->metrics.ascender + 63) / 64);
 }

@@ -34,10 +34,9 @@ std::string readable(double value) {
 /// Every step's result is needed.
 void refuseLean(const recorder::Recording& recording) {
   if (!hasResults(recording))
-    throw Error(ExitCode::usage,
-                fmt::format("{}: is a golden recording, which holds no results of its steps: overlays other than "
-                            "time, and alignment by phase, need one of `calot record`",
-                            recording.path().string()));
+    throw Error(ErrorKind::invalid, Where{recording.path().string()},
+                "is a golden recording, which holds no results of its steps: overlays other than time, and alignment "
+                "by phase, need one of `calot record`");
 }
 
 }  // namespace

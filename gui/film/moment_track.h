@@ -45,7 +45,7 @@ class MomentTrack {
   static constexpr double pathSeconds = 3.0;
 
   /// @param checkpoints are asked for: they are computed as the track goes on
-  /// @throws Error (usage) for a golden recording, which holds no results of its steps; (damaged) where it can't be
+  /// @throws Error (invalid) for a golden recording, which holds no results of its steps; (damaged) where it can't be
   /// read
   MomentTrack(const std::filesystem::path& recording, bool checkpoints);
   ~MomentTrack();

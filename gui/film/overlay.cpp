@@ -78,8 +78,8 @@ Overlays parseOverlays(const std::string& text) {
     else if (word == "tools")
       overlays.tools = true;
     else
-      throw Error(ExitCode::usage,
-                  fmt::format("--overlay: there is no '{}'; there are time, phase, checkpoints, events, tools", word));
+      throw Error(ErrorKind::invalid,
+                  fmt::format("there is no overlay '{}'; there are time, phase, checkpoints, events, tools", word));
     begin = end + 1;
   }
   return overlays;

@@ -18,7 +18,7 @@ struct Overlays {
   [[nodiscard]] bool needTrack() const { return phase || checkpoints || events || tools; }
 };
 
-/// "time,phase". @throws calot::Error (usage) naming what is not known
+/// "time,phase". @throws calot::Error (invalid) naming what is not known
 [[nodiscard]] Overlays parseOverlays(const std::string& text);
 
 /// What stands on a picture throughout.

@@ -12,7 +12,7 @@ template <class Pointer>
 Pointer load(const GraphicsContext& context, const char* name) {
   const auto found = context.function(name);
   if (found == nullptr)
-    throw Error(ExitCode::failure, std::string("rendering: this OpenGL has no ") + name + "; install a newer Mesa");
+    throw Error(ErrorKind::failure, std::string("rendering: this OpenGL has no ") + name + "; install a newer Mesa");
   return reinterpret_cast<Pointer>(found);
 }
 

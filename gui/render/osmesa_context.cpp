@@ -27,7 +27,8 @@ class OsmesaContext final : public GraphicsContext {
                                                     0};
     context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
     if (context_ == nullptr)
-      throw Error(ExitCode::failure, "rendering: no off-screen OpenGL 4.5; install a Mesa with libosmesa6 22 or newer");
+      throw Error(ErrorKind::failure,
+                  "rendering: no off-screen OpenGL 4.5; install a Mesa with libosmesa6 22 or newer");
   }
   ~OsmesaContext() override { OSMesaDestroyContext(context_); }
   OsmesaContext(const OsmesaContext&) = delete;
@@ -36,7 +37,7 @@ class OsmesaContext final : public GraphicsContext {
   void makeCurrent() override {
     // Pictures are drawn into framebuffer objects; this buffer only has to exist.
     if (OSMesaMakeCurrent(context_, buffer_.data(), GL_UNSIGNED_BYTE, side, side) != GL_TRUE)
-      throw Error(ExitCode::failure, "rendering: the off-screen OpenGL context cannot be made current");
+      throw Error(ErrorKind::failure, "rendering: the off-screen OpenGL context cannot be made current");
   }
   Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
 

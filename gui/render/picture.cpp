@@ -16,7 +16,7 @@ PictureSize parsePictureSize(const std::string& text) {
   const auto [afterHeight, heightError] = cross ? std::from_chars(afterWidth + 1, end, size.height)
                                                 : std::from_chars_result{end, std::errc::invalid_argument};
   if (!cross || heightError != std::errc() || afterHeight != end)
-    throw Error(ExitCode::usage, "picture size '" + text + "': write WIDTHxHEIGHT, as in 1280x720");
+    throw Error(ErrorKind::invalid, "picture size '" + text + "': write WIDTHxHEIGHT, as in 1280x720");
   checkPictureSize(size.width, size.height);
   return size;
 }

@@ -11,7 +11,7 @@ struct PictureSize {
   int height = 720;  ///< pixels
 };
 
-/// "1280x720". @throws calot::Error (usage) for anything else, or for a size outside the renderer's limits.
+/// "1280x720". @throws calot::Error (invalid) for anything else, or for a size outside the renderer's limits.
 [[nodiscard]] PictureSize parsePictureSize(const std::string& text);
 
 }  // namespace calot::gui

@@ -21,7 +21,7 @@ void writePng(const Image& image, const std::filesystem::path& file) {
   const auto fail = [&](const std::string& why) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    throw Error(ExitCode::failure, fmt::format("{}: cannot write the picture: {}", file.string(), why));
+    throw Error(ErrorKind::failure, Where{file.string()}, fmt::format("cannot write the picture: {}", why));
   };
   if (image.width <= 0 || image.height <= 0 ||
       image.rgba.size() != 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))

@@ -42,7 +42,7 @@ RenderTarget::RenderTarget(const GlFunctions& gl, int width, int height, const L
   if (complete && gl_.GetError() == GL_NO_ERROR) return;
   gl_.DeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
   gl_.DeleteFramebuffers(1, &framebuffer_);
-  throw Error(ExitCode::failure,
+  throw Error(ErrorKind::failure,
               fmt::format("rendering: no memory for a {}x{} picture; ask for a smaller one", width, height));
 }
 

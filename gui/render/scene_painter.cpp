@@ -257,7 +257,7 @@ Image ScenePainter::read() const {
               std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   if (gl_.GetError() != GL_NO_ERROR)
-    throw Error(ExitCode::failure, "rendering: OpenGL reported an error; is memory short?");
+    throw Error(ErrorKind::failure, "rendering: OpenGL reported an error; is memory short?");
   return image;
 }
 

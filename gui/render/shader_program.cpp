@@ -9,8 +9,8 @@ namespace calot::gui {
 namespace {
 
 [[noreturn]] void fail(const char* name, const std::string& log) {
-  throw Error(ExitCode::failure, std::string("rendering: shader '") + name +
-                                     "' is refused by this OpenGL: " + log.substr(0, log.find('\n')));
+  throw Error(ErrorKind::failure, std::string("rendering: shader '") + name +
+                                      "' is refused by this OpenGL: " + log.substr(0, log.find('\n')));
 }
 
 GLuint compile(const GlFunctions& gl, const char* name, GLenum kind,

@@ -11,7 +11,7 @@
 namespace calot::gui {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ExitCode::damaged, "scene view: " + what); }
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::damaged, "scene view: " + what); }
 
 // A kilometre is far outside every scene; beyond it single precision on the graphics side has no millimetres left.
 constexpr double farthest = 1e3;
@@ -104,8 +104,8 @@ void checkView(const SceneView& view) {
 void checkPictureSize(long long width, long long height) {
   if (width < smallestSide || height < smallestSide || width > largestSide || height > largestSide ||
       width * height > mostPixels)
-    throw Error(ExitCode::usage, fmt::format("picture size {}x{}: give {} to {} pixels a side and at most {} in all",
-                                             width, height, smallestSide, largestSide, mostPixels));
+    throw Error(ErrorKind::invalid, fmt::format("picture size {}x{}: give {} to {} pixels a side and at most {} in all",
+                                                width, height, smallestSide, largestSide, mostPixels));
 }
 
 void checkSmoke(std::span<const Puff> smoke) {

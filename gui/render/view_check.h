@@ -10,7 +10,7 @@ namespace calot::gui {
 
 /// Refuses what cannot be drawn. @throws calot::Error as Renderer::render documents, naming surface and vertex.
 void checkView(const SceneView& view);
-/// @throws calot::Error (usage)
+/// @throws calot::Error (invalid)
 void checkPictureSize(long long width, long long height);
 /// @throws calot::Error (damaged) where a puff has a number that is not finite
 void checkSmoke(std::span<const Puff> smoke);

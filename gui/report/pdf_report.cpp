@@ -42,7 +42,7 @@ class Application {
 
 QFont reportFont() {
   if (QFontDatabase::families().isEmpty())
-    throw Error(ExitCode::failure, "no font is installed, and a PDF needs one (Debian: fonts-dejavu-core)");
+    throw Error(ErrorKind::failure, "no font is installed, and a PDF needs one (Debian: fonts-dejavu-core)");
   QFont font;
   font.setFamilies({"DejaVu Sans", "Liberation Sans", "Sans Serif"});
   return font;

@@ -20,10 +20,6 @@ std::array<Vec3, handCount> portsFrom(const SceneDescription& scene, const std::
   return out;
 }
 
-recorder::DeviceSource& deviceOf(recorder::SampleSource& source) {
-  return dynamic_cast<recorder::DeviceSource&>(source);
-}
-
 }  // namespace
 
 MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse) : mouse_(std::move(mouse)) {}
@@ -40,12 +36,12 @@ std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescr
 void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& scene,
                                const TickSamples& start) {
   mouse_->setPorts(portsFrom(scene, {start.hand[0].position, start.hand[1].position}));
-  deviceOf(source).setOutFrom(start);
+  source.device()->setOutFrom(start);
 }
 
 void MouseAttemptInput::record(recorder::SampleSource& source, recorder::RecordingWriter& writer,
                                std::uint64_t firstTick) {
-  writer.takeRawSamples(deviceOf(source).rawSamples(), firstTick);
+  writer.takeRawSamples(source.device()->rawSamples(), firstTick);
 }
 
 }  // namespace calot::gui

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/scene_choice.h"
 
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 
@@ -14,7 +15,7 @@ std::vector<SceneChoice> sceneChoices(const std::vector<std::filesystem::path>& 
       const recorder::LoadedScene scene = recorder::loadScene(file);
       out.push_back({scene.description.name, scene.summary, file});
     } catch (const Error& fault) {
-      faults.emplace_back(fault.what());
+      faults.emplace_back(problemText(fault));
     }
   }
   return out;

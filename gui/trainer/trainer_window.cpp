@@ -16,6 +16,7 @@
 #include "gui/trainer/run_panel.h"
 #include "gui/trainer/scenes_page.h"
 #include "gui/trainer/trainer_texts.h"
+#include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -126,7 +127,7 @@ bool TrainerWindow::openScene(const QString& file) {
     begin(recorder::loadScene(file.toStdString()));
     return true;
   } catch (const Error& error) {
-    showProblem(QString::fromUtf8(error.what()));
+    showProblem(QString::fromStdString(problemText(error)));
     return false;
   }
 }
@@ -199,7 +200,7 @@ void TrainerWindow::refresh() {
 void TrainerWindow::savePicture(const QString& file) {
   QCoreApplication::processEvents();
   if (!grab().save(file, "PNG"))
-    throw Error(ExitCode::failure, file.toStdString() + ": cannot write the picture; does the folder exist?");
+    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
 }
 
 }  // namespace calot::gui

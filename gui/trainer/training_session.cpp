@@ -9,6 +9,7 @@
 
 #include "gui/trainer/fresh_file.h"
 #include "gui/trainer/hints.h"
+#include "gui/words/problem_words.h"
 #include "recorder/blended_source.h"
 #include "recorder/branch.h"
 #include "recorder/errors.h"
@@ -145,7 +146,7 @@ void TrainingSession::work() {
       obey(command);
     } catch (const Interrupted&) {
     } catch (const std::exception& error) {
-      problem = error.what();
+      problem = problemText(error);
     }
     const std::lock_guard lock(mutex_);
     status_.stage = Stage::ended;
@@ -177,7 +178,7 @@ void TrainingSession::giveWay() const {
 void TrainingSession::prepare() {
   if (model_) return;
   Model::Built built = Model::build(settings_.scene.description);
-  if (!built.model) throw Error(ExitCode::damaged, fmt::format("scene {}: {}", scene().name, built.error));
+  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", scene().name, built.error));
   model_ = std::move(built.model);
 }
 

@@ -18,7 +18,7 @@ constexpr std::size_t mostNamesShown = 12;
 constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
 
 [[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& fault) {
-  throw Error(ExitCode::damaged, fmt::format("{}: line {}: {}", file, line, fault));
+  throw Error(ErrorKind::damaged, Where{file, fmt::format("line {}", line)}, fault);
 }
 
 std::string_view trimmed(std::string_view cell) {
@@ -70,7 +70,7 @@ CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& f
                           std::span<const std::string> wanted) {
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.starts_with(byteOrderMark)) text.remove_prefix(byteOrderMark.size());
-  if (text.empty()) throw Error(ExitCode::damaged, file + ": the file is empty");
+  if (text.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
   std::vector<std::string_view> cells;
   split(takeLine(text), delimiter, cells);
   if (cells.size() > mostColumns) fail(file, 1, fmt::format("more than {} columns", mostColumns));
@@ -102,7 +102,7 @@ CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& f
     }
     numbers.line.push_back(line);
   }
-  if (numbers.line.empty()) throw Error(ExitCode::damaged, file + ": no row below the names of line 1");
+  if (numbers.line.empty()) throw Error(ErrorKind::damaged, Where{file}, "no row below the names of line 1");
   return numbers;
 }
 

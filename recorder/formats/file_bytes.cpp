@@ -14,10 +14,10 @@ namespace calot::recorder {
 std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const std::string& name, std::size_t most) {
   std::error_code fault;
   const std::filesystem::file_status status = std::filesystem::status(path, fault);
-  if (!std::filesystem::exists(status)) throw Error(ExitCode::damaged, name + ": there is no such file");
-  if (std::filesystem::is_directory(status)) throw Error(ExitCode::damaged, name + ": a folder; a file is wanted");
+  if (!std::filesystem::exists(status)) throw Error(ErrorKind::damaged, Where{name}, "there is no such file");
+  if (std::filesystem::is_directory(status)) throw Error(ErrorKind::damaged, Where{name}, "a folder; a file is wanted");
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(ExitCode::damaged, name + ": cannot be opened for reading");
+  if (!in) throw Error(ErrorKind::damaged, Where{name}, "cannot be opened for reading");
   // Read piece by piece: a size that was asked for before would be wrong for a pipe or a growing file.
   std::vector<std::byte> bytes;
   std::array<char, 65536> piece{};
@@ -25,10 +25,10 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const st
     const auto* begin = reinterpret_cast<const std::byte*>(piece.data());
     bytes.insert(bytes.end(), begin, begin + in.gcount());
     if (bytes.size() > most) {
-      throw Error(ExitCode::damaged, fmt::format("{}: larger than {} bytes, which no such file is", name, most));
+      throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes, which no such file is", most));
     }
   }
-  if (in.bad()) throw Error(ExitCode::damaged, name + ": reading failed");
+  if (in.bad()) throw Error(ErrorKind::damaged, Where{name}, "reading failed");
   return bytes;
 }
 

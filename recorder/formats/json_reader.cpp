@@ -62,16 +62,17 @@ bool inside(double value, const KeyRule& rule) {
 }  // namespace
 
 nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::string& file) {
-  if (bytes.empty()) throw Error(ExitCode::damaged, file + ": the file is empty");
+  if (bytes.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
   if (bytes.size() > largestFile) {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: {} bytes; such a file has at most {}", file, bytes.size(), largestFile));
+    throw Error(ErrorKind::damaged, Where{file},
+                fmt::format("{} bytes; such a file has at most {}", bytes.size(), largestFile));
   }
   std::vector<std::set<std::string>> keys;
   std::string fault;
   const auto watch = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
     using Event = nlohmann::json::parse_event_t;
-    if (depth > deepest) throw Error(ExitCode::damaged, fmt::format("{}: nested deeper than {} levels", file, deepest));
+    if (depth > deepest)
+      throw Error(ErrorKind::damaged, Where{file}, fmt::format("nested deeper than {} levels", deepest));
     if (event == Event::object_start) {
       keys.emplace_back();
     } else if (event == Event::object_end) {
@@ -88,16 +89,16 @@ nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::stri
   try {
     value = nlohmann::json::parse(begin, begin + bytes.size(), watch);
   } catch (const nlohmann::json::parse_error& e) {
-    throw Error(ExitCode::damaged, fmt::format("{}: not JSON at {}", file, lineAndColumn(bytes, e.byte)));
+    throw Error(ErrorKind::damaged, Where{file}, fmt::format("not JSON at {}", lineAndColumn(bytes, e.byte)));
   } catch (const nlohmann::json::exception&) {
-    throw Error(ExitCode::damaged, file + ": a number is larger than a double holds");
+    throw Error(ErrorKind::damaged, Where{file}, "a number is larger than a double holds");
   }
-  if (!fault.empty()) throw Error(ExitCode::damaged, file + ": " + fault);
+  if (!fault.empty()) throw Error(ErrorKind::damaged, Where{file}, fault);
   return value;
 }
 
 void JsonPlace::fail(const std::string& fault) const {
-  throw Error(ExitCode::damaged, fmt::format("{}: {}: {}", file_, pointer_.empty() ? "/" : pointer_, fault));
+  throw Error(ErrorKind::damaged, Where{file_, pointer_.empty() ? "/" : pointer_}, fault);
 }
 
 JsonObject JsonPlace::object(const ObjectRule& rule) const { return {*this, rule}; }

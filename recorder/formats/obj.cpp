@@ -41,14 +41,16 @@ class ObjParser {
         fail(fmt::format("vertex {} is wanted, but the file has {}", mesh_.triangle[t][k] + 1, mesh_.vertices()));
       }
     }
-    if (mesh_.vertex.empty()) throw Error(ExitCode::damaged, name_ + ": no vertex; not an OBJ file, or an empty one");
-    if (mesh_.triangle.empty()) throw Error(ExitCode::damaged, name_ + ": vertices but no face; a surface is wanted");
+    if (mesh_.vertex.empty())
+      throw Error(ErrorKind::damaged, Where{name_}, "no vertex; not an OBJ file, or an empty one");
+    if (mesh_.triangle.empty())
+      throw Error(ErrorKind::damaged, Where{name_}, "vertices but no face; a surface is wanted");
     return std::move(mesh_);
   }
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ExitCode::damaged, fmt::format("{}:{}: {}", name_, line_, what));
+    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", line_)}, what);
   }
 
   void readLine(std::string_view line) {
@@ -139,7 +141,7 @@ class ObjParser {
 TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                       const ObjLimits& limits) {
   if (bytes.size() > limits.bytes) {
-    throw Error(ExitCode::damaged, fmt::format("{}: larger than {} bytes", name, limits.bytes));
+    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
   }
   return ObjParser(name, unit, limits).parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }

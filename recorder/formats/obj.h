@@ -31,7 +31,7 @@ TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const O
 std::string formatObj(const TriangleMesh& mesh, const std::string& comment);
 
 /// Writes it under a temporary name, then renames.
-/// @throws Error (usage) where the file exists and `force` is not set, or its folder does not exist; (failure) where
+/// @throws Error (invalid) where the file exists and `force` is not set, or its folder does not exist; (failure) where
 /// writing fails. Nothing half-written stays.
 void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment, bool force);
 

@@ -43,8 +43,9 @@ class PlyBody {
     for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
       for (int k = 0; k < 3; ++k) {
         if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
-        throw Error(ExitCode::damaged, fmt::format("{}: face {}: vertex {} is wanted, but the file has {} (from 0)",
-                                                   name_, face_[t], mesh_.triangle[t][k], mesh_.vertices()));
+        throw Error(
+            ErrorKind::damaged, Where{name_, fmt::format("face {}", face_[t])},
+            fmt::format("vertex {} is wanted, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
       }
     }
     return std::move(mesh_);
@@ -52,10 +53,9 @@ class PlyBody {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    const std::string place = header_.format == PlyFormat::ascii
-                                  ? fmt::format("{}:{}", name_, line_)
-                                  : fmt::format("{}: {} {}", name_, element_->name, number_);
-    throw Error(ExitCode::damaged, place + ": " + what);
+    const std::string place = header_.format == PlyFormat::ascii ? fmt::format("line {}", line_)
+                                                                 : fmt::format("{} {}", element_->name, number_);
+    throw Error(ErrorKind::damaged, Where{name_, place}, what);
   }
 
   std::string_view nextWord() {
@@ -186,7 +186,7 @@ class PlyBody {
 TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                       const SurfaceLimits& limits) {
   if (bytes.size() > limits.bytes) {
-    throw Error(ExitCode::damaged, fmt::format("{}: larger than {} bytes", name, limits.bytes));
+    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
   }
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   PlyHeader header = takePlyHeader(text, name, limits);

@@ -64,7 +64,7 @@ class HeaderReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ExitCode::damaged, fmt::format("{}:{}: {}", name_, header_.lines, what));
+    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", header_.lines)}, what);
   }
 
   std::string_view nextLine() {

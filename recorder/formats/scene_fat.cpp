@@ -46,7 +46,7 @@ SurfaceDescription readFatSurface(const JsonPlace& place, const FetchAsset& fetc
     const std::string where = fmt::format("{}: the surface passes through itself, as at ({:.4f}, {:.4f}, {:.4f}) m",
                                           file, crossing.where[0], crossing.where[1], crossing.where[2]);
     if (turned > 0) {
-      throw Error(ExitCode::damaged,
+      throw Error(ErrorKind::damaged,
                   where + ", and its triangles do not agree on what is outside: its inside cannot be told");
     }
     warnings.push_back(where + "; what it winds around is taken as its inside");

@@ -184,13 +184,13 @@ LoadedScene loadScene(const fs::path& sceneFile) {
 }
 
 LoadedScene sceneFromAssets(std::vector<Asset> assets) {
-  if (assets.empty()) throw Error(ExitCode::damaged, "scene: there is no scene file among the assets");
+  if (assets.empty()) throw Error(ErrorKind::damaged, "scene: there is no scene file among the assets");
   std::vector<bool> used(assets.size(), false);
   used[0] = true;
   for (std::size_t i = 0; i < assets.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (assets[i].name == assets[j].name)
-        throw Error(ExitCode::damaged, "scene: two assets are called " + assets[i].name);
+        throw Error(ErrorKind::damaged, "scene: two assets are called " + assets[i].name);
     }
   }
   const FetchAsset fetch = [&](const std::string& name, const JsonPlace& place) -> const Asset& {
@@ -204,8 +204,8 @@ LoadedScene sceneFromAssets(std::vector<Asset> assets) {
   LoadedScene loaded = parseScene(assets[0], fetch);
   for (std::size_t i = 0; i < assets.size(); ++i) {
     if (!used[i])
-      throw Error(ExitCode::damaged,
-                  fmt::format("{}: the asset {} is named nowhere in it", assets[0].name, assets[i].name));
+      throw Error(ErrorKind::damaged, Where{assets[0].name},
+                  fmt::format("the asset {} is named nowhere in it", assets[i].name));
   }
   loaded.assets = std::move(assets);
   return loaded;

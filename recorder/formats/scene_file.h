@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> assetRoots(const std::filesystem::path& progr
 
 /// The file of a scene: a name such as "touch-liver", looked for as `scenes/<name>.json` under the roots in turn; or,
 /// where it ends in ".json", the path of a scene file itself.
-/// @throws Error (usage) where there is none, with the names that there are.
+/// @throws Error (invalid) where there is none, with the names that there are.
 std::filesystem::path findScene(const std::string& name, const std::vector<std::filesystem::path>& roots);
 
 /// Every scene file under the roots, by name, the first root winning.

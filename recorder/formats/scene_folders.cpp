@@ -34,16 +34,17 @@ fs::path findScene(const std::string& name, const std::vector<fs::path>& roots) 
   std::error_code ignored;
   if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
     if (fs::is_regular_file(name, ignored)) return name;
-    throw Error(ExitCode::usage, name + ": there is no such scene file");
+    throw Error(ErrorKind::invalid, Where{name}, "there is no such scene file");
   }
   std::string known;
   for (const fs::path& file : listScenes(roots)) {
     if (file.stem() == name) return file;
     known += (known.empty() ? "" : ", ") + file.stem().string();
   }
-  throw Error(ExitCode::usage, fmt::format("there is no scene \"{}\"; {}", name,
-                                           known.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)")
-                                                         : "there are " + known));
+  throw Error(
+      ErrorKind::invalid,
+      fmt::format("there is no scene \"{}\"; {}", name,
+                  known.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)") : "there are " + known));
 }
 
 }  // namespace calot::recorder

@@ -27,19 +27,19 @@ NamedSurface readMesh(const JsonPlace& place, const FetchAsset& fetch) {
 SurfaceDescription closedSurface(NamedSurface surface, const char* what) {
   const SurfaceReport report = inspectSurface(surface.mesh);
   if (!report.closedManifold()) {
-    throw Error(
-        ExitCode::damaged,
-        fmt::format("{}: {} triangles with {} open edges, {} edges of more than two triangles, {} flipped edges and "
-                    "{} parts turned inside out; {} is a closed outward surface",
-                    surface.file, report.triangles, report.openEdges, report.nonManifoldEdges, report.flippedEdges,
-                    report.inwardComponents, what));
+    throw Error(ErrorKind::damaged, Where{surface.file},
+                fmt::format("{} triangles with {} open edges, {} edges of more than two triangles, {} flipped edges "
+                            "and {} parts turned inside out; {} is a closed outward surface",
+                            report.triangles, report.openEdges, report.nonManifoldEdges, report.flippedEdges,
+                            report.inwardComponents, what));
   }
   const double size = (report.box.upper - report.box.lower).maxCoeff();
   const double farthest = std::max(report.box.lower.cwiseAbs().maxCoeff(), report.box.upper.cwiseAbs().maxCoeff());
   if (!(size >= 0.001) || !(farthest <= 1.0)) {
-    throw Error(ExitCode::damaged, fmt::format("{}: {:.4g} m long and up to {:.4g} m from the origin; {} is at least "
-                                               "0.001 m long and within 1 m: is the scene's unit right?",
-                                               surface.file, size, farthest, what));
+    throw Error(ErrorKind::damaged, Where{surface.file},
+                fmt::format("{:.4g} m long and up to {:.4g} m from the origin; {} is at least 0.001 m long and within "
+                            "1 m: is the scene's unit right?",
+                            size, farthest, what));
   }
   return {std::move(surface.mesh.vertex), std::move(surface.mesh.triangle)};
 }

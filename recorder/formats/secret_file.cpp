@@ -31,7 +31,7 @@ class Descriptor {
 };
 
 Error failed(const std::filesystem::path& path, const char* what) {
-  return {ExitCode::failure, fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno))};
+  return {ErrorKind::failure, Where{path.string()}, fmt::format("{}: {}", what, std::strerror(errno))};
 }
 
 }  // namespace
@@ -40,16 +40,14 @@ std::string readSecret(const std::filesystem::path& path, std::size_t most) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
-    throw Error(ExitCode::damaged, fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  if (!S_ISREG(status.st_mode)) throw Error(ExitCode::damaged, fmt::format("{}: is no file", path.string()));
+    throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("cannot be read: {}", std::strerror(errno)));
+  if (!S_ISREG(status.st_mode)) throw Error(ErrorKind::damaged, Where{path.string()}, "is no file");
   if ((status.st_mode & 077U) != 0) {
-    throw Error(ExitCode::usage,
-                fmt::format("{}: others than its owner may use it; take that away (chmod 600) and think of who has "
-                            "read it",
-                            path.string()));
+    throw Error(ErrorKind::invalid, Where{path.string()},
+                "others than its owner may use it; take that away (chmod 600) and think of who has read it");
   }
   if (static_cast<std::uintmax_t>(status.st_size) > most)
-    throw Error(ExitCode::damaged, fmt::format("{}: is larger than {} bytes", path.string(), most));
+    throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("is larger than {} bytes", most));
   std::string bytes;
   std::array<char, 4096> buffer;
   for (;;) {
@@ -59,14 +57,14 @@ std::string readSecret(const std::filesystem::path& path, std::size_t most) {
     if (n == 0) return bytes;
     bytes.append(buffer.data(), static_cast<std::size_t>(n));
     if (bytes.size() > most)
-      throw Error(ExitCode::damaged, fmt::format("{}: is larger than {} bytes", path.string(), most));
+      throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("is larger than {} bytes", most));
   }
 }
 
 void writeSecret(const std::filesystem::path& path, std::string_view bytes, bool replace) {
   std::error_code error;
   if (!replace && std::filesystem::exists(std::filesystem::symlink_status(path, error)))
-    throw Error(ExitCode::usage, fmt::format("{}: is there already", path.string()));
+    throw Error(ErrorKind::invalid, Where{path.string()}, "is there already");
   std::filesystem::path temporary = path;
   temporary += fmt::format(".{}.part", ::getpid());
   try {

@@ -68,7 +68,7 @@ TriangleMesh joined(const std::vector<Vec3>& corner, const std::string& name, co
   for (std::size_t i = 0; i < corner.size(); ++i) {
     if (first[i] == i) {
       if (mesh.vertex.size() >= limits.vertices) {
-        throw Error(ExitCode::damaged, fmt::format("{}: more than {} vertices", name, limits.vertices));
+        throw Error(ErrorKind::damaged, Where{name}, fmt::format("more than {} vertices", limits.vertices));
       }
       number[i] = mesh.vertices();
       mesh.vertex.push_back(corner[i]);
@@ -84,13 +84,13 @@ std::vector<Vec3> readBinary(std::span<const std::byte> bytes, const std::string
                              const SurfaceLimits& limits) {
   const std::uint32_t triangles = littleEndian(bytes.data() + 80);
   if (triangles > limits.triangles) {
-    throw Error(ExitCode::damaged, fmt::format("{}: more than {} triangles", name, limits.triangles));
+    throw Error(ErrorKind::damaged, Where{name}, fmt::format("more than {} triangles", limits.triangles));
   }
   std::vector<Vec3> corner;
   corner.reserve(3 * std::size_t{triangles});
   for (std::size_t t = 0; t < triangles; ++t) {
     const auto fail = [&name, t](const std::string& what) {
-      throw Error(ExitCode::damaged, fmt::format("{}: triangle {}: {}", name, t, what));
+      throw Error(ErrorKind::damaged, Where{name, fmt::format("triangle {}", t)}, what);
     };
     const std::byte* at = bytes.data() + headBytes + triangleBytes * t + 12;  // after the normal
     for (int k = 0; k < 3; ++k) {
@@ -125,7 +125,7 @@ class StlText {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ExitCode::damaged, fmt::format("{}:{}: {}", name_, line_, what));
+    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", line_)}, what);
   }
 
   /// In small letters; empty at the end of the file.
@@ -200,7 +200,7 @@ class StlText {
 TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                       const SurfaceLimits& limits) {
   if (bytes.size() > limits.bytes) {
-    throw Error(ExitCode::damaged, fmt::format("{}: larger than {} bytes", name, limits.bytes));
+    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
   }
   std::vector<Vec3> corner;
   if (bytes.size() >= headBytes && binaryLength(bytes) == bytes.size()) {
@@ -209,14 +209,14 @@ TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name,
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     corner = StlText(text, name, metres(unit), limits).read();
   } else if (bytes.size() < headBytes) {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: {} bytes, which is neither an STL text nor a binary STL file", name, bytes.size()));
+    throw Error(ErrorKind::damaged, Where{name},
+                fmt::format("{} bytes, which is neither an STL text nor a binary STL file", bytes.size()));
   } else {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: {} triangles in a binary STL file take {} bytes, but it has {}", name,
+    throw Error(ErrorKind::damaged, Where{name},
+                fmt::format("{} triangles in a binary STL file take {} bytes, but it has {}",
                             littleEndian(bytes.data() + 80), binaryLength(bytes), bytes.size()));
   }
-  if (corner.empty()) throw Error(ExitCode::damaged, name + ": no triangle; a surface is wanted");
+  if (corner.empty()) throw Error(ErrorKind::damaged, Where{name}, "no triangle; a surface is wanted");
   return joined(corner, name, limits);
 }
 

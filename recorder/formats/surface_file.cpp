@@ -43,7 +43,7 @@ TriangleMesh parseSurface(std::span<const std::byte> bytes, const std::string& n
     case Format::none:
       break;
   }
-  throw Error(ExitCode::damaged, name + ": surfaces are read from .obj, .stl and .ply files");
+  throw Error(ErrorKind::damaged, Where{name}, "surfaces are read from .obj, .stl and .ply files");
 }
 
 TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits) {

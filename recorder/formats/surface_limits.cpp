@@ -24,7 +24,7 @@ LengthUnit parseLengthUnit(const std::string& word) {
   if (word == "m") return LengthUnit::metre;
   if (word == "cm") return LengthUnit::centimetre;
   if (word == "mm") return LengthUnit::millimetre;
-  throw Error(ExitCode::usage, fmt::format("unit \"{}\": m, cm or mm is wanted", shown(word)));
+  throw Error(ErrorKind::invalid, fmt::format("unit \"{}\": m, cm or mm is wanted", shown(word)));
 }
 
 }  // namespace calot::recorder

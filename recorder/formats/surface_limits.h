@@ -13,7 +13,7 @@ enum class LengthUnit { metre, centimetre, millimetre };
 /// Metres in one unit.
 double metres(LengthUnit unit);
 
-/// "m", "cm" or "mm". @throws Error (usage)
+/// "m", "cm" or "mm". @throws Error (invalid)
 LengthUnit parseLengthUnit(const std::string& word);
 
 /// What a file may hold. Beyond it is refused, at the place where it happens.

@@ -16,14 +16,14 @@ namespace fs = std::filesystem;
 void refuseOutput(const fs::path& path, bool force) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
-    throw Error(ExitCode::usage, fmt::format("{}: is a folder; name a file", path.string()));
+    throw Error(ErrorKind::invalid, Where{path.string()}, "is a folder; name a file");
   }
   if (!force && fs::exists(fs::symlink_status(path, ignored))) {
-    throw Error(ExitCode::usage, fmt::format("{}: already exists; --force replaces it", path.string()));
+    throw Error(ErrorKind::invalid, Where{path.string()}, "already exists", {Remedy::replaceExisting});
   }
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored)) {
-    throw Error(ExitCode::usage, fmt::format("{}: folder {} does not exist", path.string(), folder.string()));
+    throw Error(ErrorKind::invalid, Where{path.string()}, fmt::format("folder {} does not exist", folder.string()));
   }
 }
 
@@ -33,7 +33,8 @@ void writeText(const fs::path& path, std::string_view text, bool force) {
   temporary += ".part";
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (file == nullptr) {
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be created: {}", temporary.string(), std::strerror(errno)));
+    throw Error(ErrorKind::failure, Where{temporary.string()},
+                fmt::format("cannot be created: {}", std::strerror(errno)));
   }
   int fault = 0;
   if (std::fwrite(text.data(), 1, text.size(), file) != text.size()) fault = errno;
@@ -42,7 +43,7 @@ void writeText(const fs::path& path, std::string_view text, bool force) {
   if (fault == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) fault = errno;
   if (fault == 0) return;
   std::remove(temporary.c_str());
-  throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", path.string(), std::strerror(fault)));
+  throw Error(ErrorKind::failure, Where{path.string()}, fmt::format("cannot be written: {}", std::strerror(fault)));
 }
 
 }  // namespace calot::recorder

@@ -15,7 +15,7 @@ namespace calot::recorder {
 std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title);
 
 /// Writes it under a temporary name, then renames.
-/// @throws Error (usage) where the file exists and `force` is not set, or its folder does not exist; (failure) where
+/// @throws Error (invalid) where the file exists and `force` is not set, or its folder does not exist; (failure) where
 /// writing fails. Nothing half-written stays.
 void writeVtk(const std::filesystem::path& path, const TetrahedralMesh& mesh, const std::string& title, bool force);
 

@@ -36,6 +36,7 @@ class ControlledSource final : public SampleSource {
   SourceStatus status() override;
   void rest() override { source_.rest(); }
   [[nodiscard]] Observer* watcher() override { return source_.watcher(); }
+  [[nodiscard]] DeviceSource* device() override { return source_.device(); }
   [[nodiscard]] Outcome ending() const override;
   [[nodiscard]] std::string statusText() const override { return source_.statusText(); }
 

@@ -26,6 +26,7 @@ class GuardedSource final : public SampleSource, private Observer {
     source_.rest();
   }
   [[nodiscard]] Observer* watcher() override { return this; }
+  [[nodiscard]] DeviceSource* device() override { return source_.device(); }
   [[nodiscard]] Outcome ending() const override { return source_.ending(); }
   [[nodiscard]] std::string statusText() const override { return source_.statusText(); }
 

@@ -103,7 +103,7 @@ class Builder {
 
   void need(bool ok, const std::string& what) const {
     if (ok) return;
-    throw Error(ExitCode::failure, fmt::format("{}: cannot create {}: {}", path_.string(), what, hdf5::reason()));
+    throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("cannot create {}: {}", what, hdf5::reason()));
   }
 
   /// Writes the file to its path.
@@ -119,7 +119,8 @@ class Builder {
     out.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
     out.close();
     if (!out)
-      throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+      throw Error(ErrorKind::failure, Where{path_.string()},
+                  fmt::format("cannot be written: {}", std::strerror(errno)));
   }
 
  private:
@@ -234,7 +235,7 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
 }  // namespace
 
 void checkHeader(const AttemptHeader& header) {
-  const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, "recording: " + what); };
+  const auto refuse = [](const std::string& what) { throw Error(ErrorKind::invalid, "recording: " + what); };
   if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
   if (header.ticksPerStep < 1 || header.ticksPerStep > largestTicksPerStep) refuse("ticks a step must lie in 1..1000");
   if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");

@@ -45,8 +45,8 @@ void CsvTable::close() {
 }
 
 void CsvTable::fail() const {
-  throw Error(ExitCode::failure,
-              fmt::format("{}: cannot be written: {}", path_.string(), std::generic_category().message(errno)));
+  throw Error(ErrorKind::failure, Where{path_.string()},
+              fmt::format("cannot be written: {}", std::generic_category().message(errno)));
 }
 
 }  // namespace calot::recorder

@@ -253,16 +253,16 @@ std::vector<std::filesystem::path> exportCsv(Recording& recording, const std::fi
                                              const std::function<void(std::uint64_t)>& progress) {
   std::error_code error;
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error)) {
-    throw Error(ExitCode::usage, fmt::format("{}: is a file; name a folder", folder.string()));
+    throw Error(ErrorKind::invalid, Where{folder.string()}, "is a file; name a folder");
   }
   if (!force && std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
-    throw Error(ExitCode::usage, fmt::format("{}: is not empty; --force replaces the files", folder.string()));
+    throw Error(ErrorKind::invalid, Where{folder.string()}, "is not empty", {Remedy::replaceExisting});
   }
   std::filesystem::path stage = folder.has_filename() ? folder : folder.parent_path();
   stage += ".part";
   std::filesystem::remove_all(stage, error);
   if (!std::filesystem::create_directories(stage, error)) {
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be made: {}", stage.string(), error.message()));
+    throw Error(ErrorKind::failure, Where{stage.string()}, fmt::format("cannot be made: {}", error.message()));
   }
   try {
     std::vector<std::filesystem::path> files;
@@ -277,7 +277,7 @@ std::vector<std::filesystem::path> exportCsv(Recording& recording, const std::fi
     return files;
   } catch (const std::filesystem::filesystem_error& e) {
     std::filesystem::remove_all(stage, error);
-    throw Error(ExitCode::failure, fmt::format("{}: {}", folder.string(), e.code().message()));
+    throw Error(ErrorKind::failure, Where{folder.string()}, e.code().message());
   } catch (...) {
     std::filesystem::remove_all(stage, error);
     throw;

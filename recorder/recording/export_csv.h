@@ -15,7 +15,7 @@ namespace calot::recorder {
 /// in round brackets; numbers have 17 significant digits (9 for those stored in 4 bytes), so that reading them gives
 /// the same bits. The files get their names only when all are written.
 /// @param force replace files that are there. @param progress called with steps done, or empty.
-/// @return the files' paths. @throws Error usage (files are there and force is not set), damaged, failure.
+/// @return the files' paths. @throws Error invalid (files are there and force is not set), damaged, failure.
 std::vector<std::filesystem::path> exportCsv(Recording& recording, const std::filesystem::path& folder, bool force,
                                              const std::function<void(std::uint64_t)>& progress = {});
 

@@ -56,7 +56,7 @@ FileAppender::~FileAppender() {
 void FileAppender::fail(const std::string& what) {
   const std::string why = hdf5::reason();
   hdf5::freeze(file_);
-  throw Error(ExitCode::failure, fmt::format("{}: {}: {}", path_.string(), what, why));
+  throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("{}: {}", what, why));
 }
 
 void FileAppender::writeRows(const hdf5::Id& dataset, const hdf5::Id& type, std::uint64_t first, std::uint64_t rows,
@@ -129,7 +129,7 @@ void FileAppender::close() {
   if (!signature_.reset()) fail(std::string("cannot close ") + signaturePath);
   if (H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
   if (!file_.reset())
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be closed: {}", path_.string(), hdf5::reason()));
+    throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("cannot be closed: {}", hdf5::reason()));
 }
 
 }  // namespace calot::recorder

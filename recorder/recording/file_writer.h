@@ -20,7 +20,7 @@ namespace calot::recorder {
 StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout,
                               const PublicKey* signer = nullptr);
 
-/// Checks what createRecordingFile asks of a header. @throws Error usage naming the field.
+/// Checks what createRecordingFile asks of a header. @throws Error invalid naming the field.
 void checkHeader(const AttemptHeader& header);
 
 /// Appends blocks to a file that createRecordingFile made.

@@ -12,6 +12,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "recorder/errors.h"
 #include "recorder/recording/hdf5.h"
@@ -20,20 +23,48 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr char ok = 'r', refused = 'e';
+constexpr char succeeded = 'r', failed = 'e';
 
-/// Runs the task and sends what came of it: a letter, for an error its exit code as a letter, then the text.
+/// An error as text: one character for its kind, one for the number of its remedies, one for each of them, then file,
+/// place and fault, each ended by a zero byte.
+std::string packed(const Error& error) {
+  std::string text{static_cast<char>(error.kind()), static_cast<char>(error.remedies().size())};
+  for (const Remedy remedy : error.remedies()) text += static_cast<char>(remedy);
+  for (const std::string& part : {error.where().file, error.where().place, error.fault()})
+    text += part.substr(0, part.find('\0')) + '\0';
+  return text;
+}
+
+/// Nothing where the text is not of packed(): a child that a file has broken may send anything.
+std::optional<Error> unpacked(const std::string& text) {
+  if (text.size() < 2 || static_cast<unsigned char>(text[0]) > static_cast<unsigned char>(ErrorKind::undecided))
+    return std::nullopt;
+  std::size_t at = 2;
+  std::vector<Remedy> remedies;
+  for (std::size_t end = at + static_cast<unsigned char>(text[1]); at < end && at < text.size(); ++at)
+    remedies.push_back(static_cast<Remedy>(text[at]));
+  std::array<std::string, 3> part;
+  for (std::string& one : part) {
+    const std::size_t end = text.find('\0', at);
+    if (end == std::string::npos) return std::nullopt;
+    one = text.substr(at, end - at);
+    at = end + 1;
+  }
+  return Error(static_cast<ErrorKind>(text[0]), Where{part[0], part[1]}, part[2], std::move(remedies));
+}
+
+/// Runs the task and sends what came of it: a letter, then its text or the error.
 [[noreturn]] void runChild(int out, const std::function<std::string()>& task) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit noCore{0, 0};
   ::setrlimit(RLIMIT_CORE, &noCore);
   std::string message;
   try {
-    message = ok + task();
+    message = succeeded + task();
   } catch (const Error& e) {
-    message = std::string{refused, static_cast<char>('0' + static_cast<int>(e.code()))} + e.what();
+    message = failed + packed(e);
   } catch (const std::exception& e) {
-    message = std::string{refused, static_cast<char>('0' + static_cast<int>(ExitCode::failure))} + e.what();
+    message = failed + packed(Error(ErrorKind::failure, e.what()));
   }
   for (std::size_t at = 0; at < message.size();) {
     const ssize_t n = ::write(out, message.data() + at, message.size() - at);
@@ -67,7 +98,7 @@ bool readAll(int in, std::chrono::steady_clock::time_point end, std::string& out
 std::string runGuarded(const std::string& what, const std::function<std::string()>& task, std::chrono::seconds limit) {
   std::array<int, 2> pipe{};
   if (::pipe(pipe.data()) != 0)
-    throw Error(ExitCode::failure, fmt::format("{}: no pipe: {}", what, std::strerror(errno)));
+    throw Error(ErrorKind::failure, Where{what}, fmt::format("no pipe: {}", std::strerror(errno)));
   pid_t child = -1;
   {
     // No other thread is inside HDF5 at the moment of the fork: the child may use it.
@@ -81,7 +112,7 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
   ::close(pipe[1]);
   if (child < 0) {
     ::close(pipe[0]);
-    throw Error(ExitCode::failure, fmt::format("{}: no child process: {}", what, std::strerror(errno)));
+    throw Error(ErrorKind::failure, Where{what}, fmt::format("no child process: {}", std::strerror(errno)));
   }
   std::string message;
   const bool inTime = readAll(pipe[0], std::chrono::steady_clock::now() + limit, message);
@@ -91,18 +122,15 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!inTime) {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: reading it took longer than {} s; the file is damaged or not a recording", what,
-                            limit.count()));
+    throw Error(ErrorKind::damaged, Where{what},
+                fmt::format("reading it took longer than {} s; the file is damaged or not a recording", limit.count()));
   }
-  if (!WIFEXITED(status) || message.empty()) {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: the reading library failed on it (signal {}); the file is damaged or not a recording",
-                            what, WIFSIGNALED(status) ? WTERMSIG(status) : 0));
-  }
-  if (message[0] == refused && message.size() >= 2)
-    throw Error(static_cast<ExitCode>(message[1] - '0'), message.substr(2));
-  return message.substr(1);
+  const bool ended = WIFEXITED(status) && !message.empty();
+  if (ended && message[0] == succeeded) return message.substr(1);
+  if (const auto error = ended ? unpacked(message.substr(1)) : std::nullopt) throw *error;
+  throw Error(ErrorKind::damaged, Where{what},
+              fmt::format("the reading library failed on it (signal {}); the file is damaged or not a recording",
+                          WIFSIGNALED(status) ? WTERMSIG(status) : 0));
 }
 
 }  // namespace calot::recorder

@@ -8,8 +8,8 @@
 namespace calot::recorder {
 
 /// Runs a task in a child process and returns what it returned. An Error that the task throws is thrown here again;
-/// another exception becomes Error failure. If the child crashes or takes longer than the limit it is killed and
-/// Error damaged says so, naming `what` (a file).
+/// another exception becomes an Error of kind failure. If the child crashes or takes longer than the limit it is killed
+/// and an Error of kind damaged says so, naming `what` (a file).
 std::string runGuarded(const std::string& what, const std::function<std::string()>& task,
                        std::chrono::seconds limit = std::chrono::seconds(600));
 

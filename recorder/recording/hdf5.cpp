@@ -53,7 +53,7 @@ void freeze(const Id& file) {
 }
 
 Error damaged(const std::filesystem::path& file, const std::string& place, const std::string& what) {
-  return {ExitCode::damaged, fmt::format("{}: {}: {}", file.string(), place, what)};
+  return {ErrorKind::damaged, Where{file.string(), place}, what};
 }
 
 }  // namespace calot::recorder::hdf5

@@ -59,8 +59,7 @@ std::vector<std::filesystem::path> filesUnder(const std::vector<std::filesystem:
   for (const fs::path& place : places) {
     std::error_code error;
     const fs::file_status status = fs::status(place, error);
-    if (error || !fs::exists(status))
-      throw Error(ExitCode::damaged, fmt::format("{}: no such file or folder", place.string()));
+    if (error || !fs::exists(status)) throw Error(ErrorKind::damaged, Where{place.string()}, "no such file or folder");
     if (!fs::is_directory(status)) {
       files.insert(place);
       continue;
@@ -70,7 +69,8 @@ std::vector<std::filesystem::path> filesUnder(const std::vector<std::filesystem:
       std::error_code gone;  // between listing and looking
       if (fs::is_regular_file(at->symlink_status(gone))) files.insert(at->path());
     }
-    if (error) throw Error(ExitCode::damaged, fmt::format("{}: cannot be read: {}", place.string(), error.message()));
+    if (error)
+      throw Error(ErrorKind::damaged, Where{place.string()}, fmt::format("cannot be read: {}", error.message()));
   }
   return {files.begin(), files.end()};
 }

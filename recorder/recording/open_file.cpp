@@ -18,20 +18,20 @@ using hdf5::Id;
 Superblock readSuperblock(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error(ExitCode::damaged, path.string() + ": no such file");
+  if (!std::filesystem::exists(status)) throw Error(ErrorKind::damaged, Where{path.string()}, "no such file");
   if (std::filesystem::is_directory(status))
-    throw Error(ExitCode::damaged, path.string() + ": is a folder, not a recording");
+    throw Error(ErrorKind::damaged, Where{path.string()}, "is a folder, not a recording");
   if (!std::filesystem::is_regular_file(status))
-    throw Error(ExitCode::damaged, path.string() + ": is not a regular file");
+    throw Error(ErrorKind::damaged, Where{path.string()}, "is not a regular file");
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(ExitCode::damaged, path.string() + ": cannot be opened; check its permissions");
+  if (!in) throw Error(ErrorKind::damaged, Where{path.string()}, "cannot be opened; check its permissions");
   std::array<char, 36> head{};
   in.read(head.data(), head.size());
-  if (in.gcount() == 0) throw Error(ExitCode::damaged, path.string() + ": is empty");
+  if (in.gcount() == 0) throw Error(ErrorKind::damaged, Where{path.string()}, "is empty");
   constexpr std::array<char, 8> signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   if (in.gcount() < static_cast<std::streamsize>(head.size()) ||
       !std::equal(signature.begin(), signature.end(), head.begin())) {
-    throw Error(ExitCode::damaged, path.string() + ": is not an HDF5 file, so not a recording");
+    throw Error(ErrorKind::damaged, Where{path.string()}, "is not an HDF5 file, so not a recording");
   }
   // HDF5 File Format Specification 3.0, II.A: byte 8 version, 9 size of offsets, 11 consistency flags, 28 end of file.
   Superblock s;
@@ -51,11 +51,10 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   std::error_code ignored;
   const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
   if (superblock.endOfFile > bytes && !superblock.writing) {
-    throw Error(ExitCode::damaged,
-                fmt::format("{}: is cut off: {} of {} bytes are there; calot recover saves what it can", path.string(),
-                            bytes, superblock.endOfFile));
+    throw Error(ErrorKind::damaged, Where{path.string()},
+                fmt::format("is cut off: {} of {} bytes are there", bytes, superblock.endOfFile), {Remedy::recover});
   }
-  throw Error(ExitCode::damaged, fmt::format("{}: cannot be opened: {}", path.string(), why));
+  throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("cannot be opened: {}", why));
 }
 
 }  // namespace calot::recorder

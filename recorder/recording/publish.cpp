@@ -15,7 +15,7 @@ namespace calot::recorder {
 namespace {
 
 Error alreadyThere(const std::filesystem::path& target) {
-  return {ExitCode::usage, fmt::format("{}: already exists; --force replaces it", target.string())};
+  return {ErrorKind::invalid, Where{target.string()}, "already exists", {Remedy::replaceExisting}};
 }
 
 }  // namespace
@@ -29,12 +29,12 @@ std::filesystem::path temporaryName(const std::filesystem::path& target) {
 void refuseExisting(const std::filesystem::path& target, bool force) {
   std::error_code ignored;
   if (std::filesystem::is_directory(target, ignored)) {
-    throw Error(ExitCode::usage, fmt::format("{}: is a folder; name a file", target.string()));
+    throw Error(ErrorKind::invalid, Where{target.string()}, "is a folder; name a file");
   }
   if (!force && std::filesystem::exists(std::filesystem::symlink_status(target, ignored))) throw alreadyThere(target);
   const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
   if (!std::filesystem::is_directory(folder, ignored)) {
-    throw Error(ExitCode::usage, fmt::format("{}: folder {} does not exist", target.string(), folder.string()));
+    throw Error(ErrorKind::invalid, Where{target.string()}, fmt::format("folder {} does not exist", folder.string()));
   }
 }
 
@@ -46,8 +46,8 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
   }
   if (result == 0) return;
   if (errno == EEXIST) throw alreadyThere(target);
-  throw Error(ExitCode::failure, fmt::format("{}: cannot be renamed from {}: {}", target.string(),
-                                             temporary.filename().string(), std::strerror(errno)));
+  throw Error(ErrorKind::failure, Where{target.string()},
+              fmt::format("cannot be renamed from {}: {}", temporary.filename().string(), std::strerror(errno)));
 }
 
 }  // namespace calot::recorder

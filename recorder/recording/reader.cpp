@@ -132,7 +132,7 @@ const RecordedStep& Recording::step(std::uint64_t n) {
   const std::uint64_t first = impl.status[row - 1].steps;
   impl.current.step = n;
   const std::string fault = extractStep(*impl.layout, *impl.block, n - first, impl.current);
-  if (!fault.empty()) throw Error(ExitCode::damaged, fmt::format("{}: {}", impl.path.string(), fault));
+  if (!fault.empty()) throw Error(ErrorKind::damaged, Where{impl.path.string()}, fault);
   impl.current.result.events = impl.events[static_cast<std::size_t>(n - first)];
   return impl.current;
 }

@@ -31,7 +31,7 @@ std::filesystem::path padded(const std::filesystem::path& path, std::uint64_t fi
   std::filesystem::copy_file(path, scratch, std::filesystem::copy_options::overwrite_existing, error);
   if (!error) std::filesystem::resize_file(scratch, superblock.endOfFile, error);
   if (error)
-    throw Error(ExitCode::failure, fmt::format("{}: cannot be written: {}", scratch.string(), error.message()));
+    throw Error(ErrorKind::failure, Where{scratch.string()}, fmt::format("cannot be written: {}", error.message()));
   return scratch;
 }
 
@@ -140,7 +140,7 @@ Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& 
   try {
     source = std::make_unique<Salvage>(in, scratch);
   } catch (const Error& e) {
-    throw Error(e.code(), fmt::format("nothing can be saved: {}", e.what()));
+    throw Error(e.kind(), fmt::format("nothing can be saved: {}", e.what()));
   }
   const StatusRow first = createRecordingFile(temporary, source->header(), source->layout(),
                                               source->signature() ? &source->signature()->publicKey : nullptr);
@@ -156,7 +156,7 @@ Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& 
   result.ticks = out.last().ticks;
   result.complete = out.last().completed;
   if (result.steps == 0 && !result.lost.empty()) {
-    throw Error(ExitCode::damaged, fmt::format("nothing can be saved: {}", result.lost));
+    throw Error(ErrorKind::damaged, fmt::format("nothing can be saved: {}", result.lost));
   }
   return result;
 }
@@ -166,7 +166,7 @@ Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& 
 Recovered recover(const std::filesystem::path& in, const std::filesystem::path& out, bool force) {
   std::error_code ignored;
   if (std::filesystem::equivalent(in, out, ignored)) {
-    throw Error(ExitCode::usage, fmt::format("{}: is the input; name another output", out.string()));
+    throw Error(ErrorKind::invalid, Where{out.string()}, "is the input; name another output");
   }
   refuseExisting(out, force);
   const std::filesystem::path temporary = temporaryName(out);

@@ -18,7 +18,7 @@ struct Recovered {
 /// Rewrites a recording that was left by a killed writer, or was cut off, as a clean closed file of the same attempt:
 /// same uuid, same header and scene, every flush up to the first that cannot be read or breaks the chain, so that both
 /// chains agree as far as the new file goes. Reads in a child process.
-/// @throws Error damaged: nothing can be saved, and why. usage: `out` exists and force is not set, or is `in` itself.
+/// @throws Error damaged: nothing can be saved, and why. invalid: `out` exists and force is not set, or is `in` itself.
 /// failure: `out` cannot be written. Never leaves a half-written `out`.
 Recovered recover(const std::filesystem::path& in, const std::filesystem::path& out, bool force);
 

@@ -117,7 +117,8 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
   {
     const hdf5::Session session;
     const auto need = [&file](bool good) {
-      if (!good) throw Error(ExitCode::failure, fmt::format("{}: cannot be made ({})", file.string(), hdf5::reason()));
+      if (!good)
+        throw Error(ErrorKind::failure, Where{file.string()}, fmt::format("cannot be made ({})", hdf5::reason()));
     };
     const hdf5::Id access = hdf5::properties(H5Pcreate(H5P_FILE_ACCESS));
     H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
@@ -155,7 +156,7 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
 }
 
 StateFile readStateFile(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) throw Error(ExitCode::damaged, file.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(file)) throw Error(ErrorKind::damaged, Where{file.string()}, "no such file");
   // The library reads it once in a child: what makes it crash ends the child only.
   runGuarded(file.string(), [&] {
     readHere(file);

@@ -16,7 +16,7 @@ using NamedNumbers = std::pair<std::string, std::variant<std::vector<double>, st
 /// Attributes: `format` ("calot-state"), `simulation_version`, `step`. One data set a field,
 /// "/000/organ.liver/position": the number keeps the order of the digests; reals are f8, whole numbers u8; nothing is
 /// compressed, all has fletcher32.
-/// @throws Error failure: it cannot be written; usage: it is there and force is not set.
+/// @throws Error failure: it cannot be written; invalid: it is there and force is not set.
 void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::uint32_t simulationVersion,
                     const std::vector<NamedNumbers>& fields, bool force);
 

@@ -16,7 +16,7 @@ namespace {
 using Seed = std::array<std::uint8_t, crypto_sign_SEEDBYTES>;
 
 void ready() {
-  if (sodium_init() < 0) throw Error(ExitCode::failure, "libsodium cannot be initialised");
+  if (sodium_init() < 0) throw Error(ErrorKind::failure, "libsodium cannot be initialised");
 }
 
 template <std::size_t N>
@@ -38,7 +38,7 @@ bool unhex(const nlohmann::json& value, std::array<std::uint8_t, N>& out) {
 void checkStation(const std::string& station) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   if (station.empty() || station.size() > 64 || std::any_of(station.begin(), station.end(), control))
-    throw Error(ExitCode::usage, "station: a name has 1 to 64 characters and no control characters");
+    throw Error(ErrorKind::invalid, "station: a name has 1 to 64 characters and no control characters");
 }
 
 void expand(const Seed& seed, StationKey& key) {
@@ -74,7 +74,7 @@ void writeStationKey(const std::filesystem::path& file, const StationKey& key) {
                .dump(2) +
            "\n";
   } catch (const nlohmann::json::exception&) {
-    throw Error(ExitCode::usage, "station: its name is no UTF-8 text");
+    throw Error(ErrorKind::invalid, "station: its name is no UTF-8 text");
   }
   writeSecret(file, text, false);
   sodium_memzero(text.data(), text.size());
@@ -92,13 +92,13 @@ StationKey readStationKey(const std::filesystem::path& file) {
   const auto word = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
   const bool good = json.is_object() && word("format") == "calot-station-key" && word("version") == 1 &&
                     word("station").is_string() && unhex(word("public_key"), said) && unhex(word("seed"), seed);
-  if (!good) throw Error(ExitCode::damaged, fmt::format("{}: no station key, or of a newer Calot", file.string()));
+  if (!good) throw Error(ErrorKind::damaged, Where{file.string()}, "no station key, or of a newer Calot");
   key.station = json["station"].get<std::string>();
   checkStation(key.station);
   expand(seed, key);
   sodium_memzero(seed.data(), seed.size());
   if (key.publicKey != said)
-    throw Error(ExitCode::damaged, fmt::format("{}: its public key is not that of its seed", file.string()));
+    throw Error(ErrorKind::damaged, Where{file.string()}, "its public key is not that of its seed");
   return key;
 }
 

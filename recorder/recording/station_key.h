@@ -26,13 +26,13 @@ struct StationKey {
   ~StationKey();  ///< wipes the secret
 };
 
-/// A new key from the system's random numbers. @throws Error usage: an empty or overlong name.
+/// A new key from the system's random numbers. @throws Error invalid: an empty or overlong name.
 StationKey makeStationKey(const std::string& station);
 
-/// @throws Error usage: it is there already; failure: it cannot be written.
+/// @throws Error invalid: it is there already; failure: it cannot be written.
 void writeStationKey(const std::filesystem::path& file, const StationKey& key);
 
-/// @throws Error damaged: not there, or no station key; usage: others than its owner may read it.
+/// @throws Error damaged: not there, or no station key; invalid: others than its owner may read it.
 StationKey readStationKey(const std::filesystem::path& file);
 
 /// The signature of 32 bytes: a chain head. The same bytes give the same signature.

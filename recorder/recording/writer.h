@@ -40,7 +40,7 @@ class RecordingWriter final : public Observer {
  public:
   /// Creates the file, with header, scene and every data set.
   /// @pre header.ticksPerStep in [1, 1000]; at most maxStructures structures and 1,000 assets, the scene file first.
-  /// @throws Error usage: the target exists and force is not set. failure: it cannot be created.
+  /// @throws Error invalid: the target exists and force is not set. failure: it cannot be created.
   RecordingWriter(const std::filesystem::path& target, const AttemptHeader& header, WriterOptions options = {});
 
   /// Without onEnd before it, the file stays as an incomplete one: all steps so far, outcome `running`.

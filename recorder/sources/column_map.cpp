@@ -75,7 +75,7 @@ class RowReader {
   RowReader(const std::string& file, const CsvNumbers& numbers) : file_(file), numbers_(numbers) {}
 
   [[noreturn]] void fail(std::size_t row, const std::string& fault) const {
-    throw Error(ExitCode::damaged, fmt::format("{}: line {}: {}", file_, numbers_.line[row], fault));
+    throw Error(ErrorKind::damaged, Where{file_, fmt::format("line {}", numbers_.line[row])}, fault);
   }
   [[nodiscard]] double at(std::size_t column, std::size_t row) const { return numbers_.column[column][row]; }
 
@@ -169,7 +169,7 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
   }
   const CsvNumbers numbers = readCsvNumbers(bytes, file, map.delimiter, wanted.names);
   const std::size_t rows = numbers.line.size();
-  if (rows < 2) throw Error(ExitCode::damaged, fmt::format("{}: 1 row; a motion has at least 2", file));
+  if (rows < 2) throw Error(ErrorKind::damaged, Where{file}, "1 row; a motion has at least 2");
   const RowReader reader(file, numbers);
 
   TrackedMotion motion;

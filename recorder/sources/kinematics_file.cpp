@@ -27,7 +27,7 @@ class LineReader {
   LineReader(const std::string& file, std::size_t line) : file_(file), line_(line) {}
 
   [[noreturn]] void fail(const std::string& fault) const {
-    throw Error(ExitCode::damaged, fmt::format("{}: line {}: {}", file_, line_, fault));
+    throw Error(ErrorKind::damaged, Where{file_, fmt::format("line {}", line_)}, fault);
   }
 
   void numbers(std::string_view text, std::array<double, columns>& out) const {
@@ -94,7 +94,7 @@ KinematicsMotion readKinematics(const std::filesystem::path& file) {
 
 KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::string& file) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.empty()) throw Error(ExitCode::damaged, file + ": the file is empty");
+  if (text.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
   KinematicsMotion motion;
   motion.file = file;
   std::array<double, columns> values{};
@@ -118,7 +118,7 @@ KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::st
     motion.rows.push_back(poses);
   }
   if (motion.rows.size() < 2) {
-    throw Error(ExitCode::damaged, fmt::format("{}: {} row; a motion has at least 2", file, motion.rows.size()));
+    throw Error(ErrorKind::damaged, Where{file}, fmt::format("{} row; a motion has at least 2", motion.rows.size()));
   }
   motion.sha256 = sha256Hex(bytes);
   return motion;

@@ -91,7 +91,7 @@ KinematicsMapping mapIntoScene(const KinematicsMotion& motion, const SceneDescri
   const auto hit = surfaces.firstHit(scene.camera.position, scene.camera.position + lineOfSight * view);
   if (!hit) {
     throw Error(
-        ExitCode::usage,
+        ErrorKind::invalid,
         "scene " + scene.name + ": the middle of the picture shows no organ; a kinematics file has no place there");
   }
   m.taskCentre = hit->point;

@@ -31,7 +31,7 @@ struct KinematicsMapping {
 /// presses.
 class KinematicsSource : public SampleSource {
  public:
-  /// @throws Error as readKinematics; usage where the scene's camera looks at no organ.
+  /// @throws Error as readKinematics; invalid where the scene's camera looks at no organ.
   KinematicsSource(const std::filesystem::path& file, const SceneDescription& scene);
   KinematicsSource(KinematicsMotion motion, const SceneDescription& scene);
 
@@ -58,7 +58,7 @@ class KinematicsSource : public SampleSource {
 };
 
 /// The mapping of a motion into a scene; from the two alone.
-/// @throws Error (usage) where the scene's camera looks at no organ.
+/// @throws Error (invalid) where the scene's camera looks at no organ.
 KinematicsMapping mapIntoScene(const KinematicsMotion& motion, const SceneDescription& scene);
 
 }  // namespace calot::recorder

@@ -129,7 +129,7 @@ fs::path findPerformer(const std::string& name, const std::vector<fs::path>& roo
   std::error_code ignored;
   if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
     if (fs::is_regular_file(name, ignored)) return name;
-    throw Error(ExitCode::usage, name + ": there is no such profile");
+    throw Error(ErrorKind::invalid, Where{name}, "there is no such profile");
   }
   std::set<std::string> known;
   for (const fs::path& root : roots) {
@@ -142,9 +142,10 @@ fs::path findPerformer(const std::string& name, const std::vector<fs::path>& roo
   }
   std::string names;
   for (const std::string& n : known) names += (names.empty() ? "" : ", ") + n;
-  throw Error(ExitCode::usage, fmt::format("there is no performer \"{}\"; {}", name,
-                                           names.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)")
-                                                         : "there are " + names));
+  throw Error(
+      ErrorKind::invalid,
+      fmt::format("there is no performer \"{}\"; {}", name,
+                  names.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)") : "there are " + names));
 }
 
 }  // namespace calot::recorder

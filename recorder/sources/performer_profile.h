@@ -79,7 +79,7 @@ const std::vector<ObjectRule>& performerRules();
 PerformerProfile loadPerformer(const std::filesystem::path& file);
 
 /// `performers/<name>.json` under the roots in turn, or a path that ends in ".json".
-/// @throws Error (usage) where there is none, with the names that there are.
+/// @throws Error (invalid) where there is none, with the names that there are.
 std::filesystem::path findPerformer(const std::string& name, const std::vector<std::filesystem::path>& roots);
 
 }  // namespace calot::recorder

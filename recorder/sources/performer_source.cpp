@@ -85,8 +85,9 @@ TouchTarget StrokePlan::draw(std::size_t preferredOrgan) {
       if (isFree(surfaces_, scene_.hands[hand_].home, target.approach, travelClearance)) return target;
     }
   }
-  throw Error(ExitCode::usage, "scene " + scene_.name + ": the " + handNames[hand_] +
-                                   " hand can reach no organ's surface that the camera shows; move its port or home");
+  throw Error(ErrorKind::invalid,
+              "scene " + scene_.name + ": the " + handNames[hand_] +
+                  " hand can reach no organ's surface that the camera shows; move its port or home");
 }
 
 void StrokePlan::touch(const TouchTarget& target) {

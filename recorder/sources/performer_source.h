@@ -32,7 +32,7 @@ class StrokePlan {
   void touch(const TouchTarget& target);
   void goHome();
   /// A target of the organ, one that can be reached from home in free space; draws until one fits.
-  /// @throws Error (usage) where the scene offers this hand none on any organ.
+  /// @throws Error (invalid) where the scene offers this hand none on any organ.
   TouchTarget draw(std::size_t preferredOrgan);
 
   [[nodiscard]] double time() const { return time_; }
@@ -65,7 +65,7 @@ class StrokePlan {
 /// seed give the same samples. The camera rests at the scene's pose. Parameters and their sources: docs/sources.md.
 class PerformerSource : public SampleSource {
  public:
-  /// @throws Error (usage) where the scene offers a hand nothing to touch.
+  /// @throws Error (invalid) where the scene offers a hand nothing to touch.
   PerformerSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed);
 
   [[nodiscard]] const Provenance& provenance() const override { return provenance_; }

@@ -10,6 +10,8 @@
 
 namespace calot::recorder {
 
+class DeviceSource;
+
 /// Whether a source can give ticks now. Only a source with a device behind it is ever other than ok.
 enum class SourceStatus : std::uint8_t {
   ok,
@@ -53,6 +55,10 @@ class SampleSource {
   /// Who among this source's own has to be told of every step: an operator in closed loop sees. nullptr: nobody. The
   /// loop tells it before it asks for the next step's first tick; live, from the thread that steps.
   [[nodiscard]] virtual Observer* watcher() { return nullptr; }
+
+  /// The device behind this source, for who records its raw samples, drives its motors or reports what came from it.
+  /// nullptr: there is none.
+  [[nodiscard]] virtual DeviceSource* device() { return nullptr; }
 
   /// How the attempt ended, once next() has returned false.
   [[nodiscard]] virtual Outcome ending() const { return Outcome::completed; }

@@ -63,7 +63,7 @@ SceneDescription touchLiver() {
 
 std::unique_ptr<const Model> built(SceneDescription scene) {
   Model::Built result = Model::build(std::move(scene));
-  if (!result.model) throw Error(ExitCode::failure, result.error);
+  if (!result.model) throw Error(ErrorKind::failure, result.error);
   return std::move(result.model);
 }
 
@@ -73,7 +73,7 @@ Motion pressAndSlide(const SceneDescription& scene, std::size_t steps, double pr
   std::array<Stroke, handCount> way{};
   for (std::size_t h = 0; h < handCount; ++h) {
     const auto found = strokeOn(recorder::touchTargets(scene, surfaces, h, pullBack), organ[h]);
-    if (!found) throw Error(ExitCode::failure, "scene '" + scene.name + "': a hand reaches no stroke on its organ");
+    if (!found) throw Error(ErrorKind::failure, "scene '" + scene.name + "': a hand reaches no stroke on its organ");
     way[h] = *found;
   }
   /// Where the shaft through a point of the chord meets the organ, and the tip `depth` beyond.

@@ -100,7 +100,7 @@ class WrongFiles(program.ProgramTest):
             with self.subTest(name):
                 file = self.path("s.obj")
                 file.write_text("\n".join(change.get(i, line) for i, line in enumerate(liver)) + "\n")
-                self.refused(4, "mesh", file, "--unit", "m", "--tetrahedra", 100, "-o", self.path("o.vtk"), names=(f"{file}:{1 + min(change)}: ",))
+                self.refused(4, "mesh", file, "--unit", "m", "--tetrahedra", 100, "-o", self.path("o.vtk"), names=(f"{file}: line {1 + min(change)}: ",))
 
 
 class WrongMotion(program.ProgramTest):

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "recorder/blended_source.h"
 #include "recorder/errors.h"
 #include "recorder/recording/writer.h"
@@ -103,21 +105,21 @@ TEST(Branch, IsAWholeRecordingThatSharesItsParentsPast) {
 TEST(Branch, RefusesWhatCannotBeBranched) {
   const test::SmallScene scene = test::smallScene();
   const test::Folder folder;
-  const auto codeOf = [](auto&& act) {
+  const auto kindOf = [](auto&& act) -> std::optional<ErrorKind> {
     try {
       act();
     } catch (const Error& e) {
-      return e.code();
+      return e.kind();
     }
-    return ExitCode::yes;
+    return std::nullopt;
   };
   Recording assessed(parentOf(scene, folder / "assessed.h5", Mode::assessment));
-  EXPECT_EQ(codeOf([&] { refuseParent(assessed, {}); }), ExitCode::no);
+  EXPECT_EQ(kindOf([&] { refuseParent(assessed, {}); }), ErrorKind::refused);
   Recording good(parentOf(scene, folder / "good.h5", Mode::practice));
-  EXPECT_EQ(codeOf([&] { refuseParent(good, {}); }), ExitCode::yes);
-  EXPECT_EQ(codeOf([&] { refuseParent(good, {false, 3, 50, 75, "changed"}); }), ExitCode::no);
+  EXPECT_EQ(kindOf([&] { refuseParent(good, {}); }), std::nullopt);
+  EXPECT_EQ(kindOf([&] { refuseParent(good, {false, 3, 50, 75, "changed"}); }), ErrorKind::refused);
   for (const double at : {0.0, 0.009, -1.0, 1.52, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(codeOf([&] { forkStepAt(good, at); }), ExitCode::usage) << at;
+    EXPECT_EQ(kindOf([&] { forkStepAt(good, at); }), ErrorKind::invalid) << at;
   }
   EXPECT_EQ(forkStepAt(good, 0.01), 0U);
   EXPECT_EQ(forkStepAt(good, 0.07), 6U) << "0.07 / 0.01 is a little below 7";
@@ -127,7 +129,7 @@ TEST(Branch, RefusesWhatCannotBeBranched) {
   // Another seed's simulation is not the parent's.
   SerialExecutor executor;
   Session other(*scene.model, 7, executor);
-  EXPECT_EQ(codeOf([&] { takeParent(good, other, 10); }), ExitCode::no);
+  EXPECT_EQ(kindOf([&] { takeParent(good, other, 10); }), ErrorKind::refused);
 }
 
 TEST(Blend, NeitherPlaceNorSpeedJumps) {

@@ -116,8 +116,18 @@ TEST_F(Replay, IsExactWithOneAndTwoThreads) {
     EXPECT_EQ(report.steps, 210U);
     EXPECT_TRUE(report.complete);
     EXPECT_EQ(report.outcome, Outcome::stopped);
-    EXPECT_EQ(report.code(), ExitCode::yes);
+    EXPECT_EQ(report.fault(), std::nullopt);
   }
+}
+
+TEST_F(Replay, SaysWhatIsWrongWithADamagedRecordingAndWhatSavesIt) {
+  const std::filesystem::path file = record("r.h5");
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 100);
+  const ReplayReport report = replayRecording(file, {});
+  EXPECT_EQ(report.verdict, ReplayVerdict::damaged);
+  EXPECT_EQ(report.fault(), ErrorKind::damaged);
+  EXPECT_TRUE(report.message.starts_with("is cut off: ")) << report.message << ": the report names the file itself";
+  EXPECT_EQ(report.remedies, std::vector{Remedy::recover});
 }
 
 TEST_F(Replay, NamesStepTickComponentAndBothValues) {
@@ -131,7 +141,7 @@ TEST_F(Replay, NamesStepTickComponentAndBothValues) {
   EXPECT_EQ(force.divergence->field, "force[2]");
   EXPECT_NE(force.divergence->detail.find("recorded"), std::string::npos);
   EXPECT_EQ(force.reproducible, true);
-  EXPECT_EQ(force.code(), ExitCode::no);
+  EXPECT_EQ(force.fault(), ErrorKind::refused);
 
   const ReplayReport digest = replayRecording(record("d.h5", {{Liar::About::digest, 151}}), {});
   ASSERT_TRUE(digest.divergence) << digest.message;

@@ -44,3 +44,11 @@ def includes(text):
         match = re.match(r'\s*#\s*include\s*(?:<([^>]+)>|"([^"]+)")', line)
         if match:
             yield number, match.group(1) or match.group(2), match.group(2) is not None
+
+
+def strings(text):
+    """(offset, literal with its quotes) of every string literal outside of comments; no include's name."""
+    for match in _TOKEN.finditer(text):
+        start = text.rfind("\n", 0, match.start()) + 1
+        if match.group().startswith(('"', 'R"')) and not re.match(r"\s*#\s*include\s*$", text[start:match.start()]):
+            yield match.start(), match.group()

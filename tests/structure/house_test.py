@@ -12,7 +12,7 @@ import tempfile
 import cpp_text
 
 LONGEST = 600
-MIRRORED = ("sim", "recorder", "analytics", "gui")  # tests/ has the folders of these
+MIRRORED = ("sim", "recorder", "analytics", "gui", "apps")  # tests/ has the folders of these
 SOURCES = {".h", ".cpp", ".py", ".sh", ".cmake", ".sql"}
 TEXTS = SOURCES | {".md", ".txt", ".json", ".yml", ".yaml"}
 # Put together from parts, or this file would find itself.

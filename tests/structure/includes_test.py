@@ -38,16 +38,17 @@ MAY_SEE = {
     "analytics/interchange": ("sim", "recorder", "analytics"),
     "analytics/report": ("sim", "recorder", "analytics"),
     "gui/render": ("sim", "recorder contracts"),
-    "gui/words": ("sim", "analytics"),
+    "gui/words": ("sim", "recorder contracts", "analytics"),
     "gui/film": ("sim", "recorder", "analytics", "gui/render", "gui/words"),
     "gui/view": ("sim", "recorder contracts", "gui/render"),
     "gui/dashboard": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
     "gui/trainer": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
-    "apps": ("sim", "recorder", "analytics", "gui"),
-    "apps/calot-bench": ("recorder", "tests/bench"),
+    "apps": ("sim", "recorder", "analytics", "gui", "apps/common"),
+    "apps/common": ("recorder contracts",),
+    "apps/calot-bench": ("recorder", "apps/common", "tests/bench"),
     "tests/bench": ("sim", "recorder", "analytics", "gui/render"),
-    "assets": ("sim", "recorder"),
+    "assets": ("sim", "recorder", "apps/common"),
 }
 # What lies at the top of recorder/ and belongs to all of its folders.
 CONTRACTS = ("recorder/device_sample.h", "recorder/errors.h", "recorder/identity.h", "recorder/observer.h", "recorder/ring.h")

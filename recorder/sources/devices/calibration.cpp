@@ -240,7 +240,7 @@ Calibration readCalibration(const std::filesystem::path& file) {
 void checkCalibration(const Calibration& c, const DeviceInfo& device, Mode mode, const std::string& now,
                       const std::string& file) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(ExitCode::no, fmt::format("{}: {}; measure again: calot devices calibrate", file, why));
+    throw Error(ErrorKind::refused, Where{file}, why, {Remedy::measureCalibration});
   };
   if (c.device != device.name || c.identity != device.identity)
     refuse(fmt::format("is of another device ({}, not {})", c.identity, device.identity));

@@ -72,7 +72,7 @@ Calibration parseCalibration(std::span<const std::byte> bytes, const std::string
 
 /// Whether an attempt may use it. Another device's is never used. Assessment mode also refuses one that fell short, is
 /// out of date or dated in the future, or lacks a hand that the device drives at the same time as others.
-/// @throws Error (no) naming the file and why.
+/// @throws Error (refused) naming the file and why.
 void checkCalibration(const Calibration& calibration, const DeviceInfo& device, Mode mode, const std::string& now,
                       const std::string& file);
 

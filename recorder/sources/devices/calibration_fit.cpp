@@ -68,7 +68,7 @@ void measureIntervals(const std::vector<DeviceSample>& samples, HandCalibration&
 }
 
 [[noreturn]] void refuse(const DeviceScript& stream, const std::string& why) {
-  throw Error(ExitCode::damaged, fmt::format("{}: {}", stream.file, why));
+  throw Error(ErrorKind::damaged, Where{stream.file}, why);
 }
 
 HandCalibration measureHand(const DeviceScript& stream, const std::vector<DeviceSample>& samples,

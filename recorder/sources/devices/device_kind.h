@@ -23,7 +23,7 @@ struct DeviceRequest {
   std::string argument;  ///< behind the first colon, never empty where there is a colon: "localhost:18944"
   std::array<std::string, handCount> tools;  ///< names of a tracker's tools, left and right; empty: none
 
-  /// @throws Error (usage) that names the request and says why
+  /// @throws Error (invalid) that names the request and says why
   [[noreturn]] void refuse(const std::string& why) const;
 };
 
@@ -49,7 +49,8 @@ struct DeviceKind {
   bool needsWindow = false;  ///< its input comes from a window, which opens it itself; `open` refuses
   /// What is there, or could be. Does not throw.
   std::vector<ListedDevice> (*list)();
-  /// @throws Error: usage, for a request that makes no sense; damaged, for a bad file; failure, where it is not there.
+  /// @throws Error: invalid, for a request that makes no sense; damaged, for a bad file; failure, where it is not
+  /// there.
   OpenedDevice (*open)(const DeviceRequest& request);
 };
 

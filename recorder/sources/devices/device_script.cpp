@@ -137,7 +137,7 @@ DeviceScript parseDeviceScript(std::span<const std::byte> bytes, const std::stri
     const auto c = static_cast<char>(b);
     return c != ' ' && c != '\n' && c != '\r' && c != '\t';
   });
-  if (first == bytes.end()) throw Error(ExitCode::damaged, file + ": the file is empty");
+  if (first == bytes.end()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
   DeviceScript script = *first == std::byte{'{'} ? parseJson(bytes, file) : fromMotion(parseKinematics(bytes, file));
   script.file = file;
   script.sha256 = sha256Hex(bytes);

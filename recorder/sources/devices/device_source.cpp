@@ -120,11 +120,11 @@ void DeviceSource::waitForFirst(double seconds, const std::atomic<bool>* stop) {
     if (seen > 0 && first < 0) first = t;
     if (first >= 0 && t - first >= secondHand) return;
     if (stop != nullptr && *stop)
-      throw Error(ExitCode::failure, fmt::format("{}: stopped before the first sample", provenance_.device));
+      throw Error(ErrorKind::failure, fmt::format("{}: stopped before the first sample", provenance_.device));
     if (ended_ || static_cast<double>(t - begin) >= 1e9 * seconds) {
-      throw Error(ExitCode::failure, fmt::format("{}: no valid sample of any hand{}: {}", provenance_.device,
-                                                 ended_ ? "" : fmt::format(" within {:g} s", seconds),
-                                                 lost_.empty() ? device_->info().detail : lost_));
+      throw Error(ErrorKind::failure, fmt::format("{}: no valid sample of any hand{}: {}", provenance_.device,
+                                                  ended_ ? "" : fmt::format(" within {:g} s", seconds),
+                                                  lost_.empty() ? device_->info().detail : lost_));
     }
     if (settings_.tickClock)
       settings_.tickClock->now += tickNanoseconds;

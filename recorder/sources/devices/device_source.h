@@ -62,6 +62,7 @@ class DeviceSource final : public SampleSource {
   /// Forgets what the device measures meanwhile; each hand is anchored anew when the run goes on.
   void rest() override;
   [[nodiscard]] std::string statusText() const override { return lost_; }
+  [[nodiscard]] DeviceSource* device() override { return this; }
   /// What the hands shall feel; for devices with motors.
   void feedback(const std::array<Wrench, handCount>& inWorld);
 
@@ -71,7 +72,7 @@ class DeviceSource final : public SampleSource {
   [[nodiscard]] RawSampleFeed& rawSamples() { return raw_; }
 
   [[nodiscard]] const DeviceCounts& counts() const { return counts_; }
-  [[nodiscard]] const Device& device() const { return *device_; }
+  [[nodiscard]] const DeviceInfo& deviceInfo() const { return device_->info(); }
 
  private:
   struct HandState {

@@ -48,7 +48,7 @@ class Subsystem {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
     if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0)
-      throw Error(ExitCode::failure, fmt::format("gamepad: the system's gamepads cannot be read: {}", SDL_GetError()));
+      throw Error(ErrorKind::failure, fmt::format("gamepad: the system's gamepads cannot be read: {}", SDL_GetError()));
     SDL_GameControllerEventState(SDL_IGNORE);
     SDL_JoystickEventState(SDL_IGNORE);
   }
@@ -99,9 +99,10 @@ struct GamepadDevice::Sdl {
 GamepadDevice::GamepadDevice(const std::string& name, DeviceClock clock)
     : sdl_(std::make_unique<Sdl>()), clock_(std::move(clock)) {
   if (!sdl_->find(name)) {
-    throw Error(ExitCode::failure, name.empty()
-                                       ? "gamepad: none is attached; plug one in (calot devices lists what there is)"
-                                       : fmt::format("gamepad: none that is called \"{}\" is attached", name));
+    throw Error(ErrorKind::failure,
+                name.empty() ? "gamepad: none is attached; plug one in"
+                             : fmt::format("gamepad: none that is called \"{}\" is attached", name),
+                {Remedy::listDevices});
   }
   const std::string called = printable(SDL_GameControllerName(sdl_->controller));
   info_.name = gamepadKind.name;

@@ -22,7 +22,7 @@ constexpr std::array kinds{&gamepadKind, &openIgtLinkKind, &scriptedKind, &nullK
 }  // namespace
 
 void DeviceRequest::refuse(const std::string& why) const {
-  throw Error(ExitCode::usage, fmt::format("--device {}: {}", name.substr(0, 80), why));
+  throw Error(ErrorKind::invalid, fmt::format("device \"{}\": {}", name.substr(0, 80), why), {Remedy::nameDevice});
 }
 
 std::span<const DeviceKind* const> deviceKinds() { return kinds; }

@@ -24,7 +24,7 @@ std::string deviceUsage(std::string_view last = "or");
 
 /// Opens a device by its name.
 /// @param tools of an OpenIGTLink server: left and right, an empty one for none; ignored for others.
-/// @throws Error: usage, for a name that is none, a wrong port, no tool or the same one twice; damaged, for a bad
+/// @throws Error: invalid, for a name that is none, a wrong port, no tool or the same one twice; damaged, for a bad
 /// script; failure, for a gamepad that is not there. An OpenIGTLink server need not be there yet.
 OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools);
 

@@ -51,11 +51,15 @@ void readAddress(const DeviceRequest& request, OpenIgtLinkSettings& out) {
 }
 
 void checkTools(const std::array<std::string, handCount>& tools) {
-  if (tools[0].empty() && tools[1].empty()) throw Error(ExitCode::usage, "--tools: at least one hand needs a tool");
-  if (tools[0] == tools[1]) throw Error(ExitCode::usage, "--tools: both hands have the same tool");
+  if (tools[0].empty() && tools[1].empty())
+    throw Error(ErrorKind::invalid, "OpenIGTLink: at least one hand needs a tool", {Remedy::nameTools});
+  if (tools[0] == tools[1])
+    throw Error(ErrorKind::invalid, "OpenIGTLink: both hands have the same tool", {Remedy::nameTools});
   for (const std::string& tool : tools) {
     if (tool.size() > openigtlink::longestName)
-      throw Error(ExitCode::usage, fmt::format("--tools: a name has at most {} characters", openigtlink::longestName));
+      throw Error(ErrorKind::invalid,
+                  fmt::format("OpenIGTLink: a tool's name has at most {} characters", openigtlink::longestName),
+                  {Remedy::nameTools});
   }
 }
 

@@ -128,7 +128,7 @@ TcpListener::TcpListener(int port) {
       getsockname(descriptor_, generic, &length) < 0) {
     const std::string why = std::strerror(errno);
     if (descriptor_ >= 0) ::close(descriptor_);
-    throw Error(ExitCode::failure, fmt::format("port {}: {}; give another one, or 0 for any", port, why));
+    throw Error(ErrorKind::failure, fmt::format("port {}: {}; give another one, or 0 for any", port, why));
   }
   port_ = ntohs(address.sin_port);
 }

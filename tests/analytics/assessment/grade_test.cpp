@@ -97,18 +97,18 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   request_.checkpoints = {"path-length left"};
   EXPECT_EQ(neededPasses(made()), 1U);
   request_.checkpoints = {"path-length"};
-  expectRefusal(ExitCode::no, "path-length right has no pass mark", [&] { made(); });
+  expectRefusal(ErrorKind::refused, "path-length right has no pass mark", [&] { made(); });
   request_.checkpoints = {"sparc"};
-  expectRefusal(ExitCode::usage, "no such figure", [&] { made(); });
+  expectRefusal(ErrorKind::invalid, "have no figure \"", [&] { made(); }, {{Remedy::nameCheckpoints}});
   request_.checkpoints.clear();
   request_.leastPassed = 2;
-  expectRefusal(ExitCode::no, "asks for 2 of 1", [&] { made(); });
+  expectRefusal(ErrorKind::refused, "asks for 2 of 1", [&] { made(); });
   request_.leastPassed = 0;
   request_.name = "a b";
-  expectRefusal(ExitCode::usage, "norm: a name", [&] { made(); });
+  expectRefusal(ErrorKind::invalid, "norm: a name", [&] { made(); });
   request_.name = "x";
   request_.who.attemptRule = AttemptRule::mean;
-  expectRefusal(ExitCode::usage, "a mean of attempts is no attempt", [&] { made(); });
+  expectRefusal(ErrorKind::invalid, "a mean of attempts is no attempt", [&] { made(); });
 }
 
 TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {
@@ -135,7 +135,7 @@ TEST_F(Grades, aNormOfFewSaysThatItsIntervalsCoverTooLittle) {
 
 TEST_F(Grades, ratersJudgeWhereThereAreRatings) {
   request_.judgedBy = "competence";
-  expectRefusal(ExitCode::no, "no attempt was rated with form competence", [&] { made(); });
+  expectRefusal(ErrorKind::refused, "no attempt was rated with form competence", [&] { made(); });
   std::vector<Rating> ratings;
   const auto rate = [&](unsigned n, const std::string& rater, int score) {
     ratings.push_back({"competence", 1, uuidOf(n), rater, "", {{"competent", score}}, ""});
@@ -196,16 +196,17 @@ TEST_F(Grades, comparesOnlyWhatCompares) {
   AttemptRecord other = humanAttempt(30, "T9");
   other.comparabilityKey = "another/1";
   cohort_.storeAttempt(other, figures(1, 1));
-  expectRefusal(ExitCode::no, "does not compare with norm clinic", [&] { graded(30, norm); });
+  expectRefusal(ErrorKind::refused, "does not compare with norm clinic", [&] { graded(30, norm); },
+                {{Remedy::mixKeys}});
   EXPECT_EQ(graded(30, norm, true).remarks.size(), 1U);
   AttemptRecord bad = humanAttempt(31, "T8");
   bad.verification.verdict = Verdict::diverged;
   cohort_.storeAttempt(bad, {});
-  expectRefusal(ExitCode::no, "is diverged", [&] { graded(31, norm); });
+  expectRefusal(ErrorKind::refused, "is diverged", [&] { graded(31, norm); });
   AttemptRecord cut = humanAttempt(32, "T7");
   cut.complete = false;
   cohort_.storeAttempt(cut, {});
-  expectRefusal(ExitCode::no, "is incomplete", [&] { graded(32, norm); });
+  expectRefusal(ErrorKind::refused, "is incomplete", [&] { graded(32, norm); });
 }
 
 TEST(Percentile, saysNoMoreThanItsMembersTell) {
@@ -286,7 +287,7 @@ TEST_F(Grades, normsAreKeptInVersionsWithTheirMembers) {
   }
   EXPECT_EQ(stored.checkpoints[0].cut, fresh.checkpoints[0].cut) << "the same seed, the same bits";
   EXPECT_EQ(stored.checkpoints[0].lower, fresh.checkpoints[0].lower);
-  expectRefusal(ExitCode::no, "no norm \"hospital\" (there are: clinic 1, clinic 2)",
+  expectRefusal(ErrorKind::refused, "no norm \"hospital\" (there are: clinic 1, clinic 2)",
                 [&] { (void)database.norm("hospital"); });
 }
 
@@ -300,17 +301,18 @@ TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
   printGrade(grade, text);
   EXPECT_NE(text.str().find("FORMATIVE"), std::string::npos);
   EXPECT_NE(text.str().find("no moments, the recording is not there"), std::string::npos);
-  expectRefusal(ExitCode::usage, "say what the evidence shows", [&] {
+  expectRefusal(ErrorKind::invalid, "say what the evidence shows", [&] {
     database.attachEvidence(database.norm("clinic"), {"", "v.pdf", std::string(64, 'a'), "me", ""});
   });
   database.attachEvidence(database.norm("clinic"), {"Agrees with raters", "v.pdf", std::string(64, 'a'), "me", ""});
   grade = graded(20, database.norm("clinic"));
   addMoments(grade, {{"path-length", "left", {{12.0, 13.0, 0.5}}, ""}});
-  const std::string html = pageHtml(gradeDocument(grade, "a&b.h5"));
+  const std::string html = pageHtml(gradeDocument(grade, "a&b.h5", "A & B draws it."));
   EXPECT_EQ(html.find("FORMATIVE"), std::string::npos);
   EXPECT_NE(html.find("Agrees with raters"), std::string::npos);
   EXPECT_NE(html.find("<a href=\"a&amp;b.h5#t=12.00,13.00\">0:12.0 to 0:13.0 (50 % of it)</a>"), std::string::npos);
   EXPECT_NE(html.find("T&lt;1&gt;"), std::string::npos) << "every text is escaped";
+  EXPECT_NE(html.find("the recording and the seconds. A &amp; B draws it."), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
   const auto json = nlohmann::json::parse(gradeJson(grade));
   EXPECT_EQ(json["use"], "evidence attached");

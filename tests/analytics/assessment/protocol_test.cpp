@@ -44,7 +44,7 @@ TEST(Protocol, everyFaultHasItsPlace) {
   const auto fault = [&](const std::string& words, const std::function<void(json&)>& change) {
     json bad = good;
     change(bad);
-    expectRefusal(ExitCode::damaged, "p.json: " + words, [&] { (void)parsed(bad); });
+    expectRefusal(ErrorKind::damaged, "p.json: " + words, [&] { (void)parsed(bad); });
   };
   EXPECT_EQ(parsed(good).hypotheses.size(), 8U);
   fault("/better: none of the populations' groups, expert and novice", [](json& p) { p["better"] = "surgeons"; });
@@ -67,7 +67,7 @@ TEST(Protocol, everyFaultHasItsPlace) {
   fault("/exclusions/outcomes/0: none of", [](json& p) { p["exclusions"]["outcomes"][0] = "completed"; });
   fault("/: the key \"level\" is missing", [](json& p) { p.erase("level"); });
   fault("/title: the text holds control characters", [](json& p) { p["title"] = "a\nb"; });
-  expectRefusal(ExitCode::damaged, "p.json: not JSON at line 1, column",
+  expectRefusal(ErrorKind::damaged, "p.json: not JSON at line 1, column",
                 [] { (void)parseProtocol(bytesOf("{\"format\": "), "p.json"); });
 }
 

@@ -105,7 +105,7 @@ TEST(CohortDatabase, olderSchemaIsBroughtUpToDate) {
         "INSERT INTO participant (pseudonym, study_group, created_utc) VALUES ('P01', 'expert', "
         "'2026-01-01T00:00:00Z')");
   }
-  expectRefusal(ExitCode::failure, "must be brought to", [&] { CohortDatabase(path, Access::read); });
+  expectRefusal(ErrorKind::failure, "must be brought to", [&] { CohortDatabase(path, Access::read); });
   CohortDatabase database(path, Access::write);
   EXPECT_EQ(database.schemaVersion(), static_cast<int>(cohortMigrations().size()));
   EXPECT_EQ(database.participant("P01")->group, "expert");
@@ -121,31 +121,31 @@ TEST(CohortDatabase, refusesWhatIsNotItsOwn) {
     std::ofstream(folder.file(name), std::ios::binary) << bytes;
     return folder.file(name);
   };
-  expectRefusal(ExitCode::damaged, "no such cohort database",
+  expectRefusal(ErrorKind::damaged, "no such cohort database",
                 [&] { CohortDatabase(folder.file("none.db"), Access::read); });
-  expectRefusal(ExitCode::damaged, "no such cohort database",
+  expectRefusal(ErrorKind::damaged, "no such cohort database",
                 [&] { CohortDatabase(folder.file("none.db"), Access::write); });
   EXPECT_FALSE(std::filesystem::exists(folder.file("none.db")));
-  expectRefusal(ExitCode::failure, "can't be opened",
+  expectRefusal(ErrorKind::failure, "can't be opened",
                 [&] { CohortDatabase(folder.file("nowhere/c.db"), Access::create); });
-  expectRefusal(ExitCode::damaged, "not a file", [&] { CohortDatabase(folder.file("."), Access::create); });
+  expectRefusal(ErrorKind::damaged, "not a file", [&] { CohortDatabase(folder.file("."), Access::create); });
   const std::string empty = write("empty.db", "");
-  expectRefusal(ExitCode::damaged, "empty file", [&] { CohortDatabase(empty, Access::read); });
+  expectRefusal(ErrorKind::damaged, "empty file", [&] { CohortDatabase(empty, Access::read); });
   const std::string words = write("words.db", std::string(5000, 'x'));
   for (const Access access : {Access::read, Access::write, Access::create}) {
-    expectRefusal(ExitCode::damaged, "not an SQLite file", [&] { CohortDatabase(words, access); });
+    expectRefusal(ErrorKind::damaged, "not an SQLite file", [&] { CohortDatabase(words, access); });
   }
   EXPECT_EQ(std::filesystem::file_size(words), 5000U);
   const std::string other = folder.file("other.db");
   { SQLite::Database(other, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE t (x)"); }
   for (const Access access : {Access::read, Access::write, Access::create}) {
-    expectRefusal(ExitCode::damaged, "another program's", [&] { CohortDatabase(other, access); });
+    expectRefusal(ErrorKind::damaged, "another program's", [&] { CohortDatabase(other, access); });
   }
   const std::string newer = folder.file("newer.db");
   { const CohortDatabase database(newer, Access::create); }
   { SQLite::Database(newer, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
-  expectRefusal(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::read); });
-  expectRefusal(ExitCode::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::create); });
+  expectRefusal(ErrorKind::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::read); });
+  expectRefusal(ErrorKind::undecided, "newer than this program's", [&] { CohortDatabase(newer, Access::create); });
 }
 
 TEST(CohortDatabase, truncatedOrOverwrittenFilesAreReportedNotCrashedOn) {
@@ -179,8 +179,8 @@ TEST(CohortDatabase, truncatedOrOverwrittenFilesAreReportedNotCrashedOn) {
     } catch (const Error& error) {
       ++errors;
       EXPECT_NE(std::string(error.what()).find("bad.db"), std::string::npos) << error.what();
-      EXPECT_TRUE(error.code() == ExitCode::damaged || error.code() == ExitCode::undecided ||
-                  error.code() == ExitCode::failure)
+      EXPECT_TRUE(error.kind() == ErrorKind::damaged || error.kind() == ErrorKind::undecided ||
+                  error.kind() == ErrorKind::failure)
           << error.what();
     }
     for (const char* suffix : {"-wal", "-shm"}) std::filesystem::remove(path + suffix);
@@ -250,8 +250,8 @@ TEST(CohortDatabase, anotherContentOfTheSameUuidIsAConflict) {
   const auto conflicts = [&](const char* what, auto change) {
     AttemptRecord other = attemptOf(1, "skilled");
     change(other);
-    expectRefusal(ExitCode::no, "conflict", [&] { database.storeAttempt(other, valuesOf(3, 4)); });
-    expectRefusal(ExitCode::no, what, [&] { database.storeAttempt(other, valuesOf(3, 4)); });
+    expectRefusal(ErrorKind::refused, "conflict", [&] { database.storeAttempt(other, valuesOf(3, 4)); });
+    expectRefusal(ErrorKind::refused, what, [&] { database.storeAttempt(other, valuesOf(3, 4)); });
   };
   conflicts("another content", [](AttemptRecord& a) { a.chainHead[5] = std::byte{1}; });
   conflicts("another content", [](AttemptRecord& a) {
@@ -308,13 +308,13 @@ TEST(CohortDatabase, refusesRecordsThatNoRecordingHas) {
   CohortDatabase database(folder.file("c.db"), Access::create);
   AttemptRecord a = attemptOf(1, "skilled");
   a.uuid = "not-a-uuid";
-  expectRefusal(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
+  expectRefusal(ErrorKind::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
   a = attemptOf(1, "skilled");
   a.uuid[0] = '\'';
-  expectRefusal(ExitCode::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
+  expectRefusal(ErrorKind::damaged, "is not a uuid", [&] { database.upsertAttempt(a); });
   a = attemptOf(1, "skilled");
   a.steps = ~0ULL;
-  expectRefusal(ExitCode::damaged, "out of range", [&] { database.upsertAttempt(a); });
+  expectRefusal(ErrorKind::damaged, "out of range", [&] { database.upsertAttempt(a); });
   EXPECT_TRUE(database.listAttempts().empty());
 }
 
@@ -322,7 +322,7 @@ TEST(CohortDatabase, participantsAreAddedAndChanged) {
   const Folder folder;
   CohortDatabase database(folder.file("c.db"), Access::create);
   database.addParticipant({"P01", "expert", "A", "north", {{"laparoscopies", "240"}}, {{"research", "2026-02-28"}}});
-  expectRefusal(ExitCode::no, "is there already", [&] { database.addParticipant({"P01", "", "", "", {}, {}}); });
+  expectRefusal(ErrorKind::refused, "is there already", [&] { database.addParticipant({"P01", "", "", "", {}, {}}); });
   database.setParticipant("P01", {.group = std::nullopt,
                                   .arm = "B",
                                   .site = std::nullopt,
@@ -334,12 +334,12 @@ TEST(CohortDatabase, participantsAreAddedAndChanged) {
   EXPECT_EQ(p->arm, "B");
   EXPECT_EQ(p->experience, (std::map<std::string, std::string>{{"laparoscopies", "241"}, {"level", "attending"}}));
   EXPECT_EQ(p->consent.at("research"), "2026-02-28");
-  expectRefusal(ExitCode::no, "no participant", [&] { database.setParticipant("P02", {}); });
+  expectRefusal(ErrorKind::refused, "no participant", [&] { database.setParticipant("P02", {}); });
   for (const char* bad : {"", " P", "P\n1"}) {
-    expectRefusal(ExitCode::usage, "pseudonym", [&] { database.addParticipant({bad, "", "", "", {}, {}}); });
+    expectRefusal(ErrorKind::invalid, "pseudonym", [&] { database.addParticipant({bad, "", "", "", {}, {}}); });
   }
   for (const char* bad : {"", "2026-02-29", "2026-13-01", "26-01-01", "2026/01/01", "2026-01-01x", "2026-0a-01"}) {
-    expectRefusal(ExitCode::usage, "not a date", [&] {
+    expectRefusal(ErrorKind::invalid, "not a date", [&] {
       database.addParticipant({"P03", "", "", "", {}, {{"research", bad}}});
     });
   }
@@ -374,10 +374,10 @@ TEST(CohortDatabase, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
   database.includeAttempt(uuidOf(1), "heard nothing", "instructor 2");
   EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
-  expectRefusal(ExitCode::no, "no attempt", [&] { database.excludeAttempt(uuidOf(9), "x", "y"); });
-  expectRefusal(ExitCode::no, "not excluded", [&] { database.includeAttempt(uuidOf(1), "x", "y"); });
-  expectRefusal(ExitCode::usage, "a reason is wanted", [&] { database.excludeAttempt(uuidOf(1), " ", "y"); });
-  expectRefusal(ExitCode::usage, "name who decides", [&] { database.includeAttempt(uuidOf(1), "x", ""); });
+  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.excludeAttempt(uuidOf(9), "x", "y"); });
+  expectRefusal(ErrorKind::refused, "not excluded", [&] { database.includeAttempt(uuidOf(1), "x", "y"); });
+  expectRefusal(ErrorKind::invalid, "a reason is wanted", [&] { database.excludeAttempt(uuidOf(1), " ", "y"); });
+  expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.includeAttempt(uuidOf(1), "x", ""); });
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
   EXPECT_THROW(raw.exec("DELETE FROM audit"), SQLite::Exception);
@@ -457,7 +457,7 @@ TEST(CohortDatabase, aWriterThatNeverEndsIsReported) {
   CohortDatabase database(path, Access::create, std::chrono::milliseconds(50));
   SQLite::Database other(path, SQLite::OPEN_READWRITE);
   other.exec("BEGIN IMMEDIATE");
-  expectRefusal(ExitCode::failure, "in use by another program",
+  expectRefusal(ErrorKind::failure, "in use by another program",
                 [&] { database.upsertAttempt(attemptOf(1, "skilled")); });
   EXPECT_TRUE(database.listAttempts().empty()) << "readers go on";
   other.exec("ROLLBACK");
@@ -526,7 +526,7 @@ TEST(CohortDatabase, aFullDiskLosesNothingThatWasThere) {
       for (unsigned n = 20; n < 3000; ++n) database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
     } catch (const Error& error) {
       const std::string words = error.what();
-      status = error.code() == ExitCode::failure && words.find("nothing was changed") != std::string::npos ? 0 : 2;
+      status = error.kind() == ErrorKind::failure && words.find("nothing was changed") != std::string::npos ? 0 : 2;
       if (status != 0) std::cerr << words << '\n';
     }
     ::_exit(status);
@@ -544,8 +544,8 @@ TEST(CohortDatabase, aFullDiskLosesNothingThatWasThere) {
 TEST(CohortDatabase, saysInWordsWhatSqliteSaysInNumbers) {
   EXPECT_NE(std::string(databaseError(SQLITE_FULL, "", "c.db").what()).find("c.db: disk full"), std::string::npos);
   EXPECT_NE(std::string(databaseError(SQLITE_READONLY, "", "c.db").what()).find("permissions"), std::string::npos);
-  EXPECT_EQ(databaseError(SQLITE_CORRUPT, "", "c.db").code(), ExitCode::damaged);
-  EXPECT_EQ(databaseError(SQLITE_IOERR_READ, "x", "c.db").code(), ExitCode::failure);  // extended codes too
+  EXPECT_EQ(databaseError(SQLITE_CORRUPT, "", "c.db").kind(), ErrorKind::damaged);
+  EXPECT_EQ(databaseError(SQLITE_IOERR_READ, "x", "c.db").kind(), ErrorKind::failure);  // extended codes too
 }
 
 TEST(Assess, storesWhatAReplayGave) {

@@ -114,7 +114,7 @@ TEST(Merge, reportsEveryConflictAndChangesNothing) {
   const CohortMerge merge = mergeCohorts(a, b);
   EXPECT_EQ(merge.conflicts.size(), 4U);  // group, site, level, content
   EXPECT_EQ(meaning(a), before);
-  expectRefusal(ExitCode::usage, "name two databases", [&] { mergeCohorts(a, a); });
+  expectRefusal(ErrorKind::invalid, "name two databases", [&] { mergeCohorts(a, a); });
 }
 
 TEST(Withdrawal, reachesTablesThatItDoesNotKnow) {
@@ -147,10 +147,10 @@ TEST(Withdrawal, reachesTablesThatItDoesNotKnow) {
   EXPECT_EQ(bytesOf(path).find(uuidOf(1)), std::string::npos);
   EXPECT_TRUE(wasWithdrawn(path, uuidOf(1)));
   CohortDatabase database(path, Access::write);
-  expectRefusal(ExitCode::no, "withdrawn", [&] { database.upsertAttempt(humanAttempt(1, "Gone-1")); });
+  expectRefusal(ErrorKind::refused, "withdrawn", [&] { database.upsertAttempt(humanAttempt(1, "Gone-1")); });
   AttemptRecord branch = attemptOf(3, "skilled");
   branch.parent = uuidOf(1);
-  expectRefusal(ExitCode::no, "branches from was withdrawn", [&] { database.upsertAttempt(branch); });
+  expectRefusal(ErrorKind::refused, "branches from was withdrawn", [&] { database.upsertAttempt(branch); });
 }
 
 TEST(Withdrawal, aPseudonymWithinALongerOneIsAnother) {
@@ -187,7 +187,7 @@ TEST(Registers, aStationsKeyStaysWhatItIs) {
   key[3] = std::byte{3};
   setStation(path, "S1", "north", key, {});
   setStation(path, "S1", {}, key, "by the window");
-  expectRefusal(ExitCode::no, "another key", [&] { setStation(path, "S1", {}, other, {}); });
+  expectRefusal(ErrorKind::refused, "another key", [&] { setStation(path, "S1", {}, other, {}); });
   const Registers r = readRegisters(path);
   ASSERT_EQ(r.stations.size(), 1U);
   EXPECT_EQ(r.stations[0].note, "by the window");
@@ -209,7 +209,7 @@ TEST(Signatures, areKeptAsSeenAtImport) {
   EXPECT_EQ(database.upsertAttempt(one), Imported::extended) << "signed after it came in";
   EXPECT_EQ(database.upsertAttempt(bare), Imported::unchanged) << "a copy without it takes nothing away";
   EXPECT_EQ(database.attempt(uuidOf(1))->signature, one.signature);
-  expectRefusal(ExitCode::no, "another signer", [&] { database.upsertAttempt(two); });
+  expectRefusal(ErrorKind::refused, "another signer", [&] { database.upsertAttempt(two); });
   EXPECT_TRUE(checkCohort(folder.file("c.db")).faults.empty());
 }
 

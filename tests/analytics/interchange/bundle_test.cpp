@@ -248,12 +248,12 @@ TEST_F(Bundles, areNotedForWithdrawalsAndForSyntheticOnesMarked) {
 TEST_F(Bundles, areRefusedWhereTheyWouldTell) {
   BundleOptions teaching;
   teaching.scope = "filming";
-  expectRefusal(ExitCode::no, "none of 16 attempts can be handed out", [&] { write("out", teaching); });
-  expectRefusal(ExitCode::usage, "already exists", [&] { write(""); });
+  expectRefusal(ErrorKind::refused, "none of 16 attempts can be handed out", [&] { write("out", teaching); });
+  expectRefusal(ErrorKind::invalid, "already exists", [&] { write(""); });
   ParticipantChange change;
   change.arm = "with SITE-7302";
   database_.setParticipant("SITE-7301", change);
-  expectRefusal(ExitCode::no, "participants.csv would hold a pseudonym", [&] { write("out"); });
+  expectRefusal(ErrorKind::refused, "participants.csv would hold a pseudonym", [&] { write("out"); });
   EXPECT_FALSE(fs::exists(folder_.file("out")));
   for (const auto& entry : fs::directory_iterator(fs::path(path_).parent_path()))
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();

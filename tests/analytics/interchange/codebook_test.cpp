@@ -134,9 +134,9 @@ TEST(CohortTables, giveEveryRowBackBothWays) {
   // Noted for who withdraws.
   EXPECT_EQ(raw.execAndGet("SELECT kind || ' ' || count(*) FROM export JOIN export_attempt ON export = id").getString(),
             "cohort-export 1");
-  expectRefusal(ExitCode::usage, "already exists", [&] { (void)exportCohort(path, out); });
-  expectRefusal(ExitCode::usage, "does not exist", [&] { (void)exportCohort(path, folder.file("no/out")); });
-  expectRefusal(ExitCode::damaged, "no such cohort",
+  expectRefusal(ErrorKind::invalid, "already exists", [&] { (void)exportCohort(path, out); });
+  expectRefusal(ErrorKind::invalid, "does not exist", [&] { (void)exportCohort(path, folder.file("no/out")); });
+  expectRefusal(ErrorKind::damaged, "no such cohort",
                 [&] { (void)exportCohort(folder.file("n.db"), folder.file("o")); });
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(path).parent_path()))
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();

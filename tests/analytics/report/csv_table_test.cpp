@@ -14,8 +14,8 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-void expectRefusal(ExitCode code, const std::string& text, const std::string& words) {
-  support::expectRefusal(code, "t.csv: " + words, [&] { (void)parseCsvTable(text, "t.csv").column("a"); });
+void expectRefusal(ErrorKind kind, const std::string& text, const std::string& words) {
+  support::expectRefusal(kind, "t.csv: " + words, [&] { (void)parseCsvTable(text, "t.csv").column("a"); });
 }
 
 TEST(CsvTable, readsWhatRfc4180Allows) {
@@ -34,7 +34,7 @@ TEST(CsvTable, readsWhatRfc4180Allows) {
 }
 
 TEST(CsvTable, namesWhereItIsWrong) {
-  using enum ExitCode;
+  using enum ErrorKind;
   expectRefusal(damaged, "", "line 1: is empty");
   expectRefusal(damaged, "\n\n", "line 1: is empty");
   expectRefusal(damaged, "a,b\n", "line 1: a header and no rows");
@@ -44,8 +44,8 @@ TEST(CsvTable, namesWhereItIsWrong) {
   expectRefusal(damaged, "a,b\n1,\"2\n", "line 2: a quote is opened and never closed");
   expectRefusal(damaged, "a,b\n\"1\"x,2\n", "line 2: column 1: text behind a closing quote");
   expectRefusal(damaged, std::string("a,b\n1,\0\n", 8), "is no table of text");
-  expectRefusal(usage, "b,c\n1,2\n", "line 1: there is no column \"a\" (there are: b, c)");
-  expectRefusal(usage, "a,a\n1,2\n", "line 1: two columns are called \"a\"");
+  expectRefusal(invalid, "b,c\n1,2\n", "line 1: there is no column \"a\" (there are: b, c)");
+  expectRefusal(invalid, "a,a\n1,2\n", "line 1: two columns are called \"a\"");
 }
 
 TEST(CsvTable, givesBackWhatWasWritten) {
@@ -87,7 +87,7 @@ TEST(CsvTable, neverCrashesOnAnyBytes) {
     try {
       for (const CsvRow& row : parseCsvTable(text, "t.csv").rows) EXPECT_GE(row.cells.size(), 2U);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::damaged);
+      EXPECT_EQ(error.kind(), ErrorKind::damaged);
     }
   }
 }

@@ -135,10 +135,10 @@ TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
   const RegisteredProtocol again = put(document());
   EXPECT_EQ(again.version, 1U);
   changed["level"] = 0.01;
-  expectRefusal(ExitCode::no, "a changed protocol has a higher version", [&] { put(changed); });
+  expectRefusal(ErrorKind::refused, "a changed protocol has a higher version", [&] { put(changed); });
   changed["version"] = 2;
   put(changed);
-  expectRefusal(ExitCode::no, "was registered on", [&] {
+  expectRefusal(ErrorKind::refused, "was registered on", [&] {
     json between = changed;
     between["title"] = "other";
     put(between);
@@ -150,7 +150,7 @@ TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
   printStudy(second, text);
   EXPECT_NE(text.str().find("Study (confirmatory): expert against novice"), std::string::npos);
   EXPECT_NE(text.str().find("changed from the version before: /level"), std::string::npos);
-  expectRefusal(ExitCode::usage, "name who registers it", [&] {
+  expectRefusal(ErrorKind::invalid, "name who registers it", [&] {
     bool added = false;
     AssessmentDatabase(path_, Access::write).registerProtocol(stored(protocolOf(document())), "", added);
   });
@@ -207,7 +207,7 @@ TEST_F(ProtocolStudy, populationsOutcomesAndScenesStayOutAndAreCounted) {
   EXPECT_EQ(count("outside of the protocol's population"), 1U);
   EXPECT_EQ(count("ended in a way that the protocol excludes"), 1U);
   text["scene"] = "cholecystectomy/2";
-  expectRefusal(ExitCode::no, "another scene than the protocol's", [&] { (void)study(text); });
+  expectRefusal(ErrorKind::refused, "another scene than the protocol's", [&] { (void)study(text); });
 }
 
 TEST_F(ProtocolStudy, whoDoesNotFinishRanksBehindAll) {

@@ -56,7 +56,8 @@ TEST(RatingForm, everyFaultHasItsPlace) {
   const auto fault = [&](const std::string& words, auto change) {
     json bad = good;
     change(bad);
-    expectRefusal(ExitCode::damaged, "f.json: " + words, [&] { (void)parseRatingForm(bytesOf(bad.dump()), "f.json"); });
+    expectRefusal(ErrorKind::damaged, "f.json: " + words,
+                  [&] { (void)parseRatingForm(bytesOf(bad.dump()), "f.json"); });
   };
   fault("/sections/0/items/1: an item of this key",
         [](json& f) { f["sections"][0]["items"][1]["key"] = "depth-perception"; });
@@ -72,7 +73,7 @@ TEST(RatingForm, answersAreCheckedAgainstTheForm) {
   const RatingForm form = shipped("competence");
   EXPECT_EQ(answersOf(form, {{"competent", "1"}}).at("competent"), 1);
   const auto fault = [&](const std::string& words, const std::vector<std::pair<std::string, std::string>>& given) {
-    expectRefusal(ExitCode::usage, words, [&] { (void)answersOf(form, given); });
+    expectRefusal(ErrorKind::invalid, words, [&] { (void)answersOf(form, given); });
   };
   fault("no such item; it has competent", {{"able", "1"}});
   fault("\"2\" is no whole number from 0 to 1", {{"competent", "2"}});
@@ -92,19 +93,20 @@ TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
   RatingForm form = shipped("competence");
   Rating rating{"", 1, uuidOf(1), "R1", "", {{"competent", 0}}, ""};
   database.storeRating(stored(form), rating, false);
-  expectRefusal(ExitCode::no, "was rated with competence", [&] { database.storeRating(stored(form), rating, false); });
+  expectRefusal(ErrorKind::refused, "was rated with competence",
+                [&] { database.storeRating(stored(form), rating, false); });
   rating.answers["competent"] = 1;
   database.storeRating(stored(form), rating, true);
   ASSERT_EQ(database.ratings().size(), 1U);
   EXPECT_EQ(database.ratings()[0].answers.at("competent"), 1);
   rating.attempt = uuidOf(2);
-  expectRefusal(ExitCode::no, "no attempt", [&] { database.storeRating(stored(form), rating, false); });
+  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.storeRating(stored(form), rating, false); });
   rating.attempt = uuidOf(1);
   rating.rater.clear();
-  expectRefusal(ExitCode::usage, "pseudonym", [&] { database.storeRating(stored(form), rating, false); });
+  expectRefusal(ErrorKind::invalid, "pseudonym", [&] { database.storeRating(stored(form), rating, false); });
   rating.rater = "R2";
   form.sha256[0] = form.sha256[0] == '0' ? '1' : '0';
-  expectRefusal(ExitCode::no, "another wording", [&] { database.storeRating(stored(form), rating, false); });
+  expectRefusal(ErrorKind::refused, "another wording", [&] { database.storeRating(stored(form), rating, false); });
 }
 
 TEST(Ratings, agreementIsThatOfShroutAndFleiss) {

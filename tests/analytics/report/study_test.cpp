@@ -108,7 +108,7 @@ TEST(Study, syntheticAttemptsStayOutUnlessAskedFor) {
   addPerformers(database);
   StudyOptions options = performers;
   options.includeSynthetic = false;
-  expectRefusal(ExitCode::no, "9 synthetic (performer)", [&] { (void)makeStudy(database, options); });
+  expectRefusal(ErrorKind::refused, "9 synthetic (performer)", [&] { (void)makeStudy(database, options); });
 }
 
 TEST(Study, countsWhyAttemptsStayOut) {
@@ -168,7 +168,7 @@ TEST(Study, takesOneValueAParticipant) {
   database.storeAttempt(humanAttempt(4, "E2"), valuesOf(50, 0.05));
   database.storeAttempt(humanAttempt(5, "N1"), valuesOf(100, 0.1));
   database.storeAttempt(humanAttempt(6, "N2"), valuesOf(120, 0.2));
-  expectRefusal(ExitCode::no, "participant \"E1\" has 3 attempts (1 participant with several)",
+  expectRefusal(ErrorKind::refused, "participant \"E1\" has 3 attempts (1 participant with several)",
                 [&] { (void)makeStudy(database, {}); });
   StudyOptions mean;
   mean.attemptRule = AttemptRule::mean;
@@ -219,7 +219,8 @@ TEST(Study, aFirstAttemptWithoutAValueIsNotReplacedByALaterOne) {
   AttemptRecord sameTime = humanAttempt(9, "N1");
   sameTime.startUtc = humanAttempt(4, "N1").startUtc;
   database.storeAttempt(sameTime, valuesOf(1, 1));
-  expectRefusal(ExitCode::no, "two attempts of participant \"N1\" start at", [&] { (void)makeStudy(database, first); });
+  expectRefusal(ErrorKind::refused, "two attempts of participant \"N1\" start at",
+                [&] { (void)makeStudy(database, first); });
 }
 
 TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
@@ -262,7 +263,7 @@ TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
   EXPECT_FALSE(rowOf(narrower, "path-length", "left").holm);
   EXPECT_NE(narrower.family.find("1 rank test of elapsed-time"), std::string::npos);
   one.family = {"elapsed"};
-  expectRefusal(ExitCode::usage, "--family elapsed", [&] { (void)makeStudy(database, one); });
+  expectRefusal(ErrorKind::invalid, "there is no row \"elapsed\"", [&] { (void)makeStudy(database, one); });
 }
 
 /// Figures of phases would quadruple the family of whoever did not ask for them.
@@ -286,8 +287,11 @@ TEST(Study, phasesAreInWhereTheyAreAskedFor) {
     return names;
   };
   const auto says = [](const Study& study) {
-    return std::any_of(study.remarks.begin(), study.remarks.end(),
-                       [](const std::string& r) { return r.find("--phases") != std::string::npos; });
+    const bool remark = std::any_of(study.remarks.begin(), study.remarks.end(), [](const std::string& r) {
+      return r.find("single phases are left out") != std::string::npos;
+    });
+    EXPECT_EQ(remark, study.phasesLeftOut);
+    return remark;
   };
   const Study plain = makeStudy(database, {});
   EXPECT_EQ(rowsOf(plain), std::vector<std::string>{"phase-duration"});
@@ -328,9 +332,9 @@ TEST(Study, takesTheParticipantsOfANamedCohortAlone) {
   EXPECT_EQ(rowOf(study, "elapsed-time", "").participants[0], (std::vector<std::string>{"P0", "P2"}));
   EXPECT_NE(textOf(study).find("participants of \"pilot\" alone"), std::string::npos);
   options.cohort = CohortInUse{"main", {}};
-  expectRefusal(ExitCode::no, "8 not in the named cohort: main", [&] { (void)makeStudy(database, options); });
+  expectRefusal(ErrorKind::refused, "8 not in the named cohort: main", [&] { (void)makeStudy(database, options); });
   options.cohort = CohortInUse{"Pilot", {}};
-  expectRefusal(ExitCode::usage, "no cohort \"Pilot\" (there are: main, pilot)",
+  expectRefusal(ErrorKind::invalid, "no cohort \"Pilot\" (there are: main, pilot)",
                 [&] { (void)makeStudy(database, options); });
 }
 
@@ -355,7 +359,8 @@ TEST(Study, refusesToMixComparabilityKeys) {
   AttemptRecord other = attemptOf(50, "skilled");
   other.comparabilityKey = "touch-liver/2 device=performer calibration=- simulation=1 results=1 mode=assessment";
   database.storeAttempt(other, valuesOf(22, 0.022));
-  expectRefusal(ExitCode::no, "2 comparability keys", [&] { (void)makeStudy(database, performers); });
+  expectRefusal(ErrorKind::refused, "2 comparability keys", [&] { (void)makeStudy(database, performers); },
+                {{Remedy::chooseKey, Remedy::mixKeys}});
   StudyOptions one = performers;
   one.key = attemptOf(0, "skilled").comparabilityKey;
   const Study chosen = makeStudy(database, one);
@@ -364,7 +369,7 @@ TEST(Study, refusesToMixComparabilityKeys) {
   EXPECT_EQ(chosen.flow[0].reason, "not comparable (another key)");
   EXPECT_EQ(chosen.flow[0].attempts, 1U);
   one.key = "another";
-  expectRefusal(ExitCode::no, "10 not comparable (another key)", [&] { (void)makeStudy(database, one); });
+  expectRefusal(ErrorKind::refused, "10 not comparable (another key)", [&] { (void)makeStudy(database, one); });
   StudyOptions mixed = performers;
   mixed.mixKeys = true;
   const Study study = makeStudy(database, mixed);
@@ -380,7 +385,8 @@ TEST(Study, refusesToMixCheckpointVersions) {
   const std::uint32_t version = values[1].version;
   values[1].version = version + 1;
   database.storeAttempt(attemptOf(50, "skilled"), values);
-  expectRefusal(ExitCode::no, "path-length has values of 2 versions", [&] { (void)makeStudy(database, performers); });
+  expectRefusal(ErrorKind::refused, "path-length has values of 2 versions",
+                [&] { (void)makeStudy(database, performers); });
   StudyOptions mixed = performers;
   mixed.mixKeys = true;
   EXPECT_EQ(rowOf(makeStudy(database, mixed), "path-length", "left").versions,
@@ -390,25 +396,27 @@ TEST(Study, refusesToMixCheckpointVersions) {
 TEST(Study, needsTwoIndependentGroups) {
   const Folder folder;
   CohortDatabase database(folder.file("c.db"), Access::create);
-  expectRefusal(ExitCode::no, "two groups", [&] { (void)makeStudy(database, performers); });
+  expectRefusal(ErrorKind::refused, "two groups", [&] { (void)makeStudy(database, performers); });
   database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1, 1));
-  expectRefusal(ExitCode::no, "only skilled", [&] { (void)makeStudy(database, performers); });
+  expectRefusal(ErrorKind::refused, "only skilled", [&] { (void)makeStudy(database, performers); });
   database.storeAttempt(attemptOf(2, "unskilled"), valuesOf(1, 1));
   database.storeAttempt(attemptOf(3, "intermediate"), valuesOf(1, 1));
-  expectRefusal(ExitCode::no, "name two with --groups", [&] { (void)makeStudy(database, performers); });
+  expectRefusal(ErrorKind::refused, "3 groups (skilled", [&] { (void)makeStudy(database, performers); },
+                {{Remedy::nameGroups}});
   StudyOptions named = performers;
   named.groups = {"unskilled", "intermediate"};
   EXPECT_EQ(makeStudy(database, named).groups[0], "unskilled");
   named.groups = {"skilled", "absent"};
-  expectRefusal(ExitCode::no, "\"absent\"", [&] { (void)makeStudy(database, named); });
+  expectRefusal(ErrorKind::refused, "\"absent\"", [&] { (void)makeStudy(database, named); });
   named.groups = {"skilled", "skilled"};
-  expectRefusal(ExitCode::usage, "two different names", [&] { (void)makeStudy(database, named); });
+  expectRefusal(ErrorKind::invalid, "two, with different names", [&] { (void)makeStudy(database, named); },
+                {{Remedy::nameGroups}});
   AttemptRecord a = attemptOf(4, "skilled"), b = attemptOf(5, "unskilled");
   a.participant = b.participant = "P1";
   database.storeAttempt(a, valuesOf(1, 1));
   database.storeAttempt(b, valuesOf(1, 1));
   named.groups = {"skilled", "unskilled"};
-  expectRefusal(ExitCode::no, "in both groups", [&] { (void)makeStudy(database, named); });
+  expectRefusal(ErrorKind::refused, "in both groups", [&] { (void)makeStudy(database, named); });
 }
 
 TEST(Study, allTiedAnswersWithAReason) {
@@ -444,9 +452,10 @@ TEST(Study, jsonAndCsvHoldTheTable) {
   std::getline(summary, line);
   const auto columns = std::count(line.begin(), line.end(), ',');
   while (std::getline(summary, line)) EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
-  expectRefusal(ExitCode::usage, "--force", [&] { writeStudyCsv(study, out, false); });
+  expectRefusal(ErrorKind::invalid, "already exists", [&] { writeStudyCsv(study, out, false); },
+                {{Remedy::replaceExisting}});
   EXPECT_NO_THROW(writeStudyCsv(study, out, true));
-  expectRefusal(ExitCode::failure, "can't be made", [&] { writeStudyCsv(study, folder.file("c.db"), false); });
+  expectRefusal(ErrorKind::failure, "can't be made", [&] { writeStudyCsv(study, folder.file("c.db"), false); });
 }
 
 TEST(Study, numbersDontFollowTheLocale) {

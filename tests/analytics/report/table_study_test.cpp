@@ -85,8 +85,8 @@ TEST(TableStudy, directionIsDeclaredAndNeverTakenFromTheData) {
   }
   TableStudyOptions wrong = optionsFor("extra");
   wrong.better = "three";
-  expectRefusal(ExitCode::usage, "--better three", [&] { (void)studyOf(sleep, wrong); });
-  expectRefusal(ExitCode::usage, "lower or higher", [&] { (void)studyOf(sleep, optionsFor("extra:up")); });
+  expectRefusal(ErrorKind::invalid, "is to be \"three\"", [&] { (void)studyOf(sleep, wrong); });
+  expectRefusal(ErrorKind::invalid, "lower or higher", [&] { (void)studyOf(sleep, optionsFor("extra:up")); });
   EXPECT_NO_THROW((void)studyOf("id,drug,a:up\n1,x,1\n2,y,2\n", optionsFor("a:up"))) << "a column's own name";
 }
 
@@ -160,7 +160,7 @@ TEST(PublishedCoverage, takesTheWorseOfTheSizesAround) {
 
 TEST(TableStudy, makesOneValueOfSeveralRowsByTheRuleAlone) {
   const std::string text = "id,drug,v\n1,a,1\n1,a,3\n2,a,5\n2,a,\n3,b,7\n4,b,8\n4,b,10\n4,b,12\n";
-  expectRefusal(ExitCode::no, "t.csv: line 3: participant \"1\" has 2 rows (3 participants with several)",
+  expectRefusal(ErrorKind::refused, "t.csv: line 3: participant \"1\" has 2 rows (3 participants with several)",
                 [&] { (void)studyOf(text, optionsFor("v")); });
   TableStudyOptions options = optionsFor("v");
   options.attemptRule = AttemptRule::first;
@@ -262,15 +262,15 @@ TEST(TableStudy, whatAProtocolOfATableIsRefusedFor) {
   TableStudyOptions options = optionsFor("extra");
   options.outcomes.clear();
   options.protocol = protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"other\"");
-  expectRefusal(ExitCode::usage, "no column for any hypothesis", [&] { (void)studyOf(sleep, options); });
-  expectRefusal(ExitCode::damaged, "none of the populations' groups",
+  expectRefusal(ErrorKind::invalid, "no column for any hypothesis", [&] { (void)studyOf(sleep, options); });
+  expectRefusal(ErrorKind::damaged, "none of the populations' groups",
                 [] { (void)protocolOf("\"group\": \"one\"", "\"group\": \"three\""); });
-  expectRefusal(ExitCode::damaged, "either \"checkpoint\" or",
+  expectRefusal(ErrorKind::damaged, "either \"checkpoint\" or",
                 [] { (void)protocolOf("\"outcome\": \"extra\", ", ""); });
-  expectRefusal(ExitCode::damaged, "either \"checkpoint\" or", [] {
+  expectRefusal(ErrorKind::damaged, "either \"checkpoint\" or", [] {
     (void)protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"extra\", \"checkpoint\": \"elapsed-time\"");
   });
-  expectRefusal(ExitCode::damaged, "an outcome has none",
+  expectRefusal(ErrorKind::damaged, "an outcome has none",
                 [] { (void)protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"extra\", \"subject\": \"left\""); });
 }
 

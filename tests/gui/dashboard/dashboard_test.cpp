@@ -18,6 +18,7 @@
 #include <QTest>
 
 #include "analytics/checkpoints/registry.h"
+#include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_filter.h"
 #include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
@@ -89,7 +90,7 @@ class Dashboard : public ::testing::Test {
 };
 
 TEST_F(Dashboard, OpensACohortAndListsItsAttempts) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort())) << child<QLabel>(window, "problem")->text().toStdString();
   const QTableView& table = *child<QTableView>(window, "attempts");
@@ -107,7 +108,7 @@ TEST_F(Dashboard, OpensACohortAndListsItsAttempts) {
 }
 
 TEST_F(Dashboard, SearchNarrowsTheTable) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   const QTableView& table = *child<QTableView>(window, "attempts");
@@ -122,7 +123,7 @@ TEST_F(Dashboard, SearchNarrowsTheTable) {
 }
 
 TEST_F(Dashboard, FiltersByVerdictAndOrigin) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   const QAbstractItemModel& rows = *child<QTableView>(window, "attempts")->model();
@@ -138,7 +139,7 @@ TEST_F(Dashboard, FiltersByVerdictAndOrigin) {
 }
 
 TEST_F(Dashboard, SortsByAColumn) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   QTableView* const table = child<QTableView>(window, "attempts");
@@ -149,7 +150,7 @@ TEST_F(Dashboard, SortsByAColumn) {
 }
 
 TEST_F(Dashboard, SelectingAnAttemptShowsItsCheckpoints) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   QTableView* const table = child<QTableView>(window, "attempts");
@@ -177,7 +178,7 @@ TEST_F(Dashboard, SelectingAnAttemptShowsItsCheckpoints) {
 }
 
 TEST_F(Dashboard, WordsThatAColumnIsTooNarrowForGoOnInTheNextLine) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   QTableView& details = *child<QTableView>(window, "checkpoints");
@@ -198,7 +199,7 @@ TEST_F(Dashboard, WordsThatAColumnIsTooNarrowForGoOnInTheNextLine) {
 
 TEST_F(Dashboard, AnEmptyDatabaseGreetsAndExplains) {
   { const CohortDatabase made(file("empty.db").toStdString(), CohortDatabase::Access::create); }
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   QLabel* const greeting = child<QLabel>(window, "greeting");
   EXPECT_TRUE(shows(window, *greeting));
@@ -211,7 +212,7 @@ TEST_F(Dashboard, AnEmptyDatabaseGreetsAndExplains) {
 
 TEST_F(Dashboard, ADamagedFileIsOneLineAndKeepsWhatWasOpen) {
   std::ofstream(folder_ / "broken.db") << "This is not a database at all, however long one reads on in it.";
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   for (const char* name : {"broken.db", "missing.db"}) {
@@ -225,7 +226,7 @@ TEST_F(Dashboard, ADamagedFileIsOneLineAndKeepsWhatWasOpen) {
       const CohortDocument document(file(name).toStdString());
       FAIL() << name << " opened";
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::damaged) << name;
+      EXPECT_EQ(error.kind(), ErrorKind::damaged) << name;
     }
   }
   ASSERT_TRUE(window.openDatabase(file("cohort.db")));
@@ -233,7 +234,7 @@ TEST_F(Dashboard, ADamagedFileIsOneLineAndKeepsWhatWasOpen) {
 }
 
 TEST_F(Dashboard, ReloadShowsWhatCameInSince) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   CohortDatabase(file("cohort.db").toStdString(), CohortDatabase::Access::write).upsertAttempt(attemptNumber(50));
@@ -242,7 +243,7 @@ TEST_F(Dashboard, ReloadShowsWhatCameInSince) {
 }
 
 TEST_F(Dashboard, CompareShowsGroupsAndMarksSyntheticOnes) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   ASSERT_TRUE(QTest::qWaitForWindowActive(&window));
@@ -260,7 +261,7 @@ TEST_F(Dashboard, CompareShowsGroupsAndMarksSyntheticOnes) {
 }
 
 TEST_F(Dashboard, PicturesOfThePagesAreWritten) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   window.savePictures(QString::fromStdString(folder_.string()));
@@ -291,7 +292,7 @@ TEST_F(Dashboard, NumbersFollowTheLocaleButAreNeverReadBack) {
   EXPECT_EQ(numberText(0.0), "0");
   QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
   EXPECT_EQ(numberText(12.5), "12,50");
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   EXPECT_TRUE(cell(*child<QTableView>(window, "checkpoints"), 0, CheckpointTableModel::valueColumn).contains(','));

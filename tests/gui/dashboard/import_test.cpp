@@ -11,6 +11,7 @@
 #include <QTest>
 #include <vector>
 
+#include "apps/calot-dashboard/assess_program.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
 namespace calot::gui {
@@ -20,8 +21,9 @@ using Kind = ImportResult::Kind;
 
 TEST(ImportResult, OfAVerifiedRecordingSaysWhetherItIsNew) {
   const auto textOf = [](const QByteArray& stored) {
-    const ImportResult result = importResultOf(
-        "a.h5", 0, false, "[{\"verdict\": \"bit-exact\", \"message\": \"\", \"stored\": \"" + stored + "\"}]", "");
+    const ImportResult result =
+        importResultOf(apps::assessProgram(), "a.h5", 0, false,
+                       "[{\"verdict\": \"bit-exact\", \"message\": \"\", \"stored\": \"" + stored + "\"}]", "");
     EXPECT_EQ(result.kind, Kind::stored);
     return result.text;
   };
@@ -31,33 +33,36 @@ TEST(ImportResult, OfAVerifiedRecordingSaysWhetherItIsNew) {
 }
 
 TEST(ImportResult, OfADivergedOneSaysWhatWasFound) {
-  const ImportResult result = importResultOf(
-      "a.h5", 3, false, R"([{"verdict": "diverged", "message": "diverged at step 13", "stored": "added"}])", "");
+  const ImportResult result =
+      importResultOf(apps::assessProgram(), "a.h5", 3, false,
+                     R"([{"verdict": "diverged", "message": "diverged at step 13", "stored": "added"}])", "");
   EXPECT_EQ(result.kind, Kind::stored) << "it is an attempt of the cohort all the same";
   EXPECT_EQ(result.text, QString::fromUtf8("≠ diverged: diverged at step 13; new in the cohort"));
 }
 
 TEST(ImportResult, OfADamagedOneIsRefused) {
-  const ImportResult result = importResultOf(
-      "a.h5", 4, false, R"([{"verdict": "damaged", "message": "no recording", "stored": "not stored"}])", "");
+  const ImportResult result =
+      importResultOf(apps::assessProgram(), "a.h5", 4, false,
+                     R"([{"verdict": "damaged", "message": "no recording", "stored": "not stored"}])", "");
   EXPECT_EQ(result.kind, Kind::refused);
   EXPECT_EQ(result.text, QString::fromUtf8("✕ damaged: no recording; not stored"));
 }
 
 TEST(ImportResult, WithoutAReportIsTheLastLineOfTheErrors) {
-  const ImportResult refused = importResultOf("a.h5", 4, false, "", "calot: warning: slow\ncalot: c.db: corrupt\n");
+  const ImportResult refused =
+      importResultOf(apps::assessProgram(), "a.h5", 4, false, "", "calot: warning: slow\ncalot: c.db: corrupt\n");
   EXPECT_EQ(refused.kind, Kind::refused);
   EXPECT_EQ(refused.text, "calot: c.db: corrupt");
   for (const QByteArray output : {"", "[]", "{}", "[1]", "no JSON", "[{\"verdict\": "}) {
-    const ImportResult failed = importResultOf("a.h5", 1, false, output, "");
+    const ImportResult failed = importResultOf(apps::assessProgram(), "a.h5", 1, false, output, "");
     EXPECT_EQ(failed.kind, Kind::failed);
     EXPECT_EQ(failed.text, "no answer (exit code 1)") << output.constData();
   }
 }
 
 TEST(ImportResult, OfACrashIsAFailureWhateverWasPrinted) {
-  const ImportResult result =
-      importResultOf("a.h5", 0, true, R"([{"verdict": "bit-exact", "message": "", "stored": "added"}])", "");
+  const ImportResult result = importResultOf(apps::assessProgram(), "a.h5", 0, true,
+                                             R"([{"verdict": "bit-exact", "message": "", "stored": "added"}])", "");
   EXPECT_EQ(result.kind, Kind::failed);
 }
 
@@ -76,7 +81,7 @@ class Import : public ::testing::Test {
     return path;
   }
   std::vector<ImportResult> run(const QString& program, const QStringList& files) {
-    ImportQueue queue;
+    ImportQueue queue(apps::assessProgram());
     std::vector<ImportResult> results;
     QObject::connect(&queue, &ImportQueue::fileDone, [&](const ImportResult& r) { results.push_back(r); });
     bool done = false;
@@ -118,7 +123,7 @@ TEST_F(Import, AProgramThatIsNotThereIsSaidForEachFile) {
 }
 
 TEST_F(Import, StoppingEndsAProgramThatHangsAndDropsTheRest) {
-  ImportQueue queue;
+  ImportQueue queue(apps::assessProgram());
   std::vector<ImportResult> results;
   bool done = false;
   QObject::connect(&queue, &ImportQueue::fileDone, [&](const ImportResult& r) { results.push_back(r); });

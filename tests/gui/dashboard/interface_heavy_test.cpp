@@ -17,6 +17,7 @@
 #include <QTimer>
 #include <random>
 
+#include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/settings.h"
@@ -66,7 +67,7 @@ TEST_F(InterfaceHeavy, TenThousandAttemptsAreOnTheScreenWithinASecond) {
   fillWithOthers(path);
   QElapsedTimer clock;
   clock.start();
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.setDocument(std::make_shared<const CohortDocument>(path));
   window.show();
   QTest::qWait(1);
@@ -99,7 +100,7 @@ TEST_F(InterfaceHeavy, NothingBlocksWhileAReplayAndAnImportRun) {
                               (root_ / "c.db").string() + " > /dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0);
   fillWithOthers(root_ / "c.db");
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(QString::fromStdString((root_ / "c.db").string())));
   QCoreApplication::processEvents();

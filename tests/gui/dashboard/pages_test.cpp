@@ -30,6 +30,7 @@
 #include <QUrl>
 
 #include "analytics/cohort/assessment_database.h"
+#include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
@@ -107,7 +108,7 @@ class Pages : public ::testing::Test {
 TEST_F(Pages, RecordingsThatAreDroppedAreAssessedAndShown) {
   fs::remove(root_ / "c.db");
   std::ofstream(root_ / "hostile.h5") << "\x89HDF\r\n\x1a\n and then nothing that belongs there";
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   drop(window, {file("one.h5")});
   EXPECT_TRUE(child<QLabel>(window, "problem")->text().contains("Open a cohort database first"));
@@ -127,7 +128,7 @@ TEST_F(Pages, RecordingsThatAreDroppedAreAssessedAndShown) {
 }
 
 TEST_F(Pages, AClickOnAFigureShowsTheMomentThatMadeMostOfIt) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   AttemptPage& page = openAttempt(window);
@@ -157,7 +158,7 @@ TEST_F(Pages, AClickOnAFigureShowsTheMomentThatMadeMostOfIt) {
 }
 
 TEST_F(Pages, TheReplayIsScrubbedSteppedAndPlayed) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   AttemptPage& page = openAttempt(window);
@@ -183,7 +184,7 @@ TEST_F(Pages, TheReplayIsScrubbedSteppedAndPlayed) {
 TEST_F(Pages, ARecordingThatIsNotThereIsSaidAndAskedFor) {
   fs::create_directories(root_ / "elsewhere");
   for (const char* name : {"one.h5", "two.h5"}) fs::rename(root_ / name, root_ / "elsewhere" / name);
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   AttemptPage& page = openAttempt(window);
@@ -192,14 +193,14 @@ TEST_F(Pages, ARecordingThatIsNotThereIsSaidAndAskedFor) {
   EXPECT_GT(child<QTableView>(page, "attempt-checkpoints")->model()->rowCount(), 0) << "the checkpoints stand";
   // Once it is known where recordings are, it is found there.
   settings::rememberRecordingFolder(file("elsewhere"));
-  DashboardWindow again;
+  DashboardWindow again(apps::assessProgram());
   again.show();
   ASSERT_TRUE(again.openDatabase(file("c.db")));
   EXPECT_TRUE(openAttempt(again).replay().isOpen());
 }
 
 TEST_F(Pages, AnAttemptIsExcludedAndThatIsUndone) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   const auto excluded = [&] {
@@ -228,7 +229,7 @@ TEST_F(Pages, AnAttemptIsExcludedAndThatIsUndone) {
 }
 
 TEST_F(Pages, ARaterFillsInAFormAndChangesIt) {
-  DashboardWindow window({fs::path(CALOT_SOURCE_DIR) / "assets"});
+  DashboardWindow window(apps::assessProgram(), {fs::path(CALOT_SOURCE_DIR) / "assets"});
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   settings::setPerson("R1");
@@ -258,7 +259,7 @@ TEST_F(Pages, ARaterFillsInAFormAndChangesIt) {
 }
 
 TEST_F(Pages, TwoRecordingsGoInStep) {
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   showPage(window, 6);
@@ -290,7 +291,7 @@ TEST_F(Pages, AStudyIsShownAndExported) {
     for (int i = 0; i < 12; ++i)
       database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1 + 0.01 * i + 0.2 * (i % 2))});
   }
-  DashboardWindow window;
+  DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   StudyPage& page = *window.findChild<StudyPage*>();
@@ -315,7 +316,7 @@ TEST_F(Pages, AStudyIsShownAndExported) {
 }
 
 TEST_F(Pages, PicturesOfAllPagesAreWritten) {
-  DashboardWindow window({fs::path(CALOT_SOURCE_DIR) / "assets"});
+  DashboardWindow window(apps::assessProgram(), {fs::path(CALOT_SOURCE_DIR) / "assets"});
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   window.savePictures(folder_.path());

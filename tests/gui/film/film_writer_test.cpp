@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -157,21 +158,21 @@ TEST_F(FilmFile, NothingIsLeftOfAFilmThatIsNotFinished) {
 }
 
 TEST_F(FilmFile, RefusesWhatNoFilmIs) {
-  const auto codeOf = [&](const std::filesystem::path& file, int w, int h, int fps) {
+  const auto kindOf = [&](const std::filesystem::path& file, int w, int h, int fps) -> std::optional<ErrorKind> {
     try {
       const FilmWriter writer(file, w, h, fps);
     } catch (const Error& error) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-      return error.code();
+      return error.kind();
     }
-    return ExitCode::yes;
+    return std::nullopt;
   };
-  EXPECT_EQ(codeOf(folder_ / "a.avi", width, height, 25), ExitCode::usage);
-  EXPECT_EQ(codeOf(folder_ / "a.mp4", 97, height, 25), ExitCode::usage);
-  EXPECT_EQ(codeOf(folder_ / "a.mp4", width, 63, 25), ExitCode::usage);
-  EXPECT_EQ(codeOf(folder_ / "a.mp4", width, height, 0), ExitCode::usage);
-  EXPECT_EQ(codeOf(folder_ / "a.mp4", width, height, 121), ExitCode::usage);
-  EXPECT_EQ(codeOf(folder_ / "missing" / "a.mp4", width, height, 25), ExitCode::failure);
+  EXPECT_EQ(kindOf(folder_ / "a.avi", width, height, 25), ErrorKind::invalid);
+  EXPECT_EQ(kindOf(folder_ / "a.mp4", 97, height, 25), ErrorKind::invalid);
+  EXPECT_EQ(kindOf(folder_ / "a.mp4", width, 63, 25), ErrorKind::invalid);
+  EXPECT_EQ(kindOf(folder_ / "a.mp4", width, height, 0), ErrorKind::invalid);
+  EXPECT_EQ(kindOf(folder_ / "a.mp4", width, height, 121), ErrorKind::invalid);
+  EXPECT_EQ(kindOf(folder_ / "missing" / "a.mp4", width, height, 25), ErrorKind::failure);
   EXPECT_EQ(files(), 0);
 }
 

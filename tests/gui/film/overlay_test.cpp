@@ -77,7 +77,7 @@ TEST(Overlays, AreNamed) {
       (void)parseOverlays(wrong);
       FAIL() << wrong;
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::usage);
+      EXPECT_EQ(error.kind(), ErrorKind::invalid);
       EXPECT_NE(std::string(error.what()).find("there are time, phase"), std::string::npos);
     }
   }

@@ -203,7 +203,7 @@ TEST(ConnectiveSheets, RefusesWhatCannotBeDrawn) {
       (void)renderer().render(broken, 64, 64);
     } catch (const Error& error) {
       message = error.what();
-      return error.code() == ExitCode::damaged && message.find('\n') == std::string::npos;
+      return error.kind() == ErrorKind::damaged && message.find('\n') == std::string::npos;
     }
     return false;
   };

@@ -178,7 +178,7 @@ TEST(Operation, RefusesWhatCannotBeDrawn) {
     try {
       (void)renderer().render(view, 32, 32, Quality::interactive);
     } catch (const Error& error) {
-      return error.code() == ExitCode::damaged ? error.what() : "another code";
+      return error.kind() == ErrorKind::damaged ? error.what() : "another code";
     }
     return "";
   };

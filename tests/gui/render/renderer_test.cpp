@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -75,14 +76,14 @@ double coveredPixels(const Image& image) {
   return sum;
 }
 
-ExitCode codeOf(const std::function<void()>& call, std::string* message = nullptr) {
+std::optional<ErrorKind> kindOf(const std::function<void()>& call, std::string* message = nullptr) {
   try {
     call();
   } catch (const Error& error) {
     if (message != nullptr) *message = error.what();
-    return error.code();
+    return error.kind();
   }
-  return ExitCode::yes;
+  return std::nullopt;
 }
 
 TEST(Renderer, SameViewGivesSameBytes) {
@@ -249,14 +250,14 @@ TEST(Renderer, RefusesWhatIsNotFinite) {
   SceneView view = emptyView();
   view.surface.push_back(triangleAt(0.1, 0.03));
   view.surface[0].position[1].y() = nan;
-  EXPECT_EQ(codeOf([&] { (void)renderer().render(view, width, height); }, &message), ExitCode::damaged);
+  EXPECT_EQ(kindOf([&] { (void)renderer().render(view, width, height); }, &message), ErrorKind::damaged);
   EXPECT_NE(message.find("'plate', vertex 1"), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
 
   const auto refused = [&](auto change) {
     SceneView broken = organsAndInstruments();
     change(broken);
-    return codeOf([&] { (void)renderer().render(broken, width, height); }) == ExitCode::damaged;
+    return kindOf([&] { (void)renderer().render(broken, width, height); }) == ErrorKind::damaged;
   };
   EXPECT_TRUE(refused([&](SceneView& v) { v.surface[0].rest[0].x() = std::numeric_limits<double>::infinity(); }));
   EXPECT_TRUE(refused([&](SceneView& v) { v.surface[0].rest.pop_back(); }));
@@ -277,14 +278,14 @@ TEST(Renderer, RefusesSizesOutsideItsLimits) {
   const SceneView view = emptyView();
   for (const auto& size : {PictureSize{0, 0}, PictureSize{-5, 100}, PictureSize{8, 100}, PictureSize{100000, 100000},
                            PictureSize{4096, 4096}})
-    EXPECT_EQ(codeOf([&] { (void)renderer().render(view, size.width, size.height); }), ExitCode::usage)
+    EXPECT_EQ(kindOf([&] { (void)renderer().render(view, size.width, size.height); }), ErrorKind::invalid)
         << size.width << "x" << size.height;
 }
 
 TEST(Renderer, DrawsAgainAfterARefusal) {
   SceneView broken = emptyView();
   broken.verticalFieldOfView = -1.0;
-  EXPECT_EQ(codeOf([&] { (void)renderer().render(broken, width, height); }), ExitCode::damaged);
+  EXPECT_EQ(kindOf([&] { (void)renderer().render(broken, width, height); }), ErrorKind::damaged);
   EXPECT_EQ(renderer().render(emptyView(), width, height).rgba.size(), 4U * width * height);
 }
 
@@ -294,7 +295,7 @@ TEST(PictureSize, ReadsWidthAndHeight) {
   EXPECT_EQ(size.height, 480);
   for (const char* wrong : {"", "x", "640", "640x", "x480", "640x480x3", "640X480", " 640x480", "-640x480", "1e3x480",
                             "99999999999999999999x480", "8x8", "5000x100"})
-    EXPECT_EQ(codeOf([&] { (void)parsePictureSize(wrong); }), ExitCode::usage) << wrong;
+    EXPECT_EQ(kindOf([&] { (void)parsePictureSize(wrong); }), ErrorKind::invalid) << wrong;
 }
 
 class PngFile : public ::testing::Test {
@@ -329,11 +330,11 @@ TEST_F(PngFile, NothingIsLeftBehindWhenItCannotBeWritten) {
   const Image image{2, 2, std::vector<std::uint8_t>(16, 7)};
   std::filesystem::create_directories(folder_ / "taken" / "inside");
   std::string message;
-  EXPECT_EQ(codeOf([&] { writePng(image, folder_ / "taken"); }, &message), ExitCode::failure);
+  EXPECT_EQ(kindOf([&] { writePng(image, folder_ / "taken"); }, &message), ErrorKind::failure);
   EXPECT_NE(message.find("taken"), std::string::npos);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()), 1);
-  EXPECT_EQ(codeOf([&] { writePng(image, folder_ / "missing" / "a.png"); }), ExitCode::failure);
-  EXPECT_EQ(codeOf([&] { writePng(Image{2, 2, {}}, folder_ / "b.png"); }), ExitCode::failure);
+  EXPECT_EQ(kindOf([&] { writePng(image, folder_ / "missing" / "a.png"); }), ErrorKind::failure);
+  EXPECT_EQ(kindOf([&] { writePng(Image{2, 2, {}}, folder_ / "b.png"); }), ErrorKind::failure);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "b.png"));
 }
 

@@ -106,7 +106,7 @@ TEST(Smoke, RefusesWhatIsNoPuff) {
       (void)renderer.render(view, 32, 32, {}, std::vector<Puff>{puff});
       ADD_FAILURE() << "taken";
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::damaged);
+      EXPECT_EQ(error.kind(), ErrorKind::damaged);
     }
   }
 }

@@ -237,7 +237,7 @@ TEST_F(Trainer, ThePictureIsSavedOrTheFolderNamed) {
     window.savePicture("/nowhere/a.png");
     FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::failure);
+    EXPECT_EQ(error.kind(), ErrorKind::failure);
     EXPECT_NE(std::string(error.what()).find("/nowhere/a.png"), std::string::npos);
   }
 }

@@ -24,7 +24,7 @@ std::string refusal(const std::string& text, const ObjLimits& limits = {}) {
   try {
     parse(text, LengthUnit::metre, limits);
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::damaged);
+    EXPECT_EQ(error.kind(), ErrorKind::damaged);
     const std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos);
     return message;
@@ -62,31 +62,31 @@ TEST(Obj, RefusesWithTheLine) {
   const std::string ok = square + "f 1 2 3\n";
   EXPECT_TRUE(refusal(ok).empty());
   const std::pair<const char*, const char*> bad[] = {
-      {"v 1 2", "t.obj:6: a vertex with 2 of 3 coordinates"},
-      {"v 1 2 nan", "t.obj:6: \"nan\" is not a finite number"},
-      {"v 1 inf 2", "t.obj:6: \"inf\" is not a finite number"},
-      {"v 1 2 1e999", "t.obj:6: \"1e999\" is not a number"},
-      {"v 1 2 3x", "t.obj:6: \"3x\" is not a number"},
-      {"v 1,5 2 3", "t.obj:6: \"1,5\" is not a number"},
-      {"v 1 2 5000", "t.obj:6: a coordinate of 5000 m: is the unit right?"},
-      {"v 0x10 2 3", "t.obj:6: \"0x10\" is not a number"},
-      {"f 1 2 5", "t.obj:6: vertex 5 is wanted, but the file has 4"},
-      {"f 1 2 0", "t.obj:6: index 0: OBJ counts from 1"},
-      {"f 1 2 -5", "t.obj:6: index -5 reaches before the first of 4 vertices"},
-      {"f 1 2", "t.obj:6: a face with 2 corners"},
-      {"f", "t.obj:6: a face with 0 corners"},
-      {"f 1 2 3/", "t.obj:6: \"\" is not an index"},
-      {"f 1 2 3/x", "t.obj:6: \"x\" is not an index"},
-      {"f 1 2 3//", "t.obj:6: \"\" is not an index"},
-      {"f 1 2 3/1/1/1", "t.obj:6: \"1/1\" is not an index"},
-      {"f 1 2 99999999999", "t.obj:6: \"99999999999\" is not an index"},
-      {"f 1 2 1.5", "t.obj:6: \"1.5\" is not an index"},
-      {"curv 0 1 1 2", "t.obj:6: \"curv\" is no keyword of a polygonal OBJ file"},
-      {"f 1 2 \\", "t.obj:6: a line continued with \\ is not understood; join the lines"},
-      {"\x89PNG", "t.obj:6: \"?PNG\" is no keyword of a polygonal OBJ file"},
+      {"v 1 2", "t.obj: line 6: a vertex with 2 of 3 coordinates"},
+      {"v 1 2 nan", "t.obj: line 6: \"nan\" is not a finite number"},
+      {"v 1 inf 2", "t.obj: line 6: \"inf\" is not a finite number"},
+      {"v 1 2 1e999", "t.obj: line 6: \"1e999\" is not a number"},
+      {"v 1 2 3x", "t.obj: line 6: \"3x\" is not a number"},
+      {"v 1,5 2 3", "t.obj: line 6: \"1,5\" is not a number"},
+      {"v 1 2 5000", "t.obj: line 6: a coordinate of 5000 m: is the unit right?"},
+      {"v 0x10 2 3", "t.obj: line 6: \"0x10\" is not a number"},
+      {"f 1 2 5", "t.obj: line 6: vertex 5 is wanted, but the file has 4"},
+      {"f 1 2 0", "t.obj: line 6: index 0: OBJ counts from 1"},
+      {"f 1 2 -5", "t.obj: line 6: index -5 reaches before the first of 4 vertices"},
+      {"f 1 2", "t.obj: line 6: a face with 2 corners"},
+      {"f", "t.obj: line 6: a face with 0 corners"},
+      {"f 1 2 3/", "t.obj: line 6: \"\" is not an index"},
+      {"f 1 2 3/x", "t.obj: line 6: \"x\" is not an index"},
+      {"f 1 2 3//", "t.obj: line 6: \"\" is not an index"},
+      {"f 1 2 3/1/1/1", "t.obj: line 6: \"1/1\" is not an index"},
+      {"f 1 2 99999999999", "t.obj: line 6: \"99999999999\" is not an index"},
+      {"f 1 2 1.5", "t.obj: line 6: \"1.5\" is not an index"},
+      {"curv 0 1 1 2", "t.obj: line 6: \"curv\" is no keyword of a polygonal OBJ file"},
+      {"f 1 2 \\", "t.obj: line 6: a line continued with \\ is not understood; join the lines"},
+      {"\x89PNG", "t.obj: line 6: \"?PNG\" is no keyword of a polygonal OBJ file"},
   };
   for (const auto& [line, message] : bad) EXPECT_EQ(refusal(ok + line + "\n"), message);
-  EXPECT_EQ(refusal(ok + std::string(1, '\0')), "t.obj:6: a zero byte; this is not a text file");
+  EXPECT_EQ(refusal(ok + std::string(1, '\0')), "t.obj: line 6: a zero byte; this is not a text file");
   EXPECT_NE(refusal("").find("no vertex"), std::string::npos);
   EXPECT_NE(refusal(square).find("no face"), std::string::npos);
 }
@@ -94,10 +94,10 @@ TEST(Obj, RefusesWithTheLine) {
 TEST(Obj, RefusesTooMuch) {
   ObjLimits limits;
   limits.vertices = 3;
-  EXPECT_EQ(refusal(square, limits), "t.obj:4: more than 3 vertices");
+  EXPECT_EQ(refusal(square, limits), "t.obj: line 4: more than 3 vertices");
   limits = {};
   limits.triangles = 1;
-  EXPECT_EQ(refusal(square + "f 1 2 3 4", limits), "t.obj:5: more than 1 triangles");
+  EXPECT_EQ(refusal(square + "f 1 2 3 4", limits), "t.obj: line 5: more than 1 triangles");
   limits = {};
   limits.bytes = 10;
   EXPECT_NE(refusal(square, limits).find("larger than 10 bytes"), std::string::npos);
@@ -120,7 +120,7 @@ TEST(Obj, DamagedBytesAreReadOrRefusedButNeverMore) {
       for (const Index3& v : mesh.triangle) ASSERT_TRUE(v.minCoeff() >= 0 && v.maxCoeff() < mesh.vertices());
       for (const Vec3& p : mesh.vertex) ASSERT_TRUE(p.allFinite());
     } catch (const Error& error) {
-      ASSERT_EQ(error.code(), ExitCode::damaged);
+      ASSERT_EQ(error.kind(), ErrorKind::damaged);
       ++refused;
     }
   }
@@ -162,7 +162,7 @@ TEST_F(ObjFile, OverwritesOnlyWhenTold) {
     writeObj(file, mesh, "", false);
     FAIL() << "must refuse";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
+    EXPECT_EQ(error.kind(), ErrorKind::invalid);
   }
   EXPECT_EQ(fs::file_size(file), 4U);
   writeObj(file, mesh, "", true);
@@ -178,7 +178,7 @@ TEST_F(ObjFile, MissingAndFolderAreRefused) {
       readObj(path, LengthUnit::metre);
       FAIL() << path;
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::damaged);
+      EXPECT_EQ(error.kind(), ErrorKind::damaged);
       EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos);
     }
   }

@@ -25,7 +25,7 @@ std::string refusal(const std::string& bytes, const SurfaceLimits& limits = {}) 
   try {
     parse(bytes, LengthUnit::metre, limits);
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::damaged);
+    EXPECT_EQ(error.kind(), ErrorKind::damaged);
     const std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos);
     return message;
@@ -99,39 +99,39 @@ TEST(Ply, LinesMayEndAsOnWindows) {
 
 TEST(Ply, RefusesAHeaderWithTheLine) {
   const std::pair<std::string, std::string> bad[] = {
-      {"", "t.ply:1: a PLY file begins with \"ply\""},
-      {"plx\n", "t.ply:1: a PLY file begins with \"ply\""},
-      {"ply\nformat ascii 1.0\n", "t.ply:2: the file ends before \"end_header\""},
-      {replaced(pyramid, "ascii 1.0", "ascii 2.0"), "t.ply:2: version \"2.0\" of PLY; 1.0 is known"},
+      {"", "t.ply: line 1: a PLY file begins with \"ply\""},
+      {"plx\n", "t.ply: line 1: a PLY file begins with \"ply\""},
+      {"ply\nformat ascii 1.0\n", "t.ply: line 2: the file ends before \"end_header\""},
+      {replaced(pyramid, "ascii 1.0", "ascii 2.0"), "t.ply: line 2: version \"2.0\" of PLY; 1.0 is known"},
       {replaced(pyramid, "ascii", "utf8"),
-       "t.ply:2: format \"utf8\"; known are ascii, binary_little_endian, binary_big_endian"},
-      {replaced(pyramid, "comment", "format ascii 1.0\ncomment"), "t.ply:3: a second \"format\""},
-      {replaced(pyramid, "comment", "property float x\ncomment"), "t.ply:3: a property before any element"},
-      {replaced(pyramid, "comment", "remark"), "t.ply:3: \"remark\" is no keyword of a PLY header"},
-      {replaced(pyramid, "vertex 5", "vertex -5"), "t.ply:4: -5 of an element"},
-      {replaced(pyramid, "vertex 5", "vertex 5.5"), "t.ply:4: \"5.5\" is not a whole number"},
+       "t.ply: line 2: format \"utf8\"; known are ascii, binary_little_endian, binary_big_endian"},
+      {replaced(pyramid, "comment", "format ascii 1.0\ncomment"), "t.ply: line 3: a second \"format\""},
+      {replaced(pyramid, "comment", "property float x\ncomment"), "t.ply: line 3: a property before any element"},
+      {replaced(pyramid, "comment", "remark"), "t.ply: line 3: \"remark\" is no keyword of a PLY header"},
+      {replaced(pyramid, "vertex 5", "vertex -5"), "t.ply: line 4: -5 of an element"},
+      {replaced(pyramid, "vertex 5", "vertex 5.5"), "t.ply: line 4: \"5.5\" is not a whole number"},
       {replaced(pyramid, "vertex 5", "vertex 99999999999999999999"),
-       "t.ply:4: \"99999999999999999999\" is not a whole number"},
-      {replaced(pyramid, "vertex 5", "vertex 6000000"), "t.ply:4: more than 5000000 vertices"},
-      {replaced(pyramid, "face 5", "face 4000000000"), "t.ply:12: more than 10000000 triangles"},
-      {replaced(pyramid, "element edge", "element vertex"), "t.ply:9: a second element \"vertex\""},
-      {replaced(pyramid, "float y", "float x"), "t.ply:6: a second property \"x\""},
-      {replaced(pyramid, "float y", "vec3 y"), "t.ply:6: \"vec3\" is no type of PLY"},
-      {replaced(pyramid, "float y", "float v"), "t.ply:15: vertices have no property \"y\""},
-      {replaced(pyramid, "float y", "list uchar float y"), "t.ply:15: \"y\" is a list"},
+       "t.ply: line 4: \"99999999999999999999\" is not a whole number"},
+      {replaced(pyramid, "vertex 5", "vertex 6000000"), "t.ply: line 4: more than 5000000 vertices"},
+      {replaced(pyramid, "face 5", "face 4000000000"), "t.ply: line 12: more than 10000000 triangles"},
+      {replaced(pyramid, "element edge", "element vertex"), "t.ply: line 9: a second element \"vertex\""},
+      {replaced(pyramid, "float y", "float x"), "t.ply: line 6: a second property \"x\""},
+      {replaced(pyramid, "float y", "vec3 y"), "t.ply: line 6: \"vec3\" is no type of PLY"},
+      {replaced(pyramid, "float y", "float v"), "t.ply: line 15: vertices have no property \"y\""},
+      {replaced(pyramid, "float y", "list uchar float y"), "t.ply: line 15: \"y\" is a list"},
       {replaced(pyramid, "list uchar int vertex_indices", "list float int vertex_indices"),
-       "t.ply:14: a list is counted in whole numbers"},
+       "t.ply: line 14: a list is counted in whole numbers"},
       {replaced(pyramid, "list uchar int vertex_indices", "list uchar float vertex_indices"),
-       "t.ply:15: indices are whole numbers"},
+       "t.ply: line 15: indices are whole numbers"},
       {replaced(pyramid, "list uchar int vertex_indices", "int vertex_indices"),
-       "t.ply:15: \"vertex_indices\" is no list"},
-      {replaced(pyramid, "vertex_indices", "corners"), "t.ply:15: faces have no property \"vertex_indices\""},
+       "t.ply: line 15: \"vertex_indices\" is no list"},
+      {replaced(pyramid, "vertex_indices", "corners"), "t.ply: line 15: faces have no property \"vertex_indices\""},
       {replaced(pyramid, "element face 5\nproperty float quality\nproperty list uchar int vertex_indices\n",
                 "element tristrips 1\nproperty list int int vertex_indices\n"),
-       "t.ply:14: no face; a surface is wanted"},
+       "t.ply: line 14: no face; a surface is wanted"},
       {replaced(pyramid, "property int vertex1\nproperty list uchar int tags\n", ""),
-       "t.ply:13: element \"edge\" has no property"},
-      {std::string("ply\n\0\n", 6), "t.ply:2: a zero byte in the header"},
+       "t.ply: line 13: element \"edge\" has no property"},
+      {std::string("ply\n\0\n", 6), "t.ply: line 2: a zero byte in the header"},
   };
   for (const auto& [bytes, message] : bad) EXPECT_EQ(refusal(bytes), message);
 }
@@ -148,16 +148,16 @@ TEST(Ply, RefusesABodyWithThePlace) {
   const std::uint32_t five = 5;
   beyond.replace(beyond.find("end_header\n") + 12, 4, std::string(reinterpret_cast<const char*>(&five), 4));
   const std::pair<std::string, std::string> bad[] = {
-      {replaced(pyramid, "1 1 0 0", "1 inf 0 0"), "t.ply:18: \"inf\" is not a finite number"},
-      {replaced(pyramid, "1 1 0 0", "1 x 0 0"), "t.ply:18: \"x\" is not a number"},
-      {replaced(pyramid, "1 1 0 0", "1 2000 0 0"), "t.ply:18: a coordinate of 2000 m: is the unit right?"},
-      {replaced(pyramid, "3 0 1 4", "2 0 1"), "t.ply:23: a face with 2 corners"},
-      {replaced(pyramid, "3 0 1 4", "-3 0 1 4"), "t.ply:23: -3 is no length of a list"},
-      {replaced(pyramid, "3 0 1 4", "3 0 1 -4"), "t.ply:23: -4 is no index"},
-      {replaced(pyramid, "3 0 1 4", "3 0 1.5 4"), "t.ply:23: 1.5 is no index"},
+      {replaced(pyramid, "1 1 0 0", "1 inf 0 0"), "t.ply: line 18: \"inf\" is not a finite number"},
+      {replaced(pyramid, "1 1 0 0", "1 x 0 0"), "t.ply: line 18: \"x\" is not a number"},
+      {replaced(pyramid, "1 1 0 0", "1 2000 0 0"), "t.ply: line 18: a coordinate of 2000 m: is the unit right?"},
+      {replaced(pyramid, "3 0 1 4", "2 0 1"), "t.ply: line 23: a face with 2 corners"},
+      {replaced(pyramid, "3 0 1 4", "-3 0 1 4"), "t.ply: line 23: -3 is no length of a list"},
+      {replaced(pyramid, "3 0 1 4", "3 0 1 -4"), "t.ply: line 23: -4 is no index"},
+      {replaced(pyramid, "3 0 1 4", "3 0 1.5 4"), "t.ply: line 23: 1.5 is no index"},
       {replaced(pyramid, "3 0 1 4", "3 0 1 5"), "t.ply: face 1: vertex 5 is wanted, but the file has 5 (from 0)"},
-      {replaced(pyramid, "0.5 3 3 0 4\n", ""), "t.ply:25: the file ends at face 4 of 5"},
-      {replaced(pyramid, "3 3 0 4", "4000000000 3 0 4"), "t.ply:26: the file ends at face 4 of 5"},
+      {replaced(pyramid, "0.5 3 3 0 4\n", ""), "t.ply: line 25: the file ends at face 4 of 5"},
+      {replaced(pyramid, "3 3 0 4", "4000000000 3 0 4"), "t.ply: line 26: the file ends at face 4 of 5"},
       {inBytes(false).substr(0, inBytes(false).size() - 1), "t.ply: vertex 4: the file ends here, with 5 wanted"},
       {inBytes(true, 9999999), "t.ply: face 5: "},
       {notANumber, "t.ply: vertex 1: a coordinate that is not a finite number"},
@@ -170,7 +170,7 @@ TEST(Ply, RefusesABodyWithThePlace) {
 TEST(Ply, RefusesTooMuch) {
   SurfaceLimits limits;
   limits.triangles = 5;  // five faces, but one of them is a quadrilateral
-  EXPECT_EQ(refusal(pyramid, limits), "t.ply:26: more than 5 triangles");
+  EXPECT_EQ(refusal(pyramid, limits), "t.ply: line 26: more than 5 triangles");
   limits = {};
   limits.bytes = 100;
   EXPECT_EQ(refusal(pyramid, limits), "t.ply: larger than 100 bytes");
@@ -193,7 +193,7 @@ TEST(Ply, DamagedBytesAreReadOrRefusedButNeverMore) {
       for (const Index3& v : mesh.triangle) ASSERT_TRUE(v.minCoeff() >= 0 && v.maxCoeff() < mesh.vertices());
       for (const Vec3& p : mesh.vertex) ASSERT_TRUE(p.allFinite());
     } catch (const Error& error) {
-      ASSERT_EQ(error.code(), ExitCode::damaged);
+      ASSERT_EQ(error.kind(), ErrorKind::damaged);
       ++refused;
     }
   }

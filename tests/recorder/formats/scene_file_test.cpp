@@ -62,7 +62,7 @@ std::string faultOf(const std::function<void()>& act) {
   try {
     act();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::damaged) << e.what();
+    EXPECT_EQ(e.kind(), ErrorKind::damaged) << e.what();
     EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
     return e.what();
   }
@@ -376,7 +376,7 @@ TEST(FindScene, byNameUnderTheRootsInTurn) {
     findScene("c", roots);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_EQ(e.kind(), ErrorKind::invalid);
     EXPECT_STREQ(e.what(), "there is no scene \"c\"; there are a, b");
   }
   EXPECT_EQ(listScenes(roots).size(), 2U);

@@ -24,7 +24,7 @@ std::string refusal(const std::string& bytes, const SurfaceLimits& limits = {}) 
   try {
     parse(bytes, LengthUnit::metre, limits);
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::damaged);
+    EXPECT_EQ(error.kind(), ErrorKind::damaged);
     const std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos);
     return message;
@@ -99,19 +99,19 @@ TEST(Stl, WordsMayBeCapitalAndSeveralSolidsAreOne) {
 TEST(Stl, RefusesWithThePlace) {
   const std::string open = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
   const std::pair<std::string, std::string> bad[] = {
-      {"solid x\n", "t.stl:1: the file ends before \"endsolid\""},
-      {"solid x\nfacet normal 0 0", "t.stl:2: the file ends in a normal"},
-      {open, "t.stl:5: the file ends where \"vertex\" is wanted"},
-      {open + "vertex 1 1", "t.stl:6: the file ends in a vertex"},
-      {open + "vertex 1 1 nan\n", "t.stl:6: \"nan\" is not a finite number"},
-      {open + "vertex 1 1 1e999\n", "t.stl:6: \"1e999\" is not a number"},
-      {open + "vertex 1 1 1,5\n", "t.stl:6: \"1,5\" is not a number"},
-      {open + "vertex 1 1 5000\n", "t.stl:6: a coordinate of 5000 m: is the unit right?"},
-      {open + "endloop\n", "t.stl:6: \"vertex\" is wanted, not \"endloop\""},
-      {open + "vertex 1 1 0\nvertex 0 1 0\nendloop", "t.stl:7: \"endloop\" is wanted, not \"vertex\""},
-      {open + std::string("vertex 1 \0 0\n", 13), "t.stl:6: a zero byte; this is not a text file"},
-      {"solid x\nface normal 0 0 1\n", "t.stl:2: \"facet\" or \"endsolid\" is wanted, not \"face\""},
-      {"solid x\nendsolid x\nv 0 0 0\n", "t.stl:3: \"solid\" is wanted, not \"v\""},
+      {"solid x\n", "t.stl: line 1: the file ends before \"endsolid\""},
+      {"solid x\nfacet normal 0 0", "t.stl: line 2: the file ends in a normal"},
+      {open, "t.stl: line 5: the file ends where \"vertex\" is wanted"},
+      {open + "vertex 1 1", "t.stl: line 6: the file ends in a vertex"},
+      {open + "vertex 1 1 nan\n", "t.stl: line 6: \"nan\" is not a finite number"},
+      {open + "vertex 1 1 1e999\n", "t.stl: line 6: \"1e999\" is not a number"},
+      {open + "vertex 1 1 1,5\n", "t.stl: line 6: \"1,5\" is not a number"},
+      {open + "vertex 1 1 5000\n", "t.stl: line 6: a coordinate of 5000 m: is the unit right?"},
+      {open + "endloop\n", "t.stl: line 6: \"vertex\" is wanted, not \"endloop\""},
+      {open + "vertex 1 1 0\nvertex 0 1 0\nendloop", "t.stl: line 7: \"endloop\" is wanted, not \"vertex\""},
+      {open + std::string("vertex 1 \0 0\n", 13), "t.stl: line 6: a zero byte; this is not a text file"},
+      {"solid x\nface normal 0 0 1\n", "t.stl: line 2: \"facet\" or \"endsolid\" is wanted, not \"face\""},
+      {"solid x\nendsolid x\nv 0 0 0\n", "t.stl: line 3: \"solid\" is wanted, not \"v\""},
       {"solid x\nendsolid x\n", "t.stl: no triangle; a surface is wanted"},
       {"", "t.stl: 0 bytes, which is neither an STL text nor a binary STL file"},
       {binary({}), "t.stl: no triangle; a surface is wanted"},
@@ -130,7 +130,7 @@ TEST(Stl, RefusesWithThePlace) {
 TEST(Stl, RefusesTooMuch) {
   SurfaceLimits limits;
   limits.triangles = 3;
-  EXPECT_EQ(refusal(ascii(tetrahedron), limits), "t.stl:23: more than 3 triangles");
+  EXPECT_EQ(refusal(ascii(tetrahedron), limits), "t.stl: line 23: more than 3 triangles");
   EXPECT_EQ(refusal(binary(tetrahedron), limits), "t.stl: more than 3 triangles");
   limits = {};
   limits.vertices = 3;
@@ -157,7 +157,7 @@ TEST(Stl, DamagedBytesAreReadOrRefusedButNeverMore) {
       for (const Index3& v : mesh.triangle) ASSERT_TRUE(v.minCoeff() >= 0 && v.maxCoeff() < mesh.vertices());
       for (const Vec3& p : mesh.vertex) ASSERT_TRUE(p.allFinite());
     } catch (const Error& error) {
-      ASSERT_EQ(error.code(), ExitCode::damaged);
+      ASSERT_EQ(error.kind(), ErrorKind::damaged);
       ++refused;
     }
   }

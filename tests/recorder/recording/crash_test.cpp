@@ -176,7 +176,7 @@ TEST(DiskFull, TheLoopGoesOnAndWhatWasFlushedStays) {
         code = 12;
       } catch (const Error& e) {
         const std::string what = e.what();
-        const bool good = code == 11 && e.code() == ExitCode::failure && what.find("r.h5") != std::string::npos &&
+        const bool good = code == 11 && e.kind() == ErrorKind::failure && what.find("r.h5") != std::string::npos &&
                           what.find("File too large") != std::string::npos && what.find('\n') == std::string::npos;
         if (!good) std::fprintf(stderr, "%s\n", what.c_str());
         code = good ? 0 : 13;
@@ -213,7 +213,7 @@ TEST(DiskFull, AtTheStartLeavesNothing) {
       try {
         const RecordingWriter writer(folder / "r.h5", makeHeader());
       } catch (const Error& e) {
-        code = e.code() == ExitCode::failure ? 0 : 11;
+        code = e.kind() == ErrorKind::failure ? 0 : 11;
       }
       std::exit(code);
     }

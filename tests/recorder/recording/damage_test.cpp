@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "recorder/errors.h"
@@ -39,15 +40,15 @@ void writeFile(const std::filesystem::path& path, const std::string& bytes) {
 
 /// What opening, reading all, and verifying a file in a child process says.
 struct Judgement {
-  ExitCode code = ExitCode::yes;
+  std::optional<ErrorKind> kind;
   std::string message;
 };
 Judgement judge(const std::filesystem::path& path) {
   try {
     const ChainVerdict verdict = probe(path);
-    return {verdict.intact ? ExitCode::yes : ExitCode::no, verdict.what};
+    return {verdict.intact ? std::nullopt : std::optional(ErrorKind::refused), verdict.what};
   } catch (const Error& e) {
-    return {e.code(), e.what()};
+    return {e.kind(), e.what()};
   }
 }
 
@@ -68,7 +69,7 @@ TEST(Cut, AClosedFileCutInHalfIsSavedInPart) {
   for (const double part : {0.999, 0.75, 0.5, 0.3}) {
     writeFile(folder / "cut.h5", all.substr(0, static_cast<std::size_t>(static_cast<double>(all.size()) * part)));
     const Judgement j = judge(folder / "cut.h5");
-    EXPECT_EQ(j.code, ExitCode::damaged);
+    EXPECT_EQ(j.kind, ErrorKind::damaged);
     EXPECT_NE(j.message.find("cut.h5"), std::string::npos) << j.message;
     const Recovered saved = recover(folder / "cut.h5", folder / "saved.h5", true);
     std::printf("%.3f of the file: %llu of 2000 steps saved; %s\n", part, static_cast<unsigned long long>(saved.steps),
@@ -97,7 +98,7 @@ TEST(Cut, AKilledFileCutInHalfIsSavedInPart) {
   const std::string all = bytesOfFile(folder / "r.h5");
   for (const double part : {0.9, 0.5}) {
     writeFile(folder / "cut.h5", all.substr(0, static_cast<std::size_t>(static_cast<double>(all.size()) * part)));
-    EXPECT_EQ(judge(folder / "cut.h5").code, ExitCode::damaged);
+    EXPECT_EQ(judge(folder / "cut.h5").kind, ErrorKind::damaged);
     const Recovered saved = recover(folder / "cut.h5", folder / "saved.h5", true);
     EXPECT_GE(static_cast<double>(saved.steps), 1000 * part * 0.8);
     EXPECT_FALSE(saved.complete);
@@ -112,12 +113,12 @@ TEST(Cut, WhereNothingIsLeftNothingIsWritten) {
   for (const std::size_t bytes :
        {std::size_t{0}, std::size_t{1}, std::size_t{20}, std::size_t{100}, std::size_t{3000}}) {
     writeFile(folder / "cut.h5", all.substr(0, bytes));
-    EXPECT_EQ(judge(folder / "cut.h5").code, ExitCode::damaged) << bytes;
+    EXPECT_EQ(judge(folder / "cut.h5").kind, ErrorKind::damaged) << bytes;
     try {
       recover(folder / "cut.h5", folder / "saved.h5", false);
       ADD_FAILURE() << "recovered from " << bytes << " bytes";
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::damaged);
+      EXPECT_EQ(e.kind(), ErrorKind::damaged);
       EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
     }
   }
@@ -129,14 +130,14 @@ TEST(Cut, WhereNothingIsLeftNothingIsWritten) {
 
 TEST(Open, WhatIsNoRecordingIsDamaged) {
   const Folder folder;
-  EXPECT_EQ(judge(folder / "none.h5").code, ExitCode::damaged);
-  EXPECT_EQ(judge(folder.path()).code, ExitCode::damaged);
+  EXPECT_EQ(judge(folder / "none.h5").kind, ErrorKind::damaged);
+  EXPECT_EQ(judge(folder.path()).kind, ErrorKind::damaged);
   writeFile(folder / "text.h5", "time,x,y,z\n0,0,0,0\n0.1,0,0,0\n0.2,0,0,0\n");
-  EXPECT_EQ(judge(folder / "text.h5").code, ExitCode::damaged);
+  EXPECT_EQ(judge(folder / "text.h5").kind, ErrorKind::damaged);
   const hid_t other = H5Fcreate((folder / "other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(other);
   const Judgement j = judge(folder / "other.h5");
-  EXPECT_EQ(j.code, ExitCode::damaged);
+  EXPECT_EQ(j.kind, ErrorKind::damaged);
   EXPECT_NE(j.message.find("other.h5"), std::string::npos);
 }
 
@@ -174,7 +175,7 @@ TEST(Flip, AByteOfAChunkIsFoundAndItsDataSetNamed) {
       bytes[place] = static_cast<char>(bytes[place] ^ (1 << (random.next() % 8)));
       writeFile(folder / "flipped.h5", bytes);
       const Judgement j = judge(folder / "flipped.h5");
-      EXPECT_EQ(j.code, ExitCode::damaged) << dataset;
+      EXPECT_EQ(j.kind, ErrorKind::damaged) << dataset;
       EXPECT_NE(j.message.find(dataset), std::string::npos) << dataset << ": " << j.message;
       EXPECT_NE(j.message.find("bad checksum"), std::string::npos) << j.message;
     }
@@ -244,7 +245,7 @@ TEST(Changed, AttributesAndSceneAreUnderTheChain) {
   test::writeRecording(folder / "s.h5", makeHeader(), 30);
   change<std::uint8_t>(folder / "s.h5", "/scene/description", H5T_NATIVE_UINT8, 3, 0, 255);
   const Judgement j = judge(folder / "s.h5");  // its SHA-256 stands beside it
-  EXPECT_EQ(j.code, ExitCode::damaged);
+  EXPECT_EQ(j.kind, ErrorKind::damaged);
   EXPECT_NE(j.message.find("/scene/description"), std::string::npos);
 }
 
@@ -253,7 +254,7 @@ TEST(Changed, ValuesThatNoSourceMakesAreNamedWithTheirRow) {
   test::writeRecording(folder / "r.h5", makeHeader(), 60);
   const auto expectNamed = [&](const char* place) {
     const Judgement j = judge(folder / "c.h5");
-    EXPECT_EQ(j.code, ExitCode::damaged) << place;
+    EXPECT_EQ(j.kind, ErrorKind::damaged) << place;
     EXPECT_NE(j.message.find(place), std::string::npos) << j.message;
   };
   const auto fresh = [&] {
@@ -307,7 +308,7 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
             std::chrono::seconds(20));
       } catch (const Error& e) {
         const std::string what = e.what();
-        EXPECT_EQ(e.code(), ExitCode::damaged) << what;
+        EXPECT_EQ(e.kind(), ErrorKind::damaged) << what;
         EXPECT_EQ(what.find('\n'), std::string::npos) << what;
         EXPECT_EQ(what.find("library failed"), std::string::npos) << "at " << at << ": " << what;
         EXPECT_EQ(what.find("took longer"), std::string::npos) << "at " << at << ": " << what;
@@ -323,27 +324,43 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
 }
 
 TEST(Guarded, ACrashOrAHangBecomesAnError) {
-  const auto code = [](const std::function<std::string()>& task) {
+  const auto kind = [](const std::function<std::string()>& task) -> std::optional<ErrorKind> {
     try {
       runGuarded("file", task, std::chrono::seconds(1));
-      return ExitCode::yes;
+      return std::nullopt;
     } catch (const Error& e) {
-      return e.code();
+      return e.kind();
     }
   };
-  EXPECT_EQ(code([]() -> std::string {
+  EXPECT_EQ(kind([]() -> std::string {
               ::raise(SIGKILL);
               return "";
             }),
-            ExitCode::damaged);
-  EXPECT_EQ(code([]() -> std::string {
+            ErrorKind::damaged);
+  EXPECT_EQ(kind([]() -> std::string {
               for (;;) ::pause();
             }),
-            ExitCode::damaged);
-  EXPECT_EQ(code([]() -> std::string { throw Error(ExitCode::undecided, "x"); }), ExitCode::undecided);
-  EXPECT_EQ(code([]() -> std::string { throw std::bad_alloc(); }), ExitCode::failure);
+            ErrorKind::damaged);
+  EXPECT_EQ(kind([]() -> std::string { throw Error(ErrorKind::undecided, "x"); }), ErrorKind::undecided);
+  EXPECT_EQ(kind([]() -> std::string { throw std::bad_alloc(); }), ErrorKind::failure);
   const std::string large(1000000, 'a');
   EXPECT_EQ(runGuarded("file", [&] { return large; }), large);
+}
+
+TEST(Guarded, AnErrorComesOutOfTheChildAsItWas) {
+  try {
+    runGuarded("file", []() -> std::string {
+      throw Error(ErrorKind::damaged, Where{"r.h5", "/ticks"}, "cut off", {Remedy::recover, Remedy::replayAnyway});
+    });
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::damaged);
+    EXPECT_EQ(e.where().file, "r.h5");
+    EXPECT_EQ(e.where().place, "/ticks");
+    EXPECT_EQ(e.fault(), "cut off");
+    EXPECT_STREQ(e.what(), "r.h5: /ticks: cut off");
+    EXPECT_EQ(e.remedies(), (std::vector{Remedy::recover, Remedy::replayAnyway}));
+  }
 }
 
 }  // namespace

@@ -286,7 +286,7 @@ class RawSamplesChanged : public ::testing::Test {
     try {
       probe(path);
     } catch (const Error& e) {
-      return e.code() == ExitCode::damaged ? e.what() : std::string("another code: ") + e.what();
+      return e.kind() == ErrorKind::damaged ? e.what() : std::string("another code: ") + e.what();
     }
     return "accepted";
   }

@@ -199,7 +199,7 @@ TEST(Writer, RefusesToOverwriteWithoutForce) {
     const RecordingWriter writer(folder / "r.h5", makeHeader());
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_EQ(e.kind(), ErrorKind::invalid);
     EXPECT_NE(std::string(e.what()).find("r.h5"), std::string::npos);
   }
   std::string text;
@@ -216,7 +216,7 @@ TEST(Writer, NamesAFolderThatIsNotThere) {
     const RecordingWriter writer(folder.path() / "no" / "r.h5", makeHeader());
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_EQ(e.kind(), ErrorKind::invalid);
   }
 }
 

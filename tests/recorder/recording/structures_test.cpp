@@ -27,7 +27,7 @@ std::string faultOf(const std::filesystem::path& path) {
   try {
     return probe(path).what;
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::damaged) << e.what();
+    EXPECT_EQ(e.kind(), ErrorKind::damaged) << e.what();
     return e.what();
   }
 }

@@ -38,7 +38,7 @@ std::string faultOf(Read read) {
   try {
     read();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::damaged);
+    EXPECT_EQ(e.kind(), ErrorKind::damaged);
     EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
     return e.what();
   }
@@ -168,7 +168,7 @@ TEST(CsvMotion, whatIsDamagedAtRandomIsRefusedInOneLineOrRead) {
       }
     } catch (const Error& e) {
       ++refused;
-      ASSERT_EQ(e.code(), ExitCode::damaged);
+      ASSERT_EQ(e.kind(), ErrorKind::damaged);
       const std::string says = e.what();
       ASSERT_EQ(says.find('\n'), std::string::npos) << says;
       ASSERT_EQ(says.substr(0, 2), "m.") << says;

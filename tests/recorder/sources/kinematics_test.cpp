@@ -84,7 +84,7 @@ std::string faultOf(const std::string& text) {
   try {
     parseKinematics(bytesOfText(text), "k.txt");
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::damaged);
+    EXPECT_EQ(e.kind(), ErrorKind::damaged);
     EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
     return e.what();
   }
@@ -287,7 +287,7 @@ TEST(KinematicsSource, aSceneThatShowsNoOrganIsRefused) {
     sourceOf(wave(5), scene);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_EQ(e.kind(), ErrorKind::invalid);
   }
 }
 

@@ -179,7 +179,7 @@ TEST(PerformerSource, aHandThatReachesNothingIsRefused) {
     PerformerSource(profileOf("skilled"), scene, 1);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_EQ(e.kind(), ErrorKind::invalid);
     EXPECT_NE(std::string(e.what()).find("left hand can reach no organ's surface"), std::string::npos);
   }
 }
@@ -218,7 +218,7 @@ std::string faultOf(const json& profile) {
   try {
     loadPerformer(file);
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::damaged);
+    EXPECT_EQ(e.kind(), ErrorKind::damaged);
     return e.what();
   }
   return "(no fault)";
@@ -275,7 +275,7 @@ TEST(FindPerformer, byNameOrPath) {
     findPerformer("expert", roots);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::usage);
+    EXPECT_EQ(e.kind(), ErrorKind::invalid);
     EXPECT_STREQ(e.what(), "there is no performer \"expert\"; there are intermediate, skilled, unskilled");
   }
 }

@@ -14,7 +14,7 @@
 namespace calot::gui::trainertest {
 
 std::unique_ptr<recorder::SampleSource> ScriptInput::open(const SceneDescription& scene) {
-  if (!refusal.empty()) throw Error(ExitCode::failure, refusal);
+  if (!refusal.empty()) throw Error(ErrorKind::failure, refusal);
   recorder::DeviceSourceSettings settings;
   settings.tickClock = std::make_shared<recorder::TickClock>();
   auto source = std::make_unique<recorder::DeviceSource>(
@@ -25,11 +25,11 @@ std::unique_ptr<recorder::SampleSource> ScriptInput::open(const SceneDescription
 }
 
 void ScriptInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
-  dynamic_cast<recorder::DeviceSource&>(source).setOutFrom(start);
+  source.device()->setOutFrom(start);
 }
 
 void ScriptInput::record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) {
-  writer.takeRawSamples(dynamic_cast<recorder::DeviceSource&>(source).rawSamples(), firstTick);
+  writer.takeRawSamples(source.device()->rawSamples(), firstTick);
 }
 
 recorder::DeviceScript swayingScript(double seconds) {

@@ -66,7 +66,7 @@ inline std::string faultOf(const std::function<void()>& act) {
   try {
     act();
   } catch (const Error& e) {
-    return (e.code() == ExitCode::damaged ? "" : "(another exit code) ") + std::string(e.what());
+    return (e.kind() == ErrorKind::damaged ? "" : "(another exit code) ") + std::string(e.what());
   }
   return "(no fault)";
 }

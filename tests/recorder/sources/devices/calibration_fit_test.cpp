@@ -120,7 +120,7 @@ TEST(CalibrationFit, StreamsThatCannotBeMeasuredSayWhy) {
       measureCalibration(script, 0.1, trackerInfo());
       ADD_FAILURE() << "measured; wanted: " << names;
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::damaged);
+      EXPECT_EQ(e.kind(), ErrorKind::damaged);
       EXPECT_NE(std::string(e.what()).find(names), std::string::npos) << e.what();
     }
   };

@@ -37,7 +37,7 @@ TEST(Calibration, BadFilesAreRefusedWithTheirPlace) {
       parseCalibration(bytesOf(bad.dump()), "c.json");
       ADD_FAILURE() << "taken: " << pointer << " " << value;
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::damaged);
+      EXPECT_EQ(e.kind(), ErrorKind::damaged);
       EXPECT_EQ(std::string(e.what()).find("c.json: "), 0U);
       EXPECT_NE(std::string(e.what()).find(names), std::string::npos) << e.what();
     }
@@ -64,7 +64,7 @@ TEST(Calibration, AssessmentRefusesWhatPracticeMayUse) {
       checkCalibration(calibration, info, mode, now, "c.json");
       return std::string();
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::no);
+      EXPECT_EQ(e.kind(), ErrorKind::refused);
       return std::string(e.what());
     }
   };

@@ -72,7 +72,7 @@ TEST(DeviceScript, EveryFaultIsOneLineThatNamesThePlace) {
       parseDeviceScript(bytesOf(c.text), "s.json");
       ADD_FAILURE() << "taken: " << c.text;
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::damaged) << c.text;
+      EXPECT_EQ(e.kind(), ErrorKind::damaged) << c.text;
       EXPECT_NE(std::string(e.what()).find(c.names), std::string::npos) << e.what();
       EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
     }
@@ -125,7 +125,7 @@ TEST(OpenDevice, RefusesBadNamesWithOneLine) {
       openDevice(name, tools);
       ADD_FAILURE() << "opened: " << name;
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::usage) << name;
+      EXPECT_EQ(e.kind(), ErrorKind::invalid) << name;
       EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
     }
   }
@@ -136,7 +136,7 @@ TEST(OpenDevice, RefusesBadNamesWithOneLine) {
     openDevice("scripted:/nowhere/there-is-none.json", tools);
     ADD_FAILURE();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::damaged);
+    EXPECT_EQ(e.kind(), ErrorKind::damaged);
   }
   EXPECT_EQ(openDevice("openigtlink:[::1]:5", tools).device->info().name, "openigtlink");
   EXPECT_EQ(openDevice("openigtlink", {"", "Probe"}).device->info().capabilities.hands, 1);

@@ -202,7 +202,7 @@ TEST(DeviceSource, WaitsForTheFirstSampleAndSaysWhatIsMissing) {
     rig.source->waitForFirst(0.1);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::failure);
+    EXPECT_EQ(e.kind(), ErrorKind::failure);
     EXPECT_NE(std::string(e.what()).find("no valid sample"), std::string::npos) << e.what();
   }
 }

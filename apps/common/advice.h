@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the command line says to do about an error: commands and options.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "recorder/errors.h"
+
+namespace calot::apps {
+
+/// "do this, or that".
+std::string advice(const std::vector<Remedy>& remedies);
+
+/// "message; do this, or that". @param message one line; without remedies it stays as it is
+std::string advised(const std::string& message, const std::vector<Remedy>& remedies);
+
+/// An error's message with its advice.
+std::string messageOf(const Error& error);
+
+}  // namespace calot::apps

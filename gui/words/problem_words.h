@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace calot::gui {
+
+/// What a window says of an error: its message and, where a window's user can do something about it, what.
+std::string problemText(const std::exception& error);
+
+}  // namespace calot::gui
