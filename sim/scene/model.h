@@ -67,7 +67,7 @@ struct Tie {
   static constexpr std::size_t none = ~std::size_t{0};
 
   std::array<std::size_t, 2> body{};
-  std::array<SolidPlace, 2> place;
+  std::array<MaterialPoint, 2> place;
   Vec3 offset = Vec3::Zero();  ///< of the first place from its node, in the node's frame; of vessels only (m)
   std::size_t fat = none;      ///< body of fat with which it fades, as
   std::size_t fatTie = 0;      ///< its tie of that number
@@ -151,7 +151,7 @@ class Model {
   std::string addProcedure(const SceneDescription& scene);
   std::string addRetractions(const SceneDescription& scene);
   std::string addFat(const SceneDescription& scene, const FatDescription& description);
-  [[nodiscard]] std::vector<SolidPlace> placesOnOrgan(std::size_t organ, const std::vector<Vec3>& points) const;
+  [[nodiscard]] std::vector<MaterialPoint> placesOnOrgan(std::size_t organ, const std::vector<Vec3>& points) const;
   void listStructures(const SceneDescription& scene);
   std::string addConnective(const SceneDescription& scene, const ConnectiveDescription& description);
   SceneDescription scene_;

@@ -109,11 +109,11 @@ std::string Model::addFat(const SceneDescription& scene, const FatDescription& d
     std::vector<Vec3> points;
     points.reserve(ties.size());
     for (const FatTie& tie : ties) points.push_back(tie.rest);
-    std::vector<SolidPlace> places;
+    std::vector<MaterialPoint> places;
     if (!known[p].vessel && !points.empty()) places = placesOnOrgan(known[p].index, points);
     for (std::size_t i = 0; i < ties.size(); ++i) {
       Tie tie;
-      tie.place[1] = ties[i].place;
+      tie.place[1] = ties[i].point;
       tie.stiffness = ties[i].stiffness;
       tie.damping = ties[i].damping;
       tie.fat = fat_.size();

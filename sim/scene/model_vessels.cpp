@@ -21,8 +21,8 @@ int nearestNode(const BeamModel& beams, std::size_t branch, const Vec3& point) {
   });
 }
 
-SolidPlace placeOnNode(int node) {
-  SolidPlace place;
+MaterialPoint placeOnNode(int node) {
+  MaterialPoint place;
   place.node[0] = node;
   place.weight[0] = 1.0;
   place.count = 1;
@@ -31,12 +31,12 @@ SolidPlace placeOnNode(int node) {
 
 }  // namespace
 
-std::vector<SolidPlace> Model::placesOnOrgan(std::size_t organ, const std::vector<Vec3>& points) const {
+std::vector<MaterialPoint> Model::placesOnOrgan(std::size_t organ, const std::vector<Vec3>& points) const {
   const SolidModel& solid = organs_[organ].solid;
   const Embedding embedding(points, {solid.rest(), solid.tetrahedra()});
-  std::vector<SolidPlace> places;
+  std::vector<MaterialPoint> places;
   for (const Embedding::Anchor& anchor : embedding.anchors()) {
-    SolidPlace& place = places.emplace_back();
+    MaterialPoint& place = places.emplace_back();
     place.count = anchor.node.size();
     std::copy(anchor.node.begin(), anchor.node.end(), place.node.begin());
     std::copy(anchor.weight.begin(), anchor.weight.end(), place.weight.begin());
@@ -98,13 +98,13 @@ std::string Model::addVessels(const SceneDescription& scene) {
       }
       std::vector<int> grown;
       for (std::size_t i = 0; i < branch.node.size(); ++i) {
-        const double away = atEnd ? branch.length() - branch.place[i] : branch.place[i];
+        const double away = atEnd ? branch.length() - branch.arcLength[i] : branch.arcLength[i];
         if (away <= grownLength) grown.push_back(branch.node[i]);
       }
       std::vector<Vec3> points;
       points.reserve(grown.size());
       for (const int node : grown) points.push_back(beams.rest()[static_cast<std::size_t>(node)]);
-      const std::vector<SolidPlace> places = placesOnOrgan(organ, points);
+      const std::vector<MaterialPoint> places = placesOnOrgan(organ, points);
       for (std::size_t i = 0; i < grown.size(); ++i) {
         Tie tie;
         tie.body = {organ, organs_.size() + home[v].tree};

@@ -160,7 +160,7 @@ Times strokes(Carving& body, int count, double toolRadius, double scale = 1.0) {
   Times times;
   const double overhead = clockOverhead();
   const double depth = carveDepth * body.model.lattice.cell();
-  const RestingTissue tissue(body.model.lattice);
+  const UndeformedTissue tissue(body.model.lattice);
   for (int i = 0; i < count; ++i) {
     SweptCapsule c;
     c.radius = toolRadius;

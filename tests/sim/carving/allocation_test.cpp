@@ -40,7 +40,7 @@ TEST(Allocation, NoStrokeAllocates) {
   surface.rebuild(field);
   Fill fill(model.lattice, 4);
   fill.rebuild(field);
-  const RestingTissue tissue(model.lattice);
+  const UndeformedTissue tissue(model.lattice);
   const double depth = carveDepth * model.lattice.cell();
   Random random(8, 8);
   const Box box{{-0.02, -0.015, -0.005}, {0.02, 0.015, 0.008}};
