@@ -121,7 +121,7 @@ void checkOptions(const TableStudyOptions& options) {
   if (options.occasion == options.baselineOccasion) fail("the baseline's occasion is the outcome's");
 }
 
-/// What the protocol makes of the options.
+/// Options after applying the protocol.
 TableStudyOptions chosen(const CsvTable& table, TableStudyOptions options) {
   if (!options.protocol) return options;
   chooseByProtocol(options, *options.protocol);

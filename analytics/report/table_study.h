@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A study of a table from elsewhere: one row per participant, or per participant and occasion.
+// A study of an imported table: one row per participant, or per participant and occasion.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace calot::analytics {
 
-/// With a protocol, groups, the better one, attempt rule and family are the protocol's, whatever stands here.
+/// A protocol overrides groups, the better one, attempt rule and family.
 struct TableStudyOptions : StudyChoices {
   std::optional<Protocol> protocol;
   std::string participantColumn, groupColumn;
@@ -26,7 +26,7 @@ struct TableStudyOptions : StudyChoices {
 /// Two groups side by side, one value per participant. An empty outcome cell is a missing value, and whoever has no row
 /// at an occasion where others have one is named. With a baseline the outcome is also compared by analysis of
 /// covariance. A protocol's hypothesis is about the column of its outcome's name, or of its checkpoint's and subject's
-/// ("path-length left"); the study stays exploratory, for a table does not say when its figures came about.
+/// ("path-length left"); the study stays exploratory, since a table does not say when its figures were obtained.
 /// @throws Error 2 for a column or occasion that is not there, Error 4 for a cell that is no finite number, Error 3
 /// when there are not two independent groups or a participant has several rows and there is no rule: rows of one person
 /// are not independent.

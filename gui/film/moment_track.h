@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a recording says of itself beside the pictures: phase, events, checkpoints, paths of the tools.
+// Recorded data shown with the frames: phase, events, checkpoints, paths of the tools.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace calot::gui {
 
-/// What is told of one moment of an attempt.
+/// Data of one moment of an attempt.
 struct Moment {
   struct Line {
     std::string text;
@@ -36,14 +36,14 @@ struct Moment {
   std::array<std::vector<Place>, handCount> path;  ///< of the simulated tips, oldest first
 };
 
-/// Reads what a recording's steps recorded of themselves, and sums up: from its first step on where checkpoints are
-/// asked for, else from as long before the first moment as what is told lasts.
+/// Reads the recorded results of a recording's steps: from its first step if checkpoints are requested, else from as
+/// long before the first moment as events and paths stay visible.
 class MomentTrack {
  public:
   static constexpr double eventSeconds = 5.0;
   static constexpr double pathSeconds = 3.0;
 
-  /// @param checkpoints are asked for: they are computed as the track goes on
+  /// @param checkpoints requested ones are updated as the track advances
   /// @throws Error (usage) for a golden recording, which holds no results of its steps; (damaged) where it can't be
   /// read
   MomentTrack(const std::filesystem::path& recording, bool checkpoints);
@@ -51,7 +51,7 @@ class MomentTrack {
   MomentTrack(const MomentTrack&) = delete;
   MomentTrack& operator=(const MomentTrack&) = delete;
 
-  /// After step n. Only forward. @pre n is not before that of the last call, and below the recording's stepCount()
+  /// Data after step n; forward only. @pre n is not before that of the last call, and below the recording's stepCount()
   [[nodiscard]] Moment at(std::uint64_t n);
 
  private:
@@ -80,7 +80,7 @@ class MomentTrack {
   double checkpointsAt_ = -1.0;  ///< when they were last computed (s)
 };
 
-/// Does a recording hold the results of its steps? A golden one does not.
+/// Does a recording hold the results of its steps? Golden recordings do not.
 [[nodiscard]] bool hasResults(const recorder::Recording& recording);
 
 /// Per phase of the procedure (identification to dissection): when it first began (s), or -1. @throws Error (damaged)

@@ -170,7 +170,7 @@ class Maker {
  private:
   void add(Appearance appearance, Mesh mesh) { parts.push_back({appearance, std::move(mesh)}); }
 
-  // What all instruments with jaws share.
+  // Common parts of all instruments with jaws.
   void jawed(double jawLength, double clevisLength) {
     const double hinge = -jawLength;
     const double sleeveEnd = hinge - clevisLength;

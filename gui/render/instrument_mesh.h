@@ -11,9 +11,9 @@ struct InstrumentPart {
               ///< (m)
 };
 
-/// Shaft from beyond the port to the tip, and what the kind of instrument carries there: two jaws opened by
-/// instrument.jaw between them (grasper, clip applier with a loaded clip, scissors), or an L hook. Sizes follow 5 mm
-/// instruments of the trade and scale with the shaft's radius.
+/// Shaft from beyond the port to the tip, and its end effector: two jaws opened by instrument.jaw (grasper,
+/// clip applier with a loaded clip, scissors), or an L hook. Sizes follow commercial 5 mm instruments and scale
+/// with the shaft's radius.
 [[nodiscard]] std::vector<InstrumentPart> makeInstrument(const InstrumentView& instrument);
 
 }  // namespace calot::gui

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene view to pixels, off screen. The renderer knows SceneView and nothing behind it, so that film, trainer and
-// dashboard share one way of drawing, and a picture can never change a simulation.
+// Scene view to pixels, off screen. The renderer depends only on SceneView, so that film, trainer and dashboard share
+// it and a picture can never change a simulation.
 #pragma once
 
 #include <memory>
@@ -28,9 +28,9 @@ inline constexpr int largestSide = 4096;                ///< of a picture (pixel
 inline constexpr long long mostPixels = 3840LL * 2160;  ///< width times height
 
 /// Draws scene views. Owns a thread with an OpenGL context of its own: a software context on the thread of a window
-/// system corrupts that window system's. One picture at a time; calls from several threads wait for each other.
-/// The same view gives the same bytes, in every run and with any number of threads of the machine; other CPUs may
-/// differ by one level in a few channels.
+/// system corrupts that window system's. One picture at a time; calls from several threads wait for each other. The
+/// same view gives the same bytes, in every run and with any number of threads of the machine; other CPUs may differ by
+/// one level in a few channels.
 class Renderer {
  public:
   /// @throws calot::Error (failure) if this machine has no OpenGL 4.5 off screen.
@@ -44,7 +44,7 @@ class Renderer {
   /// @throws calot::Error: usage if the size is outside the limits above; damaged if the view has a number that is not
   /// finite, a triangle that names no vertex, a sheet that names no strand, a strand without condition or with an alpha
   /// outside [0, 1], a puff that is none, or a field of view outside (0.05, 3.0) rad; failure if there is no memory.
-  /// @param smoke what a view knows nothing of (SmokeTrail); drawn over the rest
+  /// @param smoke smoke (SmokeTrail), which is not part of a view; drawn last
   [[nodiscard]] Image render(const SceneView& view, int width, int height, const RenderSettings& settings = {},
                              std::span<const Puff> smoke = {});
   [[nodiscard]] Image render(const SceneView& view, int width, int height, Quality quality) {
@@ -53,7 +53,7 @@ class Renderer {
     return render(view, width, height, settings);
   }
 
-  /// What draws, for a log: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
+  /// Name of the graphics driver, for logs: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
   [[nodiscard]] std::string description() const;
 
  private:

@@ -18,7 +18,7 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const st
   if (std::filesystem::is_directory(status)) throw Error(ExitCode::damaged, name + ": a folder; a file is wanted");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(ExitCode::damaged, name + ": cannot be opened for reading");
-  // Read piece by piece: a size that was asked for before would be wrong for a pipe or a growing file.
+  // Read in pieces: a size queried in advance would be wrong for a pipe or a growing file.
   std::vector<std::byte> bytes;
   std::array<char, 65536> piece{};
   while (in.read(piece.data(), piece.size()), in.gcount() > 0) {

@@ -6,7 +6,7 @@
 
 namespace calot::recorder {
 
-/// @throws Error (usage) where `path` is a folder, exists and `force` is not set, or its folder does not exist: asked
+/// @throws Error (usage) where `path` is a folder, exists and `force` is not set, or its folder does not exist: call
 /// before long work whose result goes there.
 void refuseOutput(const std::filesystem::path& path, bool force);
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr char ok = 'r', refused = 'e';
 
-/// Runs the task and sends what came of it: a letter, for an error its exit code as a letter, then the text.
+/// Runs the task and sends its outcome: a letter, for an error its exit code as a letter, then the text.
 [[noreturn]] void runChild(int out, const std::function<std::string()>& task) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit noCore{0, 0};

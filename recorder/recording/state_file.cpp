@@ -156,7 +156,7 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
 
 StateFile readStateFile(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw Error(ExitCode::damaged, file.string() + ": no such file");
-  // The library reads it once in a child: what makes it crash ends the child only.
+  // A child process reads it once first, so that a crash of the library ends only the child.
   runGuarded(file.string(), [&] {
     readHere(file);
     return std::string();

@@ -10,8 +10,8 @@
 
 namespace calot::recorder {
 
-/// The performer for a scene's task: where there is something to clear, divide or free, one in closed loop
-/// (OperationSource); else one that touches the organs (PerformerSource).
+/// The performer for a scene's task: closed loop (OperationSource) if there is something to clear, divide or free; else
+/// one that touches the organs (PerformerSource).
 /// @throws Error (usage) where the scene offers a hand nothing to do.
 std::unique_ptr<SampleSource> makePerformer(const PerformerProfile& profile, const SceneDescription& scene,
                                             std::uint64_t seed);
