@@ -6,7 +6,7 @@
 //   unilateral  1 row   0 <= lambda  _|_  gap >= 0
 //   frictional  3 rows  the first as above; the other two, tangential slip, with |lambda_t| <= mu lambda_n and slip
 //                       against the force where that bound is reached (Coulomb; De Saxce and Feng 1998)
-//   bilateral   3 rows  gap = 0 as long as |lambda| <= limit; at the limit, the point is pulled through
+//   bilateral   3 rows  gap = 0 as long as |lambda| <= limit; at the limit, the point slips
 #pragma once
 
 #include <cstdint>

@@ -255,23 +255,23 @@ void NearTriangles::rebuild(const SurfaceSearch& search, std::uint32_t patch, st
   displaced_.assign(node.size(), rounding);
 }
 
-Near NearTriangles::nearest(const SurfaceSearch& search, std::size_t place, double reach) {
+Near NearTriangles::nearest(const SurfaceSearch& search, std::size_t index, double reach) {
   const List& list = list_[patch_];
-  const int vertex = search.a().patchNodes(patch_)[place];
+  const int vertex = search.a().patchNodes(patch_)[index];
   const Vec3& p = search.positionA()[static_cast<std::size_t>(vertex)];
   const double limit = search.limitOf(static_cast<std::size_t>(vertex), reach);
   Near near;
   double best = limit * limit;
-  double farthest = limit + displaced_[place] +
+  double farthest = limit + displaced_[index] +
                     rounding;  // stored distance above which an entry cannot be nearer than the best so far
   std::size_t tested = 0;
   const auto offer = [&](std::uint32_t triangle) {
     const double before = best;
     search.offer(p, triangle, near, best);
-    if (best < before) farthest = std::sqrt(best) + displaced_[place] + rounding;
+    if (best < before) farthest = std::sqrt(best) + displaced_[index] + rounding;
   };
-  const std::size_t end = list.entryEnd[place];
-  for (std::size_t e = place == 0 ? 0 : list.entryEnd[place - 1]; e < end;) {
+  const std::size_t end = list.entryEnd[index];
+  for (std::size_t e = index == 0 ? 0 : list.entryEnd[index - 1]; e < end;) {
     // Test the nearest two one at a time: one of them is usually the result. Lanes then exclude most of the others.
     const std::size_t batch = std::min(end - e, tested < 2 ? std::size_t{1} : std::size_t{laneCount});
     std::array<std::uint32_t, laneCount> triangle{};

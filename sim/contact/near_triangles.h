@@ -53,8 +53,8 @@ class NearTriangles {
   /// all of them, else rebuilds them.
   /// @param near patches whose bounds overlap those of the patch grown by search(), or more
   void prepare(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
-  /// Same result as SurfaceSearch::nearest() with limitOf(). @param place index of the vertex in its patch
-  [[nodiscard]] Near nearest(const SurfaceSearch& search, std::size_t place, double reach);
+  /// Same result as SurfaceSearch::nearest() with limitOf(). @param index of the vertex in its patch
+  [[nodiscard]] Near nearest(const SurfaceSearch& search, std::size_t index, double reach);
 
   SearchScratch& scratch() { return scratch_; }
 

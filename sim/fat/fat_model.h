@@ -44,7 +44,7 @@ struct FatSettings {
 struct FatTie {
   int cube = 0;
   MaterialPoint point;                      ///< centroid of the nodes that it represents
-  Vec3 rest = Vec3::Zero();                 ///< place.of(rest positions), bit for bit: no force at rest
+  Vec3 rest = Vec3::Zero();                 ///< point.of(reference positions), bit for bit: no force at rest
   double stiffness = 0.0;                   ///< with all of its nodes inside (N/m)
   double damping = 0.0;                     ///< N s/m
   std::size_t firstNode = 0, lastNode = 0;  ///< lattice nodes [first, last) of FatModel::tieNodes()

@@ -39,7 +39,7 @@ struct DistanceTransform {
 /// Open surfaces (edges without a partner in the opposite direction) and surfaces that leave the lattice or are inside
 /// out are refused with a reason.
 ///
-/// @param mesh outward, m; vertices at one place are joined beforehand (repairSurface)
+/// @param mesh outward, m; coincident vertices are joined beforehand (repairSurface)
 /// @param band in cells, greater than 1
 /// @pre indices are in range
 [[nodiscard]] DistanceTransform closestPointTransform(const TriangleMesh& mesh, const BrickLattice& lattice,

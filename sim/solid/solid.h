@@ -38,7 +38,7 @@ struct Attachment {
 };
 
 /// Coupled attachments, to a body that responds as one:
-///   f_i = force_i - sum_j damper_ij v_j, v_j the velocity of place j at the step's end.
+///   f_i = force_i - sum_j damper_ij v_j, v_j the velocity of point j at the end of the step.
 struct JointAttachment {
   std::vector<MaterialPoint> point;
   std::vector<Vec3> force;     ///< per point (N)

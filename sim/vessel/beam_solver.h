@@ -45,10 +45,10 @@ struct BeamReport {
 };
 
 /// With h = dt, u the velocities and angular velocities of all nodes and K the Gauss-Newton stiffness of
-/// sim/vessel/beam_element.h, K_g that of pulled chords, k and c those of the attachments:
+/// sim/vessel/beam_element.h, K_g that of chords in tension, k and c those of the attachments:
 ///   [(1 + alpha h) M + (h^2 + beta h) K + h^2 (K_g + k) + h c] du
 ///     = h (f_external + f(x) - (h + beta) K u - h K_g u - alpha M u + attachments at x + h u),
-///   u += du,  x += h v,  q = turned(q, h w).
+///   u += du,  x += h v,  q = rotated(q, h w).
 /// One linearisation a step, as for solids. The matrix is factorised once a step, exactly, and kept for contact. After
 /// the first step with a model nothing allocates; nothing throws.
 class BeamSolver {
