@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Refuses what the determinism contract forbids (docs/determinism.md), the wrong includes, and unkept files.
+# Refuses what the determinism contract forbids (docs/determinism.md), wrong includes, unkept files and retired words.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -10,3 +10,5 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$python" -B "$root/tests/structure/includes_test.py" "$root"
 "$python" -B "$root/tests/structure/house_test.py" --self-test
 "$python" -B "$root/tests/structure/house_test.py" "$root"
+"$python" -B "$root/tests/structure/words_test.py" --self-test
+"$python" -B "$root/tests/structure/words_test.py" "$root"
