@@ -175,7 +175,7 @@ void CarvedField::commit(CarvedBricks& bricks) {
   }
 }
 
-void CarvedField::prepare(CarvedBricks& bricks) const {
+void CarvedField::reserve(CarvedBricks& bricks) const {
   // Values only rise, up to the band: a brick entirely at the band never changes.
   std::size_t maximum = 0;
   for (std::size_t b = 0; b < inside_.size(); ++b) {

@@ -42,7 +42,7 @@ struct CarvedBricks {
 
 /// The dense field with the inside as bits. Derived from FieldModel and CarvedBricks; never saved. All changes are made
 /// in a stroke: begin(), writes, commit(). Allocates only in its constructor; commit() may grow CarvedBricks unless
-/// prepare() reserved its capacity.
+/// reserve() reserved its capacity.
 class CarvedField {
  public:
   /// @pre model.fault() is empty; the model outlives the field
@@ -79,7 +79,7 @@ class CarvedField {
   /// Ends a stroke: orders changed() and copies the changed bricks to State.
   void commit(CarvedBricks& bricks);
   /// Reserves the maximum capacity in State, so that no stroke allocates.
-  void prepare(CarvedBricks& bricks) const;
+  void reserve(CarvedBricks& bricks) const;
 
   /// Bricks of this stroke with a changed value, ascending after commit().
   [[nodiscard]] std::span<const std::uint32_t> changed() const { return changed_; }

@@ -79,8 +79,8 @@ void NearTriangles::begin(const SurfaceSearch& search) {
   triangles_.begin(search.b(), search.positionB());
 }
 
-void NearTriangles::prepare(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
-                            double reach) {
+void NearTriangles::updateLists(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                                double reach) {
   patch_ = patch;
   if (!isValid(search, patch, near, reach)) rebuild(search, patch, near, reach);
 }

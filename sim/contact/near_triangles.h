@@ -52,7 +52,7 @@ class NearTriangles {
   /// Prepares nearest() for the open vertices of a patch (SearchScratch::open): reuses the lists if they are valid for
   /// all of them, else rebuilds them.
   /// @param near patches whose bounds overlap those of the patch grown by search(), or more
-  void prepare(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
+  void updateLists(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
   /// Same result as SurfaceSearch::nearest() with limitOf(). @param index of the vertex in its patch
   [[nodiscard]] Near nearest(const SurfaceSearch& search, std::size_t index, double reach);
 

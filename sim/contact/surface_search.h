@@ -112,7 +112,7 @@ class SurfaceSearch {
   [[nodiscard]] Near nearest(int vertex, const Vec3& p, double limit);
 
   /// Tests one triangle that is not excluded, for callers that enumerate triangles themselves: accepts it if its
-  /// squared distance is at most `best` (m^2) and a valid contact, and lowers `best`.
+  /// squared distance is at most `best` (m^2) and it is a valid contact, and lowers `best`.
   void offer(const Vec3& p, std::size_t triangle, Near& near, double& best) const;
   /// Computes side, distance and normal of the point found.
   void measure(const Vec3& p, Near& near) const;

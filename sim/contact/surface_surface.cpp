@@ -47,7 +47,7 @@ void surfaceContacts(const SurfacePair& pair, const ContactSurface& a, std::span
     }
     if (scratch.open.empty()) continue;
     if (memory != nullptr) {
-      memory->prepare(search, query, scratch.near, reach);
+      memory->updateLists(search, query, scratch.near, reach);
     } else {
       search.gather();
     }

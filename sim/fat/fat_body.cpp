@@ -92,7 +92,7 @@ FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
   assert(before_.size() == state.solid.position.size());
   const double cell = model_.lattice().cell();
   const double depth = carveDepth * cell;
-  if (state.carved.brick.capacity() == 0) field_.prepare(state.carved);
+  if (state.carved.brick.capacity() == 0) field_.reserve(state.carved);
   FatStroke out;
   const double volumeBefore = volume_.total();
   motion_.choose(tool, state.solid.position, before_, fill_, depth);

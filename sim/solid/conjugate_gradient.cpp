@@ -27,8 +27,8 @@ sweeps::Slices ConjugateGradient::slicesOf(const BlockMatrix& matrix, std::span<
       matrix.slices()};
 }
 
-void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values,
-                                std::span<const ExtraBlock> extra) {
+void ConjugateGradient::precompute(const BlockMatrix& matrix, std::span<const float> values,
+                                   std::span<const ExtraBlock> extra) {
   extra_.assign(extra.begin(), extra.end());
   inverse_.resize(matrix.slices() * 9 * laneCount);
   sweeps::invertDiagonal(slicesOf(matrix, values), inverse_.data());

@@ -47,10 +47,10 @@ class ConjugateGradient {
   /// Inverts the diagonal blocks.
   /// @param extra E, a few more blocks of the matrix; copied for the solves
   /// @pre the diagonal blocks are positive definite.
-  void prepare(const BlockMatrix& matrix, std::span<const float> values, std::span<const ExtraBlock> extra = {});
+  void precompute(const BlockMatrix& matrix, std::span<const float> values, std::span<const ExtraBlock> extra = {});
 
   /// Solves A x = b to the given tolerance. Layout of b and x: BlockMatrix vectors.
-  /// @pre prepare() was called with these values.
+  /// @pre precompute() was called with these values.
   SolveReport solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
                     std::span<float> x, const SolveGoal& goal);
 

@@ -228,7 +228,7 @@ SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState&
     }
   });
   wholeMass_ = model.wholeMass();
-  cg_.prepare(system_->matrix(), values_, extra_);
+  cg_.precompute(system_->matrix(), values_, extra_);
   const SolveReport report = solve(settings);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());
   for (const int f : model.freeNodes()) {

@@ -117,7 +117,7 @@ struct Carving {
         islands(model.lattice, anchors(model.lattice)),
         surface(model.lattice),
         adaptive(model.lattice) {
-    field.prepare(state);
+    field.reserve(state);
     islands.rebuild(field);
     surface.rebuild(field);
     adaptive.rebuild(field);

@@ -33,7 +33,7 @@ TEST(Allocation, NoStrokeAllocates) {
   const FieldModel model = test::lump(65);
   CarvedField field(model);
   CarvedBricks state;
-  field.prepare(state);
+  field.reserve(state);
   Islands islands(model.lattice, test::floorAnchors(model.lattice));
   islands.rebuild(field);
   CarvedSurface surface(model.lattice);

@@ -81,7 +81,7 @@ void expectSound(const FatBody& body) {
     std::sort(sorted.begin(), sorted.end());
     ASSERT_EQ(sorted, triangles);
     for (std::size_t c = 0; c < 8; ++c) {
-      const MaterialPoint place = body.contact().anchor(node);
+      const MaterialPoint point = body.contact().anchor(node);
       bool held = false;
       for (const std::int32_t cube : body.model().cubesAt(point.node[c])) held = held || body.fill()[slot(cube)] > 0.0;
       ASSERT_TRUE(held);
