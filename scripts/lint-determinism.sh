@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Refuses what the determinism contract forbids (docs/determinism.md), the wrong includes, unkept files, and flags in libraries.
+# Refuses what the determinism contract forbids (docs/determinism.md), wrong includes, unkept files, flags in libraries and retired words.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -12,3 +12,5 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$python" -B "$root/tests/structure/house_test.py" "$root"
 "$python" -B "$root/tests/structure/errors_test.py" --self-test
 "$python" -B "$root/tests/structure/errors_test.py" "$root"
+"$python" -B "$root/tests/structure/words_test.py" --self-test
+"$python" -B "$root/tests/structure/words_test.py" "$root"

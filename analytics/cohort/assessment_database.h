@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The part of a cohort database that assessment writes: protocols as they were registered, filled forms, norms
-// (schemas/cohort/0004_assessment.sql). Participants, attempts and values are CohortDatabase's.
+// Assessment tables of a cohort database: registered protocols, completed forms and norms
+// (schemas/cohort/0004_assessment.sql). CohortDatabase manages participants, attempts and values.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@
 
 namespace calot::analytics {
 
-/// A document of which versions are kept: a protocol, a form.
+/// A versioned document: a protocol or a form.
 struct StoredDocument {
   std::string name;
   std::uint32_t version = 1;
@@ -29,7 +29,7 @@ struct RegisteredProtocol : StoredDocument {
   std::string by;
 };
 
-/// One filled form: of an attempt by a rater, or by a participant about what they took part in.
+/// One completed form: by a rater about an attempt, or by a participant about their participation.
 struct Rating {
   std::string form;
   std::uint32_t formVersion = 1;
@@ -61,7 +61,7 @@ struct NormEvidence {
   std::string statement, fileName, sha256, by, attachedUtc;
 };
 
-/// A named, versioned cohort that others are held against, frozen when it was made.
+/// A named, versioned reference cohort, frozen when it was made.
 struct Norm {
   std::string name;
   std::uint32_t version = 1;  ///< set by the database
@@ -86,7 +86,7 @@ class AssessmentDatabase {
   AssessmentDatabase(const AssessmentDatabase&) = delete;
   AssessmentDatabase& operator=(const AssessmentDatabase&) = delete;
 
-  /// Stores a protocol with the time of now. The same text again changes nothing and answers with what is there.
+  /// Stores a protocol with the current time. Storing the same text again changes nothing and returns the stored one.
   /// @param[out] added whether it is new
   /// @throws Error (refused) where this version, or a higher one, is there with another text; Error (invalid) where
   /// nobody registers.

@@ -7,11 +7,11 @@
 
 namespace calot::analytics {
 
-/// What a look at a whole cohort database found.
+/// Result of checking a whole cohort database.
 struct CohortCheck {
   int schema = 0;
   std::uint64_t participants = 0, attempts = 0, values = 0;
-  std::vector<std::string> faults;  ///< one line each; empty: it is sound
+  std::vector<std::string> faults;  ///< problems, one line each; empty: the database is sound
 };
 
 /// SQLite's integrity check (with the constraints of every column), foreign keys, attempts without a recording, and

@@ -205,7 +205,7 @@ void CohortDatabase::includeAttempt(const std::string& attempt, const std::strin
 
 std::string CohortDatabase::attemptNamed(const std::string& text) const {
   return guarded(path(), [&] {
-    // Compared letter by letter: no pattern that the text could hold means anything.
+    // Compared literally: wildcards in the text have no effect.
     SQLite::Statement find(*storage_->db,
                            "SELECT uuid FROM attempt WHERE substr(uuid, 1, ?) = ? ORDER BY uuid LIMIT 2");
     find.bind(1, static_cast<std::int64_t>(text.size()));

@@ -17,7 +17,7 @@
 
 namespace calot::analytics {
 
-/// What a replay said of a recording. Numbers are stored and never reused.
+/// Verdict of a replay on a recording. Values are stored and never reused.
 enum class Verdict : std::uint8_t {
   verified = 0,          ///< every digest and force equal, bit for bit
   diverged = 1,          ///< chain broken or a difference
@@ -30,7 +30,7 @@ std::string nameOf(Verdict verdict);  ///< "verified", "diverged", "damaged", "n
 struct Verification {
   Verdict verdict = Verdict::notChecked;
   std::string text;      ///< one line: where it diverged, what is damaged; or empty
-  std::string software;  ///< what judged: "calot 0.1.0"
+  std::string software;  ///< judging program: "calot 0.1.0"
 };
 
 /// A person behind a pseudonym. Experience is recorded as criteria ("laparoscopies" = "240"), never as a label alone.
@@ -43,14 +43,14 @@ struct Participant {
   std::map<std::string, std::string> consent;  ///< purpose -> date (YYYY-MM-DD)
 };
 
-/// What setParticipant() changes: only what is given.
+/// Fields that setParticipant() changes; empty ones are left unchanged.
 struct ParticipantChange {
   std::optional<std::string> group, arm, site;
   std::map<std::string, std::string> experience;
   std::map<std::string, std::string> consent;
 };
 
-/// A station's word on a recording's content: an Ed25519 signature of its chain head, found valid.
+/// A station's valid Ed25519 signature of a recording's chain head.
 struct RecordingSignature {
   std::array<std::byte, 32> publicKey{};
   std::array<std::byte, 64> value{};
@@ -92,12 +92,12 @@ struct AttemptRow : AttemptRecord {
   std::string group, arm, site;  ///< the participant's
   std::string verifiedUtc;       ///< when the verdict was reached
   std::string importedUtc;       ///< when the attempt first came in
-  bool withdrawn = false;        ///< the participant takes no part in research any more
+  bool withdrawn = false;        ///< the participant has withdrawn from research
   bool excluded = false;         ///< by hand, or withdrawn
   std::string exclusionReason;   ///< reason and by whom
 };
 
-/// What storeAttempt() did.
+/// Result of storeAttempt().
 enum class Imported : std::uint8_t { added, unchanged, extended };
 
 struct GroupCount {
@@ -112,9 +112,9 @@ struct AttemptValue {
   CheckpointValue value;
 };
 
-/// One connection to a cohort database. WAL mode, foreign keys on, strict tables; two processes may write at once (the
-/// second waits). Every changing call is one transaction: killed in the middle, nothing of it is there. Not for use by
-/// two threads at once: open one each.
+/// One connection to a cohort database: WAL mode, foreign keys, strict tables. Two processes may write at once (the
+/// second waits). Every modifying call is one transaction, so that a killed process leaves no partial change. Not
+/// thread-safe: open one connection per thread.
 ///
 /// Every call throws calot::Error with the file's name: 4 (missing, not a database, another program's database,
 /// corrupt), 5 (schema of a newer Calot), 3 (conflict), 1 (locked beyond the waiting time, read-only, disk full).
@@ -123,7 +123,7 @@ class CohortDatabase {
   enum class Access : std::uint8_t {
     read,    ///< must exist; nothing is changed
     write,   ///< must exist; older schemas are migrated
-    create,  ///< as write, and made when it doesn't exist
+    create,  ///< as write, and created if it does not exist
   };
 
   CohortDatabase(const std::string& path, Access access, std::chrono::milliseconds patience = std::chrono::seconds(10));
@@ -157,7 +157,7 @@ class CohortDatabase {
   /// Marks an attempt as excluded from studies, or replaces the mark; audited. @throws Error (invalid) without reason
   /// or name; (refused) if there is no such attempt.
   void excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
-  /// Takes the mark away; audited. @throws Error as excludeAttempt, and 3 if the attempt is not excluded.
+  /// Removes the mark; audited. @throws Error as excludeAttempt, and 3 if the attempt is not excluded.
   void includeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
 
   /// The uuid that begins with `text`. @throws Error (refused) if there is none, or more than one.

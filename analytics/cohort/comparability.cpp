@@ -9,7 +9,7 @@ namespace calot::analytics {
 
 std::string comparabilityKey(const recorder::AttemptHeader& header) {
   const auto orDash = [](const std::string& s) { return s.empty() ? std::string("-") : s; };
-  // Without a device, what acts stands for it: a performer's hands are not a person's.
+  // Without a device, the kind of operator takes its place: a performer's hands are not a human's.
   const std::string device =
       header.provenance.device.empty() ? wordFor(header.provenance.kind) : header.provenance.device;
   return fmt::format("{}/{} device={} calibration={} simulation={} results={} mode={}", header.sceneName,

@@ -16,7 +16,7 @@ namespace {
 
 using Access = CohortDatabase::Access;
 
-/// Refuses what SQLite would silently take for an empty database. @returns whether the file is there.
+/// Refuses files that SQLite would silently treat as an empty database. @returns whether the file exists.
 bool checkFile(const std::string& path, Access access) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -56,8 +56,8 @@ std::unique_ptr<SQLite::Database> connect(const std::string& path, Access access
   try {
     pragma(*db, "schema_version");
   } catch (const SQLite::Exception& error) {
-    // A reader of a WAL database makes its index beside it. Where it may not (read-only medium) and nobody writes, the
-    // file alone is the whole database.
+    // A reader of a WAL database creates an index file beside it. If it may not (read-only medium) and nobody writes,
+    // the file alone is the whole database.
     const int code = error.getErrorCode() & 0xFF;
     if ((code != SQLITE_CANTOPEN && code != SQLITE_READONLY) || std::filesystem::exists(path + "-wal")) throw;
     db = std::make_unique<SQLite::Database>(uriOf(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI, patience);
@@ -101,7 +101,7 @@ int schemaOf(SQLite::Database& db, const std::string& path) {
   return version;
 }
 
-/// Keeps the database as it was beside it: migrations only go forward. A backup that is there already stays, too.
+/// Backs the database up beside it, since migrations cannot be reversed. An existing backup is kept.
 void backUp(SQLite::Database& db, const std::string& path, int version) {
   namespace fs = std::filesystem;
   const std::string name = fmt::format("{}{}{}", path, backupMark, version);
@@ -115,7 +115,7 @@ void backUp(SQLite::Database& db, const std::string& path, int version) {
     copy.bind(1, fresh);
     copy.exec();
     const int copied = pragma(*std::make_unique<SQLite::Database>(fresh, SQLite::OPEN_READONLY), "user_version");
-    if (copied != version) {  // another process was first, and migrated it
+    if (copied != version) {  // another process has already migrated it
       fs::remove(fresh);
       return;
     }
@@ -136,7 +136,7 @@ void backUp(SQLite::Database& db, const std::string& path, int version) {
 }
 
 void migrate(SQLite::Database& db, const std::string& path) {
-  // Asked again inside the transaction: another process may just have done it.
+  // Checked again inside the transaction: another process may have migrated it meanwhile.
   SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
   const std::vector<Migration>& migrations = cohortMigrations();
   for (auto version = static_cast<std::size_t>(schemaOf(db, path)); version < migrations.size(); ++version) {

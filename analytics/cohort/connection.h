@@ -13,7 +13,7 @@
 
 namespace calot::analytics {
 
-/// "Calo": what a cohort database says of itself in SQLite's header.
+/// "Calo": application id of a cohort database in SQLite's header.
 inline constexpr int cohortApplicationId = 0x43616C6F;
 
 /// Between a database's name and the number of the schema that a migration's backup of it has.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How an attempt enters the database a first and a second time.
+// First and repeated import of an attempt.
 #include <fmt/format.h>
 
 #include <limits>
@@ -164,7 +164,7 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
   if (const std::string what = contradiction(known, a); !what.empty()) throw conflict("with another " + what);
   if (a.chainHead != known.chainHead && (a.steps < known.steps || known.complete))
     return Imported::unchanged;  // an earlier copy
-  // A build that can't judge takes nothing away from what one that could has found.
+  // A build that cannot judge a recording does not overwrite the verdict of one that could.
   const bool blind =
       a.verification.verdict == Verdict::notCheckableHere || a.verification.verdict == Verdict::notChecked;
   const std::int64_t id = attemptId(db, a.uuid);

@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr std::string_view magic = "calot-key-file-1";
 constexpr std::size_t headBytes = magic.size() + 16 + crypto_pwhash_SALTBYTES + crypto_secretbox_NONCEBYTES;
 constexpr std::size_t mostBytes = std::size_t{16} << 20U;
-// What a file may ask for; more would only be there to hang the reader.
+// Upper limits of a file's parameters; larger ones could only serve to hang the reader.
 constexpr std::uint64_t mostPasses = 16, mostMemory = std::uint64_t{1} << 30U;
 
 const unsigned char* bytesOf(const std::string& text, std::size_t at = 0) {
@@ -36,7 +36,7 @@ std::uint64_t numberAt(const std::string& from, std::size_t at) {
   return value;
 }
 
-/// The key that seals; wiped when it goes.
+/// Encryption key; wiped on destruction.
 class SealingKey {
  public:
   SealingKey(const std::filesystem::path& path, const std::string& passphrase, const unsigned char* salt,

@@ -7,13 +7,13 @@
 
 namespace calot::analytics {
 
-/// Who is behind a pseudonym: a file apart from the cohort database, for the one person who may know. Its content is
-/// encrypted and authenticated (XSalsa20-Poly1305) with a key from a passphrase (Argon2id, 256 MiB). Layout: 16 bytes
-/// "calot-key-file-1", 8 bytes each of Argon2's passes and memory (little-endian), 16 of salt, 24 of nonce, then the
-/// sealed JSON object pseudonym -> name.
+/// Identities behind pseudonyms: a file separate from the cohort database, for the one person authorised to read it.
+/// Its content is encrypted and authenticated (XSalsa20-Poly1305) with a key from a passphrase (Argon2id, 256 MiB).
+/// Layout: 16 bytes "calot-key-file-1", 8 bytes each of Argon2's passes and memory (little-endian), 16 of salt, 24 of
+/// nonce, then the sealed JSON object pseudonym -> name.
 ///
-/// The file must be readable by its owner alone. It is replaced as a whole, with a new salt and nonce each time; what
-/// a backup holds of an older one is not reached.
+/// The file must be readable by its owner alone. It is replaced as a whole, with a new salt and nonce each time; copies
+/// in backups are out of reach.
 class KeyFile {
  public:
   /// Opens a file; one that is not there is empty. @throws Error (refused) the passphrase is not the file's; (damaged)

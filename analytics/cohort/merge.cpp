@@ -32,7 +32,7 @@ bool mayBeFilled(const std::string& table) {
   return names.count(table) > 0;
 }
 
-/// When a row was written says nothing of what it says, unless the row has no other name.
+/// Timestamps do not count as content, unless a row has no other key.
 bool isTime(const std::string& column) {
   return column.size() > 4 && column.compare(column.size() - 4, 4, "_utc") == 0;
 }
@@ -56,7 +56,7 @@ class Merge {
   }
 
  private:
-  /// What was withdrawn here stays out; what was withdrawn there must go here first.
+  /// Attempts withdrawn here stay out; attempts withdrawn there must first be withdrawn here.
   void findSkipped() {
     std::map<std::string, std::pair<int, int>> attemptsOf;  // pseudonym -> all, withdrawn
     for (const AttemptRow& a : theirs_) {
@@ -116,7 +116,7 @@ class Merge {
         known->verification.verdict != Verdict::notChecked && known->verification.verdict != Verdict::notCheckableHere;
     const std::vector<CheckpointValue>* taken = &values;
     if (same) {
-      // The name of its file and its values stay; that it is one and the same attempt is still asked.
+      // File name and values are kept; identity of the attempt is still checked.
       incoming.fileName = known->fileName;
       if (judgedHere || !judgedThere) incoming.verification = known->verification;
       if (judgedHere || !readValues(into_, attemptId(into_, a.uuid)).empty()) taken = nullptr;
@@ -133,7 +133,7 @@ class Merge {
                        [&](const std::string& word) { return namesWord(about, word) || namesWord(detail, word); });
   }
 
-  /// Turns the numbers of other rows into those that they have here. @returns false where such a row stayed out.
+  /// Maps row ids of the other database to those of this one. @returns false where such a row stayed out.
   bool translate(const TableFacts& table, Row& row) const {
     for (const ForeignKey& key : table.foreign) {
       const auto map = numbers_.find(key.parent);
@@ -179,7 +179,7 @@ class Merge {
     }
   }
 
-  /// A key's entry as people know it: a pseudonym or a uuid in the place of a row's number.
+  /// A key's entry in readable form: a pseudonym or uuid instead of a row id.
   std::string named(const TableFacts& table, const std::string& column, const Cell& cell) const {
     for (const ForeignKey& key : table.foreign) {
       if (key.column != column || !std::holds_alternative<std::int64_t>(cell)) continue;

@@ -11,7 +11,7 @@ struct CohortMerge {
   std::uint64_t participants = 0, attempts = 0;  ///< taken in
   std::uint64_t extended = 0;                    ///< attempts of which the other database had more, or had judged
   std::uint64_t rows = 0;                        ///< of all other tables, taken in
-  std::uint64_t audit = 0;                       ///< rows of the audit trail, which say nothing new by themselves
+  std::uint64_t audit = 0;                       ///< rows of the audit trail, which carry no new content
   std::uint64_t filled = 0;                      ///< entries that were empty here
   std::uint64_t withdrawn = 0;                   ///< attempts that were withdrawn here and stay out
   std::vector<std::string> conflicts;            ///< one line each; then nothing was merged

@@ -15,7 +15,7 @@
 namespace calot::analytics {
 
 using Blob = std::vector<unsigned char>;
-/// What SQLite has in a column of a row: nothing, a number, a text or bytes.
+/// Content of a column of a row: null, number, text or bytes.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string, Blob>;
 using Row = std::map<std::string, Cell>;  ///< by column
 

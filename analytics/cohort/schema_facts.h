@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What SQLite says of the tables of a database: for work that must reach every table, those of later migrations too.
+// Schema information from SQLite, for operations on all tables including those of later migrations.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -23,15 +23,15 @@ struct TableFacts {
   std::vector<ForeignKey> foreign;  ///< of one column each
   /// The column that only numbers the rows: an integer primary key that is no foreign key; or empty.
   std::string number;
-  /// What makes two rows the same: the primary key, the first UNIQUE where the primary key only numbers, or all other
-  /// columns.
+  /// Columns that identify a row: the primary key, the first UNIQUE constraint if the primary key is a mere row id, or
+  /// all other columns.
   std::vector<std::string> key;
 };
 
 /// Every table but SQLite's own, those that others refer to first.
 std::vector<TableFacts> readTables(SQLite::Database& db);
 
-/// A name as SQL wants it.
+/// A name quoted for SQL.
 std::string quotedName(const std::string& name);
 
 }  // namespace calot::analytics

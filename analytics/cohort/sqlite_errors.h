@@ -7,10 +7,10 @@
 
 namespace calot::analytics {
 
-/// Words of SQLite that may quote what stands in a damaged file, with '?' for what is no ASCII letter.
+/// An SQLite message, which may quote content of a damaged file, with '?' for non-ASCII characters.
 std::string printable(std::string words);
 
-/// What an SQLite result code (with its message) means to who runs the command, as one line that names the file.
+/// One line for the user that explains an SQLite result code and names the file.
 Error databaseError(int sqliteCode, const std::string& message, const std::string& path);
 
 }  // namespace calot::analytics

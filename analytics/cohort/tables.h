@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading and writing single tables; CohortDatabase's calls put them together. Nothing here begins a transaction.
+// Access to single tables, combined by CohortDatabase. No function here begins a transaction.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>

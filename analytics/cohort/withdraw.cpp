@@ -24,7 +24,7 @@ bool wordLetter(char c) {
          static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// Rows whose parent is gone, in whatever table there is, until none is left.
+/// Deletes rows whose parent is gone, in all tables, until none is left.
 void deleteOrphans(SQLite::Database& db) {
   for (bool changed = true; changed;) {
     changed = false;
@@ -88,7 +88,7 @@ void leaveTombstone(SQLite::Database& db, const std::string& id, const Withdrawa
   }
 }
 
-/// The participant stays, with nothing that research gave or asked.
+/// The participant stays, without any research data.
 void leaveResearch(SQLite::Database& db, const std::string& pseudonym) {
   const std::int64_t id = participantId(db, pseudonym);
   for (const char* sql : {"UPDATE participant SET study_group = '', arm = '' WHERE id = ?",
@@ -119,7 +119,7 @@ void removeBackups(const std::string& path) {
   }
 }
 
-/// Nothing of what was deleted stays in free pages or in the log.
+/// Deleted content must not remain in free pages or in the log.
 void rebuild(SQLite::Database& db, const std::string& path) {
   const auto checkpoint = [&] {
     SQLite::Statement run(db, "PRAGMA wal_checkpoint(TRUNCATE)");

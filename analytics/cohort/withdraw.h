@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Taking a participant out of a cohort database for good (docs/cohort.md, "Withdrawal").
+// Permanent removal of a participant from a cohort database (docs/cohort.md, "Withdrawal").
 #pragma once
 
 #include <cstdint>
@@ -9,31 +9,31 @@
 namespace calot::analytics {
 
 enum class WithdrawalScope : std::uint8_t {
-  research,  ///< what was not training goes; the participant stays, out of every study
-  all,       ///< everything goes, the participant too
+  research,  ///< removes all but training data; the participant stays but is excluded from every study
+  all,       ///< removes everything, including the participant
 };
 
-/// Something that was written from the database for others to have.
+/// An export from the database for others.
 struct ExportRow {
   std::string utc, kind, target;
   bool operator==(const ExportRow&) const = default;
 };
 
-/// What a withdrawal takes away.
+/// Data that a withdrawal removes.
 struct Withdrawal {
   std::string pseudonym;
   WithdrawalScope scope = WithdrawalScope::all;
   bool known = false;                         ///< the database has such a participant
-  std::vector<std::string> attempts;          ///< uuids, with every branch of them, whoever made it
+  std::vector<std::string> attempts;          ///< uuids, including all branches by whomever
   std::vector<std::string> branchesOfOthers;  ///< those of `attempts` that another participant made
   std::vector<ExportRow> exports;             ///< that hold some of these attempts
 };
 
-/// Notes that attempts went into a file or folder for others to have. Idempotent within a second.
+/// Registers an export of attempts to a file or folder. Idempotent within a second.
 void recordExport(const std::string& path, const std::string& kind, const std::string& target,
                   const std::vector<std::string>& attempts);
 
-/// What would go; nothing is changed.
+/// Lists what would be removed; changes nothing.
 Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym, WithdrawalScope scope);
 
 /// Takes it away, in one transaction: every row that hangs on the attempts (and, of scope `all`, on the participant),
@@ -46,7 +46,7 @@ std::string withdraw(const std::string& path, const Withdrawal& withdrawal);
 /// Overwrites what earlier deletions left in the file and in its log, and removes the backups of migrations.
 void scrub(const std::string& path);
 
-/// Places ("table.column") in which some text of the database still holds one of the words, each as a whole word.
+/// Columns ("table.column") that still contain one of the words as a whole word.
 std::vector<std::string> placesNaming(const std::string& path, const std::vector<std::string>& words);
 
 /// Was the attempt withdrawn from this database?

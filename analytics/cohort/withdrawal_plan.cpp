@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a withdrawal would take, and the notes of what was handed out that it goes by.
+// Data that a withdrawal would remove, and the register of exports.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -7,8 +7,8 @@
 
 namespace calot::analytics {
 
-/// manifest.json of a bundle: what is in it, what was withheld and how names and dates were changed, for whoever gets
-/// it. @param bundle with all of its files but this one. @param scope to which the participants have consented.
+/// manifest.json of a bundle: its content, what was withheld, and how names and dates were changed. @param bundle with
+/// all of its files but this one. @param scope to which the participants have consented.
 std::string bundleManifest(const Bundle& bundle, const std::string& scope);
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a bundle is made of, and what must not be in it.
+// Data for a bundle, and original names that it must not contain.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace calot::analytics {
 
-/// Everything that the bundle is made of, read from the database.
+/// All data for the bundle, read from the database.
 struct BundleSource {
   std::vector<AttemptRow> attempts;
   std::map<std::string, Participant> participants;
@@ -27,9 +27,9 @@ struct BundleSource {
 
 BundleSource readBundleSource(const std::string& database);
 
-/// Why attempts are not handed out, in the order in which it is asked.
+/// Reasons for which attempts are withheld, in the order in which they are checked.
 const std::vector<std::string>& bundleReasons();
-/// Number of the reason that holds first; as many as there are reasons: the attempt is handed out.
+/// Index of the first reason that applies; equal to the number of reasons if the attempt is exported.
 std::size_t whyLeftOut(const AttemptRow& attempt, const BundleSource& source, const BundleOptions& options);
 
 /// Names of people, places, times and files.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each variable of an export means, for who reads it without this program.
+// Meaning of each variable of an export, for readers without this program.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,21 @@ struct CodebookEntry {
   std::string title;      ///< what it is, a clause
   std::string type;       ///< "number", "whole number", "text", "bytes in hexadecimal"
   std::string unit;       ///< SI, or empty
-  std::string allowed;    ///< values that it may have, or empty: any of its type
-  std::string missing;    ///< how it is written that there is none, or empty: there always is one
+  std::string allowed;    ///< allowed values; empty: any of its type
+  std::string missing;    ///< representation of a missing value; empty: never missing
   std::string direction;  ///< of a checkpoint: which way is better
   std::string window;     ///< of a checkpoint: the part of the attempt that it covers
-  std::string subjects;   ///< of a checkpoint: what it is given for, and how instruments are joined
+  std::string subjects;   ///< of a checkpoint: its subjects, and aggregation over instruments
   std::string formula;    ///< of a checkpoint
   std::string filter;     ///< of a checkpoint: resampling and filter with their constants
-  std::string origins;    ///< of a checkpoint: what it may be computed from
+  std::string origins;    ///< of a checkpoint: its possible origins
   std::uint32_t version = 0;
 };
 
 /// Every checkpoint of the registry, in its order.
 std::vector<CodebookEntry> checkpointEntries();
 
-/// Columns of a table as they stand in the file. What nothing is known of has an empty title.
+/// Columns of a table in the file's order. Unknown columns have an empty title.
 struct TableColumns {
   std::string table;
   std::vector<std::pair<std::string, std::string>> columns;  ///< name and SQLite's type

@@ -22,7 +22,7 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::uint64_t fewest = 3;  ///< participants who must share a word of experience
+constexpr std::uint64_t fewest = 3;  ///< minimum number of participants who share an item of experience
 
 /// An attempt that is handed out, under its new names.
 struct Handed {
@@ -206,7 +206,7 @@ class Writer {
 
   static std::string formOf(const Rating& r) { return fmt::format("{} {}", r.form, r.formVersion); }
 
-  /// In the order of the new names, for the old ones' would tell.
+  /// Ordered by new names, since the old order would reveal identities.
   static std::string sorted(std::vector<std::vector<std::string>> lines) {
     std::sort(lines.begin(), lines.end());
     std::string text;
@@ -254,7 +254,7 @@ Bundle writeBundle(const std::string& database, const std::string& folder, const
   std::vector<std::string> uuids;
   uuids.reserve(taken.size());
   for (const AttemptRow* a : taken) uuids.push_back(a->uuid);
-  // An attempt that was withdrawn since it was read is not there any more: then nothing is handed out.
+  // If an attempt was withdrawn since it was read, nothing is exported.
   recordExport(database, "bundle", folder, uuids);
   output.finish();
   bundle.files = output.files();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cohort for others to have: what was measured, without whose it was (docs/cohort.md, "Handing out").
+// De-identified export of a cohort (docs/cohort.md, "Handing out").
 #pragma once
 
 #include <array>
@@ -29,13 +29,13 @@ struct Bundle {
 /// Writes participants, experience, attempts, values, ratings and questionnaires as CSV, the codebook and a manifest
 /// with the SHA-256 of each file into a new folder.
 ///
-/// In are attempts of participants who have consented to the scope and have not withdrawn, whose recordings are whole
-/// and were not found changed, and that nobody excluded. Pseudonyms, attempts and raters get new random names, kept
-/// nowhere; sites, calibrations and comparability keys get numbers. Each participant's dates are moved by one random
-/// length of time of 30 to 365 days, earlier or later, kept nowhere. Left out altogether: stations and keys, seeds and
-/// chain heads, file names, notes, reasons of exclusion, audit, protocols, norms, words of experience that fewer than
-/// three participants share, and recordings, which hold pseudonym, start and station under a content chain that a
-/// rewritten copy would no longer have, and the hands' motion, by which a person may be known again.
+/// Includes attempts of participants who have consented to the scope and have not withdrawn, if their recordings are
+/// complete and unaltered and nobody excluded them. Pseudonyms, attempts and raters get new random names, kept nowhere;
+/// sites, calibrations and comparability keys get numbers. Each participant's dates are moved by one random length of
+/// time of 30 to 365 days, earlier or later, kept nowhere. Omitted entirely: stations and keys, seeds and chain heads,
+/// file names, notes, reasons of exclusion, audit, protocols, norms, words of experience that fewer than three
+/// participants share, and recordings. These contain pseudonym, start and station under a content chain that a
+/// rewritten copy would break, and hand motion, which may identify a person.
 ///
 /// Before the folder gets its name, every cell and word in it is looked up among the originals, and what is handed out
 /// is noted in the database for withdrawals: where the one finds something or the other fails, there is no bundle.

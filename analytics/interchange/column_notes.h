@@ -6,7 +6,7 @@
 
 namespace calot::analytics {
 
-/// What a column of a table says.
+/// Description of a column.
 struct ColumnNote {
   std::string_view table, column, title;
   std::string_view unit = "", allowed = "", missing = "";

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char *grey = "#57606a", *black = "#1b1f24", *red = "#b00020", *blue = "#0b5a8a", *brown = "#a3530b";
 
-// By Ink's order. Scores run from brown over grey to blue, which who sees no red or green tells apart, too.
+// In Ink's order. Scores run from brown over grey to blue, which is safe for colour-blind readers.
 constexpr std::array<InkStyle, static_cast<std::size_t>(Ink::watermark) + 1> styles{{
     {"heading", "", 0.0, false, black, 1.0, 12.0, true, Anchor::start},
     {"tick", "", 0.0, false, black, 1.0, 10.0, false, Anchor::end},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A figure as shapes, which a page (SVG) and paper draw alike.
+// A figure as shapes, drawn identically in pages (SVG) and on paper.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace calot::analytics {
 
-/// What a shape stands for; styleOf() says how it looks.
+/// Role of a shape; styleOf() gives its style.
 enum class Ink : std::uint8_t {
   heading,
   tick,
@@ -75,7 +75,7 @@ struct Shape {
 };
 
 struct Drawing {
-  std::string title;  ///< for who cannot see it
+  std::string title;  ///< alternative text
   double width = 0.0, height = 0.0;
   std::vector<Shape> shapes;  ///< later ones over earlier ones
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the plots of a page are drawn with.
+// Common parts of the plots of a page.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What forms say as tables and sentences.
+// Results of forms as tables and sentences.
 #include <fmt/format.h>
 
 #include <algorithm>

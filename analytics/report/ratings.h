@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What filled forms say: answers by group, internal consistency, and agreement between raters.
+// Results of completed forms: ratings by group, internal consistency and agreement between raters.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace calot::analytics {
 
-/// One group's answers to an item. Of attempts: the mean of an attempt's raters.
+/// One group's ratings of an item; for attempts, the mean over an attempt's raters.
 struct ItemSummary {
   std::uint64_t n = 0, blank = 0;
   std::map<int, std::uint64_t> counts;  ///< how often each score was given
@@ -60,7 +60,7 @@ struct FormReport {
   std::vector<Agreement> agreement;          ///< of attempts
 };
 
-/// @param groupOf group of each attempt's uuid, or of each participant; who is not in it is left out
+/// @param groupOf group of each attempt's uuid or of each participant; others are omitted
 /// @param groups in the order of the tables
 FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings,
                       const std::map<std::string, std::string>& groupOf, const std::vector<std::string>& groups);
@@ -70,10 +70,11 @@ std::vector<FormReport> reportForms(const AssessmentDatabase& database,
                                     const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups);
 
-/// What the figures are of, warnings of intervals whose coverage is low, and the items' source; none without a form.
+/// Remarks: population of the figures, warnings about intervals with low coverage, and the items' source; none without
+/// a form.
 std::vector<std::string> ratingNotes(const FormReport& report);
 
-/// Answers, consistency and agreement of one form, without the tables that have no rows.
+/// Ratings, consistency and agreement of one form, without empty tables.
 std::vector<ReportTable> ratingTables(const FormReport& report);
 
 }  // namespace calot::analytics

@@ -8,7 +8,7 @@
 
 namespace calot::analytics {
 
-/// Every report with all of its numbers; what does not exist is null, with a reason where there is one.
+/// Every report with all of its numbers; missing numbers are null, with a reason if there is one.
 nlohmann::ordered_json ratingsJson(const std::vector<FormReport>& reports);
 
 }  // namespace calot::analytics

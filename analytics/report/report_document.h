@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report as its parts in order: a page (page_html.h) and paper (gui/report) show the same.
+// A report as an ordered list of parts, shown identically by a page (page_html.h) and on paper (gui/report).
 #pragma once
 
 #include <string>
@@ -41,7 +41,7 @@ struct ReportDocument {
   }
 };
 
-/// What stands over everything that performers' figures are in.
+/// Watermark of everything that contains performers' figures.
 inline constexpr const char* watermarkText = "SYNTHETIC: made by performers, says nothing about people";
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table as a terminal and a page show it alike.
+// A table, shown identically on a terminal and in a page.
 #pragma once
 
 #include <ostream>

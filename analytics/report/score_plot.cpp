@@ -16,10 +16,10 @@ namespace {
 constexpr std::size_t itemsOfDrawing = 13;
 constexpr double width = 640.0, barLeft = 130.0, barRight = 570.0, top = 34.0;
 constexpr double labelHeight = 18.0, barHeight = 14.0, barApart = 18.0, itemGap = 8.0, legendHeight = 40.0;
-constexpr std::size_t longestItem = 100, longestGroup = 20, longestTitle = 90;  // in letters: what has room
+constexpr std::size_t longestItem = 100, longestGroup = 20, longestTitle = 90;  // in letters: width available
 constexpr int mostNamed = 11;                                                   // scores that a legend lists
 
-/// The further from the middle of the scale, the stronger; alike on both sides.
+/// Saturation grows with distance from the middle of the scale, symmetrically.
 Ink inkOf(int score, const FormReport& form) {
   constexpr Ink low[] = {Ink::middle, Ink::low1, Ink::low2, Ink::low3};
   constexpr Ink high[] = {Ink::middle, Ink::high1, Ink::high2, Ink::high3};

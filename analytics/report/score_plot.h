@@ -8,9 +8,9 @@
 
 namespace calot::analytics {
 
-/// How the scores of a form are spread: for each item and group a bar from the least score to the most, each part as
-/// wide as its share of the scores given, with how often it was given where there is room. As many drawings as pages
-/// of thirteen items; none where nobody has filled the form in.
+/// Distribution of a form's scores: for each item and group a bar from the lowest to the highest score, with parts
+/// proportional to their share and labelled with counts where space permits. One drawing per thirteen items; none for a
+/// form that nobody has completed.
 std::vector<Drawing> drawScores(const FormReport& form, bool synthetic);
 
 }  // namespace calot::analytics

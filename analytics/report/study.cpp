@@ -159,7 +159,7 @@ void addPublished(Study& study) {
 
 constexpr const char* phaseDuration = "phase-duration";
 
-/// Checkpoints of phases that nobody asked for. How long the phases lasted is told always.
+/// Checkpoints of phases that were not requested. Durations of phases are always reported.
 std::vector<std::string> unaskedPhases(const StudyOptions& options) {
   std::vector<std::string> unasked;
   if (options.includePhases) return unasked;

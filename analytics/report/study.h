@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The comparison of two groups, of a cohort or of a table from elsewhere, as data; study_output.h prints it.
+// Comparison of two groups of a cohort or of an imported table, as data; study_output.h prints it.
 #pragma once
 
 #include <array>
@@ -27,12 +27,12 @@ namespace calot::analytics {
 
 enum class Grouping : std::uint8_t { performer, group };
 
-/// What the user declares of any study, before its figures are looked at.
+/// User's declarations for a study, made before looking at its figures.
 struct StudyChoices {
   std::vector<std::string> groups;  ///< the two to compare, in order; empty: the only two that are there
   std::string better;               ///< the group that is expected to do better; empty: by the groups' names, if these
                                     ///< are levels of skill (expert and skilled, intermediate, novice and unskilled)
-  std::optional<AttemptRule> attemptRule;  ///< what makes one value of a participant's several; none: refused
+  std::optional<AttemptRule> attemptRule;  ///< rule that reduces a participant's several values to one; none: refused
   std::vector<std::string> family;         ///< checkpoints or outcomes that are adjusted for each other; empty: all
 };
 
@@ -50,7 +50,7 @@ struct CohortInUse {
   std::set<std::string> participants;  ///< pseudonyms; makeStudy() of a database fills them in
 };
 
-/// With a protocol, groups, the better one, attempt rule and family are the protocol's, whatever stands here.
+/// A protocol overrides groups, the better one, attempt rule and family.
 struct StudyOptions : StudyChoices {
   std::optional<ProtocolInUse> protocol;
   std::optional<CohortInUse> cohort;  ///< only attempts of its participants
@@ -65,7 +65,7 @@ struct StudyOptions : StudyChoices {
   bool mixKeys = false;  ///< compare across comparability keys and checkpoint versions, and say so
 };
 
-/// What a protocol says of a row: a hypothesis of the family, one outside of it, or nothing.
+/// Role of a row in the protocol: a hypothesis of the family, one outside of it, or none.
 enum class Role : std::uint8_t { undeclared, primary, secondary, exploratory };
 std::string nameOf(Role role);  ///< "", "primary", "secondary", "exploratory"
 
@@ -76,7 +76,7 @@ struct ProtocolVersion {
   std::vector<std::string> changed;  ///< JSON pointers where it differs from the version before
 };
 
-/// What a report says of its protocol.
+/// A report's information about its protocol.
 struct StudyProtocol {
   std::string name, title, question, sha256;
   std::uint32_t version = 1;
@@ -90,7 +90,7 @@ struct StudyProtocol {
   std::vector<std::string> deviations;  ///< whole sentences
 };
 
-/// One reason for which attempts (or a table's rows) stay out, in the order in which they are asked.
+/// A reason for exclusion of attempts (or a table's rows), in the order in which reasons are checked.
 struct FlowRow {
   std::string reason;
   std::uint64_t attempts = 0;
@@ -105,7 +105,7 @@ struct GroupSummary {
   std::optional<double> mean, standardDeviation, median, lowerQuartile, upperQuartile;
 };
 
-/// The outcome held against its value at the baseline, of those who have both.
+/// The outcome adjusted for its baseline, for those who have both.
 struct BaselineAdjustment {
   std::array<std::uint64_t, 2> n{};
   std::array<std::uint64_t, 2> withoutBaseline{};  ///< have the outcome and not the baseline
@@ -162,7 +162,7 @@ struct Study {
   std::array<std::string, 2> groups;
   std::string better;  ///< the group that is expected to do better, or empty: no hypothesis
   std::array<std::uint64_t, 2> participants{}, attempts{};
-  std::string attemptRule;        ///< how one value came of a participant's attempts, a clause
+  std::string attemptRule;        ///< how a participant's attempts were reduced to one value, a clause
   std::vector<std::string> keys;  ///< comparability keys of the attempts in it
   std::uint64_t recruited = 0;    ///< attempts in the database, rows in the table
   std::vector<FlowRow> flow;
@@ -191,7 +191,7 @@ Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
 Study makeStudy(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
                 const StudyOptions& options, const std::string& name);
 
-/// Adds what the forms say that were filled in by or about those who are analysed.
+/// Adds results of forms completed by or about the analysed participants.
 void addRatings(Study& study, const AssessmentDatabase& database);
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sentences about the study as a whole: its protocol, and how its figures came about.
+// Sentences about the study as a whole: its protocol and its methods.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace calot::analytics {
 /// Heading, flow, tables and remarks for a terminal of 120 columns.
 void printStudy(const Study& study, std::ostream& out);
 
-/// Everything of the model, in one JSON object; numbers that don't exist are null, with a reason beside them.
+/// The whole model as one JSON object; missing numbers are null, with a reason.
 std::string studyJson(const Study& study);
 
 /// Writes study.csv (a row a checkpoint), values.csv (a row a participant and checkpoint), flow.csv and, where forms

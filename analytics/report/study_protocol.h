@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a protocol changes of a study: who is in it, the roles of its rows, the family, and the heading.
+// Effects of a protocol on a study: population, roles of rows, family and heading.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace calot::analytics {
 
-/// The choices that the protocol makes, in place of those that stand there. @pre there is a protocol.
+/// Replaces the study's choices by those of the protocol. @pre there is a protocol.
 StudyOptions byProtocol(const StudyOptions& options);
 
-/// Why the protocol leaves an attempt out, one of protocolReasons(): another scene, an outcome that it excludes, a
+/// Why the protocol excludes an attempt, one of protocolReasons(): another scene, an outcome that it excludes, a
 /// participant who is not of the population of `group`; or empty.
 std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group, const ProtocolInUse& protocol);
 /// In the order in which they are asked, for the flow.

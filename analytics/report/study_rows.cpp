@@ -30,8 +30,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// Values that agree to eleven digits are one value: what is left is the rounding of their computation, of which ranks
-/// would make a difference.
+/// Values that agree to eleven digits are treated as tied: ranks must not depend on rounding errors.
 void dropRounding(std::array<std::vector<double>, 2>& values) {
   std::vector<double> all = values[0];
   all.insert(all.end(), values[1].begin(), values[1].end());
@@ -87,7 +86,7 @@ Answer<Spearman> correlation(StudyRow& row, const std::array<std::map<std::strin
   return spearman(values, seconds);
 }
 
-/// Both groups' values, with one beyond the worst for each who ranks behind all: ranks do not ask how far.
+/// Both groups' values, with a value beyond the worst for each participant ranked behind all; ranks ignore its size.
 std::array<std::vector<double>, 2> withWorst(const StudyRow& row, bool largerIsWorse) {
   std::array<std::vector<double>, 2> ranked = row.values;
   std::vector<double> all;
@@ -245,7 +244,7 @@ void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<
     row.hypothesis =
         firstBetter == (row.direction == Direction::higher) ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
   }
-  if (!row.hypothesis) row.worstRanked = {};  // nobody says which end is the worse
+  if (!row.hypothesis) row.worstRanked = {};  // direction of worse values is not declared
   const std::array<std::vector<double>, 2> ranked =
       withWorst(row, row.hypothesis && firstBetter == (*row.hypothesis == Hypothesis::firstSmaller));
   row.test = mannWhitney(ranked[0], ranked[1]);

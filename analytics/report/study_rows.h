@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the values of two groups to a study's rows: what is the same whether they are from a cohort or from a table.
+// From the values of two groups to a study's rows, common to cohorts and tables.
 #pragma once
 
 #include <array>
@@ -46,8 +46,8 @@ struct StudySample {
 /// meant to have their mean.
 void fillRow(StudyRow& row, const StudySample& sample);
 
-/// Tests, effects and intervals of the values that are there, in the direction of the row's hypothesis, or of its
-/// direction where it has none. Those who rank behind all do so in test, A and delta; shift and g are of the values.
+/// Tests, effects and intervals of the available values, in the direction of the row's hypothesis or, without one, of
+/// the row. Participants ranked behind all enter test, A and delta; shift and g use values only.
 /// @param duration participants' durations by group, empty where they are not known
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration);
 

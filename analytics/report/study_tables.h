@@ -15,10 +15,10 @@ std::string rowName(const StudyRow& row);    ///< checkpoint and subject
 bool hasNoValue(const StudyRow& row);        ///< nobody of either group has one
 /// Under the title: the protocol, when it was registered, why the study is exploratory all the same; or empty.
 std::vector<std::string> protocolLines(const Study& study);
-/// How the figures came about, a paragraph to go by for a paper: only what was done.
+/// Methods paragraph for a paper: states only what was done.
 std::string studyMethods(const Study& study);
 
-/// How many came in, stayed out and why, and are analysed.
+/// Flow: numbers included, excluded with reasons, and analysed.
 ReportTable flowTable(const Study& study);
 /// "Hypotheses" (with a protocol), "Values", "Comparison", "Further": a row without any value is in none of them. Those
 /// without rows are left out.

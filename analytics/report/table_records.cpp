@@ -23,7 +23,7 @@ constexpr double largest = 1e100;
               fmt::format("column \"{}\": {}", shown(column), what));
 }
 
-/// Names are printed: a line break or another control character in one would forge what is read there.
+/// Names are printed: a line break or another control character could forge output.
 void askForPlainName(const CsvTable& table, std::size_t line, const std::string& column, const std::string& name) {
   const auto control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
   if (std::any_of(name.begin(), name.end(), control))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a study needs of a table's cells, checked.
+// Checked cells of a table, as a study needs them.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct Outcome {
   std::size_t column = 0;
 };
 
-/// What the study needs of one row.
+/// Data of one row for the study.
 struct Record {
   std::size_t line = 0;
   std::string participant, group, occasion;

@@ -127,7 +127,7 @@ void checkOptions(const TableStudyOptions& options) {
     fail("the baseline's occasion is the outcome's", {Remedy::nameOccasion});
 }
 
-/// What the protocol makes of the options.
+/// Options after applying the protocol.
 TableStudyOptions chosen(const CsvTable& table, TableStudyOptions options) {
   if (!options.protocol) return options;
   chooseByProtocol(options, *options.protocol);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A study of a table from elsewhere: one row per participant, or per participant and occasion.
+// A study of an imported table: one row per participant, or per participant and occasion.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace calot::analytics {
 
-/// With a protocol, groups, the better one, attempt rule and family are the protocol's, whatever stands here.
+/// A protocol overrides groups, the better one, attempt rule and family.
 struct TableStudyOptions : StudyChoices {
   std::optional<Protocol> protocol;
   std::string participantColumn, groupColumn;

@@ -8,8 +8,8 @@
 
 namespace calot::analytics {
 
-/// A result, or the reason why there is none. Degenerate input (an empty group, all values tied, n = 1) is an answer to
-/// be printed, not an error and never a NaN.
+/// A result, or the reason why there is none. Degenerate input (an empty group, all values tied, n = 1) gives a
+/// printable reason, not an error and never a NaN.
 template <class T>
 class Answer {
  public:

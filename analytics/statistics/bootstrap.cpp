@@ -98,7 +98,7 @@ Answer<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, c
     const auto corrected = [&](double p) {
       const double z = result.bias + normalQuantile(p);
       const double denominator = 1.0 - *a * z;
-      // Beyond the pole the correction has left the data behind: the outermost resample, marked extreme.
+      // Beyond the pole the correction leaves the range of the data: use the outermost resample, marked extreme.
       if (!(denominator > 0.0)) return z > 0.0 ? 1.0 : 0.0;
       return normalCdf(result.bias + z / denominator);
     };

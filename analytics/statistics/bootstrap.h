@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bootstrap intervals of any statistic of one or two groups (Efron and Tibshirani 1993). Groups are resampled each for
-// itself; the same seed gives the same interval everywhere.
+// Bootstrap intervals of any statistic of one or two groups (Efron and Tibshirani 1993). Groups are resampled
+// separately; the same seed gives the same interval everywhere.
 #pragma once
 
 #include <cstddef>
@@ -44,10 +44,9 @@ inline constexpr double mostResamplesWithout = 0.05;
 
 /// Quantile p of B sorted resamples: order statistic (B + 1) p, linear in between. BCa takes p' = Phi(z0 + (z0 + z_p) /
 /// (1 - a (z0 + z_p))) instead of p, with a from the jackknife influences l = (n - 1) (mean - value without i) of each
-/// group: a = sum(l^3 / n^3) / (6 (sum l^2 / n^2)^(3/2)), which for one group is Efron's.
-/// No answer when the statistic has none (its reason), for more than mostResamplesWithout, when all resamples agree,
-/// and for BCa where all lie on one side of the estimate or a value left out leaves no answer. @pre resamples >= 99, 0
-/// < level < 1.
+/// group: a = sum(l^3 / n^3) / (6 (sum l^2 / n^2)^(3/2)), which for one group is Efron's. No answer when the statistic
+/// has none (its reason), for more than mostResamplesWithout, when all resamples agree, and for BCa where all lie on
+/// one side of the estimate or a value left out leaves no answer. @pre resamples >= 99, 0 < level < 1.
 Answer<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic,
                             const BootstrapOptions& options = {});
 Answer<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,

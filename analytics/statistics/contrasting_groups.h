@@ -11,7 +11,7 @@
 
 namespace calot::analytics {
 
-/// Which values are the better ones: the checkpoint's own direction, never the data's.
+/// Direction of better values: declared by the checkpoint, never derived from the data.
 enum class Better : std::uint8_t { lower, higher };
 
 struct NormalCurve {
@@ -25,7 +25,7 @@ struct NormalCurve {
 Answer<double> crossing(const NormalCurve& first, const NormalCurve& second);
 
 struct ContrastingGroupsOptions {
-  bool logScale = false;  ///< curves of the logarithms (times); the cut is turned back
+  bool logScale = false;  ///< curves of the logarithms (times); the cut is transformed back
   double level = 0.95;
   std::size_t resamples = 9999;
   std::uint64_t seed = 1;
@@ -41,7 +41,7 @@ struct ContrastingGroups {
   double cut = 0.0;          ///< in the unit of the values; at the cut one passes
   Misjudged falsePositives;  ///< novices who pass
   Misjudged falseNegatives;  ///< experts who fail
-  /// Percentile bootstrap, groups resampled each for itself; with ten a group it is wide.
+  /// Percentile bootstrap with groups resampled separately; wide for ten values per group.
   Answer<Interval> interval = Answer<Interval>::none("not computed");
   std::size_t resamplesWithoutCut = 0;  ///< when there is an interval
   std::uint64_t seed = 0;

@@ -46,7 +46,7 @@ Answer<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const Base
   for (std::size_t i = x.outcome.size(); i < outcome.size(); ++i) columns[1][i] = 0.0;
   columns[2] = pooled(x.baseline, y.baseline);
   if (!allFinite(columns[2])) return Result::none("a value is not finite");
-  // About its mean, the baseline says the same and is easier to tell from the constant.
+  // Centring the baseline changes nothing but improves the conditioning.
   const double centre = *mean(columns[2]);
   for (double& v : columns[2]) v -= centre;
   const Answer<LeastSquares> fit = leastSquares(columns, outcome);

@@ -24,10 +24,10 @@ struct CovarianceAnalysis {
   Answer<double> sameSlope = Answer<double>::none("not computed");
 };
 
-/// Analysis of covariance of an outcome on its baseline (Vickers and Altman 2001, BMJ 323:1123) by least squares with
-/// HC3 errors. No answer for an empty group, lengths that differ, fewer than four people, a baseline that is constant
-/// or that the group determines, one person who alone determines a coefficient (a group of one), or outcomes without
-/// any scatter.
+/// Analysis of covariance of an outcome on its baseline (Vickers and Altman 2001, BMJ 323:1123) by least squares
+/// with HC3 errors. No answer for an empty group, lengths that differ, fewer than four people, a baseline that is
+/// constant or that the group determines, one person who alone determines a coefficient (a group of one), or
+/// outcomes without any scatter.
 Answer<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const BaselineGroup& y, double level = 0.95);
 
 }  // namespace calot::analytics

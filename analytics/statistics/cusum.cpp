@@ -7,8 +7,8 @@
 namespace calot::analytics {
 namespace {
 
-/// Limits are often met exactly (two failures of ln 3 against ln 9): rounding must not decide, and both forms must
-/// agree.
+/// Limits are often met exactly (two failures of ln 3 against ln 9): rounding must not decide, and
+/// both forms must agree.
 constexpr double reached = 1.0 - 1e-12;
 
 }  // namespace

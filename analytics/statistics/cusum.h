@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cumulative sums of failures and successes, against a failure rate p0 that is acceptable and one, p1, that is not. The
-// log-likelihood form and the scaled form differ by the factor ln(odds ratio): steps of one never meet limits of the
-// other, since a design holds both and cannot be put together by hand.
+// log-likelihood form and the scaled form differ by the factor ln(odds ratio): a design holds steps and limits
+// together, so that those of different forms cannot be mixed.
 #pragma once
 
 #include <cstddef>
@@ -48,8 +48,8 @@ struct CusumChart {
 };
 
 enum class CusumKind {
-  sequential,  ///< the plain sum: has someone reached the goal? Only the first limit reached counts
-  monitoring   ///< held at zero from below (Page 1954): has someone's standard slipped? No lower limit
+  sequential,  ///< plain sum, which tests whether someone has reached the goal; only the first limit reached counts
+  monitoring   ///< bounded below by zero (Page 1954), which detects a drop in performance; no lower limit
 };
 
 /// @param failures true for a failed attempt, in order.

@@ -13,8 +13,8 @@
 
 namespace calot::analytics {
 
-/// With psi(x, y) = 1 for x > y, 1/2 for x = y, 0 else: V_i = mean over y of psi(x_i, y), W_j = mean over x of
-/// psi(x, y_j); A is the mean of either, and var A = var(V) / nx + var(W) / ny with sample variances.
+/// With psi(x, y) = 1 for x > y, 1/2 for x = y, 0 else: V_i = mean over y of psi(x_i, y), W_j = mean over x of psi(x,
+/// y_j); A is the mean of either, and var A = var(V) / nx + var(W) / ny with sample variances.
 struct DeLong {
   double a = 0.5;                ///< P(X > Y) + P(X = Y) / 2
   double variance = 0.0;         ///< 0 at A = 0 and A = 1, whatever the sizes: then no interval can be made of it

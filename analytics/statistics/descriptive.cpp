@@ -23,7 +23,7 @@ Answer<double> mean(std::span<const double> values) {
   for (const double v : values) sum += v;
   const double n = static_cast<double>(values.size());
   const double first = sum / n;
-  // One correction step: takes the rounding of the sum away where values are large and close together.
+  // One correction step removes the rounding error of the sum if values are large and close together.
   double rest = 0.0;
   for (const double v : values) rest += v - first;
   return first + rest / n;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The distributions that the statistics need, from Boost.Math, in one place.
+// Distributions from Boost.Math used by the statistics.
 #pragma once
 
 namespace calot::analytics {

@@ -13,7 +13,7 @@ struct HedgesG {
   double d = 0.0;  ///< Cohen's: (mx - my) / s, s^2 the pooled variance with nx + ny - 2
   double j = 1.0;  ///< small-sample correction
   /// "J times non-central t": the non-centralities at which t = d sqrt(nx ny / (nx + ny)) is the upper and the lower
-  /// quantile, turned back into d, times J. Assumes normal groups of one variance.
+  /// quantile, converted back to d, times J. Assumes normal groups of one variance.
   Answer<Interval> interval = Answer<Interval>::none("not computed");
 };
 

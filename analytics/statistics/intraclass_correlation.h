@@ -28,8 +28,7 @@ struct IntraclassCorrelation {
 ///   ICC(3,1) = (S - E) / (S + (k - 1) E)                          ICC(3,k) = (S - E) / S
 /// Intervals from the F distribution, for ICC(2,.) with Satterthwaite's degrees of freedom (Shrout and Fleiss; McGraw
 /// and Wong 1996, Psychol. Methods 1:30); those of the average forms are the single ones' by Spearman and Brown. No
-/// answer as objection(table), and where the denominator is not positive. No interval where
-/// the raters agree perfectly.
+/// answer as objection(table), and where the denominator is not positive. No interval where the raters agree perfectly.
 Answer<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level = 0.95);
 
 }  // namespace calot::analytics

@@ -16,8 +16,7 @@ struct KruskalWallis {
   double p = 1.0;   ///< chi-squared: an approximation, rough where groups have fewer than five values
 };
 
-/// Kruskal and Wallis (1952, J. Am. Stat. Assoc. 47:583), with mean ranks r_g of N pooled values and t equal ones a
-/// tie:
+/// Kruskal and Wallis (1952, J. Am. Stat. Assoc. 47:583), with mean ranks r_g of N pooled values and t values per tie:
 ///   H = 12 / (N (N + 1)) sum n_g (r_g - (N + 1) / 2)^2 / (1 - sum(t^3 - t) / (N^3 - N)).
 /// No answer for fewer than two groups, an empty one, or when all values are equal.
 Answer<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups);
@@ -32,7 +31,7 @@ struct DunnPair {
 
 /// Dunn's comparisons of all pairs on the ranks of the whole (Dunn 1964, Technometrics 6:241):
 ///   z = (r_a - r_b) / sqrt((N (N + 1) / 12 - sum(t^3 - t) / (12 (N - 1))) (1 / n_a + 1 / n_b)).
-/// Pairs in the order (0,1), (0,2), ..., (1,2), ... Refuses as kruskalWallis().
+/// Pairs in the order (0,1), (0,2), ..., (1,2), ... Same preconditions as kruskalWallis().
 Answer<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups);
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many tests at once. Adjusted p values, to be held against the level, in the order of the input.
+// Many tests at once. Adjusted p values, to be compared with the level, in the order of the input.
 #pragma once
 
 #include <span>
@@ -9,13 +9,13 @@
 
 namespace calot::analytics {
 
-/// Holm (1979, Scand. J. Stat. 6:65): with p_(1) <= ... <= p_(m), max over j <= i of min(1, (m - j + 1) p_(j)). Holds
-/// the chance of any false rejection whatever the dependence: for primary questions. No answer for no p values or one
+/// Holm (1979, Scand. J. Stat. 6:65): with p_(1) <= ... <= p_(m), max over j <= i of min(1, (m - j + 1) p_(j)).
+/// Controls the familywise error rate under any dependence: for primary questions. No answer for no p values or one
 /// outside of [0, 1].
 Answer<std::vector<double>> holm(std::span<const double> p);
 
-/// Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57:289): min over j >= i of min(1, m p_(j) / j). Holds the share of
-/// false ones among the rejected, for independent or positively dependent tests: for exploration. Refuses as holm().
+/// Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57:289): min over j >= i of min(1, m p_(j) / j). Controls the false
+/// discovery rate for independent or positively dependent tests: for exploration. Same preconditions as holm().
 Answer<std::vector<double>> benjaminiHochberg(std::span<const double> p);
 
 }  // namespace calot::analytics

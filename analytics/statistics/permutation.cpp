@@ -24,7 +24,7 @@ std::uint64_t choices(std::uint64_t n, std::uint64_t k, std::uint64_t limit) {
   return static_cast<std::uint64_t>(std::llround(count));
 }
 
-/// Counts the choices of `left` more values from `first` on whose sum, with `sum`, is as far out as `distance`.
+/// Counts the choices of `left` more values from `first` on whose total with `sum` deviates by at least `distance`.
 struct Walk {
   std::span<const double> values;
   double distance = 0.0;
@@ -51,8 +51,7 @@ Answer<PermutationTest> permutationTest(std::span<const double> x, std::span<con
     return Result::none("all values are equal");
   PermutationTest result;
   result.difference = *mean(x) - *mean(y);
-  // About the pooled mean the expected sum of a group is zero, and either group's sum is the other's with its sign
-  // turned.
+  // About the pooled mean, the expected sum of a group is zero, and the groups' sums differ only in sign.
   const double centre = *mean(values);
   double scale = 0.0, observed = 0.0;
   for (double& v : values) scale += std::abs(v -= centre);
@@ -68,7 +67,7 @@ Answer<PermutationTest> permutationTest(std::span<const double> x, std::span<con
   }
   RandomStream random(options.seed);
   for (std::uint64_t draw = 0; draw < options.draws; ++draw) {
-    // The first n places of a shuffle.
+    // The first n positions of a shuffle.
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       std::swap(values[i], values[i + static_cast<std::size_t>(random.below(values.size() - i))]);

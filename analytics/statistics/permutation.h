@@ -10,8 +10,8 @@
 namespace calot::analytics {
 
 struct PermutationOptions {
-  std::uint64_t mostAssignments = 200000;  ///< up to so many all are gone through (ten against ten are 184,756)
-  std::uint64_t draws = 99999;             ///< beyond: so many random ones
+  std::uint64_t mostAssignments = 200000;  ///< up to this number, all are enumerated (ten against ten: 184,756)
+  std::uint64_t draws = 99999;             ///< beyond: number of random ones
   std::uint64_t seed = 1;
 };
 
@@ -19,7 +19,7 @@ struct PermutationTest {
   double difference = 0.0;  ///< mean of x less mean of y
   double p = 1.0;           ///< two-sided
   bool exact = false;
-  std::uint64_t assignments = 0;      ///< gone through, or drawn
+  std::uint64_t assignments = 0;      ///< enumerated or drawn
   std::optional<std::uint64_t> seed;  ///< of the random ones
 };
 

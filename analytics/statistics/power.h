@@ -29,8 +29,8 @@ struct PlannedCheckpoint {
 /// Checkpoints of deviation 1 in which x is shifted by so many deviations; 0: no effect.
 std::vector<PlannedCheckpoint> shifts(const std::vector<double>& effects);
 
-/// People at hand to draw from, with replacement: each with a value, or none, of every checkpoint, so that checkpoints
-/// keep their correlation and values stay missing as often. What was measured on few people is a guess of the truth.
+/// A pool of people to draw from with replacement, each with a value or none for every checkpoint, which preserves
+/// correlations and the frequency of missing values. A small pool is a rough estimate of the population.
 struct PowerPopulation {
   std::array<std::vector<std::vector<std::optional<double>>>, 2> people;
 };
@@ -64,9 +64,9 @@ struct Power {
   std::uint64_t seed = 0;
 };
 
-/// Simulates the study: draws it, takes mannWhitney() as it is, exact or not, adjusts the p values of all checkpoints
-/// together and holds them against the level. No answer for an empty group, no checkpoint, or parameters out of their
-/// range.
+/// Simulates the study: draws it, takes mannWhitney() as it is, exact or not, adjusts the p values of all
+/// checkpoints together and compares them with the level. No answer for an empty group, no checkpoint, or parameters
+/// out of their range.
 Answer<Power> simulatePower(const PowerPlan& plan);
 
 }  // namespace calot::analytics

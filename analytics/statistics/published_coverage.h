@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How often the intervals that reports print hold the truth: the table of docs/statistics.md ("Coverage"), of which a
-// test shows that it says the same.
+// Coverage of the intervals in reports: the table of docs/statistics.md ("Coverage"); a test keeps both in agreement.
 #pragma once
 
 #include <array>
@@ -35,7 +34,7 @@ struct CoverageDoubt {
 };
 
 /// The worst cell below coverageWanted at the simulated sizes on either side of the smaller group (beyond the largest:
-/// at the largest). @returns whether there is a doubt; `doubt` is left alone where there is none.
+/// at the largest). @returns whether coverage is doubtful; else `doubt` is unchanged.
 bool doubtful(CoveredInterval interval, std::size_t nx, std::size_t ny, CoverageDoubt& doubt);
 
 }  // namespace calot::analytics

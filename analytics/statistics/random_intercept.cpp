@@ -69,8 +69,8 @@ Profile profile(const Participants& participants, const std::vector<std::size_t>
   if (result.fit) {
     const double df = result.fit->df;
     result.deviance = df * std::log(result.fit->residualSumOfSquares / df) + logs + result.fit->logDeterminant;
-    // With V_i = I + ratio 11', d V^-1 = -V^-1 11' V^-1, and the sum of a participant's row of V^-1 is 1 / (1 + n
-    // ratio).
+    // With V_i = I + ratio 11', d V^-1 = -V^-1 11' V^-1, and the sum of a participant's row of V^-1 is 1 /
+    // (1 + n ratio).
     const std::size_t p = columns.size();
     double ofSquares = 0.0, ofLogs = 0.0;
     std::size_t first = 0;
@@ -119,9 +119,9 @@ Answer<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, 
     }
   }
   if (bestLog + step > high) return Result::none("attempts of each participant scatter too little: take the mean");
-  double ratio = 0.0;  // or so small that it says the same
+  double ratio = 0.0;  // or so small that the result is the same
   if (bestLog > low) {
-    // Where the deviance is level, not where it is least: a minimum is known to half of the digits only.
+    // Root of the slope rather than minimum of the deviance, which is known to half of the digits only.
     const auto slope = [&](double logRatio) { return profile(participants, sites, std::exp(logRatio)).slope; };
     if (!(slope(bestLog - step) < 0.0) || !(slope(bestLog + step) > 0.0))
       return Result::none("the likelihood has no clear maximum");

@@ -32,8 +32,8 @@ struct RandomIntercept {
 /// l), values less w_i times their participant's mean are independent of one variance, so the likelihood is maximised
 /// over l alone. Intervals and p take the variances as known but for the degrees of freedom. Sites are fixed strata. No
 /// answer for an empty group, a participant in two groups or sites, values not finite, no participant with two attempts
-/// (take the first or the mean), attempts of each participant all equal, fewer participants than the model
-/// needs, or a likelihood without a clear maximum.
+/// (take the first or the mean), attempts of each participant all equal, fewer participants than the model needs, or a
+/// likelihood without a clear maximum.
 Answer<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level = 0.95);
 
 }  // namespace calot::analytics

@@ -14,8 +14,8 @@ class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed) : engine_(seed) {}
 
-  /// Uniform in 0 .. n - 1, without the bias of a plain remainder (values below 2^64 mod n are drawn again). @pre n >
-  /// 0.
+  /// Uniform in 0 .. n - 1, without the bias of a plain remainder (values below 2^64 mod n are drawn again).
+  /// @pre n > 0.
   std::uint64_t below(std::uint64_t n);
   /// Uniform in (0, 1): the middles of 2^52 cells, so that neither end occurs.
   double uniform();

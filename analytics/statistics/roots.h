@@ -7,7 +7,7 @@
 
 namespace calot::analytics {
 
-/// Root of a continuous function between two points where its signs differ, to the last bits (Alefeld, Potra and Shi's
+/// Root of a continuous function between two points of opposite sign, to machine precision (Alefeld, Potra and Shi's
 /// algorithm 748 of Boost.Math). @pre lower < upper; f(lower) f(upper) <= 0.
 template <class Function>
 double rootBetween(const Function& f, double lower, double upper) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every statistic asks of its input first.
+// Input checks common to all statistics.
 #pragma once
 
 #include <span>
@@ -17,8 +17,8 @@ std::string twoGroupObjection(std::span<const double> x, std::span<const double>
 /// The values of x, then those of y.
 std::vector<double> pooled(std::span<const double> x, std::span<const double> y);
 
-/// Sum of t^3 - t over the sets of t equal values: the correction for ties of every rank test; 0 without ties, and
-/// n^3 - n where all n values are equal.
+/// Sum of t^3 - t over the sets of t equal values: the correction for ties of every rank test; 0 without ties, and n^3
+/// - n where all n values are equal.
 double tieTerm(std::span<const double> values);
 
 }  // namespace calot::analytics

@@ -23,8 +23,8 @@ struct StratifiedRankSum {
 };
 
 /// Van Elteren's test (1960, Bull. Int. Stat. Inst. 37:351): rank sums within strata, weighted by 1 / (N + 1),
-/// mid-ranks with the variance corrected for ties; no continuity correction. No answer when no stratum compares, or for
-/// values not finite.
+/// mid-ranks with the variance corrected for ties; no continuity correction. No answer when no stratum compares, or
+/// for values not finite.
 Answer<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata);
 
 }  // namespace calot::analytics

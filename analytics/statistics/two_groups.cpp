@@ -34,7 +34,7 @@ Ranked ranked(std::span<const double> x, std::span<const double> y) {
   return r;
 }
 
-/// All differences x_i - y_j in order, without making the nx ny of them.
+/// All differences x_i - y_j in order, without storing the nx ny of them.
 class Differences {
  public:
   Differences(std::span<const double> x, std::span<const double> y) : x_(x.begin(), x.end()), y_(y.begin(), y.end()) {
@@ -55,7 +55,7 @@ class Differences {
         low = middle + 1;
       }
     }
-    return valueOf(low) + 0.0;  // of the two zeros the plain one
+    return valueOf(low) + 0.0;  // +0 instead of -0
   }
 
  private:
@@ -67,7 +67,7 @@ class Differences {
   static double valueOf(std::uint64_t key) {
     return std::bit_cast<double>(key >> 63U != 0 ? key & ~(std::uint64_t{1} << 63U) : ~key);
   }
-  /// How many differences are at most t. Rounding keeps the order, so what y a larger x needs is no smaller.
+  /// Number of differences at most t. Rounding is monotonic, so the bound on y does not decrease with x.
   [[nodiscard]] std::size_t notAbove(double t) const {
     std::size_t count = 0, j = 0;
     for (const double x : x_) {

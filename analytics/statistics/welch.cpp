@@ -20,7 +20,7 @@ Answer<Welch> welch(std::span<const double> x, std::span<const double> y, double
   Welch w;
   w.difference = *mean(x) - *mean(y);
   w.t = w.difference / std::sqrt(a + b);
-  // The shares of the variance rather than a and b themselves, whose squares could vanish.
+  // Uses shares of the variance instead of a and b themselves, whose squares could underflow.
   const double ra = a / (a + b), rb = b / (a + b);
   w.df = 1.0 / (ra * ra / (nx - 1.0) + rb * rb / (ny - 1.0));
   w.p = studentTwoSided(w.t, w.df);

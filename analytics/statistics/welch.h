@@ -16,8 +16,8 @@ struct Welch {
   Interval interval;
 };
 
-/// Welch's t test of two means with unequal variances (Welch 1947, Biometrika 34:28), with a = sx^2 / nx, b = sy^2 /
-/// ny:
+/// Welch's t test of two means with unequal variances (Welch 1947, Biometrika 34:28), where a = sx^2 / nx and b
+/// = sy^2 / ny:
 ///   t = (mx - my) / sqrt(a + b),   df = (a + b)^2 / (a^2 / (nx - 1) + b^2 / (ny - 1)).
 /// No answer for fewer than two values in a group, or when neither group has any spread. @pre 0 < level < 1.
 Answer<Welch> welch(std::span<const double> x, std::span<const double> y, double level = 0.95);

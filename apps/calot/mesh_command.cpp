@@ -61,7 +61,7 @@ void addMesh(CLI::App& app, Run& run) {
       ->check(CLI::IsMember({"m", "cm", "mm"}));
   command->add_option("--tetrahedra", options->tetrahedra, "how many are wanted")
       ->required()
-      ->check(CLI::Range(12, largestTetrahedronCount));
+      ->check(CLI::Range(12, maxTetrahedronCount));
   command->add_option("-o,--output", options->output, "the mesh to write, a .vtk file")->required();
   command->add_flag("--json", options->json, "print the report as JSON");
   command->add_flag("--force", options->force, "replace a file that is there");

@@ -22,7 +22,7 @@
 namespace calot::gui {
 namespace {
 
-/// Where each phase begins, with the end behind them: rising, those that never began left out of both.
+/// Start of each phase, followed by the end, ascending; phases missing in either recording are omitted from both.
 struct Course {
   std::vector<double> own, other;
 };
@@ -41,7 +41,7 @@ Course alignedCourse(const std::filesystem::path& own, double ownEnd, const std:
   return course;
 }
 
-/// The other recording's time at one of the first one's.
+/// Time of the second recording that corresponds to a time of the first.
 double timeBeside(const Course& course, double time) {
   const auto after = std::upper_bound(course.own.begin() + 1, course.own.end() - 1, time);
   const auto i = static_cast<std::size_t>(after - course.own.begin());
@@ -56,7 +56,7 @@ void paste(const Image& from, int x, Image& to) {
                 to.rgba.begin() + 4 * (static_cast<std::ptrdiff_t>(y) * to.width + x));
 }
 
-/// One or two recordings, picture after picture. One thread may call at() while another calls draw().
+/// One or two recordings, frame by frame. One thread may call at() while another calls draw().
 class Cutter {
  public:
   using Scenes = std::vector<FilmSource::Scene>;

@@ -13,15 +13,15 @@
 
 namespace calot::gui {
 
-/// How the recording beside the first one goes along: both from their starts, or each phase of the procedure stretched
-/// to the first one's.
+/// How a second recording is synchronised: both from their starts, or each phase of the procedure stretched to
+/// that of the first.
 enum class Alignment { start, phase };
 
 struct FilmSettings {
   double from = 0.0;                       ///< s
   std::optional<double> to;                ///< s; none: the end
-  double speed = 1.0;                      ///< recorded seconds a film's second, 0.01 to 100
-  int fps = 25;                            ///< pictures a second
+  double speed = 1.0;                      ///< recorded seconds per second of film, 0.01 to 100
+  int fps = 25;                            ///< frames per second
   PictureSize size;                        ///< of the whole film
   Quality quality = Quality::interactive;  ///< of its pictures
   Overlays overlays;
@@ -35,10 +35,11 @@ void checkFilm(const std::filesystem::path& recording, const std::filesystem::pa
                const FilmSettings& settings);
 void checkMoment(const std::filesystem::path& recording, const FilmSettings& settings);
 
-/// Writes a film. Picture k shows the recording at from + k speed / fps, after the step that begins then. One thread
-/// simulates ahead, another draws ahead, the calling one encodes. Films of what no person did are marked so.
-/// @param output .mp4 or .mkv; replaced if it is there
-/// @param progress is told after every picture; what it throws stops the film
+/// Writes a film. Frame k shows the recording at from + k speed / fps, after the step that begins then. One thread
+/// simulates ahead, another renders ahead, the calling one encodes. Films of synthetic or other non-human attempts
+/// are marked as such.
+/// @param output .mp4 or .mkv; replaced if it exists
+/// @param progress called after every frame; an exception from it stops the film
 /// @return the number of pictures
 /// @throws calot::Error: invalid for settings out of range; damaged where a recording cannot be read; failure where the
 /// film cannot be written. Nothing is left behind then.
@@ -46,7 +47,7 @@ std::int64_t writeFilm(const std::filesystem::path& recording, const std::filesy
                        const FilmSettings& settings,
                        const std::function<void(std::uint64_t done, std::uint64_t of)>& progress = {});
 
-/// What a picture shows.
+/// Content of a frame.
 struct ShownMoment {
   std::uint64_t step = 0;
   double seconds = 0.0;  ///< at the step's end

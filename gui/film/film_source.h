@@ -13,7 +13,7 @@
 
 namespace calot::gui {
 
-/// Views of one recording, moment after moment: re-simulated from the nearest keyframe, or from the moment before.
+/// Views of one recording in ascending order of time, re-simulated from the nearest keyframe or from the previous view.
 class FilmSource {
  public:
   struct Scene {
@@ -33,9 +33,9 @@ class FilmSource {
   /// After a step. @pre step < stepCount, and not before that of the last call @throws calot::Error (damaged)
   [[nodiscard]] Scene at(std::uint64_t step);
 
-  /// "synthetic: performer skilled", "kinematics", or empty for a person.
+  /// "synthetic: performer skilled", "kinematics", or empty for a human operator.
   [[nodiscard]] std::string mark() const;
-  /// Who acted, for a title: pseudonym, or what it was.
+  /// Operator for a title: pseudonym or kind of operator.
   [[nodiscard]] std::string title() const;
 
  private:

@@ -95,7 +95,7 @@ struct FilmWriter::Impl {
     encoder->color_primaries = AVCOL_PRI_BT709;
     encoder->color_trc = AVCOL_TRC_BT709;
     if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    // A good picture for little time: the renderer needs the processors.
+    // Good quality at low cost: the renderer needs the processors.
     const auto option = [&](const char* name, const char* value) {
       need(av_opt_set(encoder->priv_data, name, value, 0));
     };
@@ -153,7 +153,7 @@ void FilmWriter::check(const std::filesystem::path& file, int width, int height,
 FilmWriter::FilmWriter(const std::filesystem::path& file, int width, int height, int fps)
     : impl_(std::make_unique<Impl>()) {
   check(file, width, height, fps);
-  av_log_set_level(AV_LOG_QUIET);  // what goes wrong is in its return values
+  av_log_set_level(AV_LOG_QUIET);  // errors are reported by return values
   impl_->file = file;
   impl_->temporary = file;
   impl_->temporary += fmt::format(".{}.part", ::getpid());

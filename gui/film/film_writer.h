@@ -11,8 +11,8 @@
 namespace calot::gui {
 
 /// Encodes pictures of one size at a fixed rate: H.264 (libx264) in MP4 or Matroska, or VP9 where this libav has no
-/// H.264. Picture k is shown at exactly k / fps seconds. No date is
-/// written; the bytes of the same pictures may all the same differ from run to run, as libx264's do.
+/// H.264. Picture k is shown at exactly k / fps seconds. No date is written; even so, bytes may differ from run to
+/// run, as libx264's do.
 ///
 /// The file appears under its name when it is whole: until finish() it is written beside it under a temporary name, and
 /// is removed if finish() is never reached.
@@ -30,9 +30,9 @@ class FilmWriter {
   /// What the constructor would say of its arguments, before long work. @throws calot::Error (invalid)
   static void check(const std::filesystem::path& file, int width, int height, int fps);
 
-  /// The next picture; its alpha is ignored. @pre of the film's size @throws calot::Error (failure)
+  /// Appends a frame; its alpha is ignored. @pre of the film's size @throws calot::Error (failure)
   void add(const Image& image);
-  /// Writes what is left and gives the file its name. @throws calot::Error (failure)
+  /// Writes pending frames and renames the file to its final name. @throws calot::Error (failure)
   void finish();
 
   [[nodiscard]] std::int64_t pictures() const;

@@ -13,7 +13,7 @@ namespace calot::gui {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-/// Where a line of words is held.
+/// Anchor of a line of text.
 enum class Anchor { left, middle, right };
 
 /// Writes lines of words (UTF-8) in one font and size, with a dark edge that keeps them readable on tissue.

@@ -13,7 +13,7 @@
 
 namespace calot::gui {
 
-/// Makes things on a thread of its own, in order, a few ahead of who takes them.
+/// Produces items in order on a separate thread, a few ahead of the consumer.
 template <class Thing>
 class LookAhead {
  public:
@@ -31,7 +31,7 @@ class LookAhead {
   LookAhead(const LookAhead&) = delete;
   LookAhead& operator=(const LookAhead&) = delete;
 
-  /// The next one; waits for it. Throws what making it threw. @pre fewer than `count` were taken
+  /// Waits for the next item. Rethrows an exception of `make`. @pre fewer than `count` were taken
   Thing next() {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [this] { return !ready_.empty() || fault_; });

@@ -22,9 +22,9 @@ namespace {
 constexpr std::array<std::string_view, 8> shownCheckpoints{
     "path-length",  "fat-remaining", "connective-remaining", "connective-torn",
     "organ-burned", "clip-errors",   "critical-errors",      "organ-perforations"};
-constexpr double refreshSeconds = 1.0;  // they cost time, and nobody reads faster
+constexpr double refreshSeconds = 1.0;  // updating more often costs time and is not readable
 
-/// Counts as they are, other figures with three digits: nobody reads powers of ten in passing.
+/// Counts are shown in full, other figures with three significant digits and without powers of ten.
 std::string readable(double value) {
   const double size = std::abs(value);
   if (size >= 100.0 || value == std::round(value)) return fmt::format("{:.0f}", value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a recording says of itself beside the pictures: phase, events, checkpoints, paths of the tools.
+// Recorded data shown with the frames: phase, events, checkpoints, paths of the tools.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace calot::gui {
 
-/// What is told of one moment of an attempt.
+/// Data of one moment of an attempt.
 struct Moment {
   struct Line {
     std::string text;
@@ -52,7 +52,7 @@ class MomentTrack {
   MomentTrack(const MomentTrack&) = delete;
   MomentTrack& operator=(const MomentTrack&) = delete;
 
-  /// After step n. Only forward. @pre n is not before that of the last call, and below the recording's stepCount()
+  /// Data after step n; forward only. @pre n is not before that of the last call, and below the recording's stepCount()
   [[nodiscard]] Moment at(std::uint64_t n);
 
  private:
@@ -82,7 +82,7 @@ class MomentTrack {
   double checkpointsAt_ = -1.0;  ///< when they were last computed (s)
 };
 
-/// Does a recording hold the results of its steps? A golden one does not.
+/// Does a recording hold the results of its steps? Golden recordings do not.
 [[nodiscard]] bool hasResults(const recorder::Recording& recording);
 
 /// Per phase of the procedure (identification to dissection): when it first began (s), or -1. @throws Error (damaged)

@@ -10,7 +10,7 @@
 
 namespace calot::gui {
 
-/// What is written or drawn over a picture.
+/// Text and marks drawn over a frame.
 struct Overlays {
   bool time = false, phase = false, checkpoints = false, events = false, tools = false;
 
@@ -21,10 +21,10 @@ struct Overlays {
 /// "time,phase". @throws calot::Error (invalid) naming what is not known
 [[nodiscard]] Overlays parseOverlays(const std::string& text);
 
-/// What stands on a picture throughout.
+/// Titles and marks shown on every frame.
 struct Captions {
-  std::string title;  ///< above it; one that is too long is cut
-  std::string mark;   ///< at its lower edge: who acted, where that is no person ("synthetic")
+  std::string title;  ///< at the upper edge; truncated if too long
+  std::string mark;   ///< at the lower edge: a non-human operator ("synthetic")
 };
 
 /// Draws overlays in sizes that fit the picture's height: time and phase in the upper left corner, checkpoints in the

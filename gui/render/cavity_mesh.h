@@ -6,8 +6,8 @@
 
 namespace calot::gui {
 
-/// A dome around organs and ports. It depends on rest positions and ports alone, so it stands still while organs and
-/// camera move.
+/// A dome around organs and ports. It depends on rest positions and ports alone, so it stands still while
+/// organs and camera move.
 struct CavityShape {
   Vec3 centre = Vec3::Zero();  ///< p_W (m)
   double radius = 0.0;         ///< m

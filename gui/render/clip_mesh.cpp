@@ -13,7 +13,7 @@ namespace calot::gui {
 Mesh makeClip(const ClipView& clip) {
   constexpr int around = 12, bend = 10, straight = 5;
   const double thickness = 0.5 * clip.width;
-  // Of a leg's middle line from the vessel's. Legs bite into the wall a little: no two surfaces in one place.
+  // Distance of a leg's centre line from the vessel's. Legs slightly penetrate the wall, so that no surfaces coincide.
   const double offset = 0.75 * clip.halfGap + 0.5 * thickness;
   const double loop = std::max(1.25 * offset, thickness);  // radius of the crotch
   const double tip = 0.5 * clip.legs, crotch = -0.5 * clip.legs + loop;

@@ -11,7 +11,7 @@
 namespace calot::gui {
 namespace {
 
-/// Beyond it, char looks the same; more at one vertex would only widen the spot to its whole triangles.
+/// Above this, char looks the same; more at one vertex would only spread over all its triangles.
 constexpr float mostCharred = 1.6F;
 
 // The endoscope's automatic exposure: the distance whose inverse square is the mean over what lies ahead and faces the
@@ -35,7 +35,7 @@ float referenceDistance(const std::vector<DrawVertex>& vertices) {
   return static_cast<float>(std::clamp(std::sqrt(weights / light), 0.02, 0.6));
 }
 
-/// What runs out of open vessels covers skin; their own faces stay as they are.
+/// Blood and bile from open vessels cover skin, not the vessels' own cut faces.
 float stained(float face, const Vec3& p_W, std::span<const OpenEnd> open) {
   constexpr float most = 0.45F;  // skin, fully stained (SurfaceView::face)
   if (face >= 1.0F) return face;
@@ -108,7 +108,7 @@ void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, st
     addPart(part, surface.triangle);
     return;
   }
-  // Only the triangles that are charred or parted pay for that.
+  // Only charred or parted triangles use the costlier shader.
   const auto harmed = [&](int i) {
     const DrawVertex& vertex = list_.vertex[base_ + static_cast<std::uint32_t>(i)];
     return vertex.charred > 0.0F || vertex.face != 0.0F;
@@ -122,7 +122,7 @@ void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, st
 
 void DrawListMaker::addMesh(const Mesh& mesh, Appearance appearance, const Pose& pose, bool lengthwise) {
   const Quat q = pose.orientation.normalized();
-  // Metal is brushed along z of what its texture sticks to; lengthwise: along y of the mesh.
+  // Metal is brushed along z of its texture coordinates; lengthwise: along y of the mesh.
   const auto brushed = [&](const Vec3& p) { return lengthwise ? Vec3(p.x(), p.z(), p.y()) : p; };
   begin();
   for (std::size_t v = 0; v < mesh.position.size(); ++v)
@@ -170,7 +170,7 @@ const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, b
     for (const InstrumentPart& part : makeInstrument(instrument))
       addMesh(part.mesh, part.appearance, instrument.pose, false);
   }
-  // Scenes name the large organs first, which lie behind: what is hidden costs little where it comes later.
+  // Scenes list large organs first, which lie behind. Drawn in reverse, hidden ones cost little.
   std::reverse(list_.part.begin(), list_.part.end());
   if (cavity) addCavity(view);
   list_.sheets = makeSheetList(view);

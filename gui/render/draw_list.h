@@ -17,7 +17,7 @@
 
 namespace calot::gui {
 
-/// Looks that the shader knows. The numbers stand in shader_material.cpp.
+/// Appearances known to the shader. Their numbers are in shader_material.cpp.
 enum class Appearance : int {
   tissue = 0,
   liver = 1,
@@ -34,17 +34,17 @@ enum class Appearance : int {
   bile = 15,
 };
 
-/// From SurfaceView::appearance; a word that is not known here is drawn as plain tissue.
+/// From SurfaceView::appearance; unknown words are drawn as plain tissue.
 [[nodiscard]] Appearance appearanceOf(const std::string& word);
 
 /// A vertex as the graphics side sees it, in the camera's frame C (x right, y down, z forward).
 struct DrawVertex {
   float position[3];
   float normal[3];
-  float rest[3];  ///< where textures stick: rest position in W, or position in the instrument's frame (m)
+  float rest[3];  ///< texture coordinates: reference position in W, or position in the instrument's frame (m)
   float restNormal[3];
   float charred;  ///< SurfaceView::charred
-  float face;     ///< SurfaceView::face, or how much an open vessel stains: blood above 0, bile below
+  float face;     ///< SurfaceView::face, or stain by an open vessel: blood above 0, bile below
 };
 
 struct DrawPart {
@@ -55,21 +55,21 @@ struct DrawPart {
   std::uint32_t indexCount = 0;
 };
 
-/// Everything of one picture, ready to be uploaded.
+/// Everything needed for one picture, ready for upload.
 struct DrawList {
   std::vector<DrawVertex> vertex;
   std::vector<std::uint32_t> index;
-  std::vector<DrawPart> part;      ///< none empty; in the order to draw them: what is likely in front first
+  std::vector<DrawPart> part;      ///< none empty; in drawing order: probably nearest first
   SheetList sheets;                ///< connective tissue, blended over the parts
   SmokeList smoke;                 ///< blended over all
   float referenceDistance = 0.1F;  ///< distance at which the endoscope's exposure is right (m)
 };
 
-/// Makes draw lists, one after the other, and keeps what stays the same between them: rest normals, the cavity, memory.
-/// A list depends on its view alone.
+/// Builds successive draw lists and reuses what does not change between them: rest normals, the cavity, memory. A list
+/// depends on its view alone.
 class DrawListMaker {
  public:
-  /// The list is good until the next call. @pre checkView(view) has passed
+  /// The list is valid until the next call. @pre checkView(view) has passed
   [[nodiscard]] const DrawList& make(const SceneView& view, const Sight& sight, bool cavity,
                                      std::span<const Puff> smoke = {});
 
@@ -83,7 +83,7 @@ class DrawListMaker {
   [[nodiscard]] Vec3 direction(const Vec3& d_W) const { return toCamera_ * d_W; }
   void addVertex(const Vec3& p_C, const Vec3& n_C, const Vec3& rest, const Vec3& restNormal, float charred = 0.0F,
                  float face = 0.0F);
-  /// What can't be seen is left out; what the picture's edge cuts comes last, as cutting takes longer.
+  /// Culls what is invisible; triangles at the picture's edge come last, since clipping takes longer.
   void addPart(DrawPart part, const std::vector<Index3>& triangles);
 
   DrawList list_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The OpenGL 4.5 functions that the renderer uses, loaded through the context: no loader library works with every
-// off-screen context.
+// The OpenGL 4.5 functions that the renderer uses, loaded through the context: no loader library works
+// with every off-screen context.
 #pragma once
 
 #include <GL/gl.h>

@@ -14,8 +14,8 @@ struct Mesh {
   std::vector<Index3> triangle;  ///< counter-clockwise from outside
 };
 
-/// Unit normals of vertices: sums of the triangles' area vectors, in the triangles' order. A vertex without area gets
-/// z.
+/// Unit normals of vertices: sums of the triangles' area vectors, in the triangles' order. A vertex
+/// without area gets z.
 [[nodiscard]] std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::vector<Index3>& triangle);
 
 }  // namespace calot::gui

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What comes out of a vessel that was parted and not closed: a hint, not a simulation. State knows neither blood nor
-// bile nor since when they flow: drop and stain follow from the view alone.
+// Blood or bile from a vessel that is parted and not closed: a visual hint, not a simulation. State contains neither
+// fluids nor the time since parting; drop and stain depend on the view alone.
 #pragma once
 
 #include <vector>
@@ -21,12 +21,12 @@ struct OpenEnd {
 /// All open faces, by SurfaceView::face. @pre checkView(view) has passed
 [[nodiscard]] std::vector<OpenEnd> openEnds(const SceneView& view);
 
-/// A drop that hangs at the face, swells for a few seconds, falls, and begins anew. In the axes of W, about the middle
-/// of the face. Down is against z of W.
+/// A drop that grows at the face for a few seconds, falls, and forms again. In the axes of W, about the middle of the
+/// face. Down is against z of W.
 /// @param time of the view (s)
 [[nodiscard]] Mesh makeDrop(const OpenEnd& end, double time);
 
-/// How much of it has run over a point below the face: 0 nothing to 1.
+/// Stain at a point below the face, 0 to 1.
 /// @param p_W the point (m)
 [[nodiscard]] double stainAt(const OpenEnd& end, const Vec3& p_W);
 

@@ -13,7 +13,7 @@
 
 namespace calot::gui {
 
-/// A thread that owns context and painter and draws what is asked, one request after the other.
+/// A thread that owns context and painter and serves requests one at a time.
 class Renderer::Worker {
  public:
   Worker() {

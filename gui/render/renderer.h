@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene view to pixels, off screen. The renderer knows SceneView and nothing behind it, so that film, trainer and
-// dashboard share one way of drawing, and a picture can never change a simulation.
+// Scene view to pixels, off screen. The renderer depends only on SceneView, so that film, trainer and dashboard share
+// it and a picture can never change a simulation.
 #pragma once
 
 #include <memory>
@@ -28,9 +28,9 @@ inline constexpr int largestSide = 4096;                ///< of a picture (pixel
 inline constexpr long long mostPixels = 3840LL * 2160;  ///< width times height
 
 /// Draws scene views. Owns a thread with an OpenGL context of its own: a software context on the thread of a window
-/// system corrupts that window system's. One picture at a time; calls from several threads wait for each other.
-/// The same view gives the same bytes, in every run and with any number of threads of the machine; other CPUs may
-/// differ by one level in a few channels.
+/// system corrupts that window system's. One picture at a time; calls from several threads wait for each other. The
+/// same view gives the same bytes, in every run and with any number of threads of the machine; other CPUs may differ by
+/// one level in a few channels.
 class Renderer {
  public:
   /// @throws calot::Error (failure) if this machine has no OpenGL 4.5 off screen.
@@ -54,7 +54,7 @@ class Renderer {
     return render(view, width, height, settings);
   }
 
-  /// What draws, for a log: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
+  /// Name of the graphics driver, for logs: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
   [[nodiscard]] std::string description() const;
 
  private:

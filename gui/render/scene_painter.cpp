@@ -22,7 +22,7 @@ void setField(const ShaderProgram& program, const Sight& sight, float scale) {
 
 }  // namespace
 
-/// What the passes of one picture share.
+/// Data shared by the passes of one picture.
 struct ScenePainter::Frame {
   ScenePrograms& programs;
   const Sight& sight;
@@ -139,7 +139,7 @@ void ScenePainter::drawOcclusion(const DrawList& list, const Frame& frame) const
   setCamera(programs.prepass, frame.focalX, frame.focalY, 0.0F, 0.0F);
   drawParts(list, true);
 
-  // What lies around the field is read by neighbours and filters: without this, memory that was there before.
+  // Neighbours and filters read pixels around the field, which would otherwise hold stale memory.
   clear(targets.open, GL_COLOR_BUFFER_BIT, 1.0F, 1.0F);
   begin(targets.open, frame);
   setCamera(programs.occlusion, frame.focalX, frame.focalY, 0.0F, 0.0F);
@@ -214,7 +214,7 @@ void ScenePainter::drawSurfaces(const DrawList& list, const Frame& frame) const 
 }
 
 void ScenePainter::drawBlended(const TriangleBuffer& triangles, std::size_t indices) const {
-  // Lists come with the farthest first, and hide nothing themselves.
+  // Lists are sorted back to front and do not write depth.
   gl_.Enable(GL_BLEND);
   gl_.DepthMask(GL_FALSE);
   triangles.draw(0, indices);
@@ -279,8 +279,8 @@ Image ScenePainter::paint(const DrawList& list, const Sight& sight, double verti
   drawParts(list, false);
   targets_->shadow.sampleDepth(shadowUnit);
 
-  // Rows of an Image go from top to bottom, OpenGL's upwards: film turns them when it composes, interactive quality
-  // draws upside down, which turns triangles too.
+  // Rows of an Image go from top to bottom, OpenGL's from bottom to top: film flips them when composing; interactive
+  // quality renders upside down, which reverses the orientation of triangles.
   if (!film) frame.focalY = -frame.focalY;
   gl_.FrontFace(film ? GL_CCW : GL_CW);
   drawOcclusion(list, frame);

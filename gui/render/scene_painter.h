@@ -15,8 +15,8 @@
 
 namespace calot::gui {
 
-/// Draws a DrawList: shadow of the endoscope's light, normals and depth, occlusion, lit surfaces, composition. Keeps
-/// shaders and buffers from picture to picture. Everything happens on the thread where the context is current.
+/// Draws a DrawList: shadow of the endoscope's light, normals and depth, occlusion, lit surfaces, composition. Reuses
+/// shaders and buffers between pictures. Call on the thread where the context is current.
 class ScenePainter {
  public:
   explicit ScenePainter(const GraphicsContext& context);
@@ -24,7 +24,7 @@ class ScenePainter {
   ScenePainter(const ScenePainter&) = delete;
   ScenePainter& operator=(const ScenePainter&) = delete;
 
-  /// @param sight that the list was made for, of this picture
+  /// @param sight for which the list was built
   /// @pre checkPictureSize(width, height) and checkView() have passed
   [[nodiscard]] Image paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
                             const RenderSettings& settings);

@@ -11,11 +11,11 @@
 
 namespace calot::gui {
 
-/// The occlusion is worked out at every so many pixels of the prepass.
+/// Pixel spacing at which occlusion is computed in the prepass.
 inline constexpr int occlusionStride(Quality quality) { return quality == Quality::film ? 1 : 2; }
 
-/// All programs of one quality. Those that do not depend on a look are compiled here, the others when they are first
-/// drawn.
+/// All programs of one quality. Those that do not depend on a look are compiled here, the others when
+/// they are first drawn.
 class ScenePrograms {
  public:
   /// @pre the context of `gl` is current, here and in every call; `gl` outlives this

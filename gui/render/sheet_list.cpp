@@ -135,7 +135,7 @@ class SheetBuilder {
     }
   }
 
-  /// What is left of a strand at one of its ends: a ribbon that faces the camera, frayed towards its tip.
+  /// Stump of a strand: a ribbon that faces the camera, frayed towards its tip.
   void addRemnant(const ConnectiveView& view, std::size_t s, std::size_t end, bool burned) {
     Random random(2 * s + end, 2);
     const Vec3 from = view.strand[s][end], chord = view.strand[s][1 - end] - from;

@@ -17,15 +17,15 @@ struct SheetVertex {
   float erosion;      ///< share of the fibre texture that is gone: 0 whole, 1 nothing; below 0: matted
 };
 
-/// All connective tissue of one picture, far pieces first, so that blending in this order is right.
+/// All connective tissue of one picture, back to front for blending.
 struct SheetList {
   std::vector<SheetVertex> vertex;
   std::vector<std::uint32_t> index;  ///< of triangles
 };
 
 /// Sheets where both strands of a pair are attached, tufts at both ends of torn strands, dark stumps at both ends of
-/// burned ones. Strands sag a little, each in its own way, which depends on its number alone; so does the piece of the
-/// fibre texture that a sheet shows. Order: by depth of the piece's middle, then by number.
+/// burned ones. Strands sag slightly, by an amount that depends on their index alone, as does the part of the fibre
+/// texture that a sheet shows. Order: by depth of a piece's centre, then by index.
 /// @pre checkView(view) has passed
 [[nodiscard]] SheetList makeSheetList(const SceneView& view);
 

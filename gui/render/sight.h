@@ -7,10 +7,10 @@
 
 namespace calot::gui {
 
-/// The middle of the light's bundle beside the lens, in C (m).
+/// Centre of the light source beside the lens, in C (m).
 inline constexpr float lightX = 0.0045F, lightY = -0.0050F;
 
-/// What of a picture is seen: all of it, or the round field of an endoscope.
+/// Visible part of a picture: all of it, or the round field of an endoscope.
 struct Sight {
   double aside = 1.0, up = 1.0;      ///< of what is seen, |x| <= aside z and |y| <= up z in C
   float rim = 0.0F;                  ///< radius of the round field (pixels); 0: no field
@@ -21,7 +21,7 @@ struct Sight {
   [[nodiscard]] double lit() const;
 };
 
-/// The round field is drawn as a polygon of so many sides.
+/// Number of sides of the polygon that approximates the round field.
 inline constexpr int fieldSides = 96;
 
 /// @param width, height of the picture (pixels) @param field is there a round field?
@@ -33,12 +33,12 @@ struct Place {
   static constexpr std::uint8_t edge = 0x20;   ///< not well within
 };
 
-/// Where a point of C is to a sight. Points that share a side are all out of sight beyond it, and so is what lies
-/// between them; their shadows do not fall into the picture either.
+/// Position of a point of C relative to the visible part. If all points of a set share a side, their convex hull is
+/// invisible beyond it, and so are its shadows.
 /// @return bits of Place
 [[nodiscard]] std::uint8_t placeIn(const Sight& sight, const Vec3& p_C);
 
-/// Does a triangle of a closed body turn its inner side both to the lens and to the light?
+/// Does a triangle of a closed body face away from both lens and light?
 /// @param a, b, c counter-clockwise from outside
 [[nodiscard]] bool turnedAway(const Vec3& a, const Vec3& b, const Vec3& c);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoke of the hook: told by events, so that State holds none of it, and drawn as puffs that drift and thin out.
+// Smoke of the hook: derived from events, not part of State, and drawn as puffs that drift and fade.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@
 
 namespace calot::gui {
 
-/// How long a puff is seen (s).
+/// Lifetime of a puff (s).
 inline constexpr double smokeSeconds = 2.5;
 
-/// One portion of smoke.
+/// One puff of smoke.
 struct Puff {
   Vec3 p_W = Vec3::Zero();   ///< where it arose (m)
   double age = 0.0;          ///< since then (s)
   double strength = 0.0;     ///< 0 to 1, by the energy that made it
-  std::uint32_t number = 0;  ///< each drifts in its own way
+  std::uint32_t number = 0;  ///< seed of its drift
 };
 
-/// Collects smoke from the events of steps that follow each other. What it gives depends on these events alone.
+/// Collects smoke from the events of consecutive steps; the result depends on these events alone.
 class SmokeTrail {
  public:
   /// @param time at the step's end (s), never falling @param events of the step
   void add(double time, std::span<const Event> events);
-  /// What is still to be seen at a time, oldest first. @param time not before that of the last add()
+  /// Puffs visible at a time, oldest first. @param time not before that of the last add()
   [[nodiscard]] std::vector<Puff> at(double time) const;
 
  private:

@@ -20,7 +20,7 @@ std::uint64_t hashOf(int from, int to) {
   return h;
 }
 
-/// Bytes: a difference that is none costs time, not a wrong picture.
+/// Bytewise comparison: a spurious difference only costs time.
 template <class T>
 bool same(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
@@ -29,8 +29,8 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 }  // namespace
 
 bool isClosed(const std::vector<Index3>& triangle) {
-  // Where every side has its opposite, what the sides add and what their opposites take away is the same. Where one has
-  // not, that the sums agree all the same is as unlikely as a collision of 64 bits.
+  // If every side has an opposite, both sums are equal. If one has none, they agree only with the probability of
+  // a 64-bit hash collision.
   std::uint64_t sum = 0;
   for (const Index3& t : triangle)
     for (int k = 0; k < 3; ++k) sum += hashOf(t[k], t[(k + 1) % 3]) - hashOf(t[(k + 1) % 3], t[k]);

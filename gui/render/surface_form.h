@@ -7,15 +7,15 @@
 
 namespace calot::gui {
 
-/// Is each side of each triangle met by another triangle's, the other way round? Then the surface bounds a body, and
-/// its inner side is never seen from outside.
+/// Does every side of every triangle have an opposite side in another triangle? Then the surface bounds a body whose
+/// inner side is never visible from outside.
 /// @param triangle @pre no negative index
 [[nodiscard]] bool isClosed(const std::vector<Index3>& triangle);
 
-/// What a surface keeps from picture to picture as long as its shape at rest and its triangles stay.
+/// Data of a surface reused between pictures while its reference shape and triangles stay unchanged.
 class SurfaceForm {
  public:
-  /// Works out what is below, unless it is known for this very surface.
+  /// Computes the members below unless they are up to date for this surface.
   void update(const std::vector<Vec3>& rest, const std::vector<Index3>& triangle);
 
   [[nodiscard]] const std::vector<Vec3>& restNormal() const { return restNormal_; }

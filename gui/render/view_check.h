@@ -8,7 +8,7 @@
 
 namespace calot::gui {
 
-/// Refuses what cannot be drawn. @throws calot::Error as Renderer::render documents, naming surface and vertex.
+/// Refuses views that cannot be drawn. @throws calot::Error as Renderer::render documents, naming surface and vertex.
 void checkView(const SceneView& view);
 /// @throws calot::Error (invalid)
 void checkPictureSize(long long width, long long height);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene views to pictures on threads of its own, the newest only. Knows no window.
+// Renders the newest scene view to pictures on separate threads. Independent of windows.
 #pragma once
 
 #include <condition_variable>
@@ -17,17 +17,17 @@
 
 namespace calot::gui {
 
-/// What was drawn: the picture, and of which moment.
+/// A picture and its time.
 struct ScenePicture {
   std::shared_ptr<const SceneView> view;
   Image image;
 };
 
-/// Draws whatever view is the newest. While one is being drawn the next ones replace each other: nothing queues, nobody
-/// waits. The last view that was given is always drawn in the end, in the last size that was given.
+/// Renders the newest view. While one is being rendered, later ones replace each other: nothing queues and nobody
+/// waits. The last view given is always rendered eventually, in the last size given.
 ///
-/// With two drawers two views are drawn at a time: much of a picture is work of one thread, during which the other
-/// processors would wait. Pictures come in the order of their views; one that a newer one has overtaken is dropped.
+/// Two drawers render two views at a time, since much of a picture is single-threaded work. Pictures are delivered in
+/// the order of their views; one overtaken by a newer one is dropped.
 class PictureLoop {
  public:
   using Draw = std::function<Image(const SceneView&, int width, int height)>;
@@ -39,7 +39,7 @@ class PictureLoop {
   };
 
   PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers = 1);
-  /// Waits for the pictures that are being drawn; what is left is dropped.
+  /// Waits for pictures in progress and drops waiting views.
   ~PictureLoop();
   PictureLoop(const PictureLoop&) = delete;
   PictureLoop& operator=(const PictureLoop&) = delete;

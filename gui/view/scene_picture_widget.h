@@ -11,9 +11,8 @@
 
 namespace calot::gui {
 
-/// Shows scene views as pictures, drawn off screen in interactive quality at the widget's size, on a thread of its own:
-/// the interface's thread only copies finished pictures to the screen. Where views come faster than they can be drawn,
-/// those between are left out.
+/// Shows scene views, rendered off screen in interactive quality at the widget's size on a separate thread: the GUI
+/// thread only copies finished pictures to the screen. Views that arrive faster than they can be rendered are skipped.
 class ScenePictureWidget : public QWidget {
   Q_OBJECT
  public:
@@ -26,7 +25,7 @@ class ScenePictureWidget : public QWidget {
   /// Shows a text instead of a picture, until the next view.
   void showText(const QString& text);
 
-  /// How many pictures were shown so far.
+  /// Number of pictures shown so far.
   [[nodiscard]] quint64 shown() const { return shown_; }
   /// The picture on the screen; null before the first one.
   [[nodiscard]] const QImage& picture() const { return picture_; }

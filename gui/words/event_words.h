@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people read of events: films, the dashboard's lists and the trainer's mistakes say the same of the same.
+// Texts for events, shared by films, the dashboard's lists and the trainer's list of mistakes.
 #pragma once
 
 #include <string>
@@ -9,32 +9,32 @@
 
 namespace calot::gui {
 
-/// How a kind of event is told: "cystic duct: clip half on" is its subject's name and its phrase.
+/// Text for a kind of event: "cystic duct: clip half on" is the subject's name and the phrase.
 struct EventWords {
   enum class Subject { none, structure, connective };
   EventKind kind;
-  Subject subject;     ///< whose name stands before the phrase
+  Subject subject;     ///< whose name precedes the phrase
   const char* phrase;  ///< "clip half on"
-  bool fault;          ///< something that should not happen: a mistake, harm done, or a simulation that failed
+  bool fault;          ///< a mistake, harm, or a simulation failure
 };
 
-/// Null for events that only a machine cares for (contacts, samples, solver, smoke).
+/// Null for technical events (contacts, samples, solver, smoke).
 [[nodiscard]] const EventWords* wordsOf(EventKind kind);
 
-/// Names as subjects of events count.
+/// Names in the order of event subject indices.
 struct SubjectNames {
   std::vector<std::string> structures;
   std::vector<std::string> connective;  ///< connective tissues; may be left empty
 };
 
-/// The subject as people write it: "cystic duct". Empty where the phrase stands alone; "tissue" or "connective tissue"
-/// where no name is known.
+/// The subject's name in plain text: "cystic duct". Empty if the phrase stands alone; "tissue" or "connective tissue"
+/// if no name is known.
 [[nodiscard]] std::string subjectOf(const Event& event, const SubjectNames& names);
 
 /// Subject and phrase; empty where wordsOf() is null.
 [[nodiscard]] std::string textOf(const Event& event, const SubjectNames& names);
 
-/// "cystic-duct" as people write it.
+/// "cystic-duct" in plain text: "cystic duct".
 [[nodiscard]] std::string spoken(std::string name);
 
 /// "identification", ..., "done"; empty for none.

@@ -88,7 +88,7 @@ CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& f
       if (blank == 0) blank = line;
       continue;
     }
-    // Empty lines may end a file; between rows they would hide rows that are missing.
+    // Empty lines may end a file; between rows they could hide missing rows.
     if (blank != 0) fail(file, blank, "an empty line between rows");
     if (numbers.line.size() == mostRows) fail(file, line, fmt::format("more than {} rows", mostRows));
     split(row, delimiter, cells);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strict reading of JSON: every fault is one line that names file and JSON pointer. What an object may hold is a table
-// of rules, so that the reader, its messages and the published schema agree (and a test can hold them against each
-// other).
+// Strict reading of JSON: every error is one line that names file and JSON pointer. The allowed content of objects is a
+// table of rules, so that the reader, its messages and the published schema agree (a test compares them).
 #pragma once
 
 #include <cstddef>
@@ -31,15 +30,15 @@ struct ObjectRule {
   std::vector<KeyRule> keys;
 };
 
-/// Parses UTF-8 JSON without comments. Refuses what JSON leaves open: a key given twice, nesting deeper than 32 levels,
-/// more than 4 MiB, numbers beyond a double.
+/// Parses UTF-8 JSON without comments. Refuses what JSON leaves undefined: a key given twice, nesting deeper than 32
+/// levels, more than 4 MiB, numbers beyond a double.
 /// @param file the name that messages use.
 /// @throws Error (damaged) with file, line and column.
 nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::string& file);
 
 class JsonObject;
 
-/// A value and where it stands.
+/// A value and its location.
 class JsonPlace {
  public:
   /// @param value must outlive the place.
@@ -61,7 +60,7 @@ class JsonPlace {
   [[nodiscard]] std::uint32_t integer(const KeyRule& rule) const;
   /// Three numbers.
   [[nodiscard]] Vec3 vector(const KeyRule& rule) const;
-  /// One word of a few, each with what it stands for.
+  /// One of a few words, each with the value that it denotes.
   template <class T>
   [[nodiscard]] T word(std::initializer_list<std::pair<const char*, T>> words) const {
     const std::string given = text(longestWord);
@@ -80,8 +79,8 @@ class JsonPlace {
   std::string file_, pointer_;
 };
 
-/// An object that was held against its rule: no unknown key, no missing one. Optional values are left as they are where
-/// the file doesn't give them.
+/// An object checked against its rule: no unknown key, no missing one. Optional values that the file omits are left
+/// unchanged.
 class JsonObject {
  public:
   JsonObject(const JsonPlace& place, const ObjectRule& rule);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `calot mesh` says about a surface and the mesh made of it: as JSON and for people.
+// Report of `calot mesh` about a surface and its mesh, as JSON and as text.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct MeshReport {
   std::string unit;      ///< as given: m, cm, mm
   std::string output;    ///< empty when nothing was written
   SurfaceReport found;   ///< the surface as it was read
-  SurfaceRepair repair;  ///< what was put right before meshing
+  SurfaceRepair repair;  ///< repairs before meshing
   StuffedMesh stuffed;   ///< the mesh, or why there is none
 };
 
@@ -24,7 +24,7 @@ std::string meshReportJson(const MeshReport& report);
 /// The same as text of several lines.
 std::string meshReportText(const MeshReport& report);
 
-/// What of the surface was wrong and has been put right, or empty: "12 vertices welded, 3 triangles turned".
+/// Repairs of the surface, or empty: "12 vertices welded, 3 triangles turned".
 std::string repairSummary(const SurfaceRepair& repair);
 
 }  // namespace calot::recorder

@@ -16,9 +16,9 @@ namespace calot::recorder {
 
 using ObjLimits = SurfaceLimits;
 
-/// A surface from an OBJ file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised
-/// (surface_report.h says what is wrong with it).
-/// @param name what messages call it
+/// A surface from an OBJ file's bytes, in metres. Indices are in range and coordinates finite; nothing else is
+/// guaranteed (surface_report.h checks the surface).
+/// @param name name for messages
 /// @throws Error (damaged): "name:line: what is wrong"
 TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                       const ObjLimits& limits = {});

@@ -116,7 +116,7 @@ class PlyBody {
   void pass(const PlyProperty& property) {
     const std::uint32_t count = property.list ? nextCount(property.countType, "length of a list") : 1;
     for (std::uint32_t i = 0; i < count; ++i) {
-      // What is not used may be anything, NaN too.
+      // Unused values may be anything, including NaN.
       header_.format == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
     }
   }

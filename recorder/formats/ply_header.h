@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The header of a PLY file: what its body holds. Internal to this folder.
+// The header of a PLY file, which describes its body. Internal to this folder.
 #pragma once
 
 #include <cstddef>
@@ -40,8 +40,8 @@ struct PlyHeader {
   std::size_t lines = 0;             ///< of the header
 };
 
-/// Takes the header off a file's text, up to and with the line "end_header". The element `vertex` has x, y and z and
-/// `face` a list of indices, both within the limits. @throws Error (damaged): "name:line: what is wrong"
+/// Parses and removes the header of a file's text, up to and including the line "end_header". The element `vertex` has
+/// x, y and z and `face` a list of indices, both within the limits. @throws Error (damaged): "name:line: what is wrong"
 PlyHeader takePlyHeader(std::string_view& text, const std::string& name, const SurfaceLimits& limits);
 
 /// The property that holds a face's corners, or -1.

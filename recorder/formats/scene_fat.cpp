@@ -32,7 +32,7 @@ SurfaceDescription readFatSurface(const JsonPlace& place, const FetchAsset& fetc
   NamedSurface surface = readMesh(place, fetch);
   const std::string file = surface.file;
   int turned = 0;
-  // What is sound stays as it is: the repair takes a part that begins inside another one for a cavity.
+  // A sound surface is not repaired: the repair would treat a part that starts inside another one as a cavity.
   if (const SurfaceReport found = inspectSurface(surface.mesh);
       !found.closedManifold() || found.coincidentVertices + found.degenerateTriangles + found.unusedVertices > 0) {
     SurfaceRepair repair = repairSurface(surface.mesh);

@@ -14,10 +14,10 @@ namespace calot::recorder {
 /// Reads the list. Names differ from each other and from those of the scene's organs and vessels; what it hangs on is
 /// an organ or a vessel of the scene, each once.
 ///
-/// The surface. What can be put right without inventing surface is (repairSurface) and is told in a warning. Where it
-/// passes through itself, that is a warning too: inside is then what the surface winds around (the potential field's
-/// rule). A surface with holes or with edges of more than two triangles is refused, and one that passes through itself
-/// and had to be turned: there is then nothing that tells inside from outside.
+/// The surface. Repairs that invent no surface (repairSurface) are made and reported in a warning. Self-intersection is
+/// a warning as well: the inside is then what the surface winds around (the potential field's rule). A surface with
+/// holes or with edges of more than two triangles is refused, and so is a self-intersecting one whose triangles had to
+/// be reversed, since nothing then defines its inside.
 ///
 /// The cells. At least four along each side of the surface's box, and no more than a potential field holds (and at most
 /// 16 million in all).

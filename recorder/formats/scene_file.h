@@ -12,11 +12,11 @@
 
 namespace calot::recorder {
 
-/// A scene with everything that it names.
+/// A scene with all its assets.
 struct LoadedScene {
   SceneDescription description;       ///< what a Model is built from
   std::string summary;                ///< one sentence for people
-  std::vector<std::string> warnings;  ///< what was put right, one line each: repaired surfaces
+  std::vector<std::string> warnings;  ///< repairs of surfaces, one line each
   std::vector<Asset>
       assets;  ///< the scene file first, then each mesh in the order of the organs and the fat; bytes as read
 };
@@ -34,8 +34,8 @@ LoadedScene loadScene(const std::filesystem::path& sceneFile);
 /// @throws Error (damaged) as loadScene, and where a named asset is missing, double, or named by nobody.
 LoadedScene sceneFromAssets(std::vector<Asset> assets);
 
-/// Folders that may hold `scenes/`, `organs/` and `performers/`, best first: the environment's CALOT_ASSETS; or, where
-/// that is not set, `<programFolder>/../share/calot` and the folder compiled in by the program.
+/// Folders that may contain `scenes/`, `organs/` and `performers/`, in order of precedence: the environment's
+/// CALOT_ASSETS; or, where that is not set, `<programFolder>/../share/calot` and the folder compiled in by the program.
 std::vector<std::filesystem::path> assetRoots(const std::filesystem::path& programFolder,
                                               const std::filesystem::path& compiledIn);
 

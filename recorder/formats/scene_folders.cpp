@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where scenes are found: the part of scene_file.h that asks folders rather than files.
+// Search for scenes in folders: the part of scene_file.h that reads folders rather than files.
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each object of a scene file may hold: the loader's side of schemas/scene.schema.json (a test compares them).
+// Allowed content of each object of a scene file: the loader's side of schemas/scene.schema.json (a test compares
+// them).
 #pragma once
 
 #include <string>

@@ -81,7 +81,7 @@ void writeSecret(const std::filesystem::path& path, std::string_view bytes, bool
     ::unlink(temporary.c_str());
     throw;
   }
-  // A link fails where the name is taken: two programs that make one new file do not lose the first one's.
+  // A link fails if the name is taken: of two programs that create one file, the second does not overwrite the first's.
   const bool done =
       replace ? ::rename(temporary.c_str(), path.c_str()) == 0 : ::link(temporary.c_str(), path.c_str()) == 0;
   if (!done) {

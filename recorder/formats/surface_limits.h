@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the readers of triangle surfaces (OBJ, STL, PLY) share: the unit, which no such file says, and what is too much.
+// Common to the readers of triangle surfaces (OBJ, STL, PLY): the unit, which such files do not contain, and limits.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace calot::recorder {
 
-/// A surface file says no unit: whoever names the file must.
+/// A surface file contains no unit; whoever names the file must state it.
 enum class LengthUnit { metre, centimetre, millimetre };
 
 /// Metres in one unit.
@@ -16,14 +16,14 @@ double metres(LengthUnit unit);
 /// "m", "cm" or "mm". @throws Error (invalid)
 LengthUnit parseLengthUnit(const std::string& word);
 
-/// What a file may hold. Beyond it is refused, at the place where it happens.
+/// Limits of a file; a file that exceeds one is refused, naming the location.
 struct SurfaceLimits {
   std::size_t bytes = std::size_t{256} << 20U;
   std::size_t vertices = 5'000'000;
   std::size_t triangles = 10'000'000;
 };
 
-/// Farther from the origin than this nothing is an organ, and sums of squares stay far from overflow (m).
+/// Greatest distance from the origin: no organ is farther, and sums of squares stay far from overflow (m).
 inline constexpr double farthestCoordinate = 1000.0;
 
 }  // namespace calot::recorder

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words and numbers of text files that are read without trust.
+// Words and numbers of untrusted text files.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ class Words {
   std::string_view rest_;
 };
 
-/// Takes the next line (without its line break) off a text.
+/// Removes and returns the next line of a text, without its line break.
 std::string_view takeLine(std::string_view& text);
 
 /// A word for a message: short, and without control characters.

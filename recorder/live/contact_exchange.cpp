@@ -90,7 +90,7 @@ void ContactExchange::publish(const ContactSets& sets) {
     ++grown_;
     makeRoom(sets);
   }
-  // Until the haptic thread has moved, every publication carries the room: it may miss some.
+  // Every publication carries the new capacity until the haptic thread has adopted it, since it may miss some.
   if (seen_.load(std::memory_order_acquire) < generation_ && slot.generation < generation_) {
     for (std::size_t h = 0; h < handCount; ++h) {
       slot.room[h] = room_[h];

@@ -16,25 +16,25 @@ namespace calot::recorder {
 
 using ContactSets = std::array<ContactSet, handCount>;
 using HapticStates = std::array<HapticState, handCount>;
-/// A number for each vector among the fields of a contact set or haptic state; more than mostVectors of them are not
-/// looked after (they would grow in the haptic thread).
+/// Capacity for each vector among the fields of a contact set or haptic state; vectors beyond mostVectors are not
+/// tracked (they would grow in the haptic thread).
 inline constexpr std::size_t mostVectors = 64;
 using VectorSizes = std::array<std::size_t, mostVectors>;
 
-/// The newest contact sets of both hands, handed over without a lock. Sets are copied into slots that keep their
-/// memory. Where a set is larger than any before it, the simulation's side makes haptic states with room for it (by
-/// running a tick on it) and sends them along: the haptic thread moves into them, and so never allocates.
+/// Lock-free exchange of the newest contact sets of both hands. Sets are copied into slots whose memory is reused. When
+/// a set is larger than any before, the simulation side prepares haptic states of sufficient capacity (by running a
+/// tick on it) and publishes them as well; the haptic thread moves its state into them and so never allocates.
 class ContactExchange {
  public:
-  /// @param states, sets what the haptic thread begins with. @param model outlives the exchange.
+  /// @param states, sets initial values of the haptic thread. @param model outlives the exchange.
   ContactExchange(const Model& model, const HapticStates& states, const ContactSets& sets);
 
-  /// Simulation: makes these the newest sets. Allocates only where they grow (counted).
+  /// Simulation: publishes these sets. Allocates only if they grow (counted).
   void publish(const ContactSets& sets);
-  /// Simulation: how often a set was larger than any before it.
+  /// Simulation: number of times a set was larger than any before.
   [[nodiscard]] std::uint64_t grown() const { return grown_; }
 
-  /// Haptic thread: takes the newest sets, if there are newer ones, with room for them. Neither allocates nor locks.
+  /// Haptic thread: takes newer sets, if any, and capacity for them. Neither allocates nor locks.
   void refresh();
   [[nodiscard]] const ContactSets& sets() { return newest_.value().sets; }
   HapticStates& states() { return states_; }
@@ -43,7 +43,7 @@ class ContactExchange {
   struct Slot {
     ContactSets sets;
     HapticStates room;
-    std::uint64_t generation = 0;  // of the room
+    std::uint64_t generation = 0;  // of the capacity
   };
   bool outgrown(const ContactSets& sets);
   void makeRoom(const ContactSets& sets);
@@ -51,10 +51,10 @@ class ContactExchange {
   std::array<HapticModel, handCount> model_;
   Newest<Slot> newest_;
   HapticStates states_;        // the haptic thread's
-  std::uint64_t adopted_ = 0;  // the haptic thread's: generation of its room
+  std::uint64_t adopted_ = 0;  // the haptic thread's: generation of its capacity
   std::atomic<std::uint64_t> seen_{0};
 
-  // The simulation's: most elements of each vector of a set so far, and room that is enough for all of them.
+  // The simulation's: greatest size of each vector of a set so far, and haptic states of sufficient capacity.
   std::array<VectorSizes, handCount> most_{};
   HapticStates room_;
   std::uint64_t generation_ = 0, grown_ = 0;

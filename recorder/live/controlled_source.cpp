@@ -15,7 +15,7 @@ bool ControlledSource::next(std::uint64_t tick, TickSamples& out) {
 }
 
 SourceStatus ControlledSource::status() {
-  // What is to end is not held back from ending, be it by a device that is gone.
+  // Ending takes precedence over pausing, even if the device is gone.
   if (finished_ != Outcome::running) return SourceStatus::ok;
   if (!held_) return source_.status();
   source_.rest();

@@ -10,18 +10,18 @@
 
 namespace calot::recorder {
 
-/// Another source, and somebody beside it who may hold the run, hand instruments over and end the attempt: a trainer's
-/// window, whatever device the hands have.
+/// Wraps a source so that a trainer's window may pause the run, exchange instruments and end the
+/// attempt, with any device.
 ///
-/// What it changes it changes in the samples, so that the recording holds it: an exchanged instrument is in the ticks,
-/// a hold leaves none.
+/// Changes are made in the samples and are thus recorded: an exchanged instrument appears in the ticks,
+/// a pause produces none.
 class ControlledSource final : public SampleSource {
  public:
   /// @param source outlives this
   explicit ControlledSource(SampleSource& source) : source_(source) {}
 
   // Any thread:
-  /// Holds the run before its next step (SourceStatus::paused), or lets it go on. A source that failed is not held.
+  /// Pauses the run before its next step (SourceStatus::paused) or resumes it. A failed source is not paused.
   void hold(bool held) { held_ = held; }
   [[nodiscard]] bool held() const { return held_; }
   /// From the next tick on this hand has that instrument, whatever the source says; a hand without any stays so.

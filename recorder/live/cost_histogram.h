@@ -24,8 +24,7 @@ class CostHistogram {
     return count_ == 0 ? 0.0 : 1e-9 * static_cast<double>(sum_) / static_cast<double>(count_);
   }
   [[nodiscard]] double largest() const { return 1e-9 * static_cast<double>(largest_); }  ///< s
-  /// A bound that a share `part` of all does not exceed (s): the upper edge of the bin, or the largest where that is
-  /// less. @pre part in [0, 1]
+  /// Upper bound of quantile `part` (s): the upper edge of its bin, or the maximum if that is less. @pre part in [0, 1]
   [[nodiscard]] double quantile(double part) const {
     const double wanted = part * static_cast<double>(count_);
     std::uint64_t seen = 0;

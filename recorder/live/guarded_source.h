@@ -8,8 +8,8 @@
 
 namespace calot::recorder {
 
-/// A source with a watcher in a live run: ticks are asked for by one thread, steps told by another. Sources know of no
-/// threads; this keeps the two apart.
+/// A source with a watcher in a live run: one thread requests ticks, another reports steps. Sources are not
+/// thread-safe; this serialises the two.
 class GuardedSource final : public SampleSource, private Observer {
  public:
   /// @param source outlives this; it has a watcher

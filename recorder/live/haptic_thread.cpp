@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t ticksOfLag = 100;  // longestLag
 
-/// Before all ordinary threads, where the system permits it; and woken when it asked to be.
+/// Real-time priority if the system permits it, and precise wake-up times.
 bool becomePrompt() {
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   sched_param parameters{};
@@ -96,7 +96,7 @@ void HapticThread::ticks() {
   }
 }
 
-/// Asks the source before a step. @returns false where the run ends here.
+/// Queries the source before a step. @returns false if the run ends here.
 bool HapticThread::waitForSource() {
   const SourceStatus status = waitWhilePaused(
       source_, [this] { return abandoned_ || (settings_.stop != nullptr && settings_.stop->load()); }, clock_,
@@ -105,7 +105,7 @@ bool HapticThread::waitForSource() {
   return status != SourceStatus::failed && !abandoned_;
 }
 
-/// Sleeps until tick t is due and may begin. @returns false where the simulation has left.
+/// Sleeps until tick t is due and may begin. @returns false if the simulation has stopped.
 bool HapticThread::waitForTurn(std::uint64_t t) {
   do {
     sleepUntil(clock_.due(t));
@@ -120,7 +120,7 @@ bool HapticThread::waitForTurn(std::uint64_t t) {
 bool HapticThread::takeStep(std::span<TickSamples> samples, std::span<TickOutcome> outcomes, Nanoseconds& due) {
   while (::sem_wait(&steps_) != 0 && errno == EINTR) {
   }
-  // The end's own signal comes after those of all whole steps; what an unfinished step left in the ring is dropped.
+  // The end is signalled after all complete steps; ticks of an unfinished step in the ring are dropped.
   Tick tick;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!ring_.pop(tick)) return false;

@@ -21,10 +21,10 @@
 
 namespace calot::recorder {
 
-/// What the haptic thread saw of itself. Ticks, deadlines and stretching are those of whole steps: of what is recorded.
+/// Statistics of the haptic thread. Ticks, deadlines and stretching are those of complete, and thus recorded, steps.
 struct HapticReport {
   Outcome outcome = Outcome::completed;
-  bool realTime = false;  ///< the system let it run before all ordinary threads (SCHED_FIFO)
+  bool realTime = false;  ///< runs with real-time priority (SCHED_FIFO)
   std::uint64_t ticks = 0;
   std::uint64_t missedDeadlines = 0;
   double largestLateness = 0.0;  ///< s
@@ -33,19 +33,20 @@ struct HapticReport {
   CostHistogram cost;  ///< thread CPU time of a tick: both hands' samples taken and forces made
 };
 
-/// Runs ticks at the pace of the tick clock, each with the newest contact sets that the simulation published, until the
-/// source ends or `gate` says so. The simulation takes the ticks of one step after the other and publishes.
+/// Runs ticks at the rate of the tick clock, each with the newest published contact sets, until the source ends or
+/// `gate` ends it. The simulation takes the ticks of one step after the other and publishes.
 class HapticThread {
  public:
   struct Settings {
-    /// Asked before the first tick of every step of this run (0, 1, 2, ...): how the attempt ends here, or `running`.
+    /// Called before the first tick of every step of this run (0, 1, 2, ...): returns how the attempt
+    /// ends here, or `running`.
     std::function<Outcome(std::uint64_t step)> gate;
-    std::function<void(const TickOutcome&)> feedback;  ///< told of every tick's forces at once; or empty
-    const std::atomic<bool>* stop = nullptr;           ///< asked while the source pauses, too
+    std::function<void(const TickOutcome&)> feedback;  ///< called with every tick's forces immediately; or empty
+    const std::atomic<bool>* stop = nullptr;           ///< also queried while the source pauses
   };
 
-  /// @param model, source outlive the thread; the source is used by it alone. @param states, sets as the session has
-  /// them now.
+  /// @param model, source outlive the thread; the source is used by it alone. @param states, sets as the
+  /// session has them now.
   HapticThread(const Model& model, SampleSource& source, const HapticStates& states, const ContactSets& sets,
                Settings settings);
   ~HapticThread();
@@ -61,7 +62,7 @@ class HapticThread {
 
   /// Simulation: waits for the thread's end. @throws what the source threw there.
   const HapticReport& finish();
-  /// Simulation, after finish(): how often the sets outgrew the memory that was there.
+  /// Simulation, after finish(): number of times that the sets exceeded the capacity.
   [[nodiscard]] std::uint64_t arenasGrown() const { return exchange_.grown(); }
 
  private:
@@ -86,7 +87,7 @@ class HapticThread {
   HapticReport report_;
   std::exception_ptr fault_;
   std::atomic<std::uint64_t> stepsDone_{0};
-  std::atomic<bool> abandoned_{false};  // the simulation has left
+  std::atomic<bool> abandoned_{false};  // the simulation has stopped
   sem_t steps_{};                       // steps whose ticks are all in the ring, and one for the end
   std::thread thread_;
 };

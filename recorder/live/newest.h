@@ -7,9 +7,9 @@
 
 namespace calot::recorder {
 
-/// Hands the newest value from one writing thread to one reading thread, through three slots: the writer's, the
-/// reader's, and the one between them. Neither ever waits, locks or copies; a value that the reader was too slow for is
-/// overwritten. Slots keep their memory, so that a value which fits in what earlier ones needed allocates nothing.
+/// Triple buffer that passes the newest value from one writing thread to one reading thread. Neither thread ever waits,
+/// locks or copies; values that the reader misses are overwritten. Slots keep their memory, so that a value no larger
+/// than earlier ones allocates nothing.
 template <class T>
 class Newest {
  public:

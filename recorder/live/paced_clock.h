@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When ticks are due at real time, and when the clock has to wait for a machine that is too slow.
+// Due times of ticks in real time, and stretching of the clock on a machine that is too slow.
 #pragma once
 
 #include <chrono>
@@ -19,9 +19,9 @@ Nanoseconds threadCpuTime();
 /// The tick clock: tick t is due t ms after the start, later by every pause and every stretch.
 ///
 /// The lag of a run is how late its next tick is, and, where the simulation runs beside the ticks, for how many ticks
-/// its next step has been computable beyond that. Lag is made up for by hurrying; where it exceeds longestLag, the
-/// excess stretches the clock: all later ticks are due later by it. So a machine that is always too slow lets time run
-/// slower, evenly, and longestLag behind.
+/// its next step has been computable beyond that. Lag is made up by running faster; if it exceeds longestLag, the
+/// excess stretches the clock: all later ticks are postponed by it. On a machine that is always too slow, time thus
+/// runs evenly slower, longestLag behind.
 class PacedClock {
  public:
   static constexpr Nanoseconds tick = std::chrono::milliseconds(1);
@@ -31,8 +31,8 @@ class PacedClock {
 
   [[nodiscard]] Nanoseconds due(std::uint64_t t) const { return origin_ + static_cast<Nanoseconds::rep>(t) * tick; }
 
-  /// May tick t begin? Stretches the clock by what the lag exceeds longestLag by. If not, the simulation alone is that
-  /// far behind: wait until due(t), which lies ahead then, and ask again.
+  /// May tick t begin? Stretches the clock by the excess of the lag over longestLag. If false, the simulation alone is
+  /// that far behind: wait until due(t), which is then in the future, and call again.
   /// @param backlog ticks since the simulation's next step became computable; 0 or less: it is not waited for
   bool mayBegin(std::uint64_t t, Nanoseconds now, std::int64_t backlog);
 
@@ -40,7 +40,7 @@ class PacedClock {
   /// tick: the next mayBegin() is another's.
   float finish(std::uint64_t t, Nanoseconds ready);
 
-  /// The run was held by its source for so long.
+  /// Postpones all ticks by the length of a pause.
   void pause(Nanoseconds length) { origin_ += length; }
 
   [[nodiscard]] std::uint64_t missed() const { return missed_; }          ///< ticks that ended after their deadline

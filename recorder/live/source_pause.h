@@ -9,13 +9,13 @@
 
 namespace calot::recorder {
 
-/// How often and how long a source held its run.
+/// Number and length of the pauses of a run by its source.
 struct SourcePauses {
   std::uint64_t count = 0;
   double seconds = 0.0;
 };
 
-/// Asks the source before a step; waits while it pauses, unless `stopped`, and moves the clock by as long.
+/// Queries the source before a step; waits while it pauses, unless `stopped`, and postpones the clock accordingly.
 /// @returns its status then.
 SourceStatus waitWhilePaused(SampleSource& source, const std::function<bool()>& stopped, PacedClock& clock,
                              SourcePauses& pauses);

@@ -25,7 +25,7 @@ void relax() {
 WorkerPool::WorkerPool(unsigned threads) {
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   if (threads == 0) threads = processors;
-  // With more threads than processors, whoever spins keeps another one from working.
+  // With more threads than processors, a spinning thread keeps another from working.
   spins_ = threads <= processors ? 1000 : 0;
   workers_.reserve(threads - 1);
   for (unsigned i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
@@ -52,13 +52,13 @@ void WorkerPool::run(std::size_t count, TaskRef task) {
     return;
   }
 
-  // Nobody touches the batch here: all tasks of the last one were taken and are done.
+  // No other thread accesses the batch here: all tasks of the last one are done.
   count_ = count;
   task_ = &task;
   finished_.store(0, std::memory_order_relaxed);
   const std::uint64_t batch = (ticket_.load(std::memory_order_relaxed) & ~takenMask) + nextBatch;
   ticket_.store(batch | count);
-  // Sequentially consistent, as is the sleeper's announcement before its last look at the ticket: one of the two sees
+  // Sequentially consistent, as is the sleeper's registration before its last read of the ticket: one of the two sees
   // the other, so no wake-up is lost.
   if (sleepers_.load() > 0) {
     { const std::lock_guard lock(mutex_); }

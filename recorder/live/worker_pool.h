@@ -16,8 +16,8 @@ namespace calot::recorder {
 /// An executor of several threads, the calling one among them. Made for a step that hands over dozens of short batches:
 /// idle workers spin for some tens of microseconds before they sleep, and a batch allocates nothing.
 ///
-/// Threads take the next task from a shared counter, so which thread runs a task is left to chance and no result may
-/// depend on it (see Executor). Every task runs in the floating-point environment of the determinism contract.
+/// Threads take the next task from a shared counter, so that results must not depend on which thread runs a task (see
+/// Executor). Every task runs in the floating-point environment of the determinism contract.
 ///
 /// One batch at a time: `run` from inside a task, or from two threads at once, is a programming error (asserted).
 class WorkerPool final : public Executor {
@@ -38,8 +38,8 @@ class WorkerPool final : public Executor {
   std::size_t takeTasks();
   [[nodiscard]] bool somethingToDo() const;
 
-  // What to do next: the batch's number (upper half), tasks not yet taken (lower half). Counting down lets a late
-  // worker see that nothing is left before it looks at a batch that may be another one by now.
+  // Ticket: the batch's number (upper half) and tasks not yet taken (lower half). Counting down lets a late worker see
+  // that nothing is left before it reads a batch that may have been replaced.
   std::atomic<std::uint64_t> ticket_{0};
   std::atomic<std::size_t> finished_{0};  ///< tasks of this batch that are done
   std::atomic<unsigned> sleepers_{0};     ///< workers that sleep or are about to

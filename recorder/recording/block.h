@@ -23,12 +23,12 @@ struct Block {
   Outcome outcome = Outcome::running;
   std::array<std::uint64_t, handCount> rawDropped{};  ///< raw samples of this block that could not be kept
 
-  /// Room for a whole block, so that filling it does not allocate (but for events and keyframes).
+  /// Reserves capacity for a whole block, so that filling it does not allocate (except for events and keyframes).
   explicit Block(const Layout& layout);
   void clear();
 };
 
-/// Rows of each stream that a row of /status vouches for.
+/// Rows of each stream that a row of /status covers.
 std::array<std::uint64_t, streamCount> countsOf(const StatusRow& row);
 
 /// Appends a step to a block. The keyframe is appended where one is given; `keyframeBase` counts the words of

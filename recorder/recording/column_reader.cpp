@@ -17,7 +17,7 @@ using hdf5::Id;
 ColumnReader::ColumnReader(std::filesystem::path path, const hdf5::Id& file, const Layout& layout,
                            std::uint64_t fileBytes)
     : path_(std::move(path)), layout_(layout), fileBytes_(fileBytes) {
-  // /status first: of a file that is being written, what is opened later holds at least what its rows vouch for.
+  // Open /status first: in a file being written, data sets opened later contain at least the rows it covers.
   statusColumn_.path = "/status";
   statusColumn_.element = Element::status;
   statusColumn_.deflate = false;

@@ -20,8 +20,8 @@ namespace {
 
 using hdf5::Id;
 
-/// Creates objects in a file that lies in memory until it is whole and is then written plainly: HDF5 does not survive
-/// every disk that fills up while it creates. Every failure is an exception.
+/// Creates objects in a file in memory, which is written plainly once complete: HDF5 does not always survive a disk
+/// that fills up during creation. Every failure is an exception.
 class Builder {
  public:
   explicit Builder(const std::filesystem::path& path) : path_(path) {

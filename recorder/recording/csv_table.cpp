@@ -10,7 +10,7 @@ namespace calot::recorder {
 
 namespace {
 
-/// Quoted where a comma, quote or line break asks for it.
+/// Quoted if it contains a comma, quote or line break.
 std::string cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";

@@ -104,7 +104,7 @@ void FileAppender::append(const Block& block, std::int64_t wallNanoseconds) {
     appendRawCounts(row, packed_);
     writeRows(rawCounts_, rawCountsType_, statusRows_, 1, 1, false, packed_.data(), rawCountsPath);
   }
-  // The rows must be in the file before the row that vouches for them.
+  // The rows must be in the file before the row of /status that covers them.
   if (swmr_ && H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
   packed_.clear();
   appendStatus(row, packed_);

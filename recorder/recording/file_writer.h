@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two halves of writing a recording's file: first everything is created, then rows are appended. What appends has
-// no way to create. Internal to this folder.
+// The two phases of writing a recording's file: creation of all objects, then appending of rows by a class that cannot
+// create objects. Internal to this folder.
 #pragma once
 
 #include <filesystem>
@@ -33,8 +33,8 @@ class FileAppender {
   FileAppender(const FileAppender&) = delete;
   FileAppender& operator=(const FileAppender&) = delete;
 
-  /// Writes a block's rows and flushes them, then the row of /status that vouches for them. `wallNanoseconds` is the
-  /// row's time. @throws Error failure; from then on nothing changes the file any more.
+  /// Writes a block's rows and flushes them, then the row of /status that covers them. `wallNanoseconds` is the row's
+  /// time. @throws Error failure; from then on nothing changes the file any more.
   void append(const Block& block, std::int64_t wallNanoseconds);
 
   /// Writes the signature of the last row's chain head; nothing is appended after it. @pre the file was created with a

@@ -54,8 +54,8 @@ inline Id type(hid_t id) { return {id, H5Tclose}; }
 inline Id attribute(hid_t id) { return {id, H5Aclose}; }
 inline Id properties(hid_t id) { return {id, H5Pclose}; }
 
-/// Held while this folder calls HDF5: it keeps HDF5's own error printing off, and a fork never finds the library in
-/// the middle of something. Not recursive.
+/// Lock for calls to HDF5 from this folder: disables HDF5's own error printing and ensures that a fork never interrupts
+/// the library. Not recursive.
 class Session {
  public:
   Session();
@@ -71,8 +71,8 @@ std::mutex& processLock();
 /// the innermost description.
 std::string reason();
 
-/// Points the descriptor of a file that could not be written elsewhere. HDF5 goes on trying to write what it holds
-/// until the file is closed, in an order that no longer protects what was flushed: after this the file stays as it is.
+/// Redirects the descriptor of a file that could not be written. HDF5 would keep trying to write its cache until the
+/// file is closed, in an order that endangers flushed data; after this the file stays unchanged.
 void freeze(const Id& file);
 
 /// Message of a damaged file: FILE: PLACE: WHAT.

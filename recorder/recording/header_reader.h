@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading and checking what a recording says of itself. Internal to this folder.
+// Reading and checking a recording's header. Internal to this folder.
 #pragma once
 
 #include <cstdint>

@@ -10,13 +10,13 @@
 
 namespace calot::recorder {
 
-/// Which attempt a recording is of.
+/// Identity of a recording's attempt.
 struct RecordingIdentity {
   std::string attempt, parent;  ///< uuids; parent empty: no branch
   std::string participant;      ///< pseudonym, or empty
   std::uint64_t steps = 0;
   bool complete = false;
-  std::array<std::byte, 32> chainHead{};  ///< as the file says; not computed anew
+  std::array<std::byte, 32> chainHead{};  ///< as stored; not recomputed
 };
 
 /// Reads it from header and status, in a child process (a hostile file harms nothing). @throws Error as Recording does.

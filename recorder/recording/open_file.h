@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening a file from strangers. Internal to this folder.
+// Opening untrusted files. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace calot::recorder {
 
-/// What the first bytes of an HDF5 file say of its size and its writer.
+/// Size and writer of an HDF5 file according to its first bytes.
 struct Superblock {
   unsigned version = 0;
   bool writing = false;         ///< its writer did not close it

@@ -12,7 +12,7 @@ RawStatistics rawStatistics(Recording& recording, Hand hand) {
   s.samples = recording.rawSampleCount(hand);
   s.dropped = recording.rawSamplesDropped(hand);
   std::optional<std::uint64_t> sequence;
-  std::optional<double> first, last;  // s; doubles, since a stranger's numbers may be any
+  std::optional<double> first, last;  // s; doubles, since untrusted numbers may have any value
   for (std::uint64_t at = 0; at < s.samples; at += most) {
     for (const RawSample& raw : recording.rawSamples(hand, at, std::min(most, s.samples - at))) {
       if (sequence && raw.sample.sequence > *sequence) s.missing += raw.sample.sequence - *sequence - 1;

@@ -7,7 +7,7 @@
 
 namespace calot::recorder {
 
-/// What a hand's raw samples say of the device that gave them.
+/// Statistics of a hand's device from its raw samples.
 struct RawStatistics {
   std::uint64_t samples = 0;     ///< in the recording
   std::uint64_t valid = 0;       ///< of these

@@ -17,7 +17,7 @@
 
 namespace calot::recorder {
 
-/// One row of /status: what a flush vouches for.
+/// One row of /status: the extent of the data after a flush.
 struct StatusRow {
   std::uint64_t ticks = 0, steps = 0, events = 0, keyframes = 0;
   std::uint64_t keyframeWords = 0;  ///< 8-byte words of /keyframes/bytes
@@ -42,7 +42,7 @@ struct RecordedStep {
   RecordedProcedure procedure;  ///< version 3 of StepResult: the judgement of its time
 };
 
-/// Does the content chain, computed anew from what the file holds, agree with its /status?
+/// Does the content chain, recomputed from the file's content, agree with its /status?
 struct ChainVerdict {
   bool intact = true;
   std::uint64_t flush = 0;      ///< first row of /status that disagrees; 0: header or scene
@@ -51,7 +51,7 @@ struct ChainVerdict {
   std::string what;  ///< one phrase for a message; empty if intact
 };
 
-/// What a recording's station says of its content (schemas/recording.md, "Signature").
+/// A station's signature of a recording's content (schemas/recording.md, "Signature").
 struct RecordedSignature {
   PublicKey publicKey{};
   std::optional<Signature> value;  ///< none: its writer was killed before it could sign
@@ -67,12 +67,12 @@ enum class Access {
   live,     ///< a writer may be at work: metadata that is being written is tried again
 };
 
-/// A recording, opened for reading. Nothing in the file is believed before it was checked; only rows that the last row
-/// of /status vouches for are read. Everything throws Error: damaged (4) naming file and data set for what cannot be
-/// read, has the wrong type or shape, a bad checksum, or a value that no source makes (NaN, no unit quaternion within
-/// 1e-3, an unknown instrument).
+/// A recording, opened for reading. Nothing in the file is trusted before it is checked; only rows covered by the last
+/// row of /status are read. Everything throws Error: damaged (4) naming file and data set for what cannot be read, has
+/// the wrong type or shape, a bad checksum, or a value that no source makes (NaN, no unit quaternion within 1e-3, an
+/// unknown instrument).
 ///
-/// One thread at a time uses one object. Objects and writers of one process take turns inside (HDF5 is one lock).
+/// An object is not thread-safe. Objects and writers of one process serialise internally (HDF5 has one lock).
 class Recording {
  public:
   /// Reads and checks the header, scene (SHA-256 of each asset), shape of every data set and /status.
@@ -93,7 +93,8 @@ class Recording {
   [[nodiscard]] std::uint64_t eventCount() const;
   [[nodiscard]] double seconds() const;  ///< of simulated time
 
-  /// Step n. Cheap going forward: rows are read and checked a flush at a time. The reference holds until the next call.
+  /// Step n. Sequential reading is cheap: rows are read and checked one flush at a time. The reference holds until the
+  /// next call.
   /// @pre n < stepCount()
   const RecordedStep& step(std::uint64_t n);
 
@@ -110,11 +111,11 @@ class Recording {
   /// Some of them, in the order of arrival. @pre first + count <= rawSampleCount(hand)
   [[nodiscard]] std::vector<RawSample> rawSamples(Hand hand, std::uint64_t first, std::uint64_t count);
 
-  /// Where a key was there to sign it. Checked by verifyChain().
+  /// The signature, if a key was available. Checked by verifyChain().
   [[nodiscard]] const std::optional<RecordedSignature>& signature() const;
 
-  /// Computes the chain anew over the whole file, and holds the signature, if there is one, against its last head.
-  /// Throws where data cannot be read; a disagreement is a verdict.
+  /// Recomputes the chain over the whole file and checks the signature, if there is one, against its last head. Throws
+  /// where data cannot be read; a disagreement is a verdict.
   ChainVerdict verifyChain();
 
  private:
@@ -122,9 +123,9 @@ class Recording {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Opens a file from strangers in a child process, reads every row of it and computes its chain there: a crash or a
-/// hang of the reading library ends the child only. @return the chain's verdict. @throws Error as Recording does, and
-/// damaged when the child crashed or took too long. After it returned, opening the file in this process is safe.
+/// Opens an untrusted file in a child process, reads every row of it and computes its chain there: a crash or a hang of
+/// the reading library ends the child only. @return the chain's verdict. @throws Error as Recording does, and damaged
+/// when the child crashed or took too long. After it returned, opening the file in this process is safe.
 ChainVerdict probe(const std::filesystem::path& path);
 
 }  // namespace calot::recorder

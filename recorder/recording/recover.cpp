@@ -19,9 +19,9 @@ namespace calot::recorder {
 namespace {
 
 /// A closed file whose end is missing is not opened by HDF5, though all that lies before the cut is as it was: object
-/// headers stand at the front, and chunks and their index follow in the order of time. So a copy is made as long as the
-/// file once was, with nothing (a hole) in place of what is lost. What is read from there fails its checksum or the
-/// chain. @return the copy, or the file itself where it is not cut off or was never closed.
+/// headers stand at the front, and chunks and their index follow in the order of time. So this makes a copy of the
+/// original length, with a hole in place of the lost part. Data read from the hole fail their checksum or the chain.
+/// @return the copy, or the file itself if it is not truncated or was never closed.
 std::filesystem::path padded(const std::filesystem::path& path, std::uint64_t fileBytes,
                              const std::filesystem::path& scratch) {
   constexpr std::uint64_t longest = std::uint64_t{1} << 40U;
@@ -35,7 +35,7 @@ std::filesystem::path padded(const std::filesystem::path& path, std::uint64_t fi
   return scratch;
 }
 
-/// What can still be read of a file, front to back.
+/// Reads what is still readable of a file, from front to back.
 class Salvage {
  public:
   /// @param scratch a file to work on where the input itself cannot be opened.
@@ -105,7 +105,7 @@ class Salvage {
     columns_ = std::make_unique<ColumnReader>(path_, file_, *layout_, fileBytes);
   }
 
-  /// What cannot be read of the raw samples costs nothing else: it is counted with what could not be kept.
+  /// Unreadable raw samples affect nothing else: they are counted as lost.
   void readRaw(StatusRow& after, Block& block) const {
     after.rawSamples = before_.rawSamples;
     after.rawDropped = before_.rawDropped;
@@ -135,7 +135,7 @@ class Salvage {
 
 Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& temporary,
                   const std::filesystem::path& scratch) {
-  readSuperblock(in);  // no file, or none of ours: there is nothing to speak of saving
+  readSuperblock(in);  // no file, or not a recording: nothing to save
   std::unique_ptr<Salvage> source;
   try {
     source = std::make_unique<Salvage>(in, scratch);
@@ -149,7 +149,7 @@ Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& 
   StatusRow row;
   Recovered result;
   while (source->next(block, row, result.lost)) out.append(block, row.wallNanoseconds);
-  // A signature is kept where it is one of what was saved: not where the end is lost.
+  // A signature is kept only if it covers exactly what was saved, not if the end is lost.
   if (source->signature() && source->signature()->fits(out.last().chain)) out.sign(*source->signature()->value);
   out.close();
   result.steps = out.last().steps;

@@ -12,7 +12,7 @@ struct Recovered {
   std::uint64_t steps = 0;  ///< saved
   std::uint64_t ticks = 0;  ///< saved
   bool complete = false;    ///< all of a finished attempt was there
-  std::string lost;         ///< why the rest could not be saved; empty if nothing that was vouched for is lost
+  std::string lost;         ///< why the rest could not be saved; empty if no covered row is lost
 };
 
 /// Rewrites a recording that was left by a killed writer, or was cut off, as a clean closed file of the same attempt:

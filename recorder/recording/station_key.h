@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ed25519 (RFC 8032): a station signs the last head of a recording's content chain. docs/threat-model.md says what that
-// shows.
+// Ed25519 (RFC 8032): a station signs the last head of a recording's content chain. docs/threat-model.md explains what
+// that proves.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace calot::recorder {
 using PublicKey = std::array<std::uint8_t, 32>;
 using Signature = std::array<std::uint8_t, 64>;
 
-/// What a station signs with. Its file is JSON: format "calot-station-key", version 1, station, seed and public_key in
-/// hexadecimal; only its owner may read it.
+/// Key with which a station signs. Its file is JSON: format "calot-station-key", version 1, station, seed and
+/// public_key in hexadecimal; only its owner may read it.
 struct StationKey {
   std::string station;  ///< the name that its recordings carry
   PublicKey publicKey{};

@@ -12,7 +12,7 @@ namespace calot::recorder {
 /// hashlittle() of lookup3 (R. Jenkins, 2006), initial value 0: the checksum of HDF5's metadata.
 std::uint32_t lookup3(std::span<const unsigned char> bytes);
 
-/// Takes the mark of a writer at work from the superblock (version 2 or 3, 8-byte offsets) of a file's image.
+/// Clears the flag of an active writer in the superblock (version 2 or 3, 8-byte offsets) of a file's image.
 /// @return false if it is no such superblock.
 bool markClosed(std::span<unsigned char> image);
 

@@ -52,7 +52,7 @@ struct RecordingWriter::Impl {
   bool ended = false;
   RawSampleFeed* feed = nullptr;
   std::uint64_t feedFirstTick = 0;
-  std::array<std::uint64_t, handCount> dropped{};  // that the feed told of so far
+  std::array<std::uint64_t, handCount> dropped{};  // reported by the feed so far
 
   // Between the two threads.
   SpscQueue<Block*> full, empty;
@@ -102,7 +102,7 @@ struct RecordingWriter::Impl {
   void flush(const Block& block, bool last) {
     const auto begin = std::chrono::steady_clock::now();
     try {
-      // A block without rows is written only where it carries the outcome.
+      // A block without rows is written only if it carries the outcome.
       if (block.rows[static_cast<std::size_t>(Stream::steps)] > 0 || block.completed) {
         file->append(block, wallNow());
         flushes.fetch_add(1, std::memory_order_relaxed);
@@ -119,7 +119,7 @@ struct RecordingWriter::Impl {
     writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
   }
 
-  /// Steps in which fat is carved take the longest to simulate again: there keyframes come four times as often.
+  /// Steps in which fat is carved take longest to re-simulate, so keyframes are four times as frequent there.
   bool keyframeDue(const StepResult& result) {
     for (const FatResult& fat : result.fat) carved = carved || fat.carved > 0.0;
     if (nextStep % (carved ? layout.shortInterval : layout.keyframeInterval) != 0) return false;

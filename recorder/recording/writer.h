@@ -18,10 +18,10 @@ struct WriterOptions {
   std::optional<StationKey> key = {};  ///< signs the last head of the chain
 };
 
-/// What the writer did; may be read from any thread while it records.
+/// Statistics of the writer; readable from any thread while it records.
 struct WriterStatistics {
   std::uint64_t flushes = 0;         ///< rows of /status after the first
-  std::uint64_t steps = 0;           ///< steps that are on disk and vouched for
+  std::uint64_t steps = 0;           ///< steps on disk and covered by /status
   std::uint64_t blocksGrown = 0;     ///< blocks allocated beyond the first ones: the disk was slower than the loop
   double writerSeconds = 0.0;        ///< CPU time of the writing thread (s)
   double largestFlushSeconds = 0.0;  ///< longest wall time of one flush (s)
@@ -30,8 +30,8 @@ struct WriterStatistics {
 /// Writes one attempt to one HDF5 file as schemas/recording.md says, on a thread of its own.
 ///
 /// The loop's thread copies a step into a block of 250 ticks and hands full blocks over through a lock-free queue; it
-/// never waits for the disk, and where the disk falls behind the queue grows (counted). Every full block is one flush
-/// in SWMR mode: killed at any moment, a run paced at real time loses at most two blocks.
+/// never waits for the disk; if the disk falls behind, the queue grows (counted). Every full block is one flush in SWMR
+/// mode: killed at any moment, a run paced at real time loses at most two blocks.
 ///
 /// The file has the name TARGET.part until all its data sets exist and SWMR writing has started; then it is renamed.
 /// If writing fails later (disk full), the writer keeps what was flushed, stops writing and lets the loop go on;
@@ -43,7 +43,7 @@ class RecordingWriter final : public Observer {
   /// @throws Error invalid: the target exists and force is not set. failure: it cannot be created.
   RecordingWriter(const std::filesystem::path& target, const AttemptHeader& header, WriterOptions options = {});
 
-  /// Without onEnd before it, the file stays as an incomplete one: all steps so far, outcome `running`.
+  /// Without a preceding onEnd, the file stays incomplete: all steps so far, outcome `running`.
   ~RecordingWriter() override;
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
@@ -53,7 +53,7 @@ class RecordingWriter final : public Observer {
   /// at which the feed's tick 0 lies (a branch). @pre the header says deviceSamples
   void takeRawSamples(RawSampleFeed& feed, std::uint64_t firstTick = 0);
 
-  /// Appends a step. Does not throw for the disk's sake. @pre record.step counts 0, 1, 2, ...
+  /// Appends a step. Disk errors do not throw here. @pre record.step counts 0, 1, 2, ...
   void onStep(const StepRecord& record) override;
 
   /// Hands over the last block with the outcome; no onStep after it.
@@ -63,7 +63,7 @@ class RecordingWriter final : public Observer {
   /// what had been flushed before can be read. @pre onEnd was called.
   void finish();
 
-  /// Nothing more is written (disk full); finish() will say why. Any thread may ask.
+  /// Has writing stopped (disk full)? finish() reports the reason. Thread-safe.
   [[nodiscard]] bool failed() const;
 
   [[nodiscard]] WriterStatistics statistics() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CSV files of instrument motion, and the declaration of what their columns are: schemas/columns.schema.json says what
-// stands in such a map, docs/sources.md how it is meant.
+// CSV files of instrument motion and the declaration of their columns: schemas/columns.schema.json defines such
+// maps, docs/sources.md explains them.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace calot::recorder {
 
-/// Where a CSV file holds what, in which units and frame.
+/// Columns of a CSV file, their units and frame.
 struct ColumnMap {
   struct HandColumns {
     std::array<std::string, 3> position;   ///< x y z
     std::vector<std::string> orientation;  ///< none; 4: quaternion w x y z; 9: rotation matrix row by row
-    Quat axis = Quat::Identity();          ///< turns z onto the instrument's axis in its own frame, towards the tip
+    Quat axis = Quat::Identity();          ///< rotates z onto the instrument's axis in its own frame, towards the tip
   };
   std::string device;  ///< class of tracker, or empty
   std::string frame;
@@ -31,7 +31,7 @@ struct ColumnMap {
   std::array<std::optional<HandColumns>, handCount> hand;
 };
 
-/// The objects of a column map, for the reader and for the test that holds the published schema against it.
+/// The objects of a column map, for the reader and for the test that compares them with the published schema.
 const std::vector<ObjectRule>& columnMapRules();
 
 /// @throws Error (damaged) naming file and place.

@@ -11,8 +11,8 @@
 
 namespace calot::recorder {
 
-/// How a file's frame F is laid into the scene (docs/sources.md): p_W = taskCentre + slide_h view + scale R_WC (p_F -
-/// middle).
+/// Mapping of a file's frame F into the scene (docs/sources.md): p_W = taskCentre + slide_h view + scale
+/// R_WC (p_F - middle).
 struct KinematicsMapping {
   Vec3 middle = Vec3::Zero();  ///< p_F: of the central 90 % of both hands' positions, axis by axis (m)
   double scale = 1.0;
@@ -24,11 +24,11 @@ struct KinematicsMapping {
 
 /// An attempt from a kinematics file: approach from the home positions in one second, then the file's motion.
 ///
-/// Row i falls on tick 1000 + i * 1000 / 30; between rows positions follow a cubic Hermite curve with Catmull-Rom
-/// tangents (one-sided at both ends), orientations the normalised linear interpolation on the shorter arc, grippers a
-/// straight line. The instrument goes through its port: of the file's orientation only the roll is left
-/// (alignedToShaft). Jaw opening is the gripper angle clamped to [0, 1.2] rad: below zero is a closed gripper that
-/// presses.
+/// Row i falls on tick 1000 + i * 1000 / 30; between rows positions follow a cubic Hermite curve with
+/// Catmull-Rom tangents (one-sided at both ends), orientations the normalised linear interpolation on the
+/// shorter arc, grippers a straight line. The instrument goes through its port: of the file's orientation only
+/// the roll is left (alignedToShaft). Jaw opening is the gripper angle clamped to [0, 1.2] rad: below zero is a
+/// closed gripper that presses.
 class KinematicsSource : public SampleSource {
  public:
   /// @throws Error as readKinematics; invalid where the scene's camera looks at no organ.

@@ -105,8 +105,8 @@ void WorkingMind::BedStroke::aim(const std::vector<BedStrand>& wanted) {
   }
 }
 
-/// The stroke that crosses most strands, near the free edge: the side from which the hook comes, and the neck. Of the
-/// many that could be looked at, some: a hand does not take long to choose.
+/// The stroke that crosses most strands near the free edge, on the side of the hook and the neck. Only
+/// some candidates are evaluated.
 /// @pre one of `wanted` is worth 1
 WorkingMind::BedStroke WorkingMind::bestStroke(const std::vector<BedStrand>& wanted) const {
   const PerformerHand& hook = tools_.hand[hand_];
@@ -151,8 +151,8 @@ void WorkingMind::runStroke(const BedStroke& stroke) {
   newError();
   error_ *= 0.25;
   const std::uint32_t tries = tried_[stroke.strand];
-  // What sweeps have missed is gone through its own middle, shorter and slower, now nearer to the one organ and now to
-  // the other, now forward and now backward.
+  // Strands that sweeps have missed are cut individually through their middle with shorter, slower strokes, alternating
+  // in position and direction.
   const auto worth = [](const BedStrand* s) { return s->worth == 1.0; };
   const bool fine = tries >= fineAfter && std::count_if(stroke.met.begin(), stroke.met.end(), worth) <= few;
   const double length = fine ? fineLength : sweepLength;

@@ -50,13 +50,13 @@ double stretchOf(const Sight& sight) {
 HoldingMind::HoldingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed)
     : tools_(tools), hand_(hand), random_(seed, 21) {}
 
-/// As the bed comes free it pulls further, while what still holds does not look too taut; it eases off where it does.
+/// As the bed is freed it retracts further, unless the remaining attachments look too taut; then it eases off.
 double HoldingMind::wantedPull(const Sight& sight, double freed, bool divided) const {
   const PerformerProfile::Operation& operation = tools_.profile.operation;
   const double wanted = (divided ? 2.5 : 1.0) * operation.pull + (divided ? 1.0 : wholePull) * bedPull * freed;
   // The last strands may tear.
   if (divided && freed > 1.0 - lastShare) return std::min(pulled_ + pullMore, wanted + lastPull);
-  // A few taut strands at an edge, or where the assistant pulls, do not keep it from showing the rest.
+  // A few taut strands at an edge, or near the assistant's retraction, do not stop it from exposing the rest.
   std::vector<double> length;
   for (const SeenStrand& s : sight.strand) {
     if (s.attached) length.push_back((s.end[0] - s.end[1]).norm());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a performer decides in scenes in which tissue is to be cleared, divided or freed: from one look to the next.
+// Decisions of a performer in scenes in which tissue is to be cleared, divided or freed, from one
+// perception to the next.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace calot::recorder {
 
-/// Both hands of an operation, its anatomy, and what the operator makes of what it sees.
+/// Both hands of an operation, its anatomy, and the operator's interpretation of its perception.
 struct OperationTools {
   const PerformerProfile& profile;
   const SceneDescription& scene;
@@ -19,14 +20,14 @@ struct OperationTools {
   std::array<PerformerHand, handCount>& hand;
 };
 
-/// The hand that holds the specimen and pulls on it. Takes hold anew where it lost it.
+/// The hand that grasps and retracts the specimen. Grasps again if it has lost it.
 class HoldingMind {
  public:
   HoldingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed);
   /// @pre the hand is idle. @param sight newest. @param freed share of the bed that is free
   /// @param divided no vessel holds the specimen any more
   void decide(const Sight& sight, double freed, bool divided);
-  /// It holds and pulls, or there is nothing to hold.
+  /// Is the specimen grasped and retracted, or is there nothing to grasp?
   [[nodiscard]] bool ready() const { return ready_; }
 
  private:
@@ -48,13 +49,13 @@ class WorkingMind {
   /// @pre the hand is idle. Adds what it does next.
   void decide(const Sight& sight);
   [[nodiscard]] bool done() const { return stage_ == Stage::done; }
-  /// It gave up: something did not succeed however often it was tried.
+  /// Has it given up after repeated failure?
   [[nodiscard]] bool failed() const { return failed_; }
-  /// Share of the bed that is free, of what was attached at the first look.
+  /// Freed share of the bed, relative to what was attached at the first perception.
   [[nodiscard]] double freed(const Sight& sight) const;
   /// No vessel holds the specimen any more.
   [[nodiscard]] bool divided() const { return stage_ >= Stage::bed || !tools_.anatomy.divides(); }
-  /// What it does stirs what it would look at: it looks when that is over, not before.
+  /// Observes only after the tissue has settled from its actions.
   [[nodiscard]] bool stirs() const { return stirred_; }
   /// A clip sat badly or fell.
   void sawBadClip() { ++badClips_[clipped_]; }
@@ -82,7 +83,8 @@ class WorkingMind {
   /// Goes home and comes back with another instrument. @return false where it is mounted already
   bool mount(InstrumentKind kind, double jaw);
   void strokeThrough(const std::vector<Vec3>& way, const Vec3& aim, double lift);
-  /// Comes above a place, looks, and goes down on it until what is wrong is small. @return true: it is there
+  /// Moves above a target, observes, and descends with corrections until the error is small. @return true
+  /// when it has arrived
   bool bring(const Vec3& place, const Vec3& hinge, double above, double beyond, double jaw);
   void closeAndLeave(double opened);
   void go(const Vec3& to, double speed, double jaw, std::uint8_t buttons = 0, double dwell = 0.0);

@@ -18,9 +18,9 @@ namespace calot::recorder {
 /// A synthetic operator in closed loop: it holds the specimen with one hand and with the other clears vessels of fat,
 /// frees the lower third of the bed, clips, cuts, and frees the rest, as far as the scene has these. docs/sources.md.
 ///
-/// It looks when a hand has nothing more to do, and decides a reaction time later by what it saw then. So it needs to
-/// be told of every step (watcher()); where it is not, its hands rest. The same profile, scene, seed and steps give the
-/// same samples. At real time the loop and the haptic thread call it at once.
+/// It observes when a hand is idle, and decides one reaction time later. It must therefore receive every step
+/// (watcher()); otherwise its hands stay still. The same profile, scene, seed and steps give the same samples. At real
+/// time the loop and the haptic thread call it at once.
 class OperationSource final : public SampleSource, private Observer {
  public:
   OperationSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A hand of a performer that decides as it goes: strokes wait in a queue and become samples as time passes.
+// A hand of a closed-loop performer: queued strokes become samples as time passes.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace calot::recorder {
 
-/// What a hand is to do next: a straight minimum-jerk stroke, then a rest.
+/// A command for a hand: a straight minimum-jerk stroke, then a pause.
 struct HandMove {
   enum class Aim : std::uint8_t {
     none,     ///< the roll stays as it is
     hinge,    ///< the jaws' hinge lies along `aim`, either way round
-    forward,  ///< y_I, the way in which a hook's toe points, is as near to `aim` as the shaft allows
+    forward,  ///< y_I, the direction of a hook's toe, is as close to `aim` as the shaft allows
   };
 
   Vec3 to = Vec3::Zero();  ///< p_WI where the stroke is meant to end (m)
@@ -29,25 +29,25 @@ struct HandMove {
   std::uint8_t buttons = 0;                          ///< while it lasts
   double dwell = 0.0;                                ///< rest at its end, buttons as they are (s)
   InstrumentKind instrument = InstrumentKind::none;  ///< mounted as the stroke begins; none: the same as before
-  bool steady = false;  ///< at an even speed, as one works through tissue, rather than as one reaches
-  bool sure = false;    ///< without the noise of its length: small corrections, and rests
+  bool steady = false;                               ///< at constant speed, as in dissection, instead of minimum jerk
+  bool sure = false;                                 ///< without the noise of its length: small corrections, and rests
 };
 
-/// Strokes are minimum-jerk (Flash and Hogan 1985) and end by a noise in proportion to their length beside the goal
-/// (Harris and Wolpert 1998); now and then one overshoots. Over all lies tremor and slow movement.
+/// Strokes are minimum-jerk (Flash and Hogan 1985) and miss the goal by noise proportional to their length (Harris and
+/// Wolpert 1998); some overshoot. Tremor and drift are superposed.
 class PerformerHand {
  public:
   PerformerHand(const PerformerProfile& profile, const HandDescription& hand, std::size_t index, std::uint64_t seed);
 
   void add(const HandMove& move);
-  /// Forgets what has not begun.
+  /// Drops commands that have not started.
   void clear();
   [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
-  /// Nothing under way at `time` (s).
+  /// Is the hand idle at `time` (s)?
   [[nodiscard]] bool idle(double time) const { return queue_.empty() && time >= end_; }
-  /// What is under way ends in `seconds` at the latest, and nothing waits behind it.
+  /// Ends the current stroke within `seconds` and drops the rest of the queue.
   [[nodiscard]] bool idleIn(double seconds, double time) const { return queue_.empty() && time + seconds >= end_; }
-  /// Where the hand means to be when all that waits is done (m).
+  /// Intended position after all queued commands (m).
   [[nodiscard]] const Vec3& meant() const { return queue_.empty() ? stroke_.to : queue_.back().to; }
   [[nodiscard]] InstrumentKind instrument() const { return instrument_; }
   [[nodiscard]] const HandDescription& description() const { return hand_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Profiles of performers: strict JSON (schemas/performer.schema.json). They hold how a hand moves, what an eye sees and
-// how a task is decided, with sources in docs/sources.md; never a checkpoint's value.
+// Profiles of performers: strict JSON (schemas/performer.schema.json). They describe motor control, perception and
+// decisions, with sources in docs/sources.md; never a checkpoint's value.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct PerformerProfile {
     double reactionSpread = 0.0;  ///< its standard deviation (s)
     double lateralError = 0.0;    ///< standard deviation of where a target seems to be, across the view (m)
     double depthError = 0.0;      ///< the same along the view (m)
-    double finestError = 0.0;     ///< what remains on each axis however often one looks (m)
+    double finestError = 0.0;     ///< error on each axis that repeated observation does not reduce (m)
   } perception;
 
   struct Decision {
@@ -49,14 +49,14 @@ struct PerformerProfile {
     double pauseSpread = 0.0;       ///< its standard deviation (s)
     std::uint32_t corrections = 0;  ///< further strokes that bring the tip onto a target
     double pullBack = 0.0;          ///< towards the port between targets (m)
-    bool bimanual = false;          ///< both hands at once; else in turns
+    bool bimanual = false;          ///< both hands at once; else alternating
   } decision;
 
   /// In scenes in which tissue is to be cleared, divided or freed.
   struct Operation {
-    double hesitationShare = 0.0;  ///< of decisions before which the hand rests
+    double hesitationShare = 0.0;  ///< share of decisions preceded by a pause
     double hesitation = 0.0;       ///< for so long (s)
-    double pedalLag = 0.0;         ///< the pedal comes up so much later than the hook's stroke ends (s)
+    double pedalLag = 0.0;         ///< delay of releasing the pedal after the hook's stroke (s)
     double keepOff = 0.0;          ///< between the hook's metal and a vessel, as meant (m)
     double layer = 0.0;            ///< of fat taken off by one stroke (m)
     double cleared = 0.0;          ///< share of a vessel's length, from 22 % on, that is to be cleared

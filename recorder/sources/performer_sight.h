@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a performer sees when it looks: the surfaces that a picture would show, reduced to what it needs to decide.
+// Perception of a performer: the visible surfaces, reduced to what its decisions need.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct SeenVessel {
   std::vector<Vec3> centre;    ///< of each station now (m, W)
   std::vector<Vec3> along;     ///< unit, towards the specimen
   std::vector<double> clip;    ///< stations of the clips on it, ascending (m from the first)
-  std::uint32_t partings = 0;  ///< places where it is open or cut through
+  std::uint32_t partings = 0;  ///< points at which it is open or divided
   /// How high fat stands over each station, towards the port of the hand that works, from the centre line (m): on it,
   /// and on either side. Far below zero where there is none.
   std::vector<std::array<double, 3>> fat;
@@ -53,7 +53,7 @@ struct Sight {
   bool clipMissed = false;          ///< since the last look a clip fell or sat badly
 };
 
-/// Where things lie at rest, which an operator knows from anatomy.
+/// Reference positions, which an operator knows from anatomy.
 class PerformerSight {
  public:
   /// Stations of a vessel are this far apart (m).
@@ -78,7 +78,7 @@ class PerformerSight {
   /// @param worker hand that carves, clips and cuts; the other one holds
   PerformerSight(const SceneDescription& scene, std::size_t worker);
 
-  /// The picture after a step. Costs a view.
+  /// Perception after a step. Costs a scene view.
   [[nodiscard]] Sight look(const StepRecord& record) const;
 
   [[nodiscard]] const std::vector<VesselPlan>& vessels() const { return vessel_; }

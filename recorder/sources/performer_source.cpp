@@ -98,7 +98,7 @@ void StrokePlan::touch(const TouchTarget& target) {
   wait(std::max(0.0, normal(decision.pause, decision.pauseSpread)));
   travelTo(target.approach, roll);
 
-  // Each look halves what the eye got wrong.
+  // Each observation halves the perceptual error.
   Vec3 error = seenError();
   for (std::uint32_t i = 0; i <= decision.corrections; ++i) {
     wait(std::max(0.0, normal(perception.reactionTime, perception.reactionSpread)));

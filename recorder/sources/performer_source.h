@@ -22,7 +22,7 @@ struct Stroke {
   double rollFrom = 0.0, rollTo = 0.0;          ///< rad
 };
 
-/// Plans what one hand does, stroke after stroke; draws from its own generator.
+/// Plans the strokes of one hand; draws from its own generator.
 class StrokePlan {
  public:
   StrokePlan(const PerformerProfile& profile, const SceneDescription& scene, const SceneSurfaces& surfaces,
@@ -72,7 +72,7 @@ class PerformerSource : public SampleSource {
   bool next(std::uint64_t tick, TickSamples& out) override;
 
   [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
-  /// What the hand means to do, without unsteadiness.
+  /// Planned motion of the hand, without unsteadiness.
   [[nodiscard]] const std::vector<Stroke>& strokes(Hand hand) const { return strokes_[static_cast<std::size_t>(hand)]; }
   [[nodiscard]] const std::vector<TouchTarget>& targets(Hand hand) const {
     return targets_[static_cast<std::size_t>(hand)];

@@ -10,23 +10,22 @@ namespace calot::recorder {
 /// Unit vector along the shaft; W's -y (straight into the abdomen) where port and tip are less than a micrometre apart.
 Vec3 shaftDirection(const Vec3& port, const Vec3& tip);
 
-/// q_WI of an instrument that passes the port and ends at the tip.
-/// At roll 0 the hinge's axis x lies level: x is along e x z, with e W's +y axis (or, where the shaft is within about a
-/// degree of e, W's +z axis).
-/// @param roll turn about the shaft, right-handed about z (rad).
+/// q_WI of an instrument that passes the port and ends at the tip. At roll 0 the hinge's axis x lies level: x is along
+/// e x z, with e W's +y axis (or, where the shaft is within about a degree of e, W's +z axis).
+/// @param roll rotation about the shaft, right-handed about z (rad).
 Quat pointing(const Vec3& port, const Vec3& tip, double roll = 0.0);
 
-/// The orientation nearest to `orientation` whose z axis is along `shaft`: the shortest turn that brings the one onto
-/// the other comes after it, so that the roll about the shaft is what is left of `orientation`. A half turn, which has
-/// no shortest way, is made about the orientation's own x axis.
+/// The orientation closest to `orientation` with its z axis along `shaft`: `orientation` followed by the minimal
+/// rotation of its z axis onto the shaft, which preserves the roll. A rotation by 180 degrees, whose axis is
+/// undetermined, is about the orientation's own x axis.
 /// @pre `shaft` is a unit vector
 Quat alignedToShaft(const Quat& orientation, const Vec3& shaft);
 
 /// How far a matrix is off a rotation: the largest part of |R R^T - 1|, 2 for a reflection; NaN where it has NaN.
 double rotationDefect(const Mat3& matrix);
-/// What files of poses may be off by: their numbers are rounded.
+/// Tolerance for rotations in files of poses, whose numbers are rounded.
 inline constexpr double rotationTolerance = 1e-3;
-/// Positions in files of poses are nearer than this (m), or their unit is another.
+/// Greatest distance of positions in files of poses (m); larger values indicate a different unit.
 inline constexpr double farthestPosition = 5.0;
 
 /// Quaternion of a rotation matrix, from the largest of its four components (Shepperd 1978); normalised, w >= 0.

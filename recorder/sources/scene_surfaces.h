@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Questions that sources ask of the organs at rest: how far, what is in the way, where does a line of sight end.
+// Geometric queries of sources on the organs at rest: distances, obstacles and lines of sight.
 #pragma once
 
 #include <optional>

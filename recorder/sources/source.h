@@ -22,12 +22,12 @@ enum class SourceStatus : std::uint8_t {
 /// Where instrument samples come from: a kinematics file, a performer, a recording, a device. Live, scripted and
 /// replayed runs differ in nothing else.
 ///
-/// Every source rounds what it hands out with roundedToGrid(), so that what is logged is exactly what was simulated.
+/// Every source rounds its output with roundedToGrid(), so that the log contains exactly what was simulated.
 class SampleSource {
  public:
   virtual ~SampleSource() = default;
 
-  /// Who acts, and from what; copied into every recording that this source feeds.
+  /// Operator and input; copied into every recording that this source feeds.
   [[nodiscard]] virtual const Provenance& provenance() const = 0;
 
   /// Fills one tick (1 ms).
@@ -36,24 +36,24 @@ class SampleSource {
   /// @returns false when the source has ended; from then on always false.
   virtual bool next(std::uint64_t tick, TickSamples& out) = 0;
 
-  /// Asked before the first tick of every step, by the thread that calls next(). What the loop owes:
+  /// Queried before the first tick of every step, by the thread that calls next(). The loop must react as follows:
   /// - ok: go on.
   /// - paused: ask for no tick and advance nothing; ask again every few milliseconds, and ask `stop` as well, until it
   /// is
   ///   something else. Then go on with the next tick's number; a paced clock is moved by the time that was waited,
   ///   which counts neither as lateness nor as stretching. Pauses and their length are counted in the report.
   /// - failed: end the attempt with Outcome::technicalFailure; the steps so far are whole and stay.
-  /// A device that goes in mid-step does not stop it: next() then hands out invalid samples (the last pose held) until
-  /// the step has its ticks.
+  /// A device that disconnects in mid-step does not stop it: next() then hands out invalid samples (the last pose held)
+  /// until the step has its ticks.
   virtual SourceStatus status() { return SourceStatus::ok; }
 
-  /// Called instead of next() while somebody else holds the run (ControlledSource), by the thread that calls next(),
-  /// every few milliseconds: what hands do meanwhile belongs to no tick. When the run goes on, a device's hands set out
-  /// from where they stood.
+  /// Called instead of next() while the run is paused externally (ControlledSource), by the thread that calls next(),
+  /// every few milliseconds: motion in the meantime belongs to no tick. When the run resumes, a device's hands continue
+  /// from their last poses.
   virtual void rest() {}
 
-  /// Who among this source's own has to be told of every step: an operator in closed loop sees. nullptr: nobody. The
-  /// loop tells it before it asks for the next step's first tick; live, from the thread that steps.
+  /// Observer of this source that must receive every step, for operators in closed loop; nullptr: none. The loop calls
+  /// it before it requests the next step's first tick; in live runs, from the simulation thread.
   [[nodiscard]] virtual Observer* watcher() { return nullptr; }
 
   /// The device behind this source, for who records its raw samples, drives its motors or reports what came from it.
@@ -63,7 +63,7 @@ class SampleSource {
   /// How the attempt ended, once next() has returned false.
   [[nodiscard]] virtual Outcome ending() const { return Outcome::completed; }
 
-  /// One line on why the status is not ok; empty when it is.
+  /// One line of reason if the status is not ok, else empty.
   [[nodiscard]] virtual std::string statusText() const { return {}; }
 };
 

@@ -17,11 +17,10 @@ struct TouchTarget {
   Vec3 approach = Vec3::Zero();  ///< p_W from which the way to the point and the way back to the port are free (m)
 };
 
-/// All targets of a hand, by organ and then by triangle; one at the middle of each triangle where
-///  - the normal looks at the camera and against the shaft, each by 20 degrees at least;
-///  - the point lies inside the picture and inside the workspace, with 10 mm to spare;
-///  - from camera and from port the point is in sight: no organ is crossed on the way;
-///  - the point `pullBack` nearer to the port is 5 mm clear of every organ.
+/// All targets of a hand, by organ and then by triangle; one at the middle of each triangle where - the normal looks at
+/// the camera and against the shaft, each by 20 degrees at least; - the point lies inside the picture and inside the
+/// workspace, with 10 mm to spare; - from camera and from port the point is in sight: no organ is crossed on the way; -
+/// the point `pullBack` nearer to the port is 5 mm clear of every organ.
 std::vector<TouchTarget> touchTargets(const SceneDescription& scene, const SceneSurfaces& surfaces, std::size_t hand,
                                       double pullBack);
 

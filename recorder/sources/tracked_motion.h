@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motion of instruments without a scene, as a tracker measured it: what motion checkpoints are computed from where
-// nothing was simulated.
+// Motion of instruments without a scene, as a tracker measured it: what motion checkpoints are computed from
+// where nothing was simulated.
 #pragma once
 
 #include <array>

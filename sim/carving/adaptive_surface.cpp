@@ -12,11 +12,11 @@
 namespace calot {
 namespace {
 
-constexpr int step = 2;         ///< cells along a cell of the base
-constexpr int reachBelow = 4;   ///< a block depends on nodes up to its last cell's origin plus this
-constexpr int reachAbove = 2;   ///< and down to its first cell's origin minus this
-constexpr int iterations = 3;   ///< of the move onto the surface
-constexpr double wander = 1.0;  ///< cells that a middle may move along each axis
+constexpr int step = 2;           ///< lattice cells along a cell of the base
+constexpr int reachBelow = 4;     ///< a block depends on nodes up to its last cell's origin plus this
+constexpr int reachAbove = 2;     ///< and down to its first cell's origin minus this
+constexpr int iterations = 3;     ///< of the projection onto the surface
+constexpr double maxShift = 1.0;  ///< cells that a midpoint may move along each axis
 
 Vec3 unitOrZero(const Vec3& v) {
   const double length = v.norm();
@@ -105,7 +105,7 @@ void AdaptiveSurface::makeBlock(const CarvedField& field, std::uint32_t block) {
   side_.clear();
   const auto octant = static_cast<int>(block & 7U);
   const Index3 origin = 8 * lattice_.brickAt(block / 8) + 4 * Index3(octant & 1, octant >> 1 & 1, octant >> 2);
-  // All corners alike: no surface. Read once.
+  // No surface if all corners have one sign. Read once.
   std::array<bool, 27> corner{};
   bool any = false;
   bool all = true;
@@ -148,7 +148,7 @@ void AdaptiveSurface::makeCell(const CarvedField& field, Part& part, const Index
       add(v[2], m[2], m[1]);
       add(m[0], m[1], m[2]);
     } else {
-      // Turned so that side 0 is split and, of two, side 1 too.
+      // Rotated so that side 0 is split and, if two are, side 1 as well.
       std::size_t k = 0;
       while (m[k] < 0 || (split == 2 && m[(k + 1) % 3] < 0)) ++k;
       const int a = v[k];
@@ -208,14 +208,14 @@ int AdaptiveSurface::middleVertex(const CarvedField& field, Part& part, std::uin
     const FieldSample sample = sampleField(field, p);
     const double slope2 = sample.gradient.squaredNorm();
     if (!(slope2 > 0.01 * h * h)) {
-      if (i == 0) return -1;  // no direction to go
+      if (i == 0) return -1;  // no direction to move in
       break;
     }
     if (i == 0 && !(sample.value * sample.value > tolerance * tolerance * slope2)) return -1;
     normal = sample.gradient;
     p -= sample.value / slope2 * sample.gradient;
-    // Around its own middle, not its cell: both triangles at the side must see the same.
-    p = p.cwiseMax((middle.array() - wander).matrix()).cwiseMin((middle.array() + wander).matrix());
+    // Clamped around its own midpoint, not its cell: both triangles at the side must get the same vertex.
+    p = p.cwiseMax((middle.array() - maxShift).matrix()).cwiseMin((middle.array() + maxShift).matrix());
   }
   part.vertex.push_back({key, lattice_.origin() + h * p, unitOrZero(normal)});
   side_.back().vertex = static_cast<std::int16_t>(part.vertex.size() - 1);
@@ -223,17 +223,17 @@ int AdaptiveSurface::middleVertex(const CarvedField& field, Part& part, std::uin
 }
 
 TriangleMesh AdaptiveSurface::mesh() const {
-  std::size_t most = 0;
-  for (const Part& part : part_) most += part.vertex.size();
+  std::size_t maximum = 0;
+  for (const Part& part : part_) maximum += part.vertex.size();
   // Vertices that parts share, found by key: open addressing, multiplicative hashing (Knuth, TAOCP 3, 6.4).
   struct Entry {
     std::uint64_t key = 0;
     int vertex = -1;
   };
-  const int bits = static_cast<int>(std::bit_width(2 * most + 1));
+  const int bits = static_cast<int>(std::bit_width(2 * maximum + 1));
   std::vector<Entry> table(std::size_t{1} << static_cast<unsigned>(bits));
   TriangleMesh mesh;
-  mesh.vertex.reserve(most);
+  mesh.vertex.reserve(maximum);
   mesh.triangle.reserve(triangles_);
   std::vector<int> number;  // of a part's vertices in the mesh
   for (const Part& part : part_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface of a carved field for those who draw it: few triangles where it is plain, more where it is not.
+// The surface of a carved field for rendering: few triangles where it is flat, more where it is curved.
 #pragma once
 
 #include <array>
@@ -14,24 +14,24 @@
 namespace calot {
 
 /// Adaptive polygonization after Velho (1996, "Simple and efficient polygonization of implicit surfaces", Journal of
-/// Graphics Tools 1(2)): marching cubes on every other node, then each side of a triangle whose middle is farther than
-/// `tolerance` from the surface is split there, the new vertex moved onto the surface along the field's gradient. A
-/// triangle with one, two or three split sides becomes two, three or four.
+/// Graphics Tools 1(2)): marching cubes on every other node, then each side of a triangle whose midpoint is farther
+/// than `tolerance` from the surface is split there, and the new vertex is moved onto the surface along the field's
+/// gradient. A triangle with one, two or three split sides becomes two, three or four.
 ///
-/// Vertices of the base lie on lattice edges (where two in line change sign, exactly one of them does); whether a side
-/// is split, and where, follows from its two vertices alone. So neighbours agree: no cracks, closed and manifold. What
-/// is thinner than two cells may be missing in the picture though CarvedSurface has it.
+/// Vertices of the base lie on lattice edges (if the sign changes over two edges in line, it changes over exactly one
+/// of them). Whether and where a side is split depends on its two vertices alone, so neighbours agree: no cracks,
+/// closed and manifold. Parts thinner than two cells may be missing here although CarvedSurface has them.
 ///
-/// Parts are blocks of 4^3 cells (numbered as in SurfacePatch). update() makes those anew that a changed value within
-/// four nodes can reach; the result is that of rebuild(), bit for bit. Allocates while parts grow.
+/// Parts are blocks of 4^3 cells (numbered as in SurfacePatch). update() rebuilds those within four nodes of a changed
+/// value; the result equals that of rebuild(), bit for bit. Allocates while parts grow.
 class AdaptiveSurface {
  public:
   static constexpr double tolerance = 0.2;  ///< cells
 
   struct Vertex {
     std::uint64_t key = 0;         ///< v << 32 | v on lattice edge v; v << 32 | w, v < w, in the middle of side v-w
-    Vec3 position = Vec3::Zero();  ///< m, in rest space
-    Vec3 normal = Vec3::Zero();    ///< outward along the field's gradient, unit; zero where there is none
+    Vec3 position = Vec3::Zero();  ///< m, in the reference configuration
+    Vec3 normal = Vec3::Zero();    ///< outward along the field's gradient, unit; zero if the gradient vanishes
   };
   struct Part {
     std::vector<Vertex> vertex;
@@ -40,25 +40,26 @@ class AdaptiveSurface {
 
   explicit AdaptiveSurface(const BrickLattice& lattice);
 
-  /// All of it: at the start and after a restore.
+  /// Rebuilds everything: at the start and after a restore.
   void rebuild(const CarvedField& field);
-  /// What the last stroke changed. @pre the field was committed, and update() or rebuild() ran after every stroke
+  /// Rebuilds what the last stroke changed. @pre the field was committed, and update() or rebuild()
+  /// ran after every stroke
   void update(const CarvedField& field);
 
-  /// Blocks made anew by the last update() or rebuild(), ascending, empty ones included.
+  /// Blocks rebuilt by the last update() or rebuild(), ascending, including empty ones.
   [[nodiscard]] std::span<const std::uint32_t> changedBlocks() const { return changedBlock_; }
   [[nodiscard]] const Part& part(std::uint32_t block) const { return part_[block]; }
   [[nodiscard]] std::uint32_t blocks() const { return static_cast<std::uint32_t>(part_.size()); }
   [[nodiscard]] std::size_t triangles() const { return triangles_; }
 
-  /// The whole surface, vertices welded by key and numbered as blocks have them.
+  /// The whole surface, vertices welded by key and numbered in order of blocks.
   [[nodiscard]] TriangleMesh mesh() const;
   [[nodiscard]] bool operator==(const AdaptiveSurface& other) const;
 
  private:
   struct Side {
     std::uint64_t key = 0;
-    std::int16_t vertex = -1;  ///< in its middle; -1: not split
+    std::int16_t vertex = -1;  ///< at its midpoint; -1: not split
   };
 
   void mark(const CarvedField& field, std::uint32_t brick);
@@ -73,7 +74,7 @@ class AdaptiveSurface {
   std::vector<Part> part_;
   std::vector<std::uint8_t> dirty_;
   std::vector<std::uint32_t> changedBlock_;
-  std::vector<Side> side_;  ///< of the block at hand
+  std::vector<Side> side_;  ///< of the current block
   std::size_t triangles_ = 0;
 };
 

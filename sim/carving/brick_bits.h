@@ -27,7 +27,7 @@ inline constexpr std::uint64_t columnLast = columnFirst << 7U;       ///< x = 7
   return all != 0;
 }
 
-/// Calls visit(local) for each set bit, ascending: local is the node's place in its brick, x + 8 (y + 8 z).
+/// Calls visit(local) for each set bit, ascending; local is the node's index in its brick, x + 8 (y + 8 z).
 template <class Visit>
 void forEachBit(const BrickBits& bits, Visit&& visit) {
   for (std::uint32_t z = 0; z < 8; ++z) {
@@ -49,8 +49,8 @@ void forEachBit(const BrickBits& bits, Visit&& visit) {
   return out;
 }
 
-/// Nodes of brick `a` whose neighbour in brick `b`, next to it along +axis, is set too, as bits of one face: for x
-/// bit 8 y + z, for y bit 8 z + x, for z bit 8 y + x.
+/// Nodes of brick `a` whose neighbour in brick `b`, next to it along +axis, is set too, as bits of one face: for x bit
+/// 8 y + z, for y bit 8 z + x, for z bit 8 y + x.
 [[nodiscard]] inline std::uint64_t sharedFace(const BrickBits& a, const BrickBits& b, int axis) {
   std::uint64_t face = 0;
   if (axis == 2) return a[7] & b[0];
@@ -64,7 +64,7 @@ void forEachBit(const BrickBits& bits, Visit&& visit) {
   return face;
 }
 
-/// Place in brick `a` of bit k of its sharedFace, and in brick `b`.
+/// Index in brick `a` and in brick `b` of bit k of their sharedFace.
 struct FacePair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;

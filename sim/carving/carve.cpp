@@ -9,7 +9,7 @@
 
 namespace calot {
 
-void RestingTissue::place(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const {
+void UndeformedTissue::fillLanes(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const {
   const Vec3 at = lattice_.position(first);
   for (int i = 0; i < count; ++i) {
     out.now[0][i] = lattice_.origin()[0] + lattice_.cell() * static_cast<double>(first[0] + i);
@@ -61,7 +61,7 @@ void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<con
           const std::uint32_t node = lattice.node(first);
           const double* value = field.values().data() + node;
           if (std::all_of(value, value + count, [band](double v) { return v >= band; })) continue;
-          motion.place(b, first, count, lanes);
+          motion.fillLanes(b, first, count, lanes);
           for (int i = count; i < laneCount; ++i) {  // idle lanes repeat the first
             for (auto& row : lanes.now) row[i] = row[0];
             for (auto& row : lanes.before) row[i] = row[0];
@@ -70,7 +70,7 @@ void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<con
           double potential[laneCount];
           std::fill(potential, potential + laneCount, -1e300);
           if (!toolPotential(tool, lanes, depth, potential)) continue;
-          // What is deeper is left alone even where a lane beside it is not.
+          // Deeper nodes stay unchanged even if another lane is not.
           for (double& p : potential) p = p >= -depth ? p : -1e300;
           field.raiseRow(node, {potential, slot(count)});
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Carving: a tool takes off what it sweeps over, in the rest space of the tissue.
+// Carving: a tool removes the tissue that it sweeps over, in the reference configuration.
 #pragma once
 
 #include <cstddef>
@@ -16,42 +16,43 @@ struct NodeBox {
   Index3 upper = Index3::Zero();
 };
 
-/// How the tissue moved, asked row by row.
+/// Motion of the tissue, evaluated row by row.
 class TissueMotion {
  public:
   virtual ~TissueMotion() = default;
   /// Fills lanes [0, count) for the nodes first, first + (1, 0, 0) and so on.
-  /// @param box which of the boxes given to carve() they are of (a deformed cell knows its own nodes)
-  virtual void place(std::size_t box, const Index3& first, int count, NodeLanes& out) const = 0;
+  /// @param box index of the box given to carve() that contains them
+  virtual void fillLanes(std::size_t box, const Index3& first, int count, NodeLanes& out) const = 0;
 };
 
-/// Tissue that neither moves nor is strained.
-class RestingTissue final : public TissueMotion {
+/// Tissue that neither moves nor deforms.
+class UndeformedTissue final : public TissueMotion {
  public:
-  explicit RestingTissue(const BrickLattice& lattice) : lattice_(lattice) {}
-  void place(std::size_t box, const Index3& first, int count, NodeLanes& out) const override;
+  explicit UndeformedTissue(const BrickLattice& lattice) : lattice_(lattice) {}
+  void fillLanes(std::size_t box, const Index3& first, int count, NodeLanes& out) const override;
 
  private:
   const BrickLattice& lattice_;
 };
 
-/// How deep below a carved surface the field is made a distance anew, in cells: what polygons and gradients read.
+/// Depth below a carved surface to which the field is recomputed as a distance, in cells: what
+/// polygons and gradients need.
 inline constexpr double carveDepth = 2.0;
 
-/// Bounds (m, W) of all that a stroke can change, for choosing boxes: the sweep with its radius and, around it, the
-/// depth (m) times `stretch`, the largest factor by which tissue is lengthened anywhere. Its motion since the previous
-/// pose counts: hold the union of a cell's bounds now and before against this.
+/// Bounds (m, W) of all that a stroke can change, for choosing boxes: the sweep grown by its radius and by depth
+/// (m) times `stretch`, the greatest stretch of the tissue. Test the union of a cell's bounds before and after
+/// the stroke against these.
 [[nodiscard]] Box sweptBounds(std::span<const SweptCapsule> tool, double depth, double stretch);
 
-/// The box of nodes within bounds given in rest space (m), for tissue at rest.
+/// The box of nodes within bounds given in the reference configuration (m), for undeformed tissue.
 [[nodiscard]] NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds);
 
 /// phi = max(phi, the potential of the tool's swept capsules) at all nodes of the boxes where that potential is at
-/// least -depth (toolPotential()). Every node is on its own: neither the order of boxes nor how nodes are dealt into
-/// them matters. Between CarvedField::begin() and commit(). Allocates nothing.
+/// least -depth (toolPotential()). Nodes are independent: neither the order of boxes nor the distribution of nodes
+/// among them matters. Call between CarvedField::begin() and commit(). Allocates nothing.
 /// @param tool capsules in W
 /// @param boxes within the lattice; a node in two of them is carved by both
-/// @param depth m; more than a cell, at most the field's band; carveDepth cells are enough for all that is made of it
+/// @param depth m; more than a cell, at most the field's band; carveDepth cells are sufficient
 void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<const NodeBox> boxes,
            const TissueMotion& motion, double depth);
 

@@ -42,7 +42,7 @@ CarvedField::CarvedField(const FieldModel& model)
       before_(model.lattice.brickCount()),
       raised_(model.lattice.brickCount()),
       touched_(model.lattice.brickCount(), 0),
-      place_(model.lattice.brickCount(), -1) {
+      index_(model.lattice.brickCount(), -1) {
   assert(model.fault().empty());
   changed_.reserve(inside_.size());
   for (std::size_t b = 0; b < inside_.size(); ++b) readBits(b);
@@ -60,13 +60,13 @@ void CarvedField::readBits(std::size_t brick) {
 bool CarvedField::restore(const CarvedBricks& bricks) {
   begin();
   value_ = model_->value;
-  std::fill(place_.begin(), place_.end(), -1);
+  std::fill(index_.begin(), index_.end(), -1);
   bool good = bricks.brick.size() == bricks.value.size();
   for (std::size_t i = 0; good && i < bricks.brick.size(); ++i) {
     const std::uint32_t b = bricks.brick[i];
-    good = b < inside_.size() && place_[b] < 0;
+    good = b < inside_.size() && index_[b] < 0;
     if (!good) break;
-    place_[b] = static_cast<std::int32_t>(i);
+    index_[b] = static_cast<std::int32_t>(i);
     for (std::uint32_t k = 0; good && k < brickNodes; ++k) {
       const double v = bricks.value[i][k];
       good = std::abs(v) <= model_->band && !(v < 0.0 && isRim(lattice(), b * brickNodes + k));
@@ -75,7 +75,7 @@ bool CarvedField::restore(const CarvedBricks& bricks) {
   }
   if (!good) {
     value_ = model_->value;
-    std::fill(place_.begin(), place_.end(), -1);
+    std::fill(index_.begin(), index_.end(), -1);
   }
   for (std::size_t b = 0; b < inside_.size(); ++b) readBits(b);
   return good;
@@ -86,20 +86,20 @@ bool CarvedField::raiseTo(const CarvedBricks& bricks) {
   std::size_t known = 0;
   for (std::size_t i = 0; i < bricks.brick.size(); ++i) {
     const std::uint32_t b = bricks.brick[i];
-    if (b >= inside_.size() || (place_[b] >= 0 && slot(place_[b]) != i)) return false;
-    known += place_[b] >= 0 ? 1 : 0;
+    if (b >= inside_.size() || (index_[b] >= 0 && slot(index_[b]) != i)) return false;
+    known += index_[b] >= 0 ? 1 : 0;
     const double* here = value_.data() + std::size_t{b} * brickNodes;
     for (std::uint32_t k = 0; k < brickNodes; ++k) {
       if (!(bricks.value[i][k] >= here[k] && bricks.value[i][k] <= band())) return false;
     }
   }
-  // None is missing that had been carved.
-  const auto placed = std::count_if(place_.begin(), place_.end(), [](std::int32_t p) { return p >= 0; });
+  // No carved brick may be missing.
+  const auto placed = std::count_if(index_.begin(), index_.end(), [](std::int32_t p) { return p >= 0; });
   if (known != static_cast<std::size_t>(placed)) return false;
   begin();
   for (std::size_t i = 0; i < bricks.brick.size(); ++i) {
     const std::uint32_t b = bricks.brick[i];
-    place_[b] = static_cast<std::int32_t>(i);
+    index_[b] = static_cast<std::int32_t>(i);
     for (std::uint32_t row = 0; row < brickNodes; row += BrickLattice::side)
       raiseRow(b * brickNodes + row, std::span(bricks.value[i]).subspan(row, BrickLattice::side));
   }
@@ -165,25 +165,25 @@ BrickBits CarvedField::removed(std::uint32_t brick) const {
 void CarvedField::commit(CarvedBricks& bricks) {
   std::sort(changed_.begin(), changed_.end());
   for (const std::uint32_t b : changed_) {
-    if (place_[b] < 0) {
-      place_[b] = static_cast<std::int32_t>(bricks.brick.size());
+    if (index_[b] < 0) {
+      index_[b] = static_cast<std::int32_t>(bricks.brick.size());
       bricks.brick.push_back(b);
       bricks.value.emplace_back();
     }
     const double* value = value_.data() + std::size_t{b} * brickNodes;
-    std::copy(value, value + brickNodes, bricks.value[slot(place_[b])].begin());
+    std::copy(value, value + brickNodes, bricks.value[slot(index_[b])].begin());
   }
 }
 
-void CarvedField::prepare(CarvedBricks& bricks) const {
-  // Values only rise, and none above the band: a brick that is wholly there never changes.
-  std::size_t most = 0;
+void CarvedField::reserve(CarvedBricks& bricks) const {
+  // Values only rise, up to the band: a brick entirely at the band never changes.
+  std::size_t maximum = 0;
   for (std::size_t b = 0; b < inside_.size(); ++b) {
     const double* value = model_->value.data() + b * brickNodes;
-    most += std::any_of(value, value + brickNodes, [this](double v) { return v < band(); }) ? 1 : 0;
+    maximum += std::any_of(value, value + brickNodes, [this](double v) { return v < band(); }) ? 1 : 0;
   }
-  bricks.brick.reserve(most);
-  bricks.value.reserve(most);
+  bricks.brick.reserve(maximum);
+  bricks.value.reserve(maximum);
 }
 
 }  // namespace calot

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body as the inside (value < 0) of a potential field on a lattice: as it was, what has changed, and a working copy.
+// A body as the inside (value < 0) of a potential field on a lattice: the original, the changes and a working copy.
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@
 
 namespace calot {
 
-/// The uncarved field: a signed distance in rest space (m), clamped to +-band, outside on the lattice's border. Const:
-/// part of a Model.
+/// The uncarved field: signed distance in the reference configuration (m), clamped to +-band, outside on the lattice's
+/// border. Part of Model.
 struct FieldModel {
   BrickLattice lattice;
   double band = 0.0;          ///< m
   std::vector<double> value;  ///< m, by BrickLattice::node()
 
-  /// Why it cannot be carved: sizes, values that are not finite or beyond the band, inside on the border. Empty: it
-  /// can.
+  /// Error that makes it unusable: wrong sizes, values that are not finite or beyond the band, inside on
+  /// the border. Empty: none.
   [[nodiscard]] std::string fault() const;
 };
 
-/// What carving has changed: the part of State. Whole bricks, in the order of their first change (ascending within one
+/// Changes by carving, which are part of State: whole bricks in the order of their first change (ascending within one
 /// stroke), so that a stroke moves no memory.
 struct CarvedBricks {
   using Values = std::array<double, BrickLattice::brickNodes>;
@@ -40,16 +40,16 @@ struct CarvedBricks {
   }
 };
 
-/// The dense field with the inside as bits. Follows from FieldModel and CarvedBricks; never saved. All changes go
-/// through a stroke: begin(), writes, commit(). Allocates in its constructor and nowhere else, but commit() may let
-/// CarvedBricks grow up to the capacity that prepare() gives it at once.
+/// The dense field with the inside as bits. Derived from FieldModel and CarvedBricks; never saved. All changes are made
+/// in a stroke: begin(), writes, commit(). Allocates only in its constructor; commit() may grow CarvedBricks unless
+/// reserve() reserved its capacity.
 class CarvedField {
  public:
   /// @pre model.fault() is empty; the model outlives the field
   explicit CarvedField(const FieldModel& model);
 
-  /// The field after a restore. @return false (and the uncarved field) where the bricks are not the model's: out of
-  /// range, twice, sizes that differ, values not finite or beyond the band, inside on the border or in the padding.
+  /// The field after a restore. @return false (and the uncarved field) if the bricks are invalid: out of range,
+  /// repeated, sizes that differ, values not finite or beyond the band, inside on the border or in the padding.
   [[nodiscard]] bool restore(const CarvedBricks& bricks);
 
   [[nodiscard]] const FieldModel& model() const { return *model_; }
@@ -64,30 +64,30 @@ class CarvedField {
   [[nodiscard]] const BrickBits& bits(std::uint32_t brick) const { return inside_[brick]; }
   [[nodiscard]] std::int64_t insideNodes() const;
 
-  /// Starts a stroke: forgets the changes of the last one.
+  /// Starts a stroke: clears the list of changes.
   void begin();
-  /// Raises nodes of one row of a brick (x from `first` on) to `candidate` where that is higher, at most to the band.
+  /// Raises nodes of one row of a brick (starting at `first`) to `candidate` where that is higher, at most to the band.
   void raiseRow(std::uint32_t first, std::span<const double> candidate);
-  /// Makes inside nodes of a brick outside, as far as the band goes.
+  /// Moves inside nodes of a brick outside: sets them to the band.
   void remove(std::uint32_t brick, const BrickBits& nodes);
-  /// A stroke of which the outcome is known: the field becomes that of `bricks`, as restore() makes it, and changed()
-  /// tells where. No commit() follows.
-  /// @pre no brick is there twice
-  /// @return false, and nothing is changed, where something is less carved in `bricks` than here, or they do not go on
-  ///         from those that led here: then only restore() leads there
+  /// A stroke with a known result: the field becomes that of `bricks`, as after restore(), and changed() lists the
+  /// changes. No commit() follows.
+  /// @pre no brick is repeated
+  /// @return false, without changes, if `bricks` is less carved anywhere or does not extend the bricks that led to the
+  /// current field: then use restore()
   [[nodiscard]] bool raiseTo(const CarvedBricks& bricks);
   /// Ends a stroke: orders changed() and copies the changed bricks to State.
   void commit(CarvedBricks& bricks);
-  /// Gives State its largest capacity, so that no stroke has to.
-  void prepare(CarvedBricks& bricks) const;
+  /// Reserves the maximum capacity in State, so that no stroke allocates.
+  void reserve(CarvedBricks& bricks) const;
 
   /// Bricks of this stroke with a changed value, ascending after commit().
   [[nodiscard]] std::span<const std::uint32_t> changed() const { return changed_; }
-  /// Inside as it was at begin(). @pre the brick is among changed()
+  /// Inside nodes at begin(). @pre the brick is among changed()
   [[nodiscard]] const BrickBits& insideBefore(std::uint32_t brick) const { return before_[brick]; }
   /// Nodes of a brick whose value this stroke changed. @pre as above
   [[nodiscard]] const BrickBits& raised(std::uint32_t brick) const { return raised_[brick]; }
-  /// Nodes of a brick that this stroke put outside. @pre as above
+  /// Nodes of a brick that this stroke moved outside. @pre as above
   [[nodiscard]] BrickBits removed(std::uint32_t brick) const;
 
  private:
@@ -101,7 +101,7 @@ class CarvedField {
   std::vector<BrickBits> raised_;
   std::vector<std::uint8_t> touched_;
   std::vector<std::uint32_t> changed_;
-  std::vector<std::int32_t> place_;  ///< of a brick in CarvedBricks; -1: not there
+  std::vector<std::int32_t> index_;  ///< per brick: its index in CarvedBricks; -1: none
 };
 
 }  // namespace calot

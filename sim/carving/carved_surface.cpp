@@ -13,7 +13,7 @@ double cut(const CarvedField& field, std::uint32_t vertex) {
   const std::uint32_t node = vertex / 3;
   const double a = field.value(node);
   const double b = field.value(field.lattice().next(node, static_cast<int>(vertex % 3)));
-  return std::clamp(a / (a - b), leastCut, 1.0 - leastCut);
+  return std::clamp(a / (a - b), minCut, 1.0 - minCut);
 }
 
 Vec3 restPosition(const CarvedField& field, std::uint32_t vertex) {
@@ -35,7 +35,7 @@ CarvedSurface::CarvedSurface(const BrickLattice& lattice)
   dirtyBrick_.reserve(lattice.brickCount());
   brick_.reserve(lattice.brickCount());
   changedBlock_.reserve(8 * lattice.brickCount());
-  used_.reserve(SurfacePatch::mostVertices);
+  used_.reserve(SurfacePatch::maxVertices);
 }
 
 void CarvedSurface::rebuild(const CarvedField& field) {
@@ -44,22 +44,22 @@ void CarvedSurface::rebuild(const CarvedField& field) {
     dirty_[b] = 0xFF;
     dirtyBrick_.push_back(b);
   }
-  remakeDirty(field);
-  const std::size_t room = 2 * patches_ + 64;
-  pool_.reserve(room);
-  next_.reserve(room);
+  rebuildDirty(field);
+  const std::size_t capacity = 2 * patches_ + 64;
+  pool_.reserve(capacity);
+  next_.reserve(capacity);
 }
 
 void CarvedSurface::update(const CarvedField& field) {
-  const std::size_t room = pool_.capacity();
+  const std::size_t capacity = pool_.capacity();
   dirtyBrick_.clear();
   for (const std::uint32_t b : field.changed()) {
     const BrickBits removed = field.removed(b);
     if (anyBit(removed)) markBlocks(b, removed);
   }
   std::sort(dirtyBrick_.begin(), dirtyBrick_.end());
-  remakeDirty(field);
-  growths_ += pool_.capacity() != room ? 1 : 0;
+  rebuildDirty(field);
+  growths_ += pool_.capacity() != capacity ? 1 : 0;
 }
 
 void CarvedSurface::markBlocks(std::uint32_t brick, const BrickBits& removed) {
@@ -70,7 +70,7 @@ void CarvedSurface::markBlocks(std::uint32_t brick, const BrickBits& removed) {
     if (dirty_[b] == 0) dirtyBrick_.push_back(b);
     dirty_[b] = static_cast<std::uint8_t>(dirty_[b] | 1U << static_cast<unsigned>((x & 1) + 2 * (y & 1) + 4 * (z & 1)));
   };
-  // A node is a corner of the cells up to it: where it begins a block, of the block before as well.
+  // A node is a corner of the cells before it as well: at the start of a block, also of the previous block.
   constexpr std::uint64_t quarter = 0x0F0F0F0FULL;
   constexpr std::uint64_t quarterColumn = 0x01010101ULL;
   for (int z = 0; z < 8; ++z) {
@@ -91,7 +91,7 @@ void CarvedSurface::markBlocks(std::uint32_t brick, const BrickBits& removed) {
   }
 }
 
-void CarvedSurface::remakeDirty(const CarvedField& field) {
+void CarvedSurface::rebuildDirty(const CarvedField& field) {
   changedBlock_.clear();
   for (const std::uint32_t b : dirtyBrick_) {
     const Index3 brick = lattice_.brickAt(b);
@@ -199,7 +199,7 @@ void CarvedSurface::addCell(std::uint32_t block, unsigned inside, const std::arr
 }
 
 SurfacePatch& CarvedSurface::openPatch(std::uint32_t block) {
-  if (open_ >= 0 && pool_[slot(open_)].triangleCount < SurfacePatch::mostTriangles) return pool_[slot(open_)];
+  if (open_ >= 0 && pool_[slot(open_)].triangleCount < SurfacePatch::maxTriangles) return pool_[slot(open_)];
   const std::int32_t before = open_;
   closePatch();
   if (free_ < 0) {
@@ -229,17 +229,17 @@ std::uint8_t CarvedSurface::vertexInPatch(SurfacePatch& patch, unsigned edge, co
   std::array<std::uint32_t, 3> n = at;
   n[(axis + 1) % 3] += edge & 1U;
   n[(axis + 2) % 3] += edge >> 1U & 1U;
-  const std::size_t place = 3 * (n[0] + rows * (n[1] + rows * n[2])) + axis;
-  if (local_[place] == 0) {
+  const std::size_t index = 3 * (n[0] + rows * (n[1] + rows * n[2])) + axis;
+  if (local_[index] == 0) {
     patch.vertex[patch.vertexCount++] = 3 * (offset_[0][n[0]] + offset_[1][n[1]] + offset_[2][n[2]]) + axis;
-    local_[place] = patch.vertexCount;
-    used_.push_back(static_cast<std::uint16_t>(place));
+    local_[index] = patch.vertexCount;
+    used_.push_back(static_cast<std::uint16_t>(index));
   }
-  return static_cast<std::uint8_t>(local_[place] - 1);
+  return static_cast<std::uint8_t>(local_[index] - 1);
 }
 
 void CarvedSurface::closePatch() {
-  for (const std::uint16_t place : used_) local_[place] = 0;
+  for (const std::uint16_t index : used_) local_[index] = 0;
   used_.clear();
   open_ = -1;
 }

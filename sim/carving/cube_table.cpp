@@ -9,10 +9,10 @@ namespace {
 
 constexpr int never = 1 << 20;
 
-/// A loop of at most 12 cut edges, and the cheapest way to fill it: inner sides as short as can be, none on a face.
+/// A loop of at most 12 cut edges and its cheapest triangulation: shortest inner sides, none on a face.
 class Loop {
  public:
-  void push(unsigned edge) { edge_[size_++] = edge; }
+  void add(unsigned edge) { edge_[size_++] = edge; }
   [[nodiscard]] std::size_t size() const { return size_; }
 
   void fill(CubeCase& out) {
@@ -33,7 +33,7 @@ class Loop {
   }
 
  private:
-  /// Squared length of a side between the middles of two edges, in quarter cells; nothing for the loop's own.
+  /// Squared length of a side between the midpoints of two edges, in quarter cells; zero for sides of the loop.
   [[nodiscard]] int side(std::size_t i, std::size_t j) const {
     if (j - i == 1 || j - i == size_ - 1) return 0;
     if ((facesOfEdge(edge_[i]) & facesOfEdge(edge_[j])) != 0) return never;
@@ -44,7 +44,7 @@ class Loop {
     }
     return sum;
   }
-  /// Twice the coordinate of an edge's middle.
+  /// Twice the coordinate of an edge's midpoint.
   static int twice(unsigned edge, unsigned axis) {
     const unsigned a = edge / 4;
     if (axis == a) return 1;
@@ -53,7 +53,7 @@ class Loop {
   void emit(std::size_t i, std::size_t j, CubeCase& out) {
     if (j - i < 2) return;
     const std::size_t k = apex_[i][j];
-    assert(out.count < CubeCase::most);
+    assert(out.count < CubeCase::maxTriangles);
     out.edge[out.count++] = {static_cast<std::uint8_t>(edge_[i]), static_cast<std::uint8_t>(edge_[k]),
                              static_cast<std::uint8_t>(edge_[j])};
     emit(i, k, out);
@@ -77,7 +77,7 @@ unsigned edgeBetween(unsigned c, unsigned d) {
   return 4 * a + (c >> (a + 1) % 3 & 1U) + 2 * (c >> (a + 2) % 3 & 1U);
 }
 
-/// Where the cut goes from each cut edge, so that the outside is in front of the loop.
+/// Successor of each cut edge in its loop, oriented so that the loop faces outside.
 std::array<int, 12> successors(unsigned inside) {
   std::array<int, 12> next{};
   next.fill(-1);
@@ -134,7 +134,7 @@ CubeTable::CubeTable() {
       if (next[start] < 0) continue;
       Loop loop;
       for (unsigned e = start; next[e] >= 0;) {
-        loop.push(e);
+        loop.add(e);
         const auto following = static_cast<unsigned>(next[e]);
         next[e] = -1;
         e = following;

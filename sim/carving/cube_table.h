@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the surface runs through a cell of the lattice.
+// Triangulation of the surface within a lattice cell.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@ namespace calot {
 /// Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge e = 4 a + u + 2 v runs along axis a from the corner
 /// with coordinates u, v along axes a + 1 and a + 2 (mod 3). Face f = 2 a + s is normal to axis a, at coordinate s.
 struct CubeCase {
-  static constexpr std::size_t most = 5;  ///< triangles of a cell
+  static constexpr std::size_t maxTriangles = 5;  ///< triangles of a cell
 
   std::uint8_t count = 0;
-  std::array<std::array<std::uint8_t, 3>, most> edge{};  ///< which edges a triangle's corners cut; outward
-  /// Side k of triangle t, from corner k to k + 1: the triangle of this cell across it, or -1 - f where the side lies
-  /// on face f and the triangle across it is the next cell's.
-  std::array<std::array<std::int16_t, 3>, most> across{};
+  std::array<std::array<std::uint8_t, 3>, maxTriangles> edge{};  ///< edges on which a triangle's corners lie; outward
+  /// Side k of triangle t, from corner k to k + 1: the triangle of this cell across it, or -1 - f if the side lies on
+  /// face f and the triangle across belongs to the next cell.
+  std::array<std::array<std::int16_t, 3>, maxTriangles> across{};
 };
 
-/// Marching cubes (Lorensen and Cline 1987) with loops traced over the faces of the cell instead of a table from
-/// elsewhere: on each face a cut goes around each run of inside corners, so that inside corners across a face's
-/// diagonal are separated, whichever of its two cells looks. Inside thus hangs together along lattice edges only. A
-/// loop is filled with triangles none of whose inner sides lies on a face of the cell: two cells can then never use
-/// the same one. So a side has exactly two triangles, whatever the signs; a vertex has one fan of them.
+/// Marching cubes (Lorensen and Cline 1987) with loops traced over the faces of the cell instead of a published table.
+/// On each face a cut surrounds each run of inside corners, so that inside corners across a face's diagonal are
+/// separated in both of its cells. The inside is thus connected along lattice edges only. A loop is filled with
+/// triangles of which no inner side lies on a face of the cell, so that two cells never share one. Every side therefore
+/// has exactly two triangles for all signs, and every vertex one fan.
 class CubeTable {
  public:
   /// Bit c of `inside`: corner c is inside.
@@ -45,7 +45,7 @@ class CubeTable {
   return 1U << (2 * ((a + 1) % 3) + u) | 1U << (2 * ((a + 2) % 3) + v);
 }
 
-/// The edge at the same place of face f as seen from the cell on its other side. @pre the edge lies on f
+/// The same edge of face f as numbered in the cell on its other side. @pre the edge lies on f
 [[nodiscard]] constexpr unsigned edgeFromBeyond(unsigned edge, unsigned face) {
   const unsigned a = edge / 4;
   return edge ^ (face / 2 == (a + 1) % 3 ? 1U : 2U);

@@ -50,7 +50,7 @@ Vec3 gradientAtVertex(const CarvedField& field, std::uint32_t vertex) {
   const int axis = static_cast<int>(vertex % 3);
   const std::uint32_t end = lattice.next(node, axis);
   const double t = surface_vertex::cut(field, vertex);
-  // One end is inside, so neither lies on the border by more than its own coordinate along the edge.
+  // One end is inside, so at most one coordinate of either, along the edge, can lie on the border.
   const Index3 at = lattice.nodeAt(node);
   Vec3 gradient;
   for (int a = 0; a < 3; ++a) {

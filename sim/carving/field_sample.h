@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A carved field between its nodes.
+// Interpolation of a carved field.
 #pragma once
 
 #include "sim/carving/carved_field.h"
@@ -12,7 +12,8 @@ struct FieldSample {
   Vec3 gradient = Vec3::Zero();
 };
 
-/// Trilinear within each cell; continuous, the gradient is not. Points outside the lattice count as on its border.
+/// Trilinear within each cell: the value is continuous, the gradient is not. Points outside the lattice are
+/// clamped to its border.
 [[nodiscard]] FieldSample sampleField(const CarvedField& field, const Vec3& p);
 
 /// The gradient where the surface cuts lattice edge `vertex` (surface_vertex): central differences at both ends,

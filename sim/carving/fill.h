@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How full each coarse hexahedron of a carved body is.
+// Fill of each coarse hexahedron of a carved body.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,12 @@
 
 namespace calot {
 
-/// Coarse hexahedra of k^3 lattice cells: hexahedron h spans cells k h to k h + k - 1 along each axis. A node belongs
-/// to exactly one: along each axis to number min(n / k, last), so that of k + 1 nodes the last is its neighbour's, but
-/// for the last hexahedron. The fill is the integer count of inside nodes, a function of the field alone; k^3 is full.
+/// Coarse hexahedra of k^3 lattice cells: hexahedron h spans cells k h to k h + k - 1 along each axis. Each node
+/// belongs to exactly one, along each axis to number min(n / k, last): the last of k + 1 nodes belongs to the
+/// neighbour, except in the last hexahedron. The fill is the integer count of inside nodes, a function of the field
+/// alone; k^3 is full.
 ///
-/// Follows from the field; never saved. Allocates in its constructor only.
+/// Derived from the field; never saved. Allocates only in its constructor.
 class Fill {
  public:
   /// @pre k >= 1 divides nodes() - 1 along each axis
@@ -35,7 +36,7 @@ class Fill {
   }
 
   void rebuild(const CarvedField& field);
-  /// What the last stroke changed. @pre as CarvedSurface::update()
+  /// Updates what the last stroke changed. @pre as CarvedSurface::update()
   void update(const CarvedField& field);
 
   /// Inside nodes of each hexahedron.

@@ -7,9 +7,9 @@ namespace calot {
 namespace {
 
 constexpr std::uint32_t nodesOfBrick = BrickLattice::brickNodes;
-constexpr std::size_t mostComponents = 256;  // of a brick: every other node
+constexpr std::size_t maxComponents = 256;  // of a brick: every other node
 
-/// What hangs together with the lowest node of `open`.
+/// Component of the lowest node of `open`.
 BrickBits lowestComponent(const BrickBits& open) {
   BrickBits part{};
   for (std::size_t z = 0; z < 8; ++z) {
@@ -22,7 +22,7 @@ BrickBits lowestComponent(const BrickBits& open) {
     std::uint64_t change = 0;
     for (std::size_t z = 0; z < 8; ++z) {
       grown[z] &= open[z];
-      // Upward within the same pass: a body is mostly filled in two or three.
+      // Also propagate upward within the same pass: most bodies are then filled in two or three passes.
       if (z > 0) grown[z] |= grown[z - 1] & open[z];
     }
     for (std::size_t z = 7; z-- > 0;) grown[z] |= grown[z + 1] & open[z];
@@ -37,7 +37,7 @@ BrickBits lowestComponent(const BrickBits& open) {
 Islands::Islands(const BrickLattice& lattice, std::span<const std::uint32_t> anchors)
     : lattice_(lattice),
       anchorOf_(lattice.brickCount(), -1),
-      held_(lattice.brickCount(), 0),
+      hasAnchor_(lattice.brickCount(), 0),
       count_(lattice.brickCount(), 0),
       link_(lattice.brickCount(), 0),
       label_(lattice.storage(), 0),
@@ -53,8 +53,8 @@ Islands::Islands(const BrickLattice& lattice, std::span<const std::uint32_t> anc
     const std::uint32_t local = node % nodesOfBrick;
     anchor_.back().second[local >> 6U] |= std::uint64_t{1} << (local & 63U);
   }
-  parent_.reserve(mostComponents * lattice.brickCount());
-  anchored_.reserve(mostComponents * lattice.brickCount());
+  parent_.reserve(maxComponents * lattice.brickCount());
+  anchored_.reserve(maxComponents * lattice.brickCount());
   work_.reserve(lattice.brickCount());
 }
 
@@ -80,11 +80,11 @@ void Islands::label(const CarvedField& field, std::uint32_t brick) {
     ++count;
   }
   count_[brick] = count;
-  held_[brick] = 0;
+  hasAnchor_[brick] = 0;
   if (anchorOf_[brick] < 0) return;
   BrickBits held = anchor_[slot(anchorOf_[brick])].second;
   for (std::size_t z = 0; z < 8; ++z) held[z] &= field.bits(brick)[z];
-  held_[brick] = anyBit(held) ? 1 : 0;
+  hasAnchor_[brick] = anyBit(held) ? 1 : 0;
 }
 
 void Islands::link(const CarvedField& field, std::uint32_t brick, int axis) {
@@ -95,12 +95,12 @@ void Islands::link(const CarvedField& field, std::uint32_t brick, int axis) {
   if (sharedFace(field.bits(brick), field.bits(other), axis) != 0) link_[brick] |= bit;
 }
 
-/// @return false: what hangs together through this brick, and is held in it, does so still
+/// @return false: connections through this brick and its anchoring are unchanged
 bool Islands::relabel(const CarvedField& field, std::uint32_t brick) {
   const bool whole = count_[brick] == 1;
-  const bool held = held_[brick] != 0;
+  const bool held = hasAnchor_[brick] != 0;
   label(field, brick);
-  bool less = !whole || count_[brick] != 1 || (held && held_[brick] == 0);
+  bool less = !whole || count_[brick] != 1 || (held && hasAnchor_[brick] == 0);
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint8_t links = link_[brick];
     link(field, brick, axis);
@@ -109,7 +109,7 @@ bool Islands::relabel(const CarvedField& field, std::uint32_t brick) {
     if (!neighbour(brick, axis, -1, before)) continue;
     const std::uint8_t linksBefore = link_[before];
     link(field, before, axis);
-    // A neighbour in parts may have lost the link of one of them.
+    // A neighbour with several components may have lost the link of one.
     less = less || linksBefore != link_[before] || count_[before] > 1;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -171,7 +171,7 @@ void Islands::markAnchored(const CarvedField& field) {
   anchored_.assign(parent_.size(), 0);
   for (const auto& [brick, nodes] : anchor_) {
     const std::uint32_t b = brick;
-    if (held_[b] == 0) continue;
+    if (hasAnchor_[b] == 0) continue;
     if (count_[b] == 1) {
       anchored_[root(base_[b])] = 1;
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Islands: what carving has cut loose from everything that holds it.
+// Islands: parts that carving has separated from all anchors.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,22 @@
 
 namespace calot {
 
-/// Inside nodes hang together along lattice edges (six neighbours), as they do in the polygons (cube_table.h). What
-/// does not hang together with an inside anchor node is an island. Components are kept brick by brick, and a graph of
-/// bricks is searched: a stroke labels the bricks anew in which nodes left, and no others; where none of these bricks
-/// fell into parts, lost a link to a neighbour or its last anchor, nothing can have come loose and no search is made.
-/// Equal to a full flood.
+/// Inside nodes are connected along lattice edges (six neighbours), as in the polygons (cube_table.h). A component
+/// without an inside anchor node is an island. Components are stored per brick and joined in a graph of bricks. A
+/// stroke relabels only bricks that lost nodes; if none of these split, lost a link to a neighbour or lost its last
+/// anchor, nothing can have come loose and the graph is not searched. The result equals that of a full flood fill.
 ///
-/// Follows from the field alone; never saved. Allocates in its constructor only.
+/// Derived from the field alone; never saved. Allocates only in its constructor.
 class Islands {
  public:
-  /// @param anchors nodes where the tissue is held, in any order; each within the lattice
+  /// @param anchors nodes at which the tissue is attached, in any order, each within the lattice
   Islands(const BrickLattice& lattice, std::span<const std::uint32_t> anchors);
 
   /// Labels everything: at the start and after a restore.
   void rebuild(const CarvedField& field);
 
-  /// Puts every island outside, within a stroke (before CarvedField::commit()). A field without an anchor left is
-  /// removed whole. @return nodes removed; times cell^3 is their volume
+  /// Removes every island, within a stroke (before CarvedField::commit()). A field without a remaining anchor is
+  /// removed entirely. @return number of nodes removed; times cell^3 is their volume
   std::int64_t remove(CarvedField& field);
 
  private:
@@ -45,12 +44,12 @@ class Islands {
 
   BrickLattice lattice_;
   std::vector<std::pair<std::uint32_t, BrickBits>> anchor_;
-  std::vector<std::int32_t> anchorOf_;  ///< of a brick, into anchor_; -1: none
-  std::vector<std::uint8_t> held_;      ///< does a brick have an inside anchor?
-  std::vector<std::uint16_t> count_;    ///< components of each brick
-  std::vector<std::uint8_t> link_;      ///< bit a: whole bricks hang together with the next along axis a
-  std::vector<std::uint8_t> label_;     ///< of each node, where its brick has several components
-  std::vector<std::uint32_t> base_;     ///< number of a brick's first component
+  std::vector<std::int32_t> anchorOf_;   ///< of a brick, into anchor_; -1: none
+  std::vector<std::uint8_t> hasAnchor_;  ///< per brick: does it have an inside anchor?
+  std::vector<std::uint16_t> count_;     ///< components of each brick
+  std::vector<std::uint8_t> link_;       ///< bit a: the brick is connected to the next along axis a
+  std::vector<std::uint8_t> label_;      ///< of each node, if its brick has several components
+  std::vector<std::uint32_t> base_;      ///< number of a brick's first component
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint8_t> anchored_;
   std::vector<std::uint32_t> work_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neighbours on the surface of a carved field, from the signs alone: nothing is stored, nothing can be out of date.
+// Adjacency on the surface of a carved field, computed from the signs alone: nothing is stored or can be stale.
 #pragma once
 
 #include <array>
@@ -14,20 +14,20 @@ namespace calot {
 /// Triangles are named as in SurfacePatch: 8 * cell + number in the cell; vertices are lattice edges (surface_vertex).
 class SurfaceAdjacency {
  public:
-  /// Most triangles around one vertex: four cells, in each of which its loop has at most five.
-  static constexpr std::size_t mostAround = 4 * CubeCase::most;
+  /// Maximum number of triangles around one vertex: four cells, in each of which its loop has at most five.
+  static constexpr std::size_t maxAround = 4 * CubeCase::maxTriangles;
 
   /// @param field must outlive this
   explicit SurfaceAdjacency(const CarvedField& field) : field_(field), table_(CubeTable::get()) {}
 
-  /// Is there such a triangle now?
+  /// Does this triangle exist now?
   [[nodiscard]] bool exists(std::uint32_t triangle) const;
   /// Its three vertices, outward. @pre exists(triangle)
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t triangle) const;
-  /// The triangle across side k (from corner k to k + 1). There always is one. @pre exists(triangle)
+  /// The triangle across side k (from corner k to k + 1), which always exists. @pre exists(triangle)
   [[nodiscard]] std::uint32_t across(std::uint32_t triangle, std::size_t k) const;
-  /// Triangles with a vertex as a corner, ascending by cell as met around the edge; a closed fan.
-  /// @param out at least mostAround long @return how many; 0 where the edge is not cut
+  /// Triangles around a vertex, a closed fan, in the order of cells around its edge.
+  /// @param out at least maxAround long @return their number; 0 if the edge is not cut
   std::size_t around(std::uint32_t vertex, std::span<std::uint32_t> out) const;
 
  private:

@@ -60,27 +60,27 @@ CALOT_INLINE void offerFace(Nearest& best, const V& a, const V& b, const V& c) {
   offer(best, dot(p, p), p, inside);
 }
 
-CALOT_INLINE double least(double a, double b) { return a < b ? a : b; }
+CALOT_INLINE double minimum(double a, double b) { return a < b ? a : b; }
 CALOT_INLINE double magnitude(double a) { return a < 0.0 ? -a : a; }
-CALOT_INLINE double most(double a, double b) { return a > b ? a : b; }
+CALOT_INLINE double maximum(double a, double b) { return a > b ? a : b; }
 
 /// Distance of the origin from [low, high], squared.
 CALOT_INLINE double gap2(double low, double high) {
-  const double g = most(most(low, -high), 0.0);
+  const double g = maximum(maximum(low, -high), 0.0);
   return g * g;
 }
 
-/// How far from each node potentials above -reach can be: no |F^T n| exceeds the root of the largest row sum times the
-/// largest column sum.
+/// Distance of each node within which potentials can exceed -reach: |F^T n| is at most the root of the greatest row sum
+/// times the greatest column sum.
 CALOT_LANE_KERNEL void reaches(const NodeLanes& n, double reach, double* out) {
   for (int i = 0; i < laneCount; ++i) {
     double row = 0.0;
     double column = 0.0;
     for (int k = 0; k < 3; ++k) {
-      row = most(row, magnitude(n.gradient[3 * k][i]) + magnitude(n.gradient[3 * k + 1][i]) +
-                          magnitude(n.gradient[3 * k + 2][i]));
-      column =
-          most(column, magnitude(n.gradient[k][i]) + magnitude(n.gradient[k + 3][i]) + magnitude(n.gradient[k + 6][i]));
+      row = maximum(row, magnitude(n.gradient[3 * k][i]) + magnitude(n.gradient[3 * k + 1][i]) +
+                             magnitude(n.gradient[3 * k + 2][i]));
+      column = maximum(column,
+                       magnitude(n.gradient[k][i]) + magnitude(n.gradient[k + 3][i]) + magnitude(n.gradient[k + 6][i]));
     }
     out[i] = reach * std::sqrt(row * column);
   }
@@ -94,8 +94,8 @@ CALOT_LANE_KERNEL int anyNear(const SweptCapsule& c, const NodeLanes& n, const d
     for (int k = 0; k < 3; ++k) {
       const double x = n.now[k][i];
       const double y = n.before[k][i];
-      const double low = least(least(c.p0[k], c.p1[k]) - y, least(c.q0[k], c.q1[k]) - x);
-      const double high = most(most(c.p0[k], c.p1[k]) - y, most(c.q0[k], c.q1[k]) - x);
+      const double low = minimum(minimum(c.p0[k], c.p1[k]) - y, minimum(c.q0[k], c.q1[k]) - x);
+      const double high = maximum(maximum(c.p0[k], c.p1[k]) - y, maximum(c.q0[k], c.q1[k]) - x);
       distance2 += gap2(low, high);
     }
     const double limit = c.radius + reach[i];
@@ -115,7 +115,8 @@ CALOT_LANE_KERNEL void potentials(const SweptCapsule& c, const NodeLanes& n, dou
   for (int i = 0; i < laneCount; ++i) {
     const V x{n.now[0][i], n.now[1][i], n.now[2][i]};
     const V y{n.before[0][i], n.before[1][i], n.before[2][i]};
-    // Everything as seen from the node; the previous segment, carried along, is where it was seen from before.
+    // Relative to the node; translating the previous segment with the tissue makes it relative to
+    // the node's previous position.
     const V a = p0 - y;
     const V b = p1 - y;
     const V d = q1 - x;

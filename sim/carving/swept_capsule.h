@@ -18,7 +18,7 @@ struct SweptCapsule {
   double radius = 0.0;  ///< m
 };
 
-/// Where eight rest nodes lie and lay, and how the tissue is strained there. Coordinate by coordinate.
+/// Current and previous positions of eight nodes and the deformation gradients there, coordinate by coordinate.
 struct NodeLanes {
   double now[3][laneCount];       ///< deformed positions (m, W)
   double before[3][laneCount];    ///< the same when the capsule was at p (m, W)
@@ -29,14 +29,14 @@ struct NodeLanes {
 ///
 ///   (radius - d) / |F^T n|
 ///
-/// d is the distance of x = now[i] to the region that the segment swept *relative to the tissue*: from the previous
-/// segment, carried along by x - before[i], to the present one, moving in a straight line; as the two triangles that
-/// the four ends span. n is the unit vector from the nearest point to x. The divisor is the rate at which the distance
-/// changes in rest space, so what is written there is a distance again; d = 0 leaves it out. Exact for any degenerate
-/// sweep: a resting capsule, a sphere, a stroke along the axis.
+/// d is the distance of x = now[i] from the region that the segment swept *relative to the tissue*: from the previous
+/// segment, translated by x - before[i], to the current one along straight lines, as the two triangles that the four
+/// ends span. n is the unit vector from the nearest point to x. The divisor is the rate of change of the distance in
+/// the reference configuration, so that the result is again a distance; it is omitted for d = 0. Exact for degenerate
+/// sweeps: a capsule that does not move, a sphere, a stroke along the axis.
 ///
-/// @param reach potentials below -reach need not be found (m)
-/// @return false: no node is near enough, nothing was written
+/// @param reach potentials below -reach may be omitted (m)
+/// @return false: no node is near enough; `out` is unchanged
 bool toolPotential(std::span<const SweptCapsule> tool, const NodeLanes& nodes, double reach, double (&out)[laneCount]);
 
 }  // namespace calot

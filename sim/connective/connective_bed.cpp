@@ -11,7 +11,7 @@ namespace calot {
 
 namespace {
 
-/// A vertex of the divided bed: up to three vertices of the surface and how many n-ths of each; unused places are -1.
+/// A vertex of the subdivided bed: up to three surface vertices and the number of n-ths of each; unused entries are -1.
 using Blend = std::array<std::array<int, 2>, 3>;
 
 Blend blendOf(const Index3& triangle, const std::array<int, 3>& parts) {
@@ -27,7 +27,7 @@ Blend blendOf(const Index3& triangle, const std::array<int, 3>& parts) {
   return blend;
 }
 
-/// The triangles of a bed with every edge divided by n: vertices numbered as they come, three to a triangle.
+/// The triangles of a bed with every edge divided by n; vertices are numbered in order of first use.
 struct Division {
   std::vector<Blend> vertex;
   std::vector<Index3> triangle;
@@ -45,8 +45,8 @@ Division divide(const std::vector<Index3>& bed, int n) {
   for (const Index3& t : bed) {
     for (int i = 0; i < n; ++i) {
       for (int j = 0; i + j < n; ++j) {
-        // Vertices are numbered as they are asked for: one statement each, as compilers order arguments in different
-        // ways.
+        // Vertices are numbered on first use: one statement each, since the order of evaluation
+        // of arguments is unspecified.
         const int third = at(t, i, j + 1);
         const int second = at(t, i + 1, j);
         const int first = at(t, i, j);
@@ -61,14 +61,14 @@ Division divide(const std::vector<Index3>& bed, int n) {
   return out;
 }
 
-SolidPlace placeOf(const Embedding::Anchor& anchor) {
-  SolidPlace place;
-  place.count = 4;
+MaterialPoint pointOf(const Embedding::Anchor& anchor) {
+  MaterialPoint point;
+  point.count = 4;
   for (std::size_t k = 0; k < 4; ++k) {
-    place.node[k] = anchor.node[k];
-    place.weight[k] = anchor.weight[k];
+    point.node[k] = anchor.node[k];
+    point.weight[k] = anchor.weight[k];
   }
-  return place;
+  return point;
 }
 
 std::vector<std::array<std::uint32_t, 2>> edgesOf(const std::vector<Index3>& triangles) {
@@ -97,7 +97,7 @@ std::vector<Index3> bedTriangles(const TriangleMesh& first, const SurfaceDistanc
   return bed;
 }
 
-ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reach, std::size_t leastStrands) {
+ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reach, std::size_t minStrands) {
   ConnectiveBed out;
   const SurfaceDistance distance(second.surface);
   const std::vector<Index3> bed = bedTriangles(first.surface, distance, reach);
@@ -108,7 +108,7 @@ ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reac
   }
   int n = 1;
   Division division = divide(bed, n);
-  while (division.vertex.size() < leastStrands) division = divide(bed, ++n);
+  while (division.vertex.size() < minStrands) division = divide(bed, ++n);
 
   std::vector<Vec3> ends;
   std::vector<Vec3> feet;
@@ -124,11 +124,11 @@ ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reac
   const Embedding inSecond(feet, second.mesh);
   for (std::size_t s = 0; s < ends.size(); ++s) {
     Strand strand;
-    strand.a = placeOf(inFirst.anchors()[s]);
-    strand.b = placeOf(inSecond.anchors()[s]);
+    strand.a = pointOf(inFirst.anchors()[s]);
+    strand.b = pointOf(inSecond.anchors()[s]);
     const Vec3 way = ends[s] - feet[s];
     strand.restLength = way.norm();
-    // Organs that overlap at rest, or touch, have strands that point out of the second one all the same.
+    // Where organs touch or overlap at rest, strands still point out of the second one.
     const Index3& t = second.surface.triangle[slot(distance.closest(ends[s]).triangle)];
     const Vec3& a = second.surface.vertex[slot(t[0])];
     const Vec3 outward = (second.surface.vertex[slot(t[1])] - a).cross(second.surface.vertex[slot(t[2])] - a);

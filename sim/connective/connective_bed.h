@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strands over the whole bed where one organ lies on another.
+// Strands over the bed between two adjacent organs.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace calot {
 
-/// An organ at rest as its bed sees it.
+/// An organ in its reference configuration.
 struct BedOrgan {
   const TriangleMesh& surface;  ///< closed, outward
   const TetrahedralMesh& mesh;  ///< of its solid
@@ -21,19 +21,18 @@ struct BedOrgan {
 struct ConnectiveBed {
   std::vector<Strand> strands;
   std::vector<std::array<std::uint32_t, 2>> sheets;
-  std::string error;  ///< one sentence where there is no bed
+  std::string error;  ///< one sentence if there is no bed
 
   [[nodiscard]] bool ok() const { return error.empty(); }
 };
 
-/// The bed: every triangle of the first organ's surface whose corners all lie within `reach` of the second organ.
+/// The bed: all triangles of the first organ's surface whose corners all lie within `reach` of the second organ.
 std::vector<Index3> bedTriangles(const TriangleMesh& first, const SurfaceDistance& second, double reach);
 
-/// Strands over the whole bed, as bedTriangles() finds it. Its
-/// triangles are divided evenly, edge by n, with the least n that gives at least `leastStrands` strands: one at each
-/// vertex, to the nearest point of the second organ. Each strand stands for a third of the area of the divided
-/// triangles around it; neighbours along their edges are joined by sheets.
-/// @pre both organs have triangles and tetrahedra of positive volume; reach > 0; leastStrands > 0
-ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reach, std::size_t leastStrands);
+/// Strands over the whole bed (bedTriangles()). Its triangles' edges are divided by the smallest n that gives at least
+/// `minStrands` strands, one from each vertex to the nearest point of the second organ. Each strand represents a third
+/// of the area of the subdivided triangles around it; sheets join neighbours along edges.
+/// @pre both organs have triangles and tetrahedra of positive volume; reach > 0; minStrands > 0
+ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reach, std::size_t minStrands);
 
 }  // namespace calot

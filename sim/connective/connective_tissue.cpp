@@ -10,7 +10,7 @@ namespace calot {
 
 namespace {
 
-constexpr double shortest = 1e-6;  ///< m: below, the direction of a strand is its direction at rest
+constexpr double minLength = 1e-6;  ///< m: shorter strands take their direction at rest
 
 struct Stretch {
   Vec3 direction = Vec3::Zero();
@@ -20,7 +20,7 @@ struct Stretch {
 Stretch stretchOf(const Strand& strand, const Vec3& a, const Vec3& b) {
   const Vec3 way = a - b;
   const double length = way.norm();
-  if (length < shortest) return {strand.restDirection, length};
+  if (length < minLength) return {strand.restDirection, length};
   return {way / length, length};
 }
 
@@ -60,23 +60,23 @@ void addConnectiveLoads(const ConnectiveTissue& tissue, const ConnectiveState& s
   for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
     if (state.condition[s] != StrandCondition::attached) continue;
     const Strand& strand = tissue.strands()[s];
-    const SolidPlace& mine = side == ConnectiveSide::a ? strand.a : strand.b;
-    const SolidPlace& theirs = side == ConnectiveSide::a ? strand.b : strand.a;
-    const Vec3 here = mine.of(own.position);
-    const Vec3 there = theirs.of(other.position);
-    // d points from b to a whichever side asks; along it, the two ends see opposite forces.
+    const MaterialPoint& ownPoint = side == ConnectiveSide::a ? strand.a : strand.b;
+    const MaterialPoint& otherPoint = side == ConnectiveSide::a ? strand.b : strand.a;
+    const Vec3 here = ownPoint.of(own.position);
+    const Vec3 there = otherPoint.of(other.position);
+    // d points from b to a for both sides; the two ends get opposite forces along it.
     const Stretch stretch = side == ConnectiveSide::a ? stretchOf(strand, here, there) : stretchOf(strand, there, here);
     const double stiffness = state.alpha[s] * m.stiffness * strand.area;
     const double damping = state.alpha[s] * m.damping * strand.area;
     const double tension = stiffness * (stretch.length - strand.restLength);
-    const Vec3 pull =
+    const Vec3 force =
         side == ConnectiveSide::a ? Vec3(-tension * stretch.direction) : Vec3(tension * stretch.direction);
     Attachment attachment;
-    attachment.place = mine;
-    // A majorant of the spring's tangent, which is stiff along it and, across, as stiff as its pull makes it: at rest
-    // no different, in motion damped more, never unstable.
+    attachment.point = ownPoint;
+    // An isotropic majorant of the spring's tangent stiffness: equilibrium is unchanged, motion is damped more, and the
+    // step is never unstable.
     attachment.damper = (step * stiffness + damping) * Mat3::Identity();
-    attachment.force = pull + attachment.damper * theirs.of(other.velocity);
+    attachment.force = force + attachment.damper * otherPoint.of(other.velocity);
     out.push_back(attachment);
   }
 }
@@ -96,10 +96,10 @@ double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state,
     if (state.condition[s] != StrandCondition::attached) continue;
     const double area = tissue.strands()[s].area;
     const double tension = strandTension(tissue, state, s, positionA, positionB);
-    // A faded strand is weaker in the measure in which it is softer: what tears is its stretch.
-    const double pull = tension / (state.alpha[s] * area);
-    largest = std::max(largest, pull);
-    if (!(pull > tissue.material().strength)) continue;
+    // Fading reduces strength and stiffness alike, so that the stretch at which a strand tears is unchanged.
+    const double stress = tension / (state.alpha[s] * area);
+    largest = std::max(largest, stress);
+    if (!(stress > tissue.material().strength)) continue;
     state.condition[s] = StrandCondition::torn;
     torn.push_back(static_cast<std::uint32_t>(s));
   }
@@ -150,7 +150,7 @@ ConnectiveShares sharesOf(const ConnectiveTissue& tissue, const ConnectiveState&
         break;
     }
   }
-  // All of one kind is 1 to the bit: the sums run in the order of the area's.
+  // If all strands are of one kind, its share is exactly 1: sums run in the same order as the area's.
   shares.attached /= tissue.area();
   shares.burned /= tissue.area();
   shares.torn /= tissue.area();

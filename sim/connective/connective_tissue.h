@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connective tissue between two organs: fibrous strands from places on one to places on the other, and sheets between
-// neighbouring strands.
+// Connective tissue between two organs: fibrous strands from points of one to points of the other, and
+// sheets between neighbouring strands.
 //
-// A strand is a spring with damper between a place a of the first organ and a place b of the second:
-//   T = alpha k (l - l0) (pull positive),   f_a = -T d,   d = (x_a - x_b) / l.
-// Each organ is solved with the other one taken as it is known at that moment, and with the strand's own-side change
-// implicit (sim/solid/solid.h, Attachment): stable at any stiffness; at rest the two forces balance exactly, while in
-// motion the one organ lags the other by at most a step.
+// A strand is a spring and a damper between point a of the first organ and point b of the second:
+//   T = alpha k (l - l0) (tension positive),   f_a = -T d,   d = (x_a - x_b) / l.
+// Each organ is solved with the latest known motion of the other, and implicitly in its own (sim/solid/solid.h,
+// Attachment). This is stable at any stiffness. In equilibrium both forces balance exactly; in motion, one organ lags
+// the other by at most a step.
 //
-// The energised hook fades a strand (alpha falls from 1) until it is gone: burned. A strand that is pulled above its
-// strength tears; what is left of a torn strand hangs on the organs as residue until the hook burns it away.
+// The energised hook fades a strand (alpha falls from 1) until it is gone: burned. A strand loaded above its strength
+// tears; its remains stay on the organs as residue until the hook burns them away.
 #pragma once
 
 #include <array>
@@ -25,22 +25,22 @@ namespace calot {
 enum class StrandCondition : std::uint8_t { attached = 0, burned = 1, torn = 2 };
 
 struct Strand {
-  SolidPlace a, b;                     ///< in an element of the first and of the second organ
+  MaterialPoint a, b;                  ///< in an element of the first and of the second organ
   double restLength = 0.0;             ///< l0 (m)
-  Vec3 restDirection = Vec3::UnitZ();  ///< d at rest, used where the ends meet
-  double area = 0.0;                   ///< of the bed that it stands for (m^2)
+  Vec3 restDirection = Vec3::UnitZ();  ///< d at rest, used if the ends coincide
+  double area = 0.0;                   ///< of the bed that it represents (m^2)
 };
 
-/// What the tissue is made of, per area of bed, so that a finer division into strands is the same tissue.
+/// Material per area of bed, independent of the subdivision into strands.
 struct ConnectiveMaterial {
   double stiffness = 2e5;  ///< of a unit area of bed (N/m^3)
   double damping = 2e3;    ///< (N s/m^3)
-  double strength = 4e3;   ///< pull per area at which it tears (Pa)
-  double fadeTime = 0.4;   ///< how long the energised hook takes to burn a strand through (s)
+  double strength = 4e3;   ///< tension per area at which it tears (Pa)
+  double fadeTime = 0.4;   ///< time that the energised hook takes to burn a strand through (s)
   double goneBelow = 0.2;  ///< a strand of this alpha is gone
 };
 
-/// Fixed data of one connective tissue.
+/// Constant data of one connective tissue.
 class ConnectiveTissue {
  public:
   /// @param sheets pairs of neighbouring strands, each pair once
@@ -60,7 +60,7 @@ class ConnectiveTissue {
   double area_ = 0.0;
 };
 
-/// Everything of it that changes.
+/// State of one connective tissue.
 struct ConnectiveState {
   std::vector<StrandCondition> condition;
   std::vector<double> alpha;  ///< 1: intact; below ConnectiveMaterial::goneBelow: gone
@@ -75,40 +75,40 @@ struct ConnectiveState {
 /// All strands attached and intact.
 ConnectiveState intactState(const ConnectiveTissue& tissue);
 
-/// Nodes of one organ as a strand meets them.
+/// Nodal positions and velocities of one organ.
 struct OrganMotion {
   std::span<const Vec3> position;  ///< m
   std::span<const Vec3> velocity;  ///< m/s
 };
 
-/// Which organ of a tissue: the one of the places a, or of the places b.
+/// Which organ of a tissue: that of the points a, or of the points b.
 enum class ConnectiveSide : std::uint8_t { a, b };
 
 /// Appends the attachments of all attached strands to one of the two organs over a step.
-/// @param own, other motions of that organ and of the other one, as known now
+/// @param own, other latest known motions of that organ and of the other one
 /// @param step h (s)
 void addConnectiveLoads(const ConnectiveTissue& tissue, const ConnectiveState& state, ConnectiveSide side,
                         const OrganMotion& own, const OrganMotion& other, double step, std::vector<Attachment>& out);
 
-/// Pull of a strand (N), negative while it is pressed, 0 where it is not attached.
+/// Tension of a strand (N), negative in compression, 0 if it is not attached.
 double strandTension(const ConnectiveTissue& tissue, const ConnectiveState& state, std::size_t strand,
                      std::span<const Vec3> positionA, std::span<const Vec3> positionB);
 
-/// Tears every attached strand that is pulled above its strength, ascending; appends their indices.
-/// @return largest pull per area of any attached strand before (Pa)
+/// Tears every attached strand loaded above its strength; appends their indices, ascending.
+/// @return greatest tension per area of any strand attached before (Pa)
 double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
                          std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn);
 
-/// A part of the energised hook: a capsule that moves from one place to another during a step.
+/// A part of the energised hook: a capsule that moves during a step.
 struct HookSweep {
   std::array<Vec3, 2> before{Vec3::Zero(), Vec3::Zero()};  ///< ends of its axis at the step's beginning (m)
-  std::array<Vec3, 2> now{Vec3::Zero(), Vec3::Zero()};     ///< and at its end
+  std::array<Vec3, 2> now{Vec3::Zero(), Vec3::Zero()};     ///< and at the end of the step
   double radius = 0.0;                                     ///< m
 };
 
-/// Fades what any part of the hook touches during a step: attached strands along their length, the stumps of torn ones
-/// at their organs (half of the rest length, at least `radius`). Indices of strands that this burned through are
-/// appended, ascending. @return how many strands it touched
+/// Fades strands that any part of the hook touches during a step: attached ones along their length, torn ones at their
+/// stumps (half of the rest length, at least `radius`). Appends indices of strands that this burned through, ascending.
+/// @return number of strands touched
 std::size_t burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
                         std::span<const Vec3> positionB, std::span<const HookSweep> hook, double step,
                         std::vector<std::uint32_t>& burned);
@@ -117,7 +117,7 @@ std::size_t burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, 
 struct ConnectiveShares {
   double attached = 0.0;
   double burned = 0.0;
-  double torn = 0.0;  ///< residue once nothing is attached any more
+  double torn = 0.0;  ///< residue once no strand is attached
 };
 ConnectiveShares sharesOf(const ConnectiveTissue& tissue, const ConnectiveState& state);
 

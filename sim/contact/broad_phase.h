@@ -12,8 +12,8 @@
 
 namespace calot {
 
-/// Answers one question, "which pairs may touch?", with a superset of the pairs whose boxes overlap; the narrow phase
-/// decides. Any implementation gives the same State, since pairs are sorted and decided again.
+/// Broad phase: returns a superset of the pairs whose boxes overlap. The narrow phase decides which of them touch, and
+/// pairs are sorted, so every implementation gives the same State.
 class BroadPhase {
  public:
   struct Pair {
@@ -24,11 +24,11 @@ class BroadPhase {
 
   virtual ~BroadPhase() = default;
 
-  /// Takes new bounds of all leaves.
+  /// Replaces the bounds of all leaves.
   virtual void update(std::span<const Box> leaves) = 0;
 
-  /// Takes new bounds of the leaves named in `changed` (indices, ascending, each once); what the others' boxes are is
-  /// not looked at. @pre leaves.size() is that of the last update()
+  /// Replaces the bounds of the leaves listed in `changed` (indices, ascending, each once). The other boxes are
+  /// ignored. @pre leaves.size() is that of the last update()
   virtual void refit(std::span<const Box> leaves, std::span<const std::uint32_t> changed) {
     if (!changed.empty()) update(leaves);
   }
@@ -43,14 +43,14 @@ struct BoxLanes {
   alignas(32) float upper[3][laneCount];
 };
 
-/// Cells of a fixed size; each leaf enters the cells that it covers, entries are sorted by cell. A leaf that covers too
-/// many cells is kept in a list of its own and offered to every query. A refit touches only leaves that came to cover
-/// other cells. Up to `mostSwept` leaves need no cells: asking all of them, eight at a time, is quicker.
+/// A grid of fixed cell size. Each leaf is entered into the cells that it covers, and entries are sorted by cell. A
+/// leaf that covers too many cells goes to a separate list that every query tests. A refit updates only leaves whose
+/// cells changed. Up to `maxSwept` leaves are tested directly, eight at a time, which is faster than a grid.
 class SortedGrid final : public BroadPhase {
  public:
   /// @param cell edge of a cell (m)
-  /// @param mostSwept see above
-  explicit SortedGrid(double cell, std::size_t mostSwept = 2048) : cell_(cell), mostSwept_(mostSwept) {}
+  /// @param maxSwept use the grid above this number of leaves
+  explicit SortedGrid(double cell, std::size_t maxSwept = 2048) : cell_(cell), maxSwept_(maxSwept) {}
   void update(std::span<const Box> leaves) override;
   void refit(std::span<const Box> leaves, std::span<const std::uint32_t> changed) override;
   void pairs(std::span<const Box> queries, std::vector<Pair>& out) const override;
@@ -65,7 +65,7 @@ class SortedGrid final : public BroadPhase {
   void pack(std::size_t leaf);
 
   double cell_;
-  std::size_t mostSwept_;
+  std::size_t maxSwept_;
   std::vector<BoxLanes> lanes_;  ///< of the leaves, where they are swept
   std::vector<Entry> entry_;
   std::vector<std::uint32_t> large_;

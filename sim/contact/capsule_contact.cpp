@@ -12,8 +12,8 @@ namespace calot {
 
 namespace {
 
-constexpr double onSurface = 1e-9;  // m: nearer than this, the direction of the distance is noise
-constexpr double onePlace = 1e-6;   // m: contacts nearer to one another are one
+constexpr double onSurface = 1e-9;      // m: nearer than this, the direction of the distance is noise
+constexpr double mergeDistance = 1e-6;  // m: contacts nearer to each other are merged
 
 struct Segment {
   const Vec3& p0;
@@ -21,7 +21,7 @@ struct Segment {
   [[nodiscard]] Vec3 at(double s) const { return p0 + s * (p1 - p0); }
 };
 
-/// Where the axis passes through a face.
+/// A crossing of the axis with a face.
 struct Crossing {
   double parameter = 0.0;
   bool inward = false;
@@ -44,12 +44,11 @@ struct Inside {
   int exit = -1;
 };
 
-/// Every triangle whose distance from the axis is at most `limit`, which f may lower on the way, with that distance's
-/// place: f(triangle, pair).
+/// Calls f(triangle, pair) for every triangle within `limit` of the axis, with the closest points; f may lower `limit`.
 template <class F>
 void forEachNear(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
                  const Segment& axis, double& limit, F&& f) {
-  std::array<std::uint32_t, ContactSurface::largestPatch> near{};
+  std::array<std::uint32_t, ContactSurface::maxPatchTriangles> near{};
   for (const std::uint32_t patch : patches) {
     Box box;
     box.include(axis.p0);
@@ -99,7 +98,7 @@ class Finder {
       }
       if (!nearest_.found || pair.squaredDistance < nearest_.pair.squaredDistance) {
         nearest_ = {true, i, pair};
-        // What is farther than this and out of reach says nothing more.
+        // Triangles farther than this and out of reach cannot change the result.
         limit = std::min(limit, std::max(radius_ + reach, std::sqrt(pair.squaredDistance)) * (1.0 + 1e-9));
       }
       offerOutside(i, pair, reach);
@@ -120,7 +119,7 @@ class Finder {
          featureKey(surface_, i, pair.feature));
   }
 
-  /// The parts of the axis that are inside, and what they say.
+  /// Finds the parts of the axis that are inside, and their contacts.
   void findInside() {
     if (crossing_.empty()) {
       const Vec3 away = nearest_.pair.onSegment - nearest_.pair.onTriangle;
@@ -142,7 +141,7 @@ class Finder {
       const Crossing& crossing = crossing_[static_cast<std::size_t>(c)];
       const bool open = !parts.empty() && parts.back().exit < 0;
       if (crossing.inward) {
-        // Through an edge: both of its triangles say so.
+        // Crossing through an edge: both of its triangles report it.
         if (!open) parts.push_back({crossing.parameter, 1.0, c, -1});
       } else if (open || parts.empty()) {
         if (!open) parts.push_back({0.0, 1.0, -1, -1});
@@ -160,7 +159,7 @@ class Finder {
     for (const Inside& p : parts) part(p, number++);
   }
 
-  /// Both ends and the middle of a part inside.
+  /// Adds contacts at both ends and the middle of a part inside.
   void part(const Inside& inside, std::uint64_t number) {
     const double parameter[3] = {inside.from, 0.5 * (inside.from + inside.to), inside.to};
     const int crossing[3] = {inside.entry, -1, inside.exit};
@@ -174,19 +173,20 @@ class Finder {
       const std::uint64_t key = 4 * number + k;
       const Vec3 point = k == 0 ? axis_.p0 : (k == 2 ? axis_.p1 : axis_.at(parameter[1]));
       if (wayOut(point, key) || k == 1) continue;
-      // Deeper than is looked: from the face through which the axis came.
+      // Deeper than the search: measure from the face through which the axis entered.
       const int through = k == 0 ? inside.exit : inside.entry;
       if (through < 0) continue;
       const Crossing& c = crossing_[static_cast<std::size_t>(through)];
       const Vec3 normal = faceNormal(surface_, position_, c.triangle);
-      const double depth = std::clamp((axis_.at(c.parameter) - point).dot(normal), 0.0, deepestAxis);
+      const double depth = std::clamp((axis_.at(c.parameter) - point).dot(normal), 0.0, maxAxisDepth);
       push(c.triangle, c.weight, normal, point, -depth - radius_, key);
     }
   }
 
-  /// A point of the axis that is inside, to its nearest surface point. @return false: nothing within deepestAxis
+  /// Adds the contact of an axis point inside with its nearest surface point. @return
+  /// false: nothing within maxAxisDepth
   bool wayOut(const Vec3& point, std::uint64_t key) {
-    const NearestPoint nearest = nearestPoint(surface_, position_, patches_, point, deepestAxis);
+    const NearestPoint nearest = nearestPoint(surface_, position_, patches_, point, maxAxisDepth);
     if (!nearest.found) return false;
     const double depth = std::sqrt(nearest.point.squaredDistance);
     Vec3 normal;
@@ -200,7 +200,7 @@ class Finder {
     return true;
   }
 
-  /// Unit; the face's own where a feature's faces cancel.
+  /// Outward unit normal; the face's own if the normals of a feature's faces cancel.
   [[nodiscard]] Vec3 outward(std::size_t triangle, TriangleFeature feature) const {
     const Vec3 normal = pseudonormal(surface_, position_, triangle, feature);
     const double length = normal.norm();
@@ -209,7 +209,7 @@ class Finder {
 
   void push(std::size_t triangle, const Vec3& weight, const Vec3& normal, const Vec3& onAxis, double gap,
             std::uint64_t key) {
-    if (!(normal.squaredNorm() > 0.5)) return;  // of a triangle without area
+    if (!(normal.squaredNorm() > 0.5)) return;  // degenerate triangle
     const Index3& t = surface_.triangles()[triangle];
     SurfaceContact contact;
     contact.node = {t[0], t[1], t[2]};
@@ -229,14 +229,14 @@ class Finder {
     return p;
   }
 
-  /// In order of keys, each key and each place once.
+  /// Sorts by key and removes duplicate keys and contact points.
   void order() {
     std::stable_sort(first(), out_.end(),
                      [](const SurfaceContact& a, const SurfaceContact& b) { return a.key < b.key; });
     const auto same = [&](const SurfaceContact& a, const SurfaceContact& b) {
       return a.key == b.key ||
-             ((a.onAxis - b.onAxis).squaredNorm() < onePlace * onePlace && a.normal.dot(b.normal) > 1.0 - 1e-9 &&
-              (foot(a) - foot(b)).squaredNorm() < onePlace * onePlace);
+             ((a.onAxis - b.onAxis).squaredNorm() < mergeDistance * mergeDistance &&
+              a.normal.dot(b.normal) > 1.0 - 1e-9 && (foot(a) - foot(b)).squaredNorm() < mergeDistance * mergeDistance);
     };
     std::size_t kept = start_;
     for (std::size_t i = start_; i < out_.size(); ++i) {
@@ -269,8 +269,8 @@ void capsuleContacts(const ContactSurface& surface, std::span<const Vec3> positi
   Finder(surface, position, patches, {p0, p1}, radius, static_cast<std::uint64_t>(piece) << 56U, out).find(reach);
 }
 
-double leastGap(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
-                const Vec3& p0, const Vec3& p1, double radius, double reach) {
+double minGap(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
+              const Vec3& p0, const Vec3& p1, double radius, double reach) {
   Nearest nearest;
   bool inside = false;
   double limit = capsuleSearch(radius, std::max(reach, 0.0));
@@ -289,9 +289,9 @@ double leastGap(const ContactSurface& surface, std::span<const Vec3> position, s
   if (!inside) return std::min(reach, distance - radius);
   std::vector<SurfaceContact> found;
   capsuleContacts(surface, position, patches, p0, p1, radius, std::max(reach, 0.0), 0, found);
-  double least = reach;
-  for (const SurfaceContact& c : found) least = std::min(least, c.gap);
-  return least;
+  double minimum = reach;
+  for (const SurfaceContact& c : found) minimum = std::min(minimum, c.gap);
+  return minimum;
 }
 
 }  // namespace calot

@@ -47,11 +47,11 @@ bool ContactSolver::direction(const ContactProblem& problem, std::span<const dou
   const double* w = problem.compliance.data();
   matrix_.assign(n * n, 0.0);
   right_.assign(n, 0.0);
-  const auto keep = [&](std::size_t row) {  // gap = 0
+  const auto closeRow = [&](std::size_t row) {  // gap = 0
     std::copy_n(w + row * n, n, matrix_.begin() + static_cast<std::ptrdiff_t>(row * n));
     right_[row] = -gap[row];
   };
-  const auto open = [&](std::size_t row) {  // lambda = 0
+  const auto openRow = [&](std::size_t row) {  // lambda = 0
     matrix_[row * n + row] = w[row * n + row];
     right_[row] = -w[row * n + row] * lambda[row];
   };
@@ -83,7 +83,7 @@ bool ContactSolver::direction(const ContactProblem& problem, std::span<const dou
       const double s = (w[at * n + at] + w[(at + 1) * n + at + 1] + w[(at + 2) * n + at + 2]) / 3.0;
       const Vec3 v(s * lambda[at] - gap[at], s * lambda[at + 1] - gap[at + 1], s * lambda[at + 2] - gap[at + 2]);
       if (v.norm() <= s * limit) {
-        for (std::size_t i = 0; i < 3; ++i) keep(at + i);
+        for (std::size_t i = 0; i < 3; ++i) closeRow(at + i);
       } else {
         slide(at, 3, s, limit, at, 0.0);
       }
@@ -91,9 +91,9 @@ bool ContactSolver::direction(const ContactProblem& problem, std::span<const dou
     }
     const bool closed = w[at * n + at] * lambda[at] - gap[at] > 0.0;
     if (closed) {
-      keep(at);
+      closeRow(at);
     } else {
-      open(at);
+      openRow(at);
     }
     if (problem.kind[b] == BlockKind::unilateral) continue;
     const double bound = limit * std::max(lambda[at], 0.0);
@@ -101,11 +101,11 @@ bool ContactSolver::direction(const ContactProblem& problem, std::span<const dou
     const double x = s * lambda[at + 1] - gap[at + 1];
     const double y = s * lambda[at + 2] - gap[at + 2];
     if (!closed || !(limit > 0.0)) {
-      open(at + 1);
-      open(at + 2);
+      openRow(at + 1);
+      openRow(at + 2);
     } else if (x * x + y * y <= s * s * bound * bound) {
-      keep(at + 1);
-      keep(at + 2);
+      closeRow(at + 1);
+      closeRow(at + 2);
     } else {
       slide(at + 1, 2, s, bound, at, limit);
     }
@@ -120,12 +120,12 @@ void ContactSolver::newton(const ContactProblem& problem, std::span<double> lamb
   trialGap_.assign(gap.begin(), gap.end());
   std::vector<double> from(n);
   double reached = report.residual;
-  for (std::uint32_t step = 0; step < largestNewtonSteps && report.residual > tolerance; ++step) {
+  for (std::uint32_t step = 0; step < maxNewtonSteps && report.residual > tolerance; ++step) {
     ++report.newtonSteps;
     if (!direction(problem, trial_, trialGap_)) break;
     from = trial_;
-    // The full step first; where no shorter one is better either, the full one is taken all the same: the active set
-    // it leads to is another one.
+    // Try the full step first. If no shorter step reduces the residual, take the full one anyway: it leads to
+    // a different active set.
     double length = 1.0;
     double best = 1e300;
     double bestLength = 1.0;
@@ -150,7 +150,7 @@ void ContactSolver::newton(const ContactProblem& problem, std::span<double> lamb
       std::copy(trialGap_.begin(), trialGap_.end(), gap.begin());
     }
   }
-  // A force may be below its bound by what the tolerance leaves.
+  // Within the tolerance, a force may violate its bound.
   for (std::size_t b = 0, at = 0; b < problem.kind.size(); at += blockRows(problem.kind[b]), ++b) {
     projectOntoFrictionCone(problem.kind[b], problem.limit[b], lambda.subspan(at, blockRows(problem.kind[b])));
   }

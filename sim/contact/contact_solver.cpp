@@ -12,7 +12,7 @@ namespace calot {
 
 namespace {
 
-constexpr double ledAway = 1e3;  ///< multiple of the residual of the start beyond which forces are not taken
+constexpr double divergenceFactor = 1e3;  ///< a residual above this multiple of the warm start's is rejected
 
 /// y += a x. Elements are independent: any vector width gives the same bits.
 CALOT_LANE_KERNEL void addScaled(std::size_t n, double a, const double* __restrict x, double* __restrict y) {
@@ -32,8 +32,8 @@ Vec3 projected(const Vec3& v, double radius) {
   return size > radius ? Vec3(v * (radius / size)) : v;
 }
 
-/// Tangential force of a frictional block for a given normal force, gaps at `lambda`. Sticking first; where the disc
-/// cannot hold that, one projected step.
+/// Tangential force of a frictional block for a given normal force, gaps at `lambda`. Tries sticking first; if that
+/// force leaves the friction disc, takes one projected gradient step.
 std::array<double, 2> tangential(const Rows& w, const double* lambda, const double* gap, double bound) {
   if (!(bound > 0.0)) return {0.0, 0.0};
   const double a = w(1, 1);
@@ -57,7 +57,7 @@ std::array<double, 2> tangential(const Rows& w, const double* lambda, const doub
 }
 
 /// Force of a bilateral block.
-Vec3 held(const Rows& w, const double* lambda, const double* gap, double limit) {
+Vec3 bilateralForce(const Rows& w, const double* lambda, const double* gap, double limit) {
   Mat3 block;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) block(i, j) = w(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
@@ -147,7 +147,7 @@ ContactReport sweepContacts(const ContactProblem& problem, std::span<double> lam
     for (std::size_t b = 0, at = 0; b < problem.kind.size(); at += blockRows(problem.kind[b]), ++b) {
       const Rows rows{w, n, at};
       if (problem.kind[b] == BlockKind::bilateral) {
-        const Vec3 to = held(rows, lambda.data() + at, gap.data() + at, problem.limit[b]);
+        const Vec3 to = bilateralForce(rows, lambda.data() + at, gap.data() + at, problem.limit[b]);
         for (std::size_t i = 0; i < 3; ++i) change(at + i, to[static_cast<int>(i)]);
         continue;
       }
@@ -169,7 +169,7 @@ ContactReport ContactSolver::solve(const ContactProblem& problem, std::span<doub
   const ContactReport before = sweepContacts(problem, start_, gap, tolerance, 0);
   ContactReport report = sweepContacts(problem, lambda, gap, tolerance, cap);
   if (!report.converged) newton(problem, lambda, gap, tolerance, report);
-  if (!(report.residual <= ledAway * before.residual)) {
+  if (!(report.residual <= divergenceFactor * before.residual)) {
     std::copy(start_.begin(), start_.end(), lambda.begin());
     evaluateGaps(problem, lambda, gap);
     report.residual = before.residual;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The complementarity problem of unilateral contact with Coulomb friction, and of held tissue.
+// The complementarity problem of unilateral contact with Coulomb friction and of
+// bilateral constraints (grasped tissue).
 //
-// Displacements follow forces: gap(lambda) = W lambda + free. Rows come in blocks:
+// Gaps depend linearly on forces: gap(lambda) = W lambda + free. Rows come in blocks:
 //   unilateral  1 row   0 <= lambda  _|_  gap >= 0
 //   frictional  3 rows  the first as above; the other two, tangential slip, with |lambda_t| <= mu lambda_n and slip
 //                       against the force where that bound is reached (Coulomb; De Saxce and Feng 1998)
-//   bilateral   3 rows  gap = 0 as long as |lambda| <= limit; at the limit, the point is pulled through
+//   bilateral   3 rows  gap = 0 as long as |lambda| <= limit; at the limit, the point slips
 #pragma once
 
 #include <cstdint>
@@ -41,20 +42,20 @@ struct ContactReport {
 double naturalResidual(const ContactProblem& problem, std::span<const double> lambda, std::span<const double> gap);
 
 /// Solves by block Gauss-Seidel with exact local solves (Jourdan, Alart and Jean 1998) from a warm start, until the
-/// residual is at most `tolerance` or `cap` sweeps are done. Gaps are kept up to date column by column: a sweep costs n
-/// for each row whose force changes, nothing for a row that stays open. Allocates nothing.
-/// @param lambda in: warm start (projected onto what is admissible); out: forces (N)
+/// residual is at most `tolerance` or `cap` sweeps are done. Gaps are updated column by column: a row costs O(n) when
+/// its force changes and nothing while it stays open. Allocates nothing.
+/// @param lambda in: warm start, projected onto the admissible set; out: forces (N)
 /// @param gap out: W lambda + free (m); n values
 ContactReport sweepContacts(const ContactProblem& problem, std::span<double> lambda, std::span<double> gap,
                             double tolerance, std::uint32_t cap);
 
-/// Sweeps; then, where they do not converge (rows that nearly repeat each other), semi-smooth Newton steps on the
-/// natural map (Alart and Curnier 1991) with a line search, at most `largestNewtonSteps` of them; the best iterate met
-/// is kept. Where W is not positive semidefinite, which rounding may do to rows that repeat each other, both may lead
-/// away without bound: forces that leave a thousand times the residual of those of the start are not taken.
+/// Runs sweeps. If they do not converge (nearly dependent rows), it takes up to `maxNewtonSteps` semi-smooth Newton
+/// steps on the natural map (Alart and Curnier 1991) with a line search and returns the best iterate. Rounding can make
+/// W indefinite when rows are dependent, and both methods may then diverge: a result whose residual exceeds 1000 times
+/// that of the warm start is rejected in favour of the warm start.
 class ContactSolver {
  public:
-  static constexpr std::uint32_t largestNewtonSteps = 20;
+  static constexpr std::uint32_t maxNewtonSteps = 20;
   ContactReport solve(const ContactProblem& problem, std::span<double> lambda, std::span<double> gap, double tolerance,
                       std::uint32_t cap);
 
@@ -66,7 +67,7 @@ class ContactSolver {
   std::vector<double> start_, matrix_, right_, trial_, trialGap_;
 };
 
-/// Projects a block's forces onto what its kind admits.
+/// Projects a block's forces onto its admissible set.
 void projectOntoFrictionCone(BlockKind kind, double limit, std::span<double> lambda);
 
 /// gap = W lambda + free, column by column.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bounds rounded outward to float: what a broad phase in single precision takes in is never smaller than what it was
-// given.
+// Bounds rounded outward to float, so that a broad phase in single precision loses no pair.
 #pragma once
 
 #include <bit>
@@ -11,7 +10,7 @@
 
 namespace calot {
 
-/// The largest float that is not above x. Below -FLT_MAX that is minus infinity. @pre x is a number
+/// Largest float not above x; minus infinity below -FLT_MAX. @pre x is a number
 [[nodiscard]] inline float floatBelow(double x) {
   constexpr float largest = std::numeric_limits<float>::max();
   if (x >= static_cast<double>(largest)) return largest;
@@ -24,10 +23,10 @@ namespace calot {
   return std::bit_cast<float>(nearest > 0.0F ? bits - 1U : bits + 1U);
 }
 
-/// The smallest float that is not below x.
+/// Smallest float not below x.
 [[nodiscard]] inline float floatAbove(double x) { return -floatBelow(-x); }
 
-/// The least box with coordinates in float that holds this one.
+/// Smallest box with float coordinates that contains this one.
 [[nodiscard]] inline Box outwardBox(const Box& box) {
   Box out;
   for (int a = 0; a < 3; ++a) {

@@ -16,16 +16,17 @@ namespace calot {
 namespace {
 
 constexpr std::uint32_t everyLane = (1U << static_cast<unsigned>(laneCount)) - 1U;
-constexpr std::size_t fewest = 3;    ///< triangles that are worth the lanes
-constexpr double rounding = 1e-8;    // m, far above that of all distances here
-constexpr double fastest = 0.00075;  ///< displacement a step beyond which lists do not live long enough to pay (m)
-constexpr double turned = 0.0005;    ///< displacement from which on a common rotation is looked for (m)
-constexpr std::size_t sampled = 8;   ///< vertices that the rotation is told from, about, besides a corner of each patch
-constexpr std::uint64_t turns = 3;   ///< in so many steps each patch's list may be made to live
+constexpr std::size_t minLaneTriangles = 3;  ///< below this number, scalar code is faster
+constexpr double rounding = 1e-8;            // m, far above the rounding error of all distances here
+constexpr double maxListSpeed = 0.00075;     ///< displacement per step above which lists expire too soon to pay off (m)
+constexpr double rotationThreshold = 0.0005;  ///< displacement above which a common rotation is removed (m)
+constexpr std::size_t sampled =
+    8;  ///< approximate number of vertices that the rotation is fitted to, besides one corner of each patch
+constexpr std::uint64_t renewalPeriod = 3;  ///< each patch may build a list with a margin once in this many steps
 
-/// Widens a box to hold the motions of some nodes. @param now of each node, was of each in `node`: four numbers
-/// @param rigid a motion that does not count: columns of its rotation and what it adds, four times four numbers; null:
-/// none
+/// Grows a box to contain the displacements of some nodes. @param now per node, was per entry of `node`: four numbers
+/// @param rigid rigid motion to subtract: three columns of its rotation and its translation, four
+/// numbers each; null: none
 CALOT_INLINE void include(std::span<const int> node, const double* now, const double* was, const double* rigid,
                           double* lower, double* upper) {
   FourDoubles low;
@@ -54,8 +55,8 @@ CALOT_LANE_KERNEL void includeMotions(std::span<const int> node, const double* n
   include(node, now, was, nullptr, lower, upper);
 }
 
-CALOT_LANE_KERNEL void includeTurnedMotions(std::span<const int> node, const double* now, const double* was,
-                                            const double* rigid, double* lower, double* upper) {
+CALOT_LANE_KERNEL void includeRotatedMotions(std::span<const int> node, const double* now, const double* was,
+                                             const double* rigid, double* lower, double* upper) {
   include(node, now, was, rigid, lower, upper);
 }
 
@@ -78,15 +79,15 @@ void NearTriangles::begin(const SurfaceSearch& search) {
   triangles_.begin(search.b(), search.positionB());
 }
 
-void NearTriangles::follow(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
-                           double reach) {
+void NearTriangles::updateLists(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                                double reach) {
   patch_ = patch;
-  if (!holds(search, patch, near, reach)) renew(search, patch, near, reach);
+  if (!isValid(search, patch, near, reach)) rebuild(search, patch, near, reach);
 }
 
-/// Have the open vertices been displaced by less than the margin against all triangles near them?
-bool NearTriangles::holds(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
-                          double reach) {
+/// Have all open vertices moved by less than the margin relative to all triangles near them?
+bool NearTriangles::isValid(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                            double reach) {
   List& list = list_[patch];
   if (!list.made || list.reach != reach) return false;
   was_.clear();
@@ -96,17 +97,17 @@ bool NearTriangles::holds(const SurfaceSearch& search, std::uint32_t patch, std:
     if (known == list.patch.end() || *known != q) return false;
     was_.push_back(list.corner.data() + list.start[static_cast<std::size_t>(known - list.patch.begin())]);
   }
-  double farthest = list.turning ? 0.0 : measure(search, patch, near, nullptr);
-  list.turning = list.turning || farthest > turned;
-  if (list.turning) farthest = measureTurned(search, patch, near);
-  list.pace = farthest / static_cast<double>(age_ - list.age);
+  double farthest = list.rotating ? 0.0 : measure(search, patch, near, nullptr);
+  list.rotating = list.rotating || farthest > rotationThreshold;
+  if (list.rotating) farthest = measureRotated(search, patch, near);
+  list.speed = farthest / static_cast<double>(age_ - list.age);
   return farthest + rounding < list.margin;
 }
 
-/// Works out `displaced_`, less a rigid motion where there is one: it changes no distance. @return the largest
+/// Computes `displaced_` after subtracting a rigid motion, which changes no distance. @return the maximum
 double NearTriangles::measure(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
                               const std::array<Padded, 4>* rigid) {
-  Padded lower;  // of a box that holds the displacements of all corners near
+  Padded lower;  // bounds of the displacements of all nearby corners
   Padded upper;
   lower.fill(1e300);
   upper.fill(-1e300);
@@ -116,29 +117,30 @@ double NearTriangles::measure(const SurfaceSearch& search, std::uint32_t patch, 
     if (rigid == nullptr) {
       includeMotions(corner, now, was_[i]->data(), lower.data(), upper.data());
     } else {
-      includeTurnedMotions(corner, now, was_[i]->data(), (*rigid)[0].data(), lower.data(), upper.data());
+      includeRotatedMotions(corner, now, was_[i]->data(), (*rigid)[0].data(), lower.data(), upper.data());
     }
   }
   const Box moved{Vec3(lower[0], lower[1], lower[2]), Vec3(upper[0], upper[1], upper[2])};
   const std::span<const int> node = search.a().patchNodes(patch);
   displaced_.resize(node.size());
   double farthest = 0.0;
-  for (const std::size_t k : search.room().open) {
+  for (const std::size_t k : search.scratch().open) {
     Vec3 was = list_[patch].vertex[k];
     if (rigid != nullptr) {
       const auto column = [&](std::size_t c) { return Vec3((*rigid)[c][0], (*rigid)[c][1], (*rigid)[c][2]); };
       was = ((column(0) * was[0] + column(1) * was[1]) + column(2) * was[2]) + column(3);
     }
-    const Vec3 mine = search.positionA()[static_cast<std::size_t>(node[k])] - was;
-    displaced_[k] = (mine - moved.lower).cwiseMax(moved.upper - mine).norm() + rounding;
+    const Vec3 own = search.positionA()[static_cast<std::size_t>(node[k])] - was;
+    displaced_[k] = (own - moved.lower).cwiseMax(moved.upper - own).norm() + rounding;
     farthest = std::max(farthest, displaced_[k]);
   }
   return farthest;
 }
 
-/// Tissue that is swung about turns more than it is strained: the same less the rotation that all near have in common.
-double NearTriangles::measureTurned(const SurfaceSearch& search, std::uint32_t patch,
-                                    std::span<const std::uint32_t> near) {
+/// Tissue that is swung about rotates more than it is strained: measures displacements relative to
+/// the common rigid motion.
+double NearTriangles::measureRotated(const SurfaceSearch& search, std::uint32_t patch,
+                                     std::span<const std::uint32_t> near) {
   sampleWas_.clear();
   sampleNow_.clear();
   for (std::size_t i = 0; i < near.size(); ++i) {
@@ -148,7 +150,7 @@ double NearTriangles::measureTurned(const SurfaceSearch& search, std::uint32_t p
     sampleNow_.push_back(search.positionB()[static_cast<std::size_t>(corner[corner.size() / 2])]);
   }
   const std::span<const int> node = search.a().patchNodes(patch);
-  const std::vector<std::size_t>& open = search.room().open;
+  const std::vector<std::size_t>& open = search.scratch().open;
   for (std::size_t i = 0; i < open.size(); i += 1 + open.size() / sampled) {
     sampleWas_.push_back(list_[patch].vertex[open[i]]);
     sampleNow_.push_back(search.positionA()[static_cast<std::size_t>(node[open[i]])]);
@@ -178,16 +180,16 @@ void NearTriangles::precompute(const SurfacePair& pair, const ContactSurface& su
   }
 }
 
-/// Works out which triangles of a patch are ever held against the vertices of another, where that is not known yet.
+/// Computes, once per pair of patches, which triangles are ever tested against which vertices.
 void NearTriangles::count(const SurfacePair& pair, const ContactSurface& surface, std::uint32_t vertices,
                           std::uint32_t triangles) {
   const std::size_t patches = surface.patches().size();
-  countingStart_.resize(patches * patches, unknown);
-  std::size_t& start = countingStart_[vertices * patches + triangles];
+  includedStart_.resize(patches * patches, unknown);
+  std::size_t& start = includedStart_[vertices * patches + triangles];
   if (start != unknown) return;
-  start = counting_.size();
+  start = included_.size();
   const std::span<const int> node = surface.patchNodes(vertices);
-  counting_.resize(start + node.size() * PatchTriangles::groups, 0);
+  included_.resize(start + node.size() * PatchTriangles::groups, 0);
   const ContactSurface::Patch& of = surface.patches()[triangles];
   for (std::size_t g = 0; g < laneGroups(of.last - of.first); ++g) {
     const std::size_t first = of.first + g * laneCount;
@@ -197,22 +199,22 @@ void NearTriangles::count(const SurfacePair& pair, const ContactSurface& surface
     TriangleLanes rest;
     gatherTriangles(surface, pair.triangleRest(), {triangle.data(), some}, rest);
     for (std::size_t k = 0; k < node.size(); ++k) {
-      counting_[start + k * PatchTriangles::groups + g] =
+      included_[start + k * PatchTriangles::groups + g] =
           static_cast<std::uint8_t>(pair.notExcluded(node[k], first, some, rest));
     }
   }
 }
 
-void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
-                          double reach) {
+void NearTriangles::rebuild(const SurfaceSearch& search, std::uint32_t patch, std::span<const std::uint32_t> near,
+                            double reach) {
   if (bounds_.empty()) readBounds(search);
-  ++counts_.renewed;
+  ++counts_.rebuilt;
   List& list = list_[patch];
   list.made = true;
   list.reach = reach;
   list.age = age_;
-  list.turning = false;
-  list.margin = list.pace > fastest || (age_ + patch) % turns != 0 ? 0.0 : margin;
+  list.rotating = false;
+  list.margin = list.speed > maxListSpeed || (age_ + patch) % renewalPeriod != 0 ? 0.0 : margin;
   const Box box =
       boundsOf(search.a(), search.positionA(), patch, search.pair().search(patch, reach) + list.margin + rounding);
   list.patch.clear();
@@ -229,7 +231,7 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
   for (const std::uint32_t q : list.patch) {
     if (self) count(search.pair(), search.b(), patch, q);
   }
-  const std::size_t* start = self ? countingStart_.data() + patch * bounds_.size() : nullptr;
+  const std::size_t* start = self ? includedStart_.data() + patch * bounds_.size() : nullptr;
   const std::span<const int> node = search.a().patchNodes(patch);
   list.vertex.clear();
   list.entry.clear();
@@ -241,7 +243,7 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
     triangles_.forEachWithin(
         p, search.limitOf(v, reach) + list.margin,
         [&](std::uint32_t q, std::size_t g) {
-          return self ? std::uint32_t{counting_[start[q] + k * PatchTriangles::groups + g]} : everyLane;
+          return self ? std::uint32_t{included_[start[q] + k * PatchTriangles::groups + g]} : everyLane;
         },
         [&](std::size_t t, double squared) {
           list.entry.push_back({floatBelow(std::sqrt(squared) - rounding), static_cast<std::uint32_t>(t)});
@@ -253,36 +255,36 @@ void NearTriangles::renew(const SurfaceSearch& search, std::uint32_t patch, std:
   displaced_.assign(node.size(), rounding);
 }
 
-Near NearTriangles::nearest(const SurfaceSearch& search, std::size_t place, double reach) {
+Near NearTriangles::nearest(const SurfaceSearch& search, std::size_t index, double reach) {
   const List& list = list_[patch_];
-  const int vertex = search.a().patchNodes(patch_)[place];
+  const int vertex = search.a().patchNodes(patch_)[index];
   const Vec3& p = search.positionA()[static_cast<std::size_t>(vertex)];
   const double limit = search.limitOf(static_cast<std::size_t>(vertex), reach);
   Near near;
   double best = limit * limit;
-  double farthest =
-      limit + displaced_[place] + rounding;  // that an entry can have been, to be no farther than best now
-  std::size_t looked = 0;
+  double farthest = limit + displaced_[index] +
+                    rounding;  // stored distance above which an entry cannot be nearer than the best so far
+  std::size_t tested = 0;
   const auto offer = [&](std::uint32_t triangle) {
     const double before = best;
     search.offer(p, triangle, near, best);
-    if (best < before) farthest = std::sqrt(best) + displaced_[place] + rounding;
+    if (best < before) farthest = std::sqrt(best) + displaced_[index] + rounding;
   };
-  const std::size_t end = list.entryEnd[place];
-  for (std::size_t e = place == 0 ? 0 : list.entryEnd[place - 1]; e < end;) {
-    // The nearest two by themselves: most often one of them it is. Lanes tell which of the others can be nearer.
-    const std::size_t most = std::min(end - e, looked < 2 ? std::size_t{1} : std::size_t{laneCount});
+  const std::size_t end = list.entryEnd[index];
+  for (std::size_t e = index == 0 ? 0 : list.entryEnd[index - 1]; e < end;) {
+    // Test the nearest two one at a time: one of them is usually the result. Lanes then exclude most of the others.
+    const std::size_t batch = std::min(end - e, tested < 2 ? std::size_t{1} : std::size_t{laneCount});
     std::array<std::uint32_t, laneCount> triangle{};
     std::size_t count = 0;
-    while (count < most && static_cast<double>(list.entry[e + count].distance) <= farthest) {
+    while (count < batch && static_cast<double>(list.entry[e + count].distance) <= farthest) {
       triangle[count] = list.entry[e + count].triangle;
       ++count;
     }
     if (count == 0) break;
-    looked += count;
+    tested += count;
     e += count;
     LaneValues squared{};
-    if (count >= fewest) {
+    if (count >= minLaneTriangles) {
       TriangleLanes lanes;
       gatherTriangles(search.b(), search.positionB(), {triangle.data(), count}, lanes);
       pointTriangleDistances(lanes, p, squared);
@@ -291,8 +293,8 @@ Near NearTriangles::nearest(const SurfaceSearch& search, std::size_t place, doub
       if (squared[l] <= best) offer(triangle[l]);
     }
   }
-  counts_.looked += looked;
-  counts_.searched += looked > 0 ? 1 : 0;
+  counts_.tested += tested;
+  counts_.searched += tested > 0 ? 1 : 0;
   if (near.found) search.measure(p, near);
   return near;
 }

@@ -13,9 +13,9 @@ namespace calot {
 
 namespace {
 
-/// Lanes of boxes whose squared distance from a place is at most `most`: a bit each, per group.
+/// Per group, a bit for each box whose squared distance from a point is at most `maximum`.
 CALOT_LANE_KERNEL void ballKernel(const BoxLanes* const* boxes, std::size_t count, const float* lower,
-                                  const float* upper, float most, std::uint8_t* hit) {
+                                  const float* upper, float maximum, std::uint8_t* hit) {
   for (std::size_t g = 0; g < count; ++g) {
     EightFloats sum{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -29,14 +29,14 @@ CALOT_LANE_KERNEL void ballKernel(const BoxLanes* const* boxes, std::size_t coun
       d = d < 0.0F ? EightFloats{} : d;
       sum += d * d;
     }
-    const EightInts bits = (sum <= most) & EightInts{1, 2, 4, 8, 16, 32, 64, 128};
+    const EightInts bits = (sum <= maximum) & EightInts{1, 2, 4, 8, 16, 32, 64, 128};
     const FourInts four =
         __builtin_shufflevector(bits, bits, 0, 1, 2, 3) | __builtin_shufflevector(bits, bits, 4, 5, 6, 7);
     hit[g] = static_cast<std::uint8_t>((four[0] | four[1]) | (four[2] | four[3]));
   }
 }
 
-/// Two units in the last place and more: what is moved outward by it has been rounded outward.
+/// More than two units in the last place: a value scaled outward by this is rounded outward.
 constexpr float outward = 2.5e-7F;
 
 float below(double x) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangles of a surface's patches in lanes, eight at a time in the order of their numbers, with their boxes: made
-// for a patch when it is first asked for, and shared by all vertices that come near it. Internal to this folder.
+// Triangles of a surface's patches and their boxes in lanes, eight at a time in index order. Built when a patch is
+// first needed and shared by all vertices near it. Internal to this folder.
 #pragma once
 
 #include <array>
@@ -19,18 +19,19 @@ namespace calot {
 
 class PatchTriangles {
  public:
-  static constexpr std::size_t groups = laneGroups(ContactSurface::largestPatch);  ///< in a patch, at most
+  static constexpr std::size_t groups = laneGroups(ContactSurface::maxPatchTriangles);  ///< in a patch, at most
 
-  /// The surface has moved: what was made is no longer true. @param surface, position outlive the calls that follow
+  /// Invalidates everything: the surface has moved. @param surface, position outlive the calls that follow
   void begin(const ContactSurface& surface, std::span<const Vec3> position);
 
-  /// Takes up what of some patches reaches into a box: that is what forEachWithin() then knows.
+  /// Selects the triangles of some patches that overlap a box, for forEachWithin().
   void choose(std::span<const std::uint32_t> patches, const Box& box);
 
-  /// Calls f(triangle, squared) for the chosen triangles that may be within the distance, with a lower bound of their
-  /// squared distance (m^2), good to 1e-9 m: nothing for a sliver, whose computed foot may be off.
-  /// @param counting counting(patch, group) tells which lanes matter, a bit for each: triangles 8 group + lane of it
-  /// @pre p lies in the box of choose(), and as far from its sides as the distance
+  /// Calls f(triangle, squared) for the selected triangles that may be within the distance. `squared` is a lower bound
+  /// of the squared distance (m^2), good to 1e-9 m; it is 0 for a sliver, whose computed foot point is unreliable.
+  /// @param counting counting(patch, group) returns a bit for each lane to consider: triangle 8 group +
+  /// lane of the patch
+  /// @pre p lies in the box of choose(), at least `distance` from its sides
   template <class C, class F>
   void forEachWithin(const Vec3& p, double distance, C&& counting, F&& f) {
     const Ball ball(p, distance);
@@ -47,7 +48,7 @@ class PatchTriangles {
       }
     }
     within(nearBoxes_, ball, hit_);
-    const double most = distance * distance;
+    const double maximum = distance * distance;
     for (std::size_t n = 0; n < near_.size(); ++n) {
       std::uint32_t lanes = near_[n].counts & hit_[n];
       if (lanes == 0) continue;
@@ -56,8 +57,8 @@ class PatchTriangles {
       pointTriangleDistances(group.triangles, p, squared);
       for (; lanes != 0; lanes &= lanes - 1) {
         const auto l = static_cast<std::size_t>(std::countr_zero(lanes));
-        const double least = (group.slivers >> l & 1U) != 0 ? 0.0 : squared[l];
-        if (!(least > most)) f(group.first + l, least);
+        const double minimum = (group.slivers >> l & 1U) != 0 ? 0.0 : squared[l];
+        if (!(minimum > maximum)) f(group.first + l, minimum);
       }
     }
   }
@@ -84,7 +85,7 @@ class PatchTriangles {
     const Chosen* chosen;
     std::uint32_t counts;  ///< a bit for each lane
   };
-  /// A place and a distance, rounded such that what is within stays so.
+  /// A ball, rounded outward to float.
   struct Ball {
     Ball(const Vec3& p, double distance);
     std::array<float, 3> lower{}, upper{};
@@ -96,7 +97,7 @@ class PatchTriangles {
     return patch_[patch];
   }
   void make(std::uint32_t patch);
-  /// Which of the boxes may reach into the ball, a bit for each lane.
+  /// A bit for each lane whose box may overlap the ball.
   static void within(std::span<const BoxLanes* const> boxes, const Ball& ball, std::vector<std::uint8_t>& hit);
 
   const ContactSurface* surface_ = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rigid motion that some places have in common. Internal to this folder.
+// Rigid motion fitted to some points. Internal to this folder.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace calot {
 
-/// x -> rotation x + shift, by which places come nearest to where they are now: two Gauss-Newton steps, enough for a
-/// tenth of a revolution. It is rigid whatever the places are. @pre as many of both, and one at least
+/// Least-squares rigid motion x -> rotation x + shift from `was` to `now`, by two Gauss-Newton steps: enough for a
+/// tenth of a revolution. The result is rigid for any input. @pre was.size() == now.size() > 0
 struct RigidMotion {
   Mat3 rotation = Mat3::Identity();
   Vec3 shift = Vec3::Zero();
@@ -31,7 +31,7 @@ struct RigidMotion {
         moment += arm.cross(now[i] - to);
       }
       const Vec3 half = 0.5 * (inertia.inverse() * moment);
-      if (!(half.squaredNorm() < 1.0)) break;  // all on one line, or more than it can tell: as it is
+      if (!(half.squaredNorm() < 1.0)) break;  // collinear points or too large a rotation: stop here
       rotation = Quat(1.0, half[0], half[1], half[2]).normalized().toRotationMatrix() * rotation;
     }
     shift = to - rotation * from;

@@ -12,18 +12,18 @@ namespace calot {
 
 namespace {
 
-constexpr std::int64_t largestCell = 1 << 20;
-constexpr std::int64_t mostCells = 512;
+constexpr std::int64_t maxCellIndex = 1 << 20;
+constexpr std::int64_t maxCells = 512;
 
 /// Cell index along one axis, clamped; 21 bits each make one key.
 std::int64_t cellOf(double x, double cell) {
   const double scaled = std::floor(x / cell);
   return static_cast<std::int64_t>(
-      std::clamp(scaled, -static_cast<double>(largestCell), static_cast<double>(largestCell - 1)));
+      std::clamp(scaled, -static_cast<double>(maxCellIndex), static_cast<double>(maxCellIndex - 1)));
 }
 
 std::uint64_t key(std::int64_t i, std::int64_t j, std::int64_t k) {
-  const auto part = [](std::int64_t v) { return static_cast<std::uint64_t>(v + largestCell); };
+  const auto part = [](std::int64_t v) { return static_cast<std::uint64_t>(v + maxCellIndex); };
   return (part(i) << 42U) | (part(j) << 21U) | part(k);
 }
 
@@ -31,7 +31,7 @@ struct CellRange {
   std::int64_t lower[3];
   std::int64_t upper[3];
   [[nodiscard]] std::int64_t count() const {
-    // Each factor is below 2^21, and the product is cut off long before it could overflow.
+    // Each factor is below 2^21, and the loop ends long before the product could overflow.
     std::int64_t n = 1;
     for (int a = 0; a < 3; ++a) n = std::min<std::int64_t>(n * (upper[a] - lower[a] + 1), std::int64_t{1} << 40U);
     return n;
@@ -56,7 +56,7 @@ void forEachCell(const CellRange& range, F&& f) {
   }
 }
 
-/// The first group from `first` on of which a box overlaps the query, and which of its lanes do.
+/// First group at or after `first` with a box that overlaps the query, and a bit for each such lane.
 CALOT_LANE_KERNEL std::size_t nextOverlap(const BoxLanes* group, std::size_t first, std::size_t last,
                                           const float* lower, const float* upper, std::int32_t* hit) {
   for (std::size_t g = first; g < last; ++g) {
@@ -109,7 +109,7 @@ void SortedGrid::sweep(std::span<const Box> queries, std::vector<Pair>& out) con
 
 void SortedGrid::update(std::span<const Box> leaves) {
   leaf_.assign(leaves.begin(), leaves.end());
-  if (leaf_.size() <= mostSwept_) {
+  if (leaf_.size() <= maxSwept_) {
     BoxLanes empty;
     std::fill_n(&empty.lower[0][0], 3 * laneCount, std::numeric_limits<float>::infinity());
     std::fill_n(&empty.upper[0][0], 3 * laneCount, -std::numeric_limits<float>::infinity());
@@ -121,7 +121,7 @@ void SortedGrid::update(std::span<const Box> leaves) {
   large_.clear();
   for (std::uint32_t l = 0; l < leaf_.size(); ++l) {
     const CellRange range = cellsOf(leaf_[l], cell_);
-    if (range.count() > mostCells) {
+    if (range.count() > maxCells) {
       large_.push_back(l);
       continue;
     }
@@ -131,7 +131,7 @@ void SortedGrid::update(std::span<const Box> leaves) {
 }
 
 void SortedGrid::refit(std::span<const Box> leaves, std::span<const std::uint32_t> changed) {
-  if (leaf_.size() <= mostSwept_) {
+  if (leaf_.size() <= maxSwept_) {
     for (const std::uint32_t l : changed) {
       leaf_[l] = leaves[l];
       pack(l);
@@ -149,8 +149,8 @@ void SortedGrid::refit(std::span<const Box> leaves, std::span<const std::uint32_
       continue;
     }
     left_[l] = true;
-    if (before.count() > mostCells) large_.erase(std::lower_bound(large_.begin(), large_.end(), l));
-    if (after.count() > mostCells) {
+    if (before.count() > maxCells) large_.erase(std::lower_bound(large_.begin(), large_.end(), l));
+    if (after.count() > maxCells) {
       large_.insert(std::lower_bound(large_.begin(), large_.end(), l), l);
     } else {
       forEachCell(after, [&](std::uint64_t c) { added_.push_back({c, l}); });
@@ -171,7 +171,7 @@ void SortedGrid::refit(std::span<const Box> leaves, std::span<const std::uint32_
 
 void SortedGrid::pairs(std::span<const Box> queries, std::vector<Pair>& out) const {
   out.clear();
-  if (leaf_.size() <= mostSwept_) return sweep(queries, out);
+  if (leaf_.size() <= maxSwept_) return sweep(queries, out);
   for (std::uint32_t q = 0; q < queries.size(); ++q) {
     const std::size_t start = out.size();
     const auto offer = [&](std::uint32_t l) {

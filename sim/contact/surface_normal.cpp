@@ -12,8 +12,8 @@ namespace calot {
 
 namespace {
 
-constexpr double leastArea = 1e-18;  // m^2, twice the area
-constexpr double slack = 1e-9;       // m^2: a neighbour that is nearer by less counts as equally near
+constexpr double minArea = 1e-18;  // m^2, twice the area
+constexpr double slack = 1e-9;     // m^2: smaller differences count as equal distances
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Vec3 faceNormal(const ContactSurface& surface, std::span<const Vec3> position, s
   const Vec3& a = position[static_cast<std::size_t>(t[0])];
   const Vec3 area = (position[static_cast<std::size_t>(t[1])] - a).cross(position[static_cast<std::size_t>(t[2])] - a);
   const double length = area.norm();
-  if (!(length > leastArea)) return Vec3::Zero();
+  if (!(length > minArea)) return Vec3::Zero();
   return area / length;
 }
 
@@ -46,7 +46,7 @@ Vec3 pseudonormal(const ContactSurface& surface, std::span<const Vec3> position,
     const Vec3 u = position[static_cast<std::size_t>(t[(k + 1) % 3])] - p;
     const Vec3 v = position[static_cast<std::size_t>(t[(k + 2) % 3])] - p;
     const double lengths = std::sqrt(u.squaredNorm() * v.squaredNorm());
-    if (!(lengths > leastArea)) continue;
+    if (!(lengths > minArea)) continue;
     sum += arccosine(u.dot(v) / lengths) * faceNormal(surface, position, i);
   }
   return sum;
@@ -77,7 +77,7 @@ bool isLocalMinimum(const ContactSurface& surface, std::span<const Vec3> positio
 std::uint64_t featureKey(const ContactSurface& surface, std::size_t triangle, TriangleFeature feature) {
   const Index3& t = surface.triangles()[triangle];
   const auto f = static_cast<int>(feature);
-  // A face's place among the triangles of an organ is fixed in Model, as its patches are.
+  // A triangle's index within an organ is fixed in Model.
   if (f == 0) return (std::uint64_t{1} << 50U) | surface.name(triangle);
   if (f <= 3) {
     const auto u = static_cast<std::uint64_t>(std::min(t[f - 1], t[f % 3]));
@@ -94,7 +94,7 @@ NearestPoint nearestPoint(const ContactSurface& surface, std::span<const Vec3> p
   Box box;
   box.include(p);
   box.grow(limit);
-  std::array<std::uint32_t, ContactSurface::largestPatch> near;
+  std::array<std::uint32_t, ContactSurface::maxPatchTriangles> near;
   for (const std::uint32_t patch : patches) {
     const std::size_t count = trianglesInBox(surface, position, patch, box, near);
     for (std::size_t first = 0; first < count; first += laneCount) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known at rest of two surfaces.
+// What the reference configuration says about two surfaces.
 #include <algorithm>
 #include <cmath>
 
@@ -59,7 +59,7 @@ bool SurfacePair::excluded(int vertex, std::size_t triangle) const {
   if (std::binary_search(near.begin(), near.end(), static_cast<std::uint32_t>(triangle))) return true;
   const Index3& t = triangle_[triangle];
   const auto corner = [&](int k) { return restB_[static_cast<std::size_t>(t[k])]; };
-  return wasBehind(v, triangle, closestOnTriangle(restA_[v], corner(0), corner(1), corner(2)).squaredDistance);
+  return liesBehind(v, triangle, closestOnTriangle(restA_[v], corner(0), corner(1), corner(2)).squaredDistance);
 }
 
 std::uint32_t SurfacePair::notExcluded(int vertex, std::size_t first, std::size_t count,
@@ -69,7 +69,7 @@ std::uint32_t SurfacePair::notExcluded(int vertex, std::size_t first, std::size_
   const auto v = static_cast<std::size_t>(vertex);
   LaneValues squared;
   pointTriangleDistances(rest, restA_[v], squared);
-  for (std::size_t l = 0; l < count; ++l) lanes &= ~((wasBehind(v, first + l, squared[l]) ? 1U : 0U) << l);
+  for (std::size_t l = 0; l < count; ++l) lanes &= ~((liesBehind(v, first + l, squared[l]) ? 1U : 0U) << l);
   const std::span<const std::uint32_t> near = listed(v);
   auto next = std::lower_bound(near.begin(), near.end(), static_cast<std::uint32_t>(first));
   for (; next != near.end() && *next < first + count; ++next) lanes &= ~(1U << (*next - first));
@@ -77,48 +77,48 @@ std::uint32_t SurfacePair::notExcluded(int vertex, std::size_t first, std::size_
 }
 
 /// @param squared distance at rest (m^2)
-bool SurfacePair::wasBehind(std::size_t vertex, std::size_t triangle, double squared) const {
-  if (squared > thickest * thickest) return false;
+bool SurfacePair::liesBehind(std::size_t vertex, std::size_t triangle, double squared) const {
+  if (squared > maxPartThickness * maxPartThickness) return false;
   const Vec3& normal = normal_[triangle];
   const double height = (restA_[vertex] - restB_[static_cast<std::size_t>(triangle_[triangle][0])]).dot(normal);
-  // Behind in earnest, not beside on the same bent side: more than 30 degrees below the face's plane.
+  // More than 30 degrees below the face's plane: behind it, not beside it on the same curved side.
   return height < 0.0 && height < -0.5 * std::sqrt(squared * normal.squaredNorm());
 }
 
 void SurfacePair::measureRest(const ContactSurface& a, const ContactSurface& b) {
-  // Between two surfaces an overlap counts however deep it is; of a surface with itself only what would be seen.
+  // Between two surfaces, an overlap of any depth counts; within one surface, only one that detection would see.
   constexpr double far = 1e3;
   offset_.assign(restA_.size(), 0.0);
   vertexDistance_.assign(restA_.size(), known);
   patchesB_ = b.patches().size();
   patchDistance_.assign(a.patches().size() * patchesB_, known);
-  SearchRoom wholeRoom;
-  SurfaceSearch whole(*this, a, restA_, b, restB_, wholeRoom);
+  SearchScratch wholeScratch;
+  SurfaceSearch whole(*this, a, restA_, b, restB_, wholeScratch);
   whole.gather(Box{Vec3::Constant(-1e300), Vec3::Constant(1e300)});
-  SearchRoom room;
-  SurfaceSearch search(*this, a, restA_, b, restB_, room);
+  SearchScratch scratch;
+  SurfaceSearch search(*this, a, restA_, b, restB_, scratch);
   for (std::uint32_t p = 0; p < a.patches().size(); ++p) {
-    double depth = deepestOverlap;
+    double depth = maxOverlap;
     const std::span<double> row{patchDistance_.data() + p * patchesB_, patchesB_};
     const Box box = boundsOf(a, restA_, p, known);
     search.gather(box);
     for (const int v : a.patchNodes(p)) {
       const auto i = static_cast<std::size_t>(v);
-      Near near = search.nearest(v, restA_[i], self_ ? deepestOverlap : known);
+      Near near = search.nearest(v, restA_[i], self_ ? maxOverlap : known);
       if (!near.found && !self_) near = whole.nearest(v, restA_[i], far);
       if (near.found) offset_[i] = std::min(0.0, near.distance);
-      depth = std::max(depth, deepestOverlap - offset_[i]);
+      depth = std::max(depth, maxOverlap - offset_[i]);
       double limit = known * known;
-      room.candidates.forEachNear(restA_[i], limit, [&](std::size_t t, double squared) {
-        double& least = row[b.patchOf(t)];
+      scratch.candidates.forEachNear(restA_[i], limit, [&](std::size_t t, double squared) {
+        double& minimum = row[b.patchOf(t)];
         const double distance = std::sqrt(squared);
-        if ((distance >= least && distance >= vertexDistance_[i]) || excluded(v, t)) return;
-        least = std::min(least, distance);
+        if ((distance >= minimum && distance >= vertexDistance_[i]) || excluded(v, t)) return;
+        minimum = std::min(minimum, distance);
         vertexDistance_[i] = std::min(vertexDistance_[i], distance);
       });
     }
     depth_.push_back(depth);
-    leastDistance_.push_back(*std::min_element(row.begin(), row.end()));
+    minDistance_.push_back(*std::min_element(row.begin(), row.end()));
   }
 }
 

@@ -12,7 +12,7 @@ namespace calot {
 
 namespace {
 
-/// Sorts items along the longest side of their places.
+/// Sorts items along the longest side of the bounds of their positions.
 void sortAlong(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::size_t last) {
   Box box;
   for (std::size_t i = first; i < last; ++i) box.include(items[i].first);
@@ -26,7 +26,7 @@ void sortAlong(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, s
             });
 }
 
-/// Within a patch, triangles that follow one another by lanes stand near one another.
+/// Orders triangles within a patch so that those of one lane group are close together.
 void group(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::size_t last) {
   const std::size_t groups = laneGroups(last - first);
   if (groups <= 1) return;
@@ -38,7 +38,7 @@ void group(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::
 
 void halve(std::vector<std::pair<Vec3, Index3>>& items, std::size_t first, std::size_t last,
            std::vector<ContactSurface::Patch>& patches) {
-  if (last - first <= ContactSurface::largestPatch) {
+  if (last - first <= ContactSurface::maxPatchTriangles) {
     patches.push_back({first, last});
     group(items, first, last);
     return;

@@ -19,7 +19,7 @@ constexpr double noDirection = 1e-9;  // m: nearer than this, the direction of t
 void Candidates::gather(const ContactSurface& surface, std::span<const Vec3> position,
                         std::span<const std::uint32_t> patches, const Box& box) {
   triangle_.clear();
-  std::array<std::uint32_t, ContactSurface::largestPatch> near{};
+  std::array<std::uint32_t, ContactSurface::maxPatchTriangles> near{};
   for (const std::uint32_t p : patches) {
     const std::size_t count = trianglesInBox(surface, position, p, box, near);
     triangle_.insert(triangle_.end(), near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count));
@@ -44,7 +44,7 @@ void Candidates::boundsOf(const TriangleLanes& group, BoundsLanes& bounds, Box& 
   }
 }
 
-/// boxDistances() for the box of a whole group: not above that of any of its triangles, as rounding is monotonic.
+/// boxDistances() for the box of a whole group: at most that of any of its triangles, since rounding is monotonic.
 double Candidates::boxDistance(const Box& box, const Vec3& p) {
   double squared = 0.0;
   for (int a = 0; a < 3; ++a) {
@@ -55,9 +55,9 @@ double Candidates::boxDistance(const Box& box, const Vec3& p) {
 }
 
 bool Candidates::anyWithin(const LaneValues& squared, double best) {
-  double least = squared[0];
-  for (std::size_t l = 1; l < laneCount; ++l) least = std::min(least, squared[l]);
-  return least <= best;
+  double minimum = squared[0];
+  for (std::size_t l = 1; l < laneCount; ++l) minimum = std::min(minimum, squared[l]);
+  return minimum <= best;
 }
 
 Displacement displacementOf(std::span<const int> nodes, std::span<const Vec3> position, std::span<const Vec3> rest) {
@@ -88,60 +88,60 @@ std::vector<std::uint32_t> allPatches(const ContactSurface& surface) {
 }
 
 SurfaceSearch::SurfaceSearch(const SurfacePair& pair, const ContactSurface& a, std::span<const Vec3> positionA,
-                             const ContactSurface& b, std::span<const Vec3> positionB, SearchRoom& room)
-    : pair_(pair), a_(a), positionA_(positionA), b_(b), positionB_(positionB), room_(room) {
-  room_.displacement.assign(b.patches().size(), Displacement{});
+                             const ContactSurface& b, std::span<const Vec3> positionB, SearchScratch& scratch)
+    : pair_(pair), a_(a), positionA_(positionA), b_(b), positionB_(positionB), scratch_(scratch) {
+  scratch_.displacement.assign(b.patches().size(), Displacement{});
 }
 
-bool SurfaceSearch::take(std::uint32_t patch, std::span<const std::uint32_t> near, double reach) {
-  const Displacement mine = displacementOf(a_.patchNodes(patch), positionA_, pair_.restA_);
+bool SurfaceSearch::selectPatch(std::uint32_t patch, std::span<const std::uint32_t> near, double reach) {
+  const Displacement own = displacementOf(a_.patchNodes(patch), positionA_, pair_.restA_);
   patch_ = patch;
   limit_ = pair_.search(patch, reach);
-  const bool clear = pair_.depth_[patch] == deepestOverlap;  // at rest, no vertex was inside
+  const bool clear = pair_.depth_[patch] == maxOverlap;  // at rest, no vertex was inside
   bool any = false;
-  room_.kept.clear();
+  scratch_.kept.clear();
   near_ = near;
   for (const std::uint32_t p : near) {
-    Displacement& other = room_.displacement[p];
+    Displacement& other = scratch_.displacement[p];
     if (other.spread < 0.0) other = displacementOf(b_.patchCorners(p), positionB_, pair_.restB_);
-    const double least = pair_.patchDistance_[patch * pair_.patchesB_ + p] -
-                         ((mine.mean - other.mean).norm() + mine.spread + other.spread);
-    any = any || !clear || least <= reach;
-    if (least <= limit_) room_.kept.push_back(p);
+    const double minimum = pair_.patchDistance_[patch * pair_.patchesB_ + p] -
+                           ((own.mean - other.mean).norm() + own.spread + other.spread);
+    any = any || !clear || minimum <= reach;
+    if (minimum <= limit_) scratch_.kept.push_back(p);
   }
-  return any && !room_.kept.empty();
+  return any && !scratch_.kept.empty();
 }
 
 void SurfaceSearch::gather() {
-  room_.candidates.gather(b_, positionB_, room_.kept, boundsOf(a_, positionA_, patch_, limit_));
+  scratch_.candidates.gather(b_, positionB_, scratch_.kept, boundsOf(a_, positionA_, patch_, limit_));
   last_ = 0;
 }
 
 void SurfaceSearch::gather(const Box& box) {
-  room_.candidates.gather(b_, positionB_, allPatches(b_), box);
+  scratch_.candidates.gather(b_, positionB_, allPatches(b_), box);
   last_ = 0;
 }
 
 bool SurfaceSearch::surelyFar(std::size_t vertex, double reach) const {
   if (pair_.offset_[vertex] < 0.0) return false;
-  const Vec3 mine = positionA_[vertex] - pair_.restA_[vertex];
-  const double least = pair_.vertexDistance_[vertex] - reach;
+  const Vec3 own = positionA_[vertex] - pair_.restA_[vertex];
+  const double minimum = pair_.vertexDistance_[vertex] - reach;
   for (const std::uint32_t p : near_) {
-    const Displacement& d = room_.displacement[p];
-    const double free = least - d.spread;
-    if (!(free > 0.0) || (mine - d.mean).squaredNorm() >= free * free) return false;
+    const Displacement& d = scratch_.displacement[p];
+    const double free = minimum - d.spread;
+    if (!(free > 0.0) || (own - d.mean).squaredNorm() >= free * free) return false;
   }
   return true;
 }
 
 double SurfaceSearch::limitOf(std::size_t vertex, double reach) const {
-  return std::max(reach, deepestOverlap - pair_.offset_[vertex]);
+  return std::max(reach, maxOverlap - pair_.offset_[vertex]);
 }
 
 Near SurfaceSearch::nearest(int vertex, const Vec3& p, double limit) {
   Near near;
   double best = limit * limit;
-  const auto look = [&](std::size_t i, double squared) {
+  const auto visit = [&](std::size_t i, double squared) {
     if (near.found && squared == best && i > near.triangle) return;
     const Index3& t = b_.triangles()[i];
     const PointTriangle point = closestOnTriangle(p, at(t[0]), at(t[1]), at(t[2]));
@@ -152,7 +152,7 @@ Near SurfaceSearch::nearest(int vertex, const Vec3& p, double limit) {
     near = Near{true, i, point, Vec3::Zero(), 0.0};
     best = squared;
   };
-  last_ = room_.candidates.forEachNear(p, best, look, last_);
+  last_ = scratch_.candidates.forEachNear(p, best, visit, last_);
   if (near.found) measure(p, near);
   return near;
 }

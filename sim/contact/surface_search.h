@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The search for nearest points of a deforming surface, and what can be told without one. Internal to this folder.
+// Nearest points of a deforming surface, and the tests that make a search unnecessary. Internal to this folder.
 #pragma once
 
 #include <array>
@@ -19,13 +19,14 @@ namespace calot {
 /// Triangles of some patches in lanes, with their boxes.
 class Candidates {
  public:
-  /// Takes in what of the patches overlaps the box.
+  /// Gathers the triangles of the patches that overlap the box.
   void gather(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
               const Box& box);
 
-  /// Calls f(triangle, squared distance) for every triangle no farther from p than `best` (m^2), which f may lower.
-  /// @param first group to begin with: one that is near lowers `best` early
-  /// @return the last group in which f lowered it, or `first`
+  /// Calls f(triangle, squared distance) for every triangle within squared distance `best` of p (m^2);
+  /// f may lower `best`.
+  /// @param first group to start with: a near one lowers `best` early
+  /// @return the last group in which f lowered `best`, or `first`
   template <class F>
   std::size_t forEachNear(const Vec3& p, double& best, F&& f, std::size_t first = 0) const {
     std::size_t lowered = first;
@@ -62,7 +63,7 @@ class Candidates {
   std::vector<Box> whole_;  ///< of each group
 };
 
-/// The nearest point of a surface to a vertex, as far as one counts.
+/// Nearest point of a surface to a vertex, within the search distance.
 struct Near {
   bool found = false;
   std::size_t triangle = 0;
@@ -73,47 +74,47 @@ struct Near {
 
 Displacement displacementOf(std::span<const int> nodes, std::span<const Vec3> position, std::span<const Vec3> rest);
 
-/// Bounds of the nodes that belong to a patch, grown by `margin`.
+/// Bounds of a patch's nodes, grown by `margin`.
 Box boundsOf(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch, double margin);
 
 std::vector<std::uint32_t> allPatches(const ContactSurface& surface);
 
-/// What a search writes to; kept, so that searching again allocates nothing.
-struct SearchRoom {
+/// Scratch memory of a search, reused so that later searches allocate nothing.
+struct SearchScratch {
   Candidates candidates;
-  std::vector<std::uint32_t> near;         ///< patches of triangles near the patch of vertices at hand
-  std::vector<std::uint32_t> kept;         ///< of those, the ones not settled by their displacement
-  std::vector<std::size_t> open;           ///< vertices of the patch at hand that are not settled, by place in it
-  std::vector<Displacement> displacement;  ///< per patch of triangles, made when first asked for
+  std::vector<std::uint32_t> near;         ///< patches of triangles near the current patch of vertices
+  std::vector<std::uint32_t> kept;         ///< those of `near` that displacement does not exclude
+  std::vector<std::size_t> open;           ///< vertices of the current patch that need a search, by index in it
+  std::vector<Displacement> displacement;  ///< per patch of triangles, computed on demand
 };
 
 /// Nearest points of a surface to vertices of another surface or of itself.
 class SurfaceSearch {
  public:
   SurfaceSearch(const SurfacePair& pair, const ContactSurface& a, std::span<const Vec3> positionA,
-                const ContactSurface& b, std::span<const Vec3> positionB, SearchRoom& room);
+                const ContactSurface& b, std::span<const Vec3> positionB, SearchScratch& scratch);
 
-  /// Takes one patch of vertices and the patches of triangles near it. @return false: none of it can be in contact
-  bool take(std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
-  /// Makes nearest() ready for the patch taken.
+  /// Selects a patch of vertices and the patches of triangles near it. @return false if none of it can be in contact
+  bool selectPatch(std::uint32_t patch, std::span<const std::uint32_t> near, double reach);
+  /// Prepares nearest() for the selected patch.
   void gather();
-  /// The same for rest: every triangle that reaches into the box.
+  /// For the reference configuration: gathers every triangle that overlaps the box.
   void gather(const Box& box);
 
-  /// Can it be told from the displacements that a vertex of the patch taken is outside, farther than `reach`?
+  /// Do displacements alone prove that a vertex of the selected patch is outside and farther than `reach`?
   [[nodiscard]] bool surelyFar(std::size_t vertex, double reach) const;
 
-  /// How far a vertex is searched from (m).
+  /// Search distance of a vertex (m).
   [[nodiscard]] double limitOf(std::size_t vertex, double reach) const;
 
-  /// The least distance, ties to the lower triangle: in which order groups are looked at changes nothing, but the one
-  /// where the last vertex, most often a neighbour, found its own makes the others short.
+  /// Nearest point; ties go to the triangle with the lower index, so the result does not depend on the order of groups.
+  /// Starting with the group of the previous vertex's result, usually a neighbour's, shortens the search.
   [[nodiscard]] Near nearest(int vertex, const Vec3& p, double limit);
 
-  /// One triangle that is not excluded, where nearest() is worked out from elsewhere: takes it if it is no farther than
-  /// `best` (m^2), which it lowers, and counts.
+  /// Tests one triangle that is not excluded, for callers that enumerate triangles themselves: accepts it if its
+  /// squared distance is at most `best` (m^2) and it is a valid contact, and lowers `best`.
   void offer(const Vec3& p, std::size_t triangle, Near& near, double& best) const;
-  /// Side, distance and normal of what was found.
+  /// Computes side, distance and normal of the point found.
   void measure(const Vec3& p, Near& near) const;
 
   [[nodiscard]] const SurfacePair& pair() const { return pair_; }
@@ -121,7 +122,7 @@ class SurfaceSearch {
   [[nodiscard]] const ContactSurface& b() const { return b_; }
   [[nodiscard]] std::span<const Vec3> positionA() const { return positionA_; }
   [[nodiscard]] std::span<const Vec3> positionB() const { return positionB_; }
-  [[nodiscard]] SearchRoom& room() const { return room_; }
+  [[nodiscard]] SearchScratch& scratch() const { return scratch_; }
 
  private:
   [[nodiscard]] const Vec3& at(int node) const { return positionB_[static_cast<std::size_t>(node)]; }
@@ -131,11 +132,11 @@ class SurfaceSearch {
   std::span<const Vec3> positionA_;
   const ContactSurface& b_;
   std::span<const Vec3> positionB_;
-  SearchRoom& room_;
-  std::size_t last_ = 0;                 ///< group of the candidates in which the last nearest point was found
-  std::span<const std::uint32_t> near_;  ///< of the patch taken, kept or not
-  std::uint32_t patch_ = 0;              ///< taken
-  double limit_ = 0.0;                   ///< of the patch taken (m)
+  SearchScratch& scratch_;
+  std::size_t last_ = 0;                 ///< group of the previous nearest point
+  std::span<const std::uint32_t> near_;  ///< patches near the selected patch
+  std::uint32_t patch_ = 0;              ///< selected
+  double limit_ = 0.0;                   ///< of the selected patch (m)
 };
 
 }  // namespace calot

@@ -21,9 +21,9 @@ void patchesInPlay(const SurfacePair& pair, const SurfaceDisplacement& a, const 
                    std::vector<std::uint32_t>& out) {
   out.clear();
   for (std::uint32_t p = 0; p < a.patch.size(); ++p) {
-    const Displacement& mine = a.patch[p];
-    const double free = pair.leastDistance_[p] - ((mine.mean - b.whole.mean).norm() + mine.spread + b.whole.spread);
-    if (pair.depth_[p] > deepestOverlap || free <= reach) out.push_back(p);
+    const Displacement& own = a.patch[p];
+    const double free = pair.minDistance_[p] - ((own.mean - b.whole.mean).norm() + own.spread + b.whole.spread);
+    if (pair.depth_[p] > maxOverlap || free <= reach) out.push_back(p);
   }
 }
 
@@ -31,28 +31,28 @@ void surfaceContacts(const SurfacePair& pair, const ContactSurface& a, std::span
                      const ContactSurface& b, std::span<const Vec3> positionB, std::span<const BroadPhase::Pair> pairs,
                      double reach, std::vector<VertexContact>& out, NearTriangles* memory) {
   if (pairs.empty()) return;
-  SearchRoom own;
-  SearchRoom& room = memory != nullptr ? memory->room() : own;
-  SurfaceSearch search(pair, a, positionA, b, positionB, room);
+  SearchScratch own;
+  SearchScratch& scratch = memory != nullptr ? memory->scratch() : own;
+  SurfaceSearch search(pair, a, positionA, b, positionB, scratch);
   if (memory != nullptr) memory->begin(search);
   for (std::size_t first = 0; first < pairs.size();) {
     const std::uint32_t query = pairs[first].query;
-    room.near.clear();
-    for (; first < pairs.size() && pairs[first].query == query; ++first) room.near.push_back(pairs[first].leaf);
-    if (!search.take(query, room.near, reach)) continue;
+    scratch.near.clear();
+    for (; first < pairs.size() && pairs[first].query == query; ++first) scratch.near.push_back(pairs[first].leaf);
+    if (!search.selectPatch(query, scratch.near, reach)) continue;
     const std::span<const int> node = a.patchNodes(query);
-    room.open.clear();
+    scratch.open.clear();
     for (std::size_t k = 0; k < node.size(); ++k) {
-      if (!search.surelyFar(static_cast<std::size_t>(node[k]), reach)) room.open.push_back(k);
+      if (!search.surelyFar(static_cast<std::size_t>(node[k]), reach)) scratch.open.push_back(k);
     }
-    if (room.open.empty()) continue;
+    if (scratch.open.empty()) continue;
     if (memory != nullptr) {
-      memory->follow(search, query, room.near, reach);
+      memory->updateLists(search, query, scratch.near, reach);
     } else {
       search.gather();
     }
     const std::size_t start = out.size();
-    for (const std::size_t k : room.open) {
+    for (const std::size_t k : scratch.open) {
       const int v = node[k];
       const auto i = static_cast<std::size_t>(v);
       const double offset = pair.restOffset()[i];
@@ -60,7 +60,7 @@ void surfaceContacts(const SurfacePair& pair, const ContactSurface& a, std::span
                                           : search.nearest(v, positionA[i], search.limitOf(i, reach));
       if (!near.found) continue;
       const double gap = near.distance - offset;
-      if (!(gap < reach) || gap < -deepestOverlap || !(near.normal.squaredNorm() > 0.5)) continue;
+      if (!(gap < reach) || gap < -maxOverlap || !(near.normal.squaredNorm() > 0.5)) continue;
       const Index3& t = b.triangles()[near.triangle];
       const std::uint64_t key = (static_cast<std::uint64_t>(query) << 20U) | b.patchOf(near.triangle);
       out.push_back({v, {t[0], t[1], t[2]}, near.point.barycentric, near.normal, gap, key});

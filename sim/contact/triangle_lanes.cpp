@@ -9,8 +9,8 @@ namespace calot {
 
 namespace {
 
-/// One lane's vector. Every function below is the scalar one of closest_point.h without branches, its operations in
-/// the same order (a dot product is x + (y + z)), so that a compiler can run a loop over lanes as vectors.
+/// One lane's vector. Every function below is the scalar one of closest_point.h without branches, its operations in the
+/// same order (a dot product is x + (y + z)), so that a compiler can run a loop over lanes as vectors.
 struct V {
   double x, y, z;
 };
@@ -22,7 +22,7 @@ CALOT_INLINE double square(const V& a) { return dot(a, a); }
 CALOT_INLINE V cross(const V& a, const V& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-CALOT_INLINE double least(double a, double b) { return a < b ? a : b; }
+CALOT_INLINE double minimum(double a, double b) { return a < b ? a : b; }
 
 /// Squared distance of p from segment a-b.
 CALOT_INLINE double fromSegment(const V& p, const V& a, const V& b) {
@@ -57,9 +57,9 @@ CALOT_INLINE double fromTriangle(const V& p, const V& a, const V& b, const V& c)
   const V foot = ((wa / sum) * a + (wb / sum) * b) + (wc / sum) * c;
   const double face = square(p - foot);
   double edges = 1e300;
-  edges = least(fromSegment(p, a, b), edges);
-  edges = least(fromSegment(p, b, c), edges);
-  edges = least(fromSegment(p, c, a), edges);
+  edges = minimum(fromSegment(p, a, b), edges);
+  edges = minimum(fromSegment(p, b, c), edges);
+  edges = minimum(fromSegment(p, c, a), edges);
   const bool plane = area2 > 1e-20 * square(ab) * square(ac);
   const bool over = (wa > 0.0) & (wb > 0.0) & (wc > 0.0);
   double r = (plane & over) ? face : edges;
@@ -107,19 +107,19 @@ CALOT_LANE_KERNEL void segmentKernel(const TriangleLanes& triangles, const V& p0
   // In passes, each small enough for the registers.
   double best[laneCount];
   for (std::size_t l = 0; l < laneCount; ++l) {
-    best[l] =
-        least(fromTriangle(p0, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l)), 1e300);
+    best[l] = minimum(fromTriangle(p0, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l)),
+                      1e300);
   }
   for (std::size_t l = 0; l < laneCount; ++l) {
-    best[l] = least(fromTriangle(p1, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l)),
-                    best[l]);
+    best[l] = minimum(fromTriangle(p1, cornerOf(triangles, 0, l), cornerOf(triangles, 1, l), cornerOf(triangles, 2, l)),
+                      best[l]);
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = k == 2 ? 0 : k + 1;
     for (std::size_t l = 0; l < laneCount; ++l) {
       const V q = cornerOf(triangles, k, l);
-      best[l] = least(fromSegment(q, p0, p1), best[l]);
-      best[l] = least(fromInside(p0, p1, q, cornerOf(triangles, next, l)), best[l]);
+      best[l] = minimum(fromSegment(q, p0, p1), best[l]);
+      best[l] = minimum(fromInside(p0, p1, q, cornerOf(triangles, next, l)), best[l]);
     }
   }
   for (std::size_t l = 0; l < laneCount; ++l) {
@@ -159,7 +159,7 @@ CALOT_LANE_KERNEL void boxKernel(const double (*lower)[laneCount], const double 
 }  // namespace
 
 std::size_t trianglesInBox(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch,
-                           const Box& box, std::array<std::uint32_t, ContactSurface::largestPatch>& near) {
+                           const Box& box, std::array<std::uint32_t, ContactSurface::maxPatchTriangles>& near) {
   std::size_t count = 0;
   const ContactSurface::Patch& range = surface.patches()[patch];
   for (std::size_t i = range.first; i < range.last; ++i) {

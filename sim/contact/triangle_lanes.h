@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Squared distances of eight triangles at once. The bits are those of the scalar functions of
-// sim/geometry/closest_point.h (tests/sim/contact/triangle_lanes_test.cpp): the lanes say which triangles count, those
-// few are then asked one by one where and by which feature.
+// sim/geometry/closest_point.h (tests/sim/contact/triangle_lanes_test.cpp): lanes select the relevant triangles, and
+// scalar code then evaluates foot points and features of those few.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct BoundsLanes {
 
 /// Triangles of a patch whose boxes overlap `box`, ascending, written to `near`. @return how many
 std::size_t trianglesInBox(const ContactSurface& surface, std::span<const Vec3> position, std::uint32_t patch,
-                           const Box& box, std::array<std::uint32_t, ContactSurface::largestPatch>& near);
+                           const Box& box, std::array<std::uint32_t, ContactSurface::maxPatchTriangles>& near);
 
 /// Takes in up to eight triangles; lanes that are left over repeat the last. @pre triangles is not empty
 void gatherTriangles(const ContactSurface& surface, std::span<const Vec3> position,
@@ -39,8 +39,8 @@ void gatherTriangles(const ContactSurface& surface, std::span<const Vec3> positi
 /// The box of each triangle.
 void boxesOf(const TriangleLanes& triangles, BoundsLanes& out);
 
-/// Is the triangle of a lane so flat (sine of its angle below 1e-3) that rounding moves the foot of a perpendicular on
-/// it?
+/// Is the triangle of a lane so flat (sine of its angle below 1e-3) that rounding moves the foot of
+/// a perpendicular on it?
 bool isSliver(const TriangleLanes& triangles, std::size_t lane);
 
 /// A little less than the squared distance of p from each box, so that rounding loses no triangle (m^2).

@@ -23,8 +23,8 @@ std::uint32_t blockOf(std::uint32_t node) {
   return 8 * (node / brickNodes) + (local >> 2U & 1U) + 2 * (local >> 5U & 1U) + 4 * (local >> 8U);
 }
 
-/// A node's place in its block, x + 4 y + 16 z.
-std::uint32_t placeInBlock(std::uint32_t node) {
+/// Index of a node in its block, x + 4 y + 16 z.
+std::uint32_t indexInBlock(std::uint32_t node) {
   const std::uint32_t local = node % brickNodes;
   return (local & 3U) + 4 * (local >> 3U & 3U) + 16 * (local >> 6U & 3U);
 }
@@ -48,7 +48,7 @@ std::uint64_t blockBits(const BrickBits& bits, std::uint32_t octant) {
   return out;
 }
 
-/// The maps of cubes with these corners. @param position three components and one to fill up for each node
+/// Trilinear maps of cubes with these corners. @param position three components and one of padding per node
 CALOT_LANE_KERNEL void mapCubes(const Index8* cube, std::size_t count, const double* position, CubeMap* out) {
   for (std::size_t c = 0; c < count; ++c) {
     FourDoubles p[8];
@@ -82,7 +82,7 @@ CALOT_LANE_KERNEL void mapNodes(const SkinNode* node, std::size_t count, const C
 
 CarvedContact::CarvedContact(const FatModel& model, const CarvedField& field)
     : model_(model), field_(field), adjacency_(field), surface_(*this, trianglesOfBlock * model.blocks().size()) {
-  static_assert(SurfaceAdjacency::mostAround <= SurfaceTopology::mostAround);
+  static_assert(SurfaceAdjacency::maxAround <= SurfaceTopology::maxAround);
   const std::size_t blocks = model.blocks().size();
   for (const std::uint32_t block : model.blocks()) {
     const std::uint32_t octant = block % 8;
@@ -105,7 +105,7 @@ int CarvedContact::nodeOf(std::uint32_t latticeEdge) const {
   const std::int32_t rank = model_.rankOfBlock(blockOf(node));
   assert(rank >= 0);
   return static_cast<int>(nodesOfBlock * static_cast<std::uint32_t>(rank) + 64 * (latticeEdge % 3) +
-                          placeInBlock(node));
+                          indexInBlock(node));
 }
 
 std::uint32_t CarvedContact::latticeEdgeOf(int node) const {
@@ -139,7 +139,7 @@ std::size_t CarvedContact::across(std::size_t triangle, int k) const {
       adjacency_.across(static_cast<std::uint32_t>(surface_.name(triangle)), static_cast<std::size_t>(k)));
 }
 
-std::size_t CarvedContact::around(int node, std::span<std::uint32_t, mostAround> out) const {
+std::size_t CarvedContact::around(int node, std::span<std::uint32_t, maxAround> out) const {
   const std::size_t count = adjacency_.around(latticeEdgeOf(node), out);
   for (std::size_t i = 0; i < count; ++i) out[i] = triangleOf(out[i]);
   return count;
@@ -151,7 +151,7 @@ void CarvedContact::rebuild(const CarvedSurface& surface) {
     writeBlock(surface, r);
   }
   listPatches(surface);
-  // Room for what strokes may add.
+  // Reserve for what strokes may add.
   const std::size_t patches = 2 * patch_.size() + 2 * surface_.patches().size() + 64;
   for (int side = 0; side < 2; ++side) {
     patch_.reserve(patches);
@@ -176,9 +176,9 @@ void CarvedContact::update(const CarvedSurface& surface) {
     const std::int32_t rank = model_.rankOfBlock(block);
     if (rank >= 0) writeBlock(surface, static_cast<std::uint32_t>(rank));
   }
-  const std::size_t room = corner_.capacity() + patch_.capacity() + cornerStart_.capacity();
+  const std::size_t capacity = corner_.capacity() + patch_.capacity() + cornerStart_.capacity();
   listPatches(surface);
-  growths_ += listed_ != room ? 1 : 0;
+  growths_ += listed_ != capacity ? 1 : 0;
 }
 
 /// Blocks that own an edge with a raised end.
@@ -218,7 +218,7 @@ std::uint64_t CarvedContact::insideOfBlock(const Index3& block) const {
                    static_cast<std::uint32_t>((block[0] & 1) + 2 * (block[1] & 1) + 4 * (block[2] & 1)));
 }
 
-/// Which of a block's edges are cut, where, and what they go with.
+/// Finds which edges of a block are cut, where, and their cubes.
 void CarvedContact::measure(std::uint32_t rank) {
   nodesListed_ = false;
   const Index3 block = origin_[rank] / 4;
@@ -255,7 +255,7 @@ void CarvedContact::writeBlock(const CarvedSurface& surface, std::uint32_t rank)
   written_[rank] = 1;
 }
 
-/// The patches in order, each with its corners: those of blocks that are as they were are copied.
+/// Lists the patches in order with their corners; those of unchanged blocks are copied.
 void CarvedContact::listPatches(const CarvedSurface& surface) {
   patch_.clear();
   cornerStart_.clear();
@@ -267,10 +267,10 @@ void CarvedContact::listPatches(const CarvedSurface& surface) {
       const auto rank = static_cast<std::uint32_t>(ranked);
       const std::uint32_t first = trianglesOfBlock * rank;
       const auto patches =
-          static_cast<std::uint32_t>((count_[rank] + SurfacePatch::mostTriangles - 1) / SurfacePatch::mostTriangles);
+          static_cast<std::uint32_t>((count_[rank] + SurfacePatch::maxTriangles - 1) / SurfacePatch::maxTriangles);
       for (std::uint32_t p = 0; p < patches; ++p) {
-        const std::size_t from = first + SurfacePatch::mostTriangles * p;
-        patch_.push_back({from, std::min(from + SurfacePatch::mostTriangles, std::size_t{first} + count_[rank])});
+        const std::size_t from = first + SurfacePatch::maxTriangles * p;
+        patch_.push_back({from, std::min(from + SurfacePatch::maxTriangles, std::size_t{first} + count_[rank])});
         cornerStart_.push_back(corner_.size());
         if (written_[rank] == 0) {
           const std::span<const int> old = surface_.patchCorners(first_[rank] + p);
@@ -304,8 +304,8 @@ Vec3 CarvedContact::cellsOf(std::size_t node) const {
   return cells;
 }
 
-void CarvedContact::place(std::span<const Vec3> solid, std::vector<Vec3>& out) const {
-  out.resize(nodeRoom(), Vec3::Zero());
+void CarvedContact::positions(std::span<const Vec3> solid, std::vector<Vec3>& out) const {
+  out.resize(nodeCapacity(), Vec3::Zero());
   const std::vector<Index8>& cubes = model_.solid().cubes();
   padded_.resize(4 * solid.size());
   for (std::size_t n = 0; n < solid.size(); ++n) std::copy_n(solid[n].data(), 3, padded_.data() + 4 * n);
@@ -343,13 +343,13 @@ void CarvedContact::listNodes() const {
   nodesListed_ = true;
 }
 
-SolidPlace CarvedContact::anchor(int node) const {
+MaterialPoint CarvedContact::anchor(int node) const {
   const int cube = cube_[static_cast<std::size_t>(node)];
-  SolidPlace place;
-  place.node = model_.solid().cubes()[slot(cube)];
-  place.weight = model_.shares(cube, cellsOf(static_cast<std::size_t>(node)));
-  place.count = 8;
-  return place;
+  MaterialPoint point;
+  point.node = model_.solid().cubes()[slot(cube)];
+  point.weight = model_.shares(cube, cellsOf(static_cast<std::size_t>(node)));
+  point.count = 8;
+  return point;
 }
 
 SolidSolver::Impulse CarvedContact::influence(const std::array<int, 3>& corner, const Vec3& weight) const {
@@ -357,13 +357,13 @@ SolidSolver::Impulse CarvedContact::influence(const std::array<int, 3>& corner, 
   for (std::size_t c = 0; c < 3; ++c) {
     const double own = weight[static_cast<int>(c)];
     if (own == 0.0) continue;
-    const SolidPlace place = anchor(corner[c]);
-    for (std::size_t a = 0; a < place.count; ++a) {
-      const double share = own * place.weight[a];
+    const MaterialPoint point = anchor(corner[c]);
+    for (std::size_t a = 0; a < point.count; ++a) {
+      const double share = own * point.weight[a];
       if (share == 0.0) continue;
       std::size_t k = 0;
-      while (k < out.count && out.node[k] != place.node[a]) ++k;
-      if (k == out.count) out.node[out.count++] = place.node[a];
+      while (k < out.count && out.node[k] != point.node[a]) ++k;
+      if (k == out.count) out.node[out.count++] = point.node[a];
       out.weight[k] += share;
     }
   }

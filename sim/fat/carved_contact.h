@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface of what is left of fat, as contact takes it.
+// The contact surface of the remaining fat.
 #pragma once
 
 #include <array>
@@ -14,26 +14,26 @@
 
 namespace calot {
 
-/// A node of fat's skin: in edges from its cube's corner, a little beyond the cube at most.
+/// A node of the fat's surface: coordinates in its cube in units of its edge, slightly beyond the cube at most.
 struct SkinNode {
   double x, y, z;
   std::uint32_t number;
   std::int32_t cube;
 };
 
-/// Follows a CarvedSurface as a ContactSurface. Every number that contact sees is a function of the field alone, so
-/// that order, ties and keys are those of a rebuilt one:
-/// - node 192 rank + 64 axis + x + 4 y + 16 z is a lattice edge: rank of its block (FatModel), place of its lower end
-/// in
-///   the block. A vertex keeps its number as long as it is there.
-/// - triangle 320 rank + k is the k-th of a block (four cells along each axis hold at most 320). In keys, triangles go
-///   by their names (SurfacePatch), which a stroke in the same block changes only where it changes their cell.
+/// A CarvedSurface as a ContactSurface. All indices are functions of the field alone, so that order, ties and keys
+/// equal those of a rebuilt surface:
+/// - node 192 rank + 64 axis + x + 4 y + 16 z is a lattice edge: the rank of its block (FatModel) and the position of
+///   its lower end in the block. A vertex keeps its index as long as it exists.
+/// - triangle 320 rank + k is the k-th of a block (four cells along each axis hold at most 320). Contact keys use
+///   triangle names (SurfacePatch), which a stroke in the same block changes only where it changes their cell.
 /// - patches are those of the CarvedSurface, in order of their keys.
 ///
-/// A stroke's cost goes with the blocks that it changed, but for the list of patches (some 10 ns a patch).
+/// The cost of a stroke is proportional to the number of blocks that it changed, plus some 10 ns per patch for
+/// the list of patches.
 class CarvedContact final : public SurfaceTopology {
  public:
-  /// A trilinear map of one cube: of 1, x, y, z, xy, xz, yz, xyz, each three components and one to fill up.
+  /// Trilinear map of one cube: coefficients of 1, x, y, z, xy, xz, yz, xyz, each three components and one of padding.
   using CubeMap = std::array<double, 32>;
 
   static constexpr std::uint32_t nodesOfBlock = 192;
@@ -44,34 +44,35 @@ class CarvedContact final : public SurfaceTopology {
   CarvedContact(const CarvedContact&) = delete;
   CarvedContact& operator=(const CarvedContact&) = delete;
 
-  /// All of it. @pre the surface is that of the field, and the field the model's
+  /// Rebuilds everything. @pre the surface is that of the field, and the field the model's
   void rebuild(const CarvedSurface& surface);
-  /// What the last stroke changed. @pre the surface was updated, and update() or rebuild() ran after every stroke
+  /// Rebuilds what the last stroke changed. @pre the surface was updated, and update() or rebuild()
+  /// ran after every stroke
   void update(const CarvedSurface& surface);
 
   [[nodiscard]] const ContactSurface& surface() const { return surface_; }
-  /// Numbers of nodes are below this.
-  [[nodiscard]] std::size_t nodeRoom() const { return cut_.size(); }
-  /// Is there such a vertex now?
+  /// Upper bound of node indices.
+  [[nodiscard]] std::size_t nodeCapacity() const { return cut_.size(); }
+  /// Does this vertex exist now?
   [[nodiscard]] bool exists(int node) const {
     const auto n = static_cast<std::size_t>(node);
     return n < cut_.size() && (mask_[n / 64] >> (n % 64) & 1U) != 0;
   }
-  /// Where the vertices are (m, W) for these positions of the solid's nodes, by number; places of numbers without a
-  /// vertex are left as they are. Allocates at first.
-  void place(std::span<const Vec3> solid, std::vector<Vec3>& out) const;
-  /// The solid's nodes that a vertex goes with, and their shares.
-  [[nodiscard]] SolidPlace anchor(int node) const;
-  /// A point of a triangle in terms of the solid's nodes: each corner's cube by the corner's weight, up to 24 nodes.
-  /// So the shares add up to one, and their mean place is the point itself, however the cubes are bent: a force there
-  /// keeps its sum and its moment, and its power is that of the point.
+  /// Positions of the vertices (m, W), by index, for these positions of the solid's nodes. Entries without a vertex are
+  /// unchanged. Allocates on first use.
+  void positions(std::span<const Vec3> solid, std::vector<Vec3>& out) const;
+  /// Nodes of the solid that a vertex depends on, and their weights.
+  [[nodiscard]] MaterialPoint anchor(int node) const;
+  /// A point of a triangle in terms of the solid's nodes: each corner's cube times the corner's weight, up to 24 nodes.
+  /// The weights add up to one and reproduce the point for any deformation of the cubes, so that a force there keeps
+  /// its resultant, moment and power.
   [[nodiscard]] SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight) const;
-  /// How often update() had to make room.
+  /// Number of reallocations by update().
   [[nodiscard]] std::size_t growths() const { return growths_; }
 
   // SurfaceTopology
   [[nodiscard]] std::size_t across(std::size_t triangle, int k) const override;
-  std::size_t around(int node, std::span<std::uint32_t, mostAround> out) const override;
+  std::size_t around(int node, std::span<std::uint32_t, maxAround> out) const override;
 
  private:
   [[nodiscard]] int nodeOf(std::uint32_t latticeEdge) const;
@@ -93,23 +94,23 @@ class CarvedContact final : public SurfaceTopology {
   std::vector<Index3> origin_;         ///< first node of each ranked block
   std::vector<std::uint64_t> mask_;    ///< per rank and axis: which edges are cut
   std::vector<double> cut_;            ///< per node: share of the edge
-  std::vector<std::int32_t> cube_;     ///< per node: that it goes with
+  std::vector<std::int32_t> cube_;     ///< per node: its cube
   std::vector<std::uint16_t> count_;   ///< triangles of each ranked block
   std::vector<std::uint32_t> first_;   ///< its first patch
-  std::vector<std::uint8_t> written_;  ///< since its corners were listed
+  std::vector<std::uint8_t> written_;  ///< rewritten since its corners were listed
   std::vector<std::uint8_t> dirty_;
   std::vector<std::uint32_t> dirtyRank_;
-  // The lists that are made next.
+  // The lists being built.
   std::vector<ContactSurface::Patch> patch_;
   std::vector<std::size_t> cornerStart_;
   std::vector<int> corner_;
-  std::size_t listed_ = 0;  ///< room that the last lists ended with
-  // Room of place().
+  std::size_t listed_ = 0;  ///< capacity after the last update
+  // Scratch of positions().
   mutable std::vector<double> padded_;
   mutable std::vector<CubeMap> map_;
   mutable std::vector<double> placed_;
-  mutable std::vector<SkinNode> skinNode_;  ///< all, once they are asked for
-  mutable bool nodesListed_ = false;        ///< since a stroke changed them
+  mutable std::vector<SkinNode> skinNode_;  ///< all vertices, computed on demand
+  mutable bool nodesListed_ = false;        ///< valid since the last stroke
   std::size_t growths_ = 0;
 };
 

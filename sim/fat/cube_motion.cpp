@@ -12,8 +12,8 @@ namespace {
 
 constexpr int directions = 27;
 
-/// The cube along a row of nodes: at both ends of x, the place and how it changes with y and z. Plain numbers: this is
-/// asked for each row of nodes.
+/// The cube along a row of nodes: position and its derivatives by y and z at both ends of x. Plain numbers for speed:
+/// evaluated for each row of nodes.
 struct Row {
   double at[2][3];
   double alongY[2][3];
@@ -66,8 +66,8 @@ void CubeMotion::choose(std::span<const SweptCapsule> tool, std::span<const Vec3
   }
 }
 
-/// Entries of F within a cube are between those along its edges, and |F^T n| is at most the root of the largest row sum
-/// times the largest column sum.
+/// Entries of F within a cube lie between those along its edges, and |F^T n| is at most the root of the greatest row
+/// sum times the greatest column sum.
 CubeMotion::Reach CubeMotion::reachOf(const Index8& corner, double depth) const {
   double entry[3][3] = {};
   double length2[3] = {};
@@ -97,8 +97,8 @@ CubeMotion::Reach CubeMotion::reachOf(const Index8& corner, double depth) const 
   return reach;
 }
 
-/// The nodes of a cube, and the layers of nodes around it that belong to no cube that is there; those that the tool's
-/// bounds can reach.
+/// Adds the nodes of a cube, and the layers of nodes around it that belong to no remaining cube, within reach
+/// of the tool's bounds.
 void CubeMotion::add(int cube, const Box& tool, const Reach& reach, std::span<const double> fill) {
   const Index8& corner = model_.solid().cubes()[slot(cube)];
   const Index3& h = model_.hexahedronOfCube(cube);
@@ -139,7 +139,7 @@ void CubeMotion::add(int cube, const Box& tool, const Reach& reach, std::span<co
   }
 }
 
-void CubeMotion::place(std::size_t box, const Index3& first, int count, NodeLanes& out) const {
+void CubeMotion::fillLanes(std::size_t box, const Index3& first, int count, NodeLanes& out) const {
   const int cube = cube_[box];
   const Index8& corner = model_.solid().cubes()[slot(cube)];
   const Index3& h = model_.hexahedronOfCube(cube);

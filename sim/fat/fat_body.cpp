@@ -13,9 +13,9 @@ namespace calot {
 
 namespace {
 
-constexpr double mostSoftening = 8.0;  ///< of a node's compliance, however little is left around it
+constexpr double maxSoftening = 8.0;  ///< greatest factor of a node's compliance
 
-/// Calls visit(lattice node) for each that the last stroke put outside, by bricks.
+/// Calls visit(lattice node) for each that the last stroke moved outside, by bricks.
 template <class Visit>
 void forEachRemoved(const CarvedField& field, Visit&& visit) {
   for (const std::uint32_t brick : field.changed()) {
@@ -61,11 +61,11 @@ void FatBody::rebuildAll() {
   contact_.rebuild(surface_);
   coarse_.rebuild(field_);
   volume_.rebuild(field_);
-  takeFill(coarse_.changed());
+  updateFill(coarse_.changed());
   before_.clear();
 }
 
-void FatBody::takeFill(std::span<const std::uint32_t> hexahedra) {
+void FatBody::updateFill(std::span<const std::uint32_t> hexahedra) {
   for (const std::uint32_t h : hexahedra) {
     const int cube = model_.cubeOfHexahedron(h);
     if (cube < 0) continue;
@@ -92,7 +92,7 @@ FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
   assert(before_.size() == state.solid.position.size());
   const double cell = model_.lattice().cell();
   const double depth = carveDepth * cell;
-  if (state.carved.brick.capacity() == 0) field_.prepare(state.carved);
+  if (state.carved.brick.capacity() == 0) field_.reserve(state.carved);
   FatStroke out;
   const double volumeBefore = volume_.total();
   motion_.choose(tool, state.solid.position, before_, fill_, depth);
@@ -105,7 +105,7 @@ FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
   contact_.update(surface_);
   coarse_.update(field_);
   volume_.update(field_);
-  takeFill(coarse_.changed());
+  updateFill(coarse_.changed());
   for (const std::uint32_t h : coarse_.changed()) {
     const int cube = model_.cubeOfHexahedron(h);
     if (cube < 0 || fill_[slot(cube)] > 0.0) continue;
@@ -119,12 +119,12 @@ FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
   out.changed = true;
   out.islands = cell * (cell * cell) * static_cast<double>(loose);
   out.removed = volumeBefore - volume_.total();
-  out.where = meanPlace(state, out.nodes);
+  out.where = meanPosition(state, out.nodes);
   return out;
 }
 
-/// Where what the last stroke took off was.
-Vec3 FatBody::meanPlace(const FatState& state, std::uint32_t& nodes) const {
+/// Mean position of what the last stroke removed.
+Vec3 FatBody::meanPosition(const FatState& state, std::uint32_t& nodes) const {
   Vec3 sum = Vec3::Zero();
   nodes = 0;
   forEachRemoved(field_, [&](std::uint32_t node) {
@@ -155,7 +155,7 @@ Mat3 FatBody::rotation(const FatState& state, int node) const {
   }
   const double size = sum.norm();
   const Quat q = size > 1e-6 ? Quat(sum[0] / size, sum[1] / size, sum[2] / size, sum[3] / size) : Quat::Identity();
-  const double softening = left * mostSoftening > atRest ? atRest / left : mostSoftening;
+  const double softening = left * maxSoftening > atRest ? atRest / left : maxSoftening;
   return std::sqrt(softening) * q.toRotationMatrix();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body of fat at work: all that follows from its State, and the stroke that changes it.
+// A body of fat: everything derived from its State, and the strokes that change it.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,18 @@ namespace calot {
 
 /// What a stroke did.
 struct FatStroke {
-  bool changed = false;       ///< the field was written: State's part `carved` has to be hashed anew
+  bool changed = false;       ///< the field changed: the `carved` part of State must be rehashed
   double removed = 0.0;       ///< volume, islands included (m^3)
-  double islands = 0.0;       ///< of what came loose, to a cell (m^3)
+  double islands = 0.0;       ///< volume of islands, to the accuracy of a cell (m^3)
   std::uint32_t nodes = 0;    ///< lattice nodes removed
-  Vec3 where = Vec3::Zero();  ///< their mean place (m, W); meaningless without any
+  Vec3 where = Vec3::Zero();  ///< their mean position (m, W); undefined without any
 };
 
-/// One for each State that is stepped. Nothing in it is State: after a restore rebuild() makes all of it anew, and then
-/// two bodies go the same way bit for bit, whatever they did before.
+/// One per State that is stepped. Nothing in it is part of State: after a restore, rebuild() recomputes everything, and
+/// two bodies then evolve identically, bit for bit, whatever their history.
 ///
 /// A step: beginStep(); the caller moves the solid (SolidSolver with fill() and attachments made of ties()); stroke()
-/// where an energised hook is near; place the contact surface anew.
+/// if an energised hook is near; the caller updates the contact surface's positions.
 class FatBody {
  public:
   /// @param model outlives this. The uncarved body.
@@ -38,39 +38,39 @@ class FatBody {
   FatBody(const FatBody&) = delete;
   FatBody& operator=(const FatBody&) = delete;
 
-  /// @return false where the state is not the model's (fits()): then all is as uncarved
+  /// @return false if the state is not valid for the model (fits()): the body is then uncarved
   [[nodiscard]] bool rebuild(const FatState& state);
 
-  /// Remembers where the tissue is: strokes of this step are swept relative to it.
+  /// Stores the tissue's positions, relative to which strokes of this step are swept.
   void beginStep(const FatState& state);
-  /// Takes off what the tool's capsules sweep over, from where they were at the step's beginning to where they are, and
-  /// what that cuts loose. Nodes of the solid that only empty cubes hold stop. @pre beginStep() of this step
+  /// Removes what the tool's capsules sweep over between the step's beginning and end, and islands. Nodes of the solid
+  /// that belong only to empty cubes are stopped. @pre beginStep() of this step
   FatStroke stroke(FatState& state, std::span<const SweptCapsule> tool);
 
   [[nodiscard]] const FatModel& model() const { return model_; }
-  /// Share of each cube that is there, for SolidSolver and SolidModel::volume().
+  /// Remaining share of each cube, for SolidSolver and SolidModel::volume().
   [[nodiscard]] std::span<const double> fill() const { return fill_; }
-  /// Share of a tie (FatModel::allTies()) that is there: its nodes that are still inside.
+  /// Remaining share of a tie (FatModel::allTies()): the share of its nodes that are still inside.
   [[nodiscard]] double tieShare(std::size_t tie) const { return tieShare_[tie]; }
-  /// How a node's answer to impulses differs from that at rest (RestCompliance): the rotation of the cubes that hold
-  /// it, times a factor above one where fat has left around it. Compliance between a and b is about rotation(a) C_ab
-  /// rotation(b)^T.
+  /// Correction of a node's compliance relative to the reference configuration (RestCompliance): the rotation of
+  /// its cubes, times a factor above one where fat around it is gone. Compliance between a and b is
+  /// approximately rotation(a) C_ab rotation(b)^T.
   [[nodiscard]] Mat3 rotation(const FatState& state, int node) const;
 
-  /// The surface for contact; CarvedContact::place() maps it.
+  /// The contact surface; CarvedContact::positions() maps it.
   [[nodiscard]] const CarvedContact& contact() const { return contact_; }
   [[nodiscard]] const CarvedSurface& surface() const { return surface_; }
   [[nodiscard]] const CarvedField& field() const { return field_; }
   [[nodiscard]] const FatVolume& volume() const { return volume_; }
 
-  /// How often a stroke had to make room; zero in steady state.
+  /// Number of reallocations in strokes; constant in steady state.
   [[nodiscard]] std::size_t growths() const { return surface_.growths() + contact_.growths(); }
 
  private:
   void rebuildAll();
-  void takeFill(std::span<const std::uint32_t> hexahedra);
+  void updateFill(std::span<const std::uint32_t> hexahedra);
   void measureTies(int cube);
-  [[nodiscard]] Vec3 meanPlace(const FatState& state, std::uint32_t& nodes) const;
+  [[nodiscard]] Vec3 meanPosition(const FatState& state, std::uint32_t& nodes) const;
 
   const FatModel& model_;
   CarvedField field_;
@@ -83,7 +83,7 @@ class FatBody {
   std::vector<Vec3> before_;
   std::vector<double> fill_;
   std::vector<double> tieShare_;
-  std::vector<std::size_t> tieStart_;  ///< per cube: its ties in tieOfCube_
+  std::vector<std::size_t> tieStart_;  ///< per cube: start of its ties in tieOfCube_
   std::vector<std::size_t> tieOfCube_;
 };
 

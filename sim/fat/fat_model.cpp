@@ -15,9 +15,9 @@ namespace calot {
 namespace {
 
 constexpr int marginCells = 3;                 ///< of the lattice around the surface
-constexpr std::uint32_t nodesOfBlock = 192;    ///< lattice edges of a block, one number each in contact
+constexpr std::uint32_t nodesOfBlock = 192;    ///< lattice edges of a block, each with one index in contact
 constexpr std::uint32_t maxNodes = 1U << 25U;  ///< ContactSurface
-constexpr int mostCellsPerCube = 16;
+constexpr int maxCellsPerCube = 16;
 
 /// Calls visit(node, its coordinates) for the inside nodes of a field, ascending.
 template <class Visit>
@@ -31,8 +31,8 @@ std::string settingsFault(const FatSettings& s) {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
   const auto notNegative = [](double v) { return std::isfinite(v) && v >= 0.0; };
   if (!positive(s.cell)) return "the cell size must be positive";
-  if (s.cellsPerCube < 1 || s.cellsPerCube > mostCellsPerCube) {
-    return "cells per cube must be 1 to " + std::to_string(mostCellsPerCube);
+  if (s.cellsPerCube < 1 || s.cellsPerCube > maxCellsPerCube) {
+    return "cells per cube must be 1 to " + std::to_string(maxCellsPerCube);
   }
   if (!positive(s.material.density)) return "the density must be positive";
   if (!positive(s.material.lame.mu) || !notNegative(s.material.lame.lambda)) {
@@ -68,12 +68,12 @@ std::unique_ptr<const FatModel> FatModel::make(const TriangleMesh& surface, cons
   model->k_ = settings.cellsPerCube;
   error = model->cast(surface, settings.cell);
   if (!error.empty()) return nullptr;
-  model->hang(partners);
+  model->attach(partners);
   if (model->anchor_.empty()) {
     error = "it hangs on nothing: no part of it is within reach of what it is attached to";
     return nullptr;
   }
-  model->dropLoose();
+  model->removeLoose();
   error = model->divide(settings.material);
   if (!error.empty()) return nullptr;
   model->tie(partners);
@@ -122,24 +122,24 @@ std::string FatModel::cast(const TriangleMesh& surface, double cell) {
   return any ? std::string() : "it is thinner than a cell everywhere";
 }
 
-/// Names the nodes that hang on each partner.
-void FatModel::hang(std::span<const FatPartner> partners) {
-  held_.resize(partners.size());
+/// Finds the nodes attached to each partner.
+void FatModel::attach(std::span<const FatPartner> partners) {
+  partnerNodes_.resize(partners.size());
   for (const FatPartner& p : partners) partnerName_.push_back(p.name);
   forEachInside(field_, [&](std::uint32_t node, const Index3& n) {
     const Vec3 x = lattice().position(n);
     bool any = false;
     for (std::size_t p = 0; p < partners.size(); ++p) {
       if (!(partners[p].distance(x) <= partners[p].reach)) continue;
-      held_[p].push_back(node);
+      partnerNodes_[p].push_back(node);
       any = true;
     }
     if (any) anchor_.push_back(node);
   });
 }
 
-/// What hangs on nothing leaves before the beginning.
-void FatModel::dropLoose() {
+/// Removes unattached parts.
+void FatModel::removeLoose() {
   std::vector<double> value;
   {
     CarvedField field(field_);
@@ -152,7 +152,7 @@ void FatModel::dropLoose() {
   field_.value = std::move(value);
 }
 
-/// Cubes with inside nodes make the solid.
+/// Builds the solid from cubes with inside nodes.
 std::string FatModel::divide(const SolidModel::Material& material) {
   const CarvedField field(field_);
   Fill fill(lattice(), k_);
@@ -212,7 +212,7 @@ std::string FatModel::divide(const SolidModel::Material& material) {
   return {};
 }
 
-/// One spring for each cube and partner, in the middle of the nodes that it stands for.
+/// Adds one spring per cube and partner, at the centroid of the nodes that it represents.
 void FatModel::tie(std::span<const FatPartner> partners) {
   const double cell = lattice().cell();
   const double nodeVolume = cell * (cell * cell);
@@ -220,7 +220,7 @@ void FatModel::tie(std::span<const FatPartner> partners) {
   std::vector<std::pair<int, std::uint32_t>> byCube;
   for (std::size_t p = 0; p < partners.size(); ++p) {
     byCube.clear();
-    for (const std::uint32_t node : held_[p]) {
+    for (const std::uint32_t node : partnerNodes_[p]) {
       if (field_.value[node] < 0.0) byCube.emplace_back(cubeOfNode(lattice().nodeAt(node)), node);
     }
     std::sort(byCube.begin(), byCube.end());
@@ -236,11 +236,11 @@ void FatModel::tie(std::span<const FatPartner> partners) {
       }
       tie.lastNode = tieNode_.size();
       const auto count = static_cast<double>(last - first);
-      tie.place.element = tie.cube;
-      tie.place.node = solid_->cubes()[slot(tie.cube)];
-      tie.place.weight = shares(tie.cube, sum.cast<double>() / count);
-      tie.place.count = 8;
-      tie.rest = tie.place.of(solid_->rest());
+      tie.point.element = tie.cube;
+      tie.point.node = solid_->cubes()[slot(tie.cube)];
+      tie.point.weight = shares(tie.cube, sum.cast<double>() / count);
+      tie.point.count = 8;
+      tie.rest = tie.point.of(solid_->rest());
       tie.stiffness = partners[p].stiffness * nodeVolume * count;
       tie.damping = partners[p].damping * nodeVolume * count;
       tie_.push_back(tie);
@@ -248,10 +248,10 @@ void FatModel::tie(std::span<const FatPartner> partners) {
     }
     tieStart_.push_back(tie_.size());
   }
-  held_.clear();
+  partnerNodes_.clear();
 }
 
-/// The surface can come to lie in cells and on edges at a node that is inside now, for fat only becomes less.
+/// The surface can only reach cells and edges at nodes that are inside now, since fat only decreases.
 void FatModel::rankBlocks() {
   rank_.assign(8 * lattice().brickCount(), -1);
   forEachInside(field_, [&](std::uint32_t, const Index3& n) {
@@ -288,7 +288,7 @@ std::vector<Attachment> FatModel::restAttachments(double step) const {
   std::vector<Attachment> out;
   for (const FatTie& tie : tie_) {
     Attachment& a = out.emplace_back();
-    a.place = tie.place;
+    a.point = tie.point;
     a.damper = (step * tie.stiffness + tie.damping) * Mat3::Identity();
   }
   return out;
@@ -320,7 +320,7 @@ bool fits(const FatModel& model, const FatState& state) {
   CarvedField field(model.field());
   if (!field.restore(state.carved)) return false;
   for (std::size_t n = 0; n < field.values().size(); ++n) {
-    if (field.values()[n] < model.field().value[n]) return false;  // fat does not grow
+    if (field.values()[n] < model.field().value[n]) return false;  // fat cannot grow
   }
   return true;
 }

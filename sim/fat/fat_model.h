@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is fixed of a body of fat: a potential field in rest space, coarse cubes that carry it, and what it hangs on.
+// Constant data of a body of fat: a potential field in the reference configuration, coarse cubes and attachments.
 #pragma once
 
 #include <array>
@@ -19,19 +19,19 @@
 
 namespace calot {
 
-/// What fat hangs on: all of it that is no farther than `reach`.
+/// What fat is attached to: all fat within `reach` of it.
 struct FatPartner {
   std::string name;
   std::function<double(const Vec3&)> distance;  ///< of a point from its surface at rest, negative inside (m)
   double reach = 0.002;                         ///< m
-  double stiffness = 2e6;                       ///< of a unit volume of fat that hangs on it (N/m^4)
+  double stiffness = 2e6;                       ///< per unit volume of attached fat (N/m^4)
   double damping = 2e4;                         ///< (N s/m^4)
 };
 
-/// A part of space at rest in which the fat that is left is measured by itself.
+/// A region of the reference configuration in which remaining fat is measured separately.
 struct FatRegion {
   std::string name;
-  std::function<bool(const Vec3&)> contains;  ///< asked once for each node of the lattice
+  std::function<bool(const Vec3&)> contains;  ///< called once per lattice node
 };
 
 struct FatSettings {
@@ -43,9 +43,9 @@ struct FatSettings {
 /// A spring and a damper from the fat in one cube to a partner.
 struct FatTie {
   int cube = 0;
-  SolidPlace place;                         ///< the middle of the nodes that it stands for
-  Vec3 rest = Vec3::Zero();                 ///< place.of(rest positions), bit for bit: no force at rest
-  double stiffness = 0.0;                   ///< while all of its nodes are there (N/m)
+  MaterialPoint point;                      ///< centroid of the nodes that it represents
+  Vec3 rest = Vec3::Zero();                 ///< point.of(reference positions), bit for bit: no force at rest
+  double stiffness = 0.0;                   ///< with all of its nodes inside (N/m)
   double damping = 0.0;                     ///< N s/m
   std::size_t firstNode = 0, lastNode = 0;  ///< lattice nodes [first, last) of FatModel::tieNodes()
 };
@@ -53,29 +53,29 @@ struct FatTie {
 /// Lattice and cubes share their axes: cube h spans k^3 cells, a lattice node belongs to one cube (Fill). The solid
 /// consists of the cubes to which nodes inside the fat belong, ascending; their corners are its nodes.
 ///
-/// A point of the fat goes where the trilinear map of its cube takes it. A point of the surface goes with the cube to
-/// which the *inside* end of its lattice edge belongs, at most a cell beyond that cube: so nothing that is still there
-/// ever hangs on a cube that has emptied.
+/// A point of the fat moves with the trilinear map of its cube. A point of the surface moves with the cube to
+/// which the *inside* end of its lattice edge belongs, at most one cell beyond that cube: remaining fat never
+/// depends on an empty cube.
 class FatModel {
  public:
   /// @param surface closed, outward (m, W)
-  /// @return nothing and a reason in one line (without the fat's name) where there is no such fat
+  /// @return null and one line of reason (without the fat's name) if there is no such fat
   static std::unique_ptr<const FatModel> make(const TriangleMesh& surface, const FatSettings& settings,
                                               std::span<const FatPartner> partners, std::span<const FatRegion> regions,
                                               std::string& error);
 
   static constexpr double bandCells = 3.0;  ///< of the field
 
-  /// Without what hung on nothing from the beginning.
+  /// Without parts that were unattached from the beginning.
   [[nodiscard]] const FieldModel& field() const { return field_; }
   [[nodiscard]] const BrickLattice& lattice() const { return field_.lattice; }
   [[nodiscard]] const SolidModel& solid() const { return *solid_; }
   [[nodiscard]] int cellsPerCube() const { return k_; }
   /// Inside nodes of a full cube.
   [[nodiscard]] int fullCount() const { return k_ * k_ * k_; }
-  /// Share of each cube that is there before anything is carved.
+  /// Fill of each cube before carving.
   [[nodiscard]] const std::vector<double>& restFill() const { return restFill_; }
-  /// Lattice nodes that hang on a partner, ascending.
+  /// Lattice nodes attached to any partner, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& anchors() const { return anchor_; }
 
   [[nodiscard]] std::size_t partners() const { return partnerName_.size(); }
@@ -88,7 +88,7 @@ class FatModel {
   [[nodiscard]] std::size_t firstTie(std::size_t partner) const { return tieStart_[partner]; }
   [[nodiscard]] const std::vector<FatTie>& allTies() const { return tie_; }
   [[nodiscard]] const std::vector<std::uint32_t>& tieNodes() const { return tieNode_; }
-  /// All springs as they are at rest, for the compliance of rest: force 0, damper h K + C. @param step h (s)
+  /// All springs in the reference configuration, for its compliance: force 0, damper h K + C. @param step h (s)
   [[nodiscard]] std::vector<Attachment> restAttachments(double step) const;
 
   [[nodiscard]] std::size_t regions() const { return region_.size(); }
@@ -96,14 +96,14 @@ class FatModel {
   /// Its lattice nodes, per brick.
   [[nodiscard]] const std::vector<BrickBits>& region(std::size_t region) const { return region_[region]; }
 
-  /// Cube of a coarse hexahedron (Fill::hexahedron()), -1 where there is none.
+  /// Cube of a coarse hexahedron (Fill::hexahedron()), -1 if there is none.
   [[nodiscard]] int cubeOfHexahedron(std::uint32_t hexahedron) const { return cubeOf_[hexahedron]; }
   [[nodiscard]] int cubeAt(const Index3& h) const;
-  /// Cube that a lattice node belongs to, -1: to none.
+  /// Cube that a lattice node belongs to; -1: none.
   [[nodiscard]] int cubeOfNode(const Index3& node) const {
     return cubeAt((node.array() / k_).min(hexahedra_.array() - 1));
   }
-  /// Place of a cube among the coarse hexahedra.
+  /// Position of a cube among the coarse hexahedra.
   [[nodiscard]] const Index3& hexahedronOfCube(int cube) const { return hexahedron_[slot(cube)]; }
   /// Coarse hexahedra along each axis.
   [[nodiscard]] const Index3& hexahedra() const { return hexahedra_; }
@@ -112,18 +112,18 @@ class FatModel {
     return std::span(cubeAtNode_).subspan(cubeStart_[slot(node)], cubeStart_[slot(node) + 1] - cubeStart_[slot(node)]);
   }
 
-  /// Shares of a cube's corners at a point given in cells from the lattice's origin.
+  /// Weights of a cube's corners at a point given in cells from the lattice's origin.
   [[nodiscard]] std::array<double, 8> shares(int cube, const Vec3& cells) const;
 
-  /// Blocks of 4^3 cells (SurfacePatch) on which the surface can ever lie have a rank, ascending with their number.
+  /// Blocks of 4^3 cells (SurfacePatch) that the surface can ever reach have a rank, ascending with their index.
   [[nodiscard]] std::int32_t rankOfBlock(std::uint32_t block) const { return rank_[block]; }
   [[nodiscard]] const std::vector<std::uint32_t>& blocks() const { return block_; }
 
  private:
   FatModel() = default;
   std::string cast(const TriangleMesh& surface, double cell);
-  void hang(std::span<const FatPartner> partners);
-  void dropLoose();
+  void attach(std::span<const FatPartner> partners);
+  void removeLoose();
   std::string divide(const SolidModel::Material& material);
   void tie(std::span<const FatPartner> partners);
   void rankBlocks();
@@ -137,7 +137,7 @@ class FatModel {
   std::vector<std::size_t> cubeStart_;
   std::vector<std::int32_t> cubeAtNode_;
   std::vector<double> restFill_;
-  std::vector<std::vector<std::uint32_t>> held_;  ///< per partner: lattice nodes, ascending
+  std::vector<std::vector<std::uint32_t>> partnerNodes_;  ///< per partner: lattice nodes, ascending
   std::vector<std::uint32_t> anchor_;
   std::vector<std::string> partnerName_;
   std::vector<std::size_t> tieStart_;
@@ -152,7 +152,7 @@ class FatModel {
 /// Uncarved, at rest, asleep.
 [[nodiscard]] FatState restState(const FatModel& model);
 
-/// Is this a state of that fat? For what comes from outside: sizes, numbers that are finite, bricks that fit the field.
+/// Is this a valid state of the model (sizes, finite numbers, bricks that fit the field)? Checks external data.
 [[nodiscard]] bool fits(const FatModel& model, const FatState& state);
 
 }  // namespace calot

@@ -79,7 +79,7 @@ int FatPicture::cubeNear(const Vec3& rest) const {
   return std::max(best, 0);
 }
 
-void FatPicture::place(const std::vector<Vec3>& solid, std::vector<Vec3>& out) const {
+void FatPicture::positions(const std::vector<Vec3>& solid, std::vector<Vec3>& out) const {
   const FloatingPointScope scope;
   out.clear();
   out.reserve(carrier_.size());

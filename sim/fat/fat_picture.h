@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface of carved fat for those who draw it.
+// The surface of carved fat for rendering.
 #pragma once
 
 #include <array>
@@ -12,24 +12,24 @@
 
 namespace calot {
 
-/// The adaptive surface of a body of fat from State to State. Where more is carved in a State than in the one before,
-/// only what that reaches is polygonized anew; else all of it is. Vertices and triangles depend on the State alone.
+/// The adaptive surface of a body of fat over successive States. If a State is more carved than the previous one, only
+/// the affected parts are polygonized again, otherwise all. Vertices and triangles depend on the State alone.
 class FatPicture {
  public:
   /// @param model outlives this. The uncarved body.
   explicit FatPicture(const FatModel& model);
 
-  /// Follows what a State has carved; a State that is not the model's counts as uncarved.
-  /// @return are vertices and triangles others than before?
+  /// Updates to a State's carving; an invalid State counts as uncarved.
+  /// @return true if vertices or triangles changed
   bool update(const CarvedBricks& carved);
 
   [[nodiscard]] const std::vector<Vec3>& rest() const { return mesh_.vertex; }  ///< m
   [[nodiscard]] const std::vector<Index3>& triangles() const { return mesh_.triangle; }
-  /// Where the vertices are (m, W). @param solid positions of the solid's nodes
-  void place(const std::vector<Vec3>& solid, std::vector<Vec3>& out) const;
+  /// Positions of the vertices (m, W). @param solid positions of the solid's nodes
+  void positions(const std::vector<Vec3>& solid, std::vector<Vec3>& out) const;
 
  private:
-  /// A vertex goes with a cube: the one it lies in, or the nearest that is there.
+  /// The cube that a vertex moves with: the one that contains it, or the nearest remaining one.
   struct Carrier {
     std::array<int, 8> node{};
     std::array<double, 8> share{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything of a body of fat that changes.
+// State of a body of fat.
 #pragma once
 
 #include "sim/carving/carved_field.h"
@@ -7,8 +7,8 @@
 
 namespace calot {
 
-/// Two parts of State, each with its own fields: the motion changes in every step that the fat is awake, the field only
-/// where something was carved. All else follows from them and is rebuilt (FatBody::rebuild()).
+/// Two parts of State with separate fields: motion changes in every step in which the fat is awake, the field only when
+/// something is carved. Everything else is derived from them (FatBody::rebuild()).
 struct FatState {
   SolidState solid;
   CarvedBricks carved;

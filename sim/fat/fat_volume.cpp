@@ -48,7 +48,7 @@ void FatVolume::mark(std::uint32_t brick) {
   marked_[brick] = 1;
 }
 
-/// Inside nodes of a brick, and those beside one.
+/// Inside nodes of a brick and their neighbours.
 BrickBits FatVolume::countedNodes(const CarvedField& field, std::uint32_t brick) const {
   const BrickLattice& lattice = model_.lattice();
   BrickBits bits = dilated(field.bits(brick));

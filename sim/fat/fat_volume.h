@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much fat is left, at rest: in all, and by regions.
+// Remaining volume of fat in the reference configuration: in total and by regions.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace calot {
 
-/// Each lattice node stands for a cell's volume, of which the share clamp(1/2 - phi / cell, 0, 1) is inside: exact
-/// where the surface runs along the axes, of second order elsewhere. Shares are whole 2^-20ths of a cell, so sums are
-/// exact, and what was kept in step is what a full pass gives. Follows from the field; never saved.
+/// Each lattice node represents a cell's volume, of which the share clamp(1/2 - phi / cell, 0, 1) is inside: exact for
+/// surfaces parallel to the axes, second-order accurate elsewhere. Shares are multiples of 2^-20 of a cell, so that
+/// sums are exact and incremental updates equal a full pass. Derived from the field; never saved.
 class FatVolume {
  public:
   explicit FatVolume(const FatModel& model);
 
   void rebuild(const CarvedField& field);
-  /// What the last stroke changed. Allocates nothing.
+  /// Updates what the last stroke changed. Allocates nothing.
   void update(const CarvedField& field);
 
   /// m^3

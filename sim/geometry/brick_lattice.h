@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A regular lattice of nodes whose values are stored brick by brick.
+// A regular lattice of nodes with values stored brick by brick.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,11 @@
 
 namespace calot {
 
-/// Nodes at origin + cell (i, j, k), 0 <= i < nodes[0] and so on, in bricks of 8^3 nodes: what lies near in space lies
-/// near in memory, and what changes, is saved or is hashed is a brick.
+/// Nodes at origin + cell (i, j, k), 0 <= i < nodes[0] and so on, in bricks of 8^3 nodes: neighbours in space are close
+/// in memory, and bricks are the unit of change, saving and hashing.
 ///
-/// The index of a node is brick * 512 + x + 8 (y + 8 z) with x, y, z its place in the brick; bricks are numbered x
-/// fastest. Where nodes[a] is no multiple of 8, bricks are padded: padding has indices and values (outside) but no
-/// position of interest.
+/// The index of a node is brick * 512 + x + 8 (y + 8 z) with x, y, z its position in the brick; bricks are numbered
+/// with x fastest. If nodes[a] is not a multiple of 8, bricks are padded: padding has indices and values (outside).
 ///
 /// The cell of a node is the cube whose lowest corner it is.
 class BrickLattice {
@@ -31,7 +30,8 @@ class BrickLattice {
   BrickLattice(const Vec3& origin, double cell, const Index3& nodes)
       : origin_(origin), cell_(cell), nodes_(nodes), bricks_((nodes.array() + (side - 1)) / side) {}
 
-  /// The smallest lattice with at least `margin` cells around the box, node counts a multiple of `multiple` plus one.
+  /// Smallest lattice with at least `margin` cells around the box and node counts that are a multiple
+  /// of `multiple` plus one.
   /// @pre cell > 0, the box not empty, multiple >= 1
   static BrickLattice around(const Box& box, double cell, int margin, int multiple = 1) {
     Index3 nodes;
@@ -86,7 +86,7 @@ class BrickLattice {
   [[nodiscard]] Vec3 position(const Index3& n) const { return origin_ + cell_ * n.cast<double>(); }
 
  private:
-  /// What the index grows by from a brick to the next along an axis.
+  /// Index increment from one brick to the next along an axis.
   [[nodiscard]] std::uint32_t brickStep(int axis) const {
     const int bricks = axis == 0 ? 1 : (axis == 1 ? bricks_[0] : bricks_[0] * bricks_[1]);
     return static_cast<std::uint32_t>(bricks) * brickNodes;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Closest points between points, segments and triangles: the exact narrow phase. Regions after Ericson, "Real-Time
-// Collision Detection" (2005), section 5.1, with the degenerate cases (points for segments, slivers for triangles)
-// settled by taking the least over all features. Nothing here allocates; everything is inline, for it is the innermost
-// loop of contact and of the distance field.
+// Collision Detection" (2005), section 5.1, with degenerate cases (points for segments, slivers for triangles) resolved
+// by the minimum over all features. Nothing allocates; everything is inline, since this is the innermost loop of
+// contact and of the distance field.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct PointTriangle {
 
 namespace detail {
 
-/// Least over the three edges; what remains when the triangle has no plane.
+/// Minimum over the three edges, for triangles without a plane.
 [[nodiscard]] inline PointTriangle closestOnTriangleEdges(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3* corner[3] = {&a, &b, &c};
   PointTriangle best;
@@ -112,8 +112,8 @@ struct SegmentSegment {
 
 namespace detail {
 
-/// Where the lines p0-p1 and q0-q1 come closest strictly inside both segments. @return false: not inside, or parallel
-/// (then an end point is as close, and the caller has asked those).
+/// Closest points of lines p0-p1 and q0-q1 strictly inside both segments. @return false: not inside, or parallel (then
+/// an end point, which the caller tests, is as close).
 [[nodiscard]] inline bool closestInside(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1,
                                         SegmentSegment& r) {
   const Vec3 d = p1 - p0;
@@ -136,8 +136,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Closest points of segments p0-p1 and q0-q1. Where many pairs are equally close (parallel), the first of: p0, p1 on
-/// the second segment, q0, q1 on the first.
+/// Closest points of segments p0-p1 and q0-q1. If many pairs are equally close (parallel segments), the first of: p0,
+/// p1 on the second segment, q0, q1 on the first.
 [[nodiscard]] inline SegmentSegment closestSegments(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
   SegmentSegment best;
   best.squaredDistance = 1e300;
@@ -169,8 +169,9 @@ struct SegmentTriangle {
   bool crosses = false;  ///< the segment passes through the face; `parameter` says where
 };
 
-/// Closest points of segment p0-p1 and triangle abc. The least over: a crossing, each end against the triangle, each
-/// corner against the segment, the inside of the segment against the inside of each edge; earlier wins a tie.
+/// Closest points of segment p0-p1 and triangle abc. The minimum over a crossing, each end against the triangle,
+/// each corner against the segment, and the interior of the segment against the interior of each edge; the
+/// earlier wins a tie.
 [[nodiscard]] inline SegmentTriangle closestSegmentTriangle(const Vec3& p0, const Vec3& p1, const Vec3& a,
                                                             const Vec3& b, const Vec3& c) {
   SegmentTriangle best;

@@ -58,7 +58,7 @@ class Transform {
     return {static_cast<double>(n[0]), static_cast<double>(n[1]), static_cast<double>(n[2])};
   }
 
-  /// The prism on a face. Only nodes that project into the face exactly: beside it, its plane is too near.
+  /// The prism on a face. Only nodes that project into the face: beside it, its plane would be too near.
   void scanFace(std::size_t t) {
     const SurfaceFeatures::Face& face = features_.faces()[t];
     if (!face.flat()) return;
@@ -115,10 +115,10 @@ class Transform {
     box.include(a);
     box.include(b);
     Vec3 along = edge.normal;
-    const double turn = inward[1].dot(normal[0]);
-    if (flat == 2 && normal[0].dot(normal[1]) > 0.0 && std::abs(turn) > 1e-6) {
+    const double bend = inward[1].dot(normal[0]);
+    if (flat == 2 && normal[0].dot(normal[1]) > 0.0 && std::abs(bend) > 1e-6) {
       // Between the normals on the convex side; its outermost corner is where the two caps meet.
-      const double out = turn < 0.0 ? band_ : -band_;
+      const double out = bend < 0.0 ? band_ : -band_;
       const Vec3 tip = out * (normal[0] + normal[1]) / (1.0 + normal[0].dot(normal[1]));
       for (const Vec3* end : {&a, &b}) {
         box.include(*end + out * normal[0]);
@@ -171,7 +171,7 @@ class Transform {
   }
 
   /// Box around {q: q . d <= 0 for all directions d, |q| <= band}, through the set's extreme rays, which are normal to
-  /// two directions each. @return false: nothing but the vertex itself, which the edges' ends have
+  /// two directions each. @return false: only the vertex itself, which the edges' ends cover
   bool coneBox(Box& box, Vec3& along) {
     ray_.clear();
     bool crossed = false;
@@ -182,16 +182,16 @@ class Transform {
         if (!(length > 1e-9)) continue;
         crossed = true;
         const Vec3 ray = cross / length;
-        double most = 0.0;
-        double least = 0.0;
+        double maximum = 0.0;
+        double minimum = 0.0;
         for (const Vec3& d : direction_) {
           const double c = ray.dot(d);
-          most = std::max(most, c);
-          least = std::min(least, c);
-          if (most > 1e-6 && least < -1e-6) break;
+          maximum = std::max(maximum, c);
+          minimum = std::min(minimum, c);
+          if (maximum > 1e-6 && minimum < -1e-6) break;
         }
-        if (most <= 1e-6) ray_.push_back(ray);
-        if (least >= -1e-6) ray_.emplace_back(-ray);
+        if (maximum <= 1e-6) ray_.push_back(ray);
+        if (minimum >= -1e-6) ray_.emplace_back(-ray);
       }
     }
     if (crossed && ray_.empty()) return false;

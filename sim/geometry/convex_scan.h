@@ -11,13 +11,13 @@
 namespace calot {
 
 /// A convex set as an intersection of half-spaces, in lattice coordinates (nodes are integers). Rows run along one
-/// axis: half-spaces bound a row from below, from above, or pass by it whole.
+/// axis: half-spaces bound a row from below or above, or contain or exclude it entirely.
 class ConvexScan {
  public:
-  static constexpr std::size_t capacity = 96;  ///< half-spaces beyond it are left out: the set only grows
-  static constexpr double slack = 1e-6;        ///< by which each half-space is wider than asked (cells)
+  static constexpr std::size_t capacity = 96;  ///< further half-spaces are ignored, which only enlarges the set
+  static constexpr double slack = 1e-6;        ///< by which each half-space is enlarged (cells)
 
-  /// @param axis of the rows: that along which the set is longest, best
+  /// @param axis direction of the rows, ideally that in which the set is longest
   /// @param nodes of the lattice along each axis
   ConvexScan(int axis, const Index3& nodes) : w_(axis), u_((axis + 1) % 3), v_((axis + 2) % 3), nodes_(nodes) {}
 
@@ -31,12 +31,12 @@ class ConvexScan {
     p.v = normal[v_];
     p.offset = offset - slack;
     const double along = normal[w_];
-    // Rows nearly within the plane: what they climb over the lattice stays below the slack.
+    // Rows nearly parallel to the plane: their height changes by less than the slack over the lattice.
     p.kind = along > 1e-9 ? 1 : (along < -1e-9 ? -1 : 0);
     p.inverse = p.kind == 0 ? 0.0 : 1.0 / along;
   }
 
-  /// Calls visit(i, j, k) for each lattice point in the box that all half-spaces hold.
+  /// Calls visit(n) for each lattice point in the box that lies in all half-spaces.
   template <class Visit>
   void run(const Box& box, Visit&& visit) const {
     Index3 from;
@@ -73,16 +73,16 @@ class ConvexScan {
     return i + (static_cast<double>(i) < x ? 1 : 0);
   }
 
-  /// Narrows [low, high] (both within the lattice) to what the half-spaces leave of a row.
+  /// Intersects [low, high] (both within the lattice) with the half-spaces.
   bool row(double u, double v, double& low, double& high) const {
     for (std::size_t i = 0; i < count_; ++i) {
       const Plane& p = plane_[i];
-      const double rest = p.offset - (p.u * u + p.v * v);
+      const double remainder = p.offset - (p.u * u + p.v * v);
       if (p.kind > 0) {
-        low = std::max(low, rest * p.inverse);
+        low = std::max(low, remainder * p.inverse);
       } else if (p.kind < 0) {
-        high = std::min(high, rest * p.inverse);
-      } else if (rest > 0.0) {
+        high = std::min(high, remainder * p.inverse);
+      } else if (remainder > 0.0) {
         return false;
       }
       if (low > high) return false;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double tolerance = 1e-9;  // cells
 
-/// Signs along one row of a brick; unknown values (the band) are like their neighbour. @return the row's signs as bits
+/// Signs along one row of a brick; unknown values (the band) take their neighbour's sign. @return the
+/// row's signs as bits
 unsigned spreadRow(double* row, int count, double band, bool& inside) {
   bool known = false;
   for (int x = 0; x < 8; ++x) known |= row[x] != band;
@@ -28,7 +29,7 @@ unsigned spreadRow(double* row, int count, double band, bool& inside) {
   return bits;
 }
 
-/// Neighbours of unlike sign a surface apart?
+/// Do neighbouring values agree, with a surface between them if their signs differ?
 bool agree(double x, double y) { return (x < 0.0) == (y < 0.0) || std::abs(x) + std::abs(y) <= 1.0 + tolerance; }
 
 }  // namespace
@@ -40,7 +41,7 @@ bool spreadSigns(const BrickLattice& lattice, double band, std::vector<double>& 
   // Signs of a row of a brick as a byte, so that rows can be compared whole.
   const std::size_t rows = lattice.storage() / 8;
   std::vector<std::uint8_t> sign(rows, 0);
-  // Brick by brick, as it lies in memory, with the state of the 64 rows that run through a line of bricks.
+  // Brick by brick, in memory order, with the state of the 64 rows that run through a line of bricks.
   for (int line = 0; line < bricks[1] * bricks[2]; ++line) {
     const int by = line % bricks[1];
     const int bz = line / bricks[1];

@@ -19,7 +19,7 @@ class TetrahedronGrid {
     for (const Vec3& p : mesh.vertex) all.include(p);
     lower_ = all.lower;
     const Vec3 size = all.upper - all.lower;
-    // About one tetrahedron a cell.
+    // About one tetrahedron per cell.
     const double volume = std::max(size[0] * size[1] * size[2], 1e-30);
     cell_ = std::max(std::sqrt(std::sqrt(volume / static_cast<double>(mesh.tetrahedron.size()) * size.maxCoeff())),
                      size.maxCoeff() / 64.0);

@@ -11,7 +11,7 @@
 
 namespace calot {
 
-/// A fine surface carried by a coarse tetrahedral mesh: each vertex is an affine combination of the corners of one
+/// A fine surface embedded in a coarse tetrahedral mesh: each vertex is an affine combination of the corners of one
 /// tetrahedron, x = sum_a w_a x_a with sum_a w_a = 1 (barycentric mapping). A vertex outside the mesh belongs to the
 /// tetrahedron behind the nearest point of the mesh's boundary, so its weights may be negative or above one.
 class Embedding {
@@ -26,7 +26,7 @@ class Embedding {
 
   [[nodiscard]] const std::vector<Anchor>& anchors() const { return anchor_; }
 
-  /// Points of the surface for these node positions.
+  /// Maps the surface's points for these node positions.
   void map(std::span<const Vec3> nodes, std::vector<Vec3>& points) const;
 
  private:

@@ -38,7 +38,7 @@ class Grid {
     return {p % (nx_ - 1), p / (nx_ - 1) % (ny_ - 1), p / ((nx_ - 1) * (ny_ - 1))};
   }
   [[nodiscard]] bool isCorner(Point p) const { return p < corners_; }
-  /// Ends of a long edge differ in this.
+  /// The ends of a long edge differ in parity.
   [[nodiscard]] bool isEven(Point p) const {
     const auto c = coordinates(p);
     return (c[0] + c[1] + c[2]) % 2 == 0;
@@ -67,8 +67,8 @@ class Grid {
     return n;
   }
 
-  /// Calls visit(corner, corner, centre, centre) for every lattice tetrahedron: first and last two joined by long
-  /// edges.
+  /// Calls visit(corner, corner, centre, centre) for every lattice tetrahedron: first and last two
+  /// joined by long edges.
   template <class Visit>
   void forEachTetrahedron(const Visit& visit) const {
     for (Point k = 0; k < nz_; ++k) {
@@ -79,7 +79,7 @@ class Grid {
             std::array<Point, 3> to = from;
             ++to[static_cast<std::size_t>(axis)];
             if (!hasCorner(to[0], to[1], to[2])) continue;
-            // The four cubes around the edge, in turn.
+            // The four cubes around the edge, in cyclic order.
             const auto u = static_cast<std::size_t>((axis + 1) % 3);
             const auto v = static_cast<std::size_t>((axis + 2) % 3);
             std::array<std::array<Point, 3>, 4> ring{from, from, from, from};
@@ -109,7 +109,7 @@ double volumeOf(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return (b - a).cross(c - a).dot(d - a) / 6.0;
 }
 
-/// Carries one stuffing: values and positions of lattice points, and the tetrahedra as keys.
+/// State of one stuffing: values and positions of lattice points, and tetrahedra as keys.
 class Stuffing {
  public:
   Stuffing(const BccLattice& lattice, const std::vector<double>& value, double level, const StuffingLimits& limits,
@@ -136,8 +136,8 @@ class Stuffing {
     return cutShare_ ? cutShare_(p, q) : value(p) / (value(p) - value(q));
   }
 
-  /// Moves points that a cut comes too near to onto the nearest such cut, in order of the points. A moved point is on
-  /// the surface: its edges have no cuts any more.
+  /// Moves points with a cut that is too near onto the nearest such cut, in order of the points. A moved point is on
+  /// the surface: its edges no longer have cuts.
   void warp() {
     std::array<Neighbour, 14> near;
     for (std::size_t i = 0; i < value_.size(); ++i) {
@@ -175,8 +175,8 @@ class Stuffing {
   /// Quadrilateral p1, p2 (inside) and their cuts towards m (outside), a piece of the lattice face p1 p2 m. True when
   /// its diagonal runs from p1 to the cut of p2. It ends at the cut of the long edge. With two short edges it starts at
   /// the inside point whose coordinates' sum has the parity of m's: then the two such faces of a tetrahedron get
-  /// diagonals that start at different points (with parity of the inside point alone, both start at one, and angles
-  /// of 8.6 degrees appear). Both sides of a face decide alike.
+  /// diagonals that start at different points (with parity of the inside point alone, both start at one, and angles of
+  /// 8.6 degrees appear). Both sides of a face decide identically.
   [[nodiscard]] bool diagonalAtFirst(Point p1, Point p2, Point m) const {
     if (grid_.isCorner(p1) == grid_.isCorner(m)) return false;
     if (grid_.isCorner(p2) == grid_.isCorner(m)) return true;

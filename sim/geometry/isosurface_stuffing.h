@@ -22,8 +22,8 @@ struct TetrahedralMesh {
 [[nodiscard]] double meshVolume(const TetrahedralMesh& mesh);
 
 struct DihedralRange {
-  double smallest = 0.0;  ///< rad
-  double largest = 0.0;   ///< rad
+  double min = 0.0;  ///< rad
+  double max = 0.0;  ///< rad
 };
 
 /// Smallest and largest of all dihedral angles (rad); zeros for an empty mesh.
@@ -40,10 +40,10 @@ struct BoundaryTriangle {
 /// The boundary as a surface of its own, vertices renumbered in order of their old numbers.
 [[nodiscard]] TriangleMesh boundarySurface(const TetrahedralMesh& mesh);
 
-/// Which tetrahedra hang together through faces; numbered from 0 in order of their first tetrahedron.
+/// Connected components of tetrahedra through faces, numbered from 0 in order of their first tetrahedron.
 [[nodiscard]] std::vector<int> tetrahedronComponents(const TetrahedralMesh& mesh, int& count);
 
-/// Keeps the tetrahedra with keep[i] != 0; vertices without any are dropped, order is kept.
+/// The tetrahedra with keep[i] != 0, in order; vertices without a tetrahedron are dropped.
 [[nodiscard]] TetrahedralMesh subMesh(const TetrahedralMesh& mesh, const std::vector<std::uint8_t>& keep);
 
 /// Body-centred cubic lattice: a cubic grid of `size` points, origin + cell (i, j, k), and the centres of its cubes.
@@ -63,19 +63,19 @@ struct BccLattice {
   [[nodiscard]] Vec3 position(std::int64_t p) const;
 };
 
-/// How near to a lattice point a cut may be, as a share of its edge, before the point is moved onto it.
+/// Distance of a cut from a lattice point, as a share of its edge, below which the point is moved onto the cut.
 struct StuffingLimits {
-  double longEdge = 0.285;  ///< these two give dihedral angles in [10.65, 164.70] degrees, whatever the cuts
+  double longEdge = 0.285;  ///< these two give dihedral angles in [10.65, 164.70] degrees for all cuts
   double shortEdge = 0.40;
 };
 
-/// Where the surface crosses the edge from lattice point p to lattice point q, p < q: the share of the edge from p, in
-/// (0, 1). Asked only for edges whose ends lie on different sides; must answer alike each time.
+/// Position at which the surface crosses the edge from lattice point p to q, p < q, as a share from p in (0, 1). Called
+/// only for edges whose ends lie on different sides; must be a pure function.
 using CutShare = std::function<double(std::int64_t p, std::int64_t q)>;
 
-/// Fills {value < level} with tetrahedra.
-/// Every vertex, cut and diagonal is a function of the lattice alone, so the mesh has no cracks, and the same input
-/// gives the same bits everywhere. Vertices are ordered by lattice point and edge, tetrahedra by lattice tetrahedron.
+/// Fills {value < level} with tetrahedra. Every vertex, cut and diagonal is a function of the lattice alone, so the
+/// mesh has no cracks, and the same input gives the same bits everywhere. Vertices are ordered by lattice point and
+/// edge, tetrahedra by lattice tetrahedron.
 /// @param cut empty: values are linear along the edges
 /// @param value one for each lattice point (m); outside on the lattice's outermost points, or the mesh is cut off there
 [[nodiscard]] TetrahedralMesh stuff(const BccLattice& lattice, const std::vector<double>& value, double level,

@@ -17,16 +17,16 @@ constexpr double countTolerance = 0.15;
 constexpr double countAim = 0.05;
 constexpr double volumeTolerance = 0.01;
 constexpr double volumeAim = 0.002;
-/// The level set may move by this share of a cell: beyond it the lattice's margin ends, and the shape is no longer the
-/// surface's.
-constexpr double largestOffset = 0.75;
+/// Greatest offset of the level set as a share of a cell: beyond it the lattice's margin ends and the shape
+/// differs from the surface.
+constexpr double maxOffset = 0.75;
 
 double cubeRoot(double x) { return exponential(logarithm(x) / 3.0); }
 
-/// Signed distances on the lattice.
-/// Far from the surface only the sign counts: along a row the last distance, less the way gone, bounds the next from
-/// below. Signs come from winding numbers, for surfaces from elsewhere intersect themselves, and pseudonormals then
-/// lie. Between neighbours whose distances add up to more than their gap there is no surface: the sign carries over.
+/// Signed distances on the lattice. Far from the surface only the sign matters: along a row, the last distance minus
+/// the distance travelled bounds the next from below. Signs come from winding numbers, since imported surfaces may
+/// intersect themselves, which invalidates pseudonormals. Neighbours whose distances add up to more than their spacing
+/// have no surface between them and share the sign.
 std::vector<double> sample(const SurfaceDistance& surface, const BccLattice& lattice) {
   std::vector<double> value(static_cast<std::size_t>(lattice.points()));
   const double enough = 2.0 * lattice.cell;
@@ -77,7 +77,7 @@ struct Candidate {
   int droppedPieces = 0;
   double droppedVolume = 0.0;
 
-  /// At most 1: both promises hold. Smaller is better; a broken-off piece weighs like a percent of count.
+  /// At most 1: both tolerances hold. Smaller is better; a separated piece costs as much as one percent of count.
   [[nodiscard]] double cost() const {
     return std::max(countError / countTolerance, volumeError / volumeTolerance) + 0.07 * droppedPieces;
   }
@@ -90,7 +90,7 @@ class Search {
   Search(const TriangleMesh& surface, int requested)
       : distance_(surface, InsideRule::winding),
         requested_(requested),
-        largestLattice_(20'000 + 60 * std::int64_t{requested}),
+        maxLatticePoints_(20'000 + 60 * std::int64_t{requested}),
         box_(bounds(surface)),
         area_(surfaceArea(surface)),
         volume_(signedVolume(surface)) {
@@ -104,10 +104,10 @@ class Search {
 
   /// @return false: the lattice would be too large
   bool run(Candidate& best) {
-    // A lattice cube has 12 tetrahedra; the surface's pieces come on top, hence the correction that follows.
+    // A lattice cube has 12 tetrahedra; pieces at the surface come in addition, hence the correction below.
     double cell = cubeRoot(12.0 * volume_ / static_cast<double>(requested_));
     for (int i = 0; i < 6; ++i) {
-      if (BccLattice::around(box_, cell).points() > largestLattice_) return false;
+      if (BccLattice::around(box_, cell).points() > maxLatticePoints_) return false;
       const Candidate now = at(cell);
       const auto count = static_cast<double>(now.mesh.tetrahedron.size());
       if (now.cost() < best.cost()) best = now;
@@ -116,8 +116,8 @@ class Search {
       cell *= cubeRoot(std::clamp(ratio, 0.125, 8.0));
     }
     if (best.cost() < 0.5) return true;
-    // On coarse lattices the count jumps with the cell size: look around the best one, near first, with the lattice
-    // shifted as well.
+    // On coarse lattices the count jumps with the cell size: search around the best one, nearest first,
+    // also with shifted lattices.
     const double middle = best.cell > 0.0 ? best.cell : cell;
     const Vec3 shifts[5] = {Vec3(0.25, 0.25, 0.25), Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.5, 0.0), Vec3(0.0, 0.0, 0.5),
                             Vec3::Zero()};
@@ -125,7 +125,7 @@ class Search {
       const int ring = i / 10;
       const double share = 0.012 * static_cast<double>(ring);
       const double tried = middle * (i / 5 % 2 == 0 ? 1.0 + share : 1.0 - share);
-      if (BccLattice::around(box_, tried).points() > largestLattice_) continue;
+      if (BccLattice::around(box_, tried).points() > maxLatticePoints_) continue;
       Candidate now = at(tried, shifts[i % 5]);
       if (now.cost() < best.cost()) best = std::move(now);
       if (best.cost() < 0.5 || (i >= 20 && best.holds())) break;
@@ -150,7 +150,7 @@ class Search {
       now.cell = cell;
       now.offset = offset;
       now.mesh = stuff(lattice, value, offset);
-      keepMainPieces(now);
+      removeFragments(now);
       now.volume = meshVolume(now.mesh);
       const double missing = volume_ - now.volume;
       now.volumeError = std::abs(missing) / volume_;
@@ -161,14 +161,14 @@ class Search {
       if (best.volumeError <= volumeAim) break;
       // Snapping makes volume jump: damp once the steps stop helping.
       if (!better) step *= 0.5;
-      offset = std::clamp(offset + step * missing / area_, -largestOffset * cell, largestOffset * cell);
+      offset = std::clamp(offset + step * missing / area_, -maxOffset * cell, maxOffset * cell);
     }
     return best;
   }
 
-  /// A part thinner than the lattice can follow may leave loose pieces: of those that lie on one component of the
-  /// surface, only the largest stays.
-  void keepMainPieces(Candidate& candidate) const {
+  /// A part thinner than the lattice can resolve may leave loose pieces: of those on one component of the surface, only
+  /// the largest is kept.
+  void removeFragments(Candidate& candidate) const {
     int pieces = 0;
     const std::vector<int> piece = tetrahedronComponents(candidate.mesh, pieces);
     if (pieces <= 1) return;
@@ -202,9 +202,9 @@ class Search {
 
   SurfaceDistance distance_;
   int requested_;
-  /// A lattice has about 1/6 point for each tetrahedron and fills its box; a body that leaves more than 99 % of its box
-  /// empty would cost minutes and come out in crumbs.
-  std::int64_t largestLattice_;
+  /// A lattice has about 1/6 point per tetrahedron and fills its box; a body that leaves more than 99 % of its box
+  /// empty would take minutes and fall into fragments.
+  std::int64_t maxLatticePoints_;
   Box box_;
   double area_;
   double volume_;
@@ -219,12 +219,12 @@ void compare(const Search& search, StuffedMesh& result) {
   const SurfaceDistance boundary(boundarySurface(result.mesh));
   report.lostDistance = 0.5 * result.cellSize;
 
-  double largest2 = -1.0;
+  double maxSquared = -1.0;
   const auto measure = [&](const Vec3& p, int& guess) {
     const SurfaceDistance::Closest closest = boundary.closest(p, guess);
     guess = closest.triangle;
-    if (closest.on.squaredDistance > largest2) {
-      largest2 = closest.on.squaredDistance;
+    if (closest.on.squaredDistance > maxSquared) {
+      maxSquared = closest.on.squaredDistance;
       report.lostWhere = p;
     }
     return closest.on.squaredDistance;
@@ -244,17 +244,17 @@ void compare(const Search& search, StuffedMesh& result) {
     lost += own;
     lostPart.triangle.push_back(surface.triangle[slot(t)]);
   }
-  report.surfaceToMesh = std::sqrt(std::max(largest2, 0.0));
+  report.surfaceToMesh = std::sqrt(std::max(maxSquared, 0.0));
   report.lostArea = area > 0.0 ? lost / area : 0.0;
   static_cast<void>(triangleComponents(lostPart, report.lostParts));
 
   std::vector<char> followed(slot(search.components()), 0);
-  double largest = 0.0;
+  double maximum = 0.0;
   guess = 0;
   const auto back = [&](const Vec3& p) {
     const SurfaceDistance::Closest closest = search.distance().closest(p, guess);
     guess = closest.triangle;
-    largest = std::max(largest, closest.on.squaredDistance);
+    maximum = std::max(maximum, closest.on.squaredDistance);
     if (closest.on.squaredDistance <= result.cellSize * result.cellSize) {
       followed[slot(search.component()[slot(closest.triangle)])] = 1;
     }
@@ -263,7 +263,7 @@ void compare(const Search& search, StuffedMesh& result) {
   for (const Vec3& p : shell.vertex) back(p);
   for (int t = 0; t < shell.triangles(); ++t)
     back((shell.corner(t, 0) + shell.corner(t, 1) + shell.corner(t, 2)) / 3.0);
-  report.meshToSurface = std::sqrt(largest);
+  report.meshToSurface = std::sqrt(maximum);
   report.lostComponents = static_cast<int>(std::count(followed.begin(), followed.end(), char{0}));
 }
 
@@ -290,8 +290,8 @@ std::string faultOf(const TriangleMesh& surface) {
 StuffedMesh stuffToCount(const TriangleMesh& surface, int tetrahedra) {
   StuffedMesh result;
   result.report.requested = tetrahedra;
-  if (tetrahedra < 12 || tetrahedra > largestTetrahedronCount) {
-    result.error = "the number of tetrahedra must be from 12 to " + std::to_string(largestTetrahedronCount);
+  if (tetrahedra < 12 || tetrahedra > maxTetrahedronCount) {
+    result.error = "the number of tetrahedra must be from 12 to " + std::to_string(maxTetrahedronCount);
     return result;
   }
   result.error = faultOf(surface);
@@ -319,8 +319,8 @@ StuffedMesh stuffToCount(const TriangleMesh& surface, int tetrahedra) {
   const bool holds = best.holds();
   result.mesh = std::move(best.mesh);
   const DihedralRange angles = dihedralRange(result.mesh);
-  report.dihedralMin = angles.smallest;
-  report.dihedralMax = angles.largest;
+  report.dihedralMin = angles.min;
+  report.dihedralMax = angles.max;
   compare(search, result);
   if (!holds) {
     result.error = "count and volume cannot both be met at " + std::to_string(tetrahedra) +

@@ -9,7 +9,7 @@
 
 namespace calot {
 
-/// What a mesh keeps of its surface, and what it loses.
+/// Comparison of a mesh with its surface.
 struct StuffingReport {
   int requested = 0;
   int tetrahedra = 0;
@@ -26,31 +26,31 @@ struct StuffingReport {
   double lostDistance = 0.0;      ///< m; half a cell
   int lostParts = 0;              ///< connected patches of that area
   Vec3 lostWhere = Vec3::Zero();  ///< the point of the surface that is farthest from the mesh (m)
-  int lostComponents = 0;         ///< components of the surface that no part of the mesh follows
-  int droppedPieces = 0;          ///< pieces of mesh that thin parts had cut off, and that were left out
+  int lostComponents = 0;         ///< components of the surface without a corresponding part of the mesh
+  int droppedPieces = 0;          ///< pieces of mesh that thin parts separated and that were dropped
   double droppedVolume = 0.0;     ///< their volume (m^3)
 };
 
 struct StuffedMesh {
-  std::string error;         ///< empty: the mesh holds what was asked. Else one sentence that says what is wrong
-  bool unusable = false;     ///< with an error: the surface itself is at fault (empty, open, not finite, ...)
-  TetrahedralMesh mesh;      ///< with an error: empty, or the nearest that was found
+  std::string error;         ///< one sentence; empty: the mesh meets all requirements
+  bool unusable = false;     ///< with an error: the surface itself is invalid (empty, open, not finite, ...)
+  TetrahedralMesh mesh;      ///< with an error: empty, or the best that was found
   double cellSize = 0.0;     ///< of the lattice (m)
-  double levelOffset = 0.0;  ///< the level set that was filled (m); positive: grown
+  double levelOffset = 0.0;  ///< level of the filled level set (m); positive: enlarged
   StuffingReport report;
 
   [[nodiscard]] bool ok() const { return error.empty(); }
 };
 
-/// Largest number of tetrahedra that may be asked for.
-inline constexpr int largestTetrahedronCount = 2'000'000;
+/// Greatest number of tetrahedra that may be requested.
+inline constexpr int maxTetrahedronCount = 2'000'000;
 
-/// Chooses cell size and level-set offset together, so that the number of tetrahedra is within 15 % of the request
-/// (5 % where the lattice allows) and the volume within 1 % of the surface's. Taking the level set as it is loses
-/// volume at sharp rims and thin parts; the offset gives it back. Pieces that a thin part cuts off are left out, and
+/// Chooses cell size and level-set offset together, so that the number of tetrahedra is within 15 % of the request (5
+/// % where the lattice allows) and the volume within 1 % of the surface's. The unshifted level set loses volume at
+/// sharp rims and thin parts; the offset compensates for it. Pieces that a thin part separates are dropped and
 /// counted in the report.
 /// @param surface closed, outward, manifold (surface_report.h); metres
-/// @param tetrahedra at least 12, at most largestTetrahedronCount
+/// @param tetrahedra at least 12, at most maxTetrahedronCount
 [[nodiscard]] StuffedMesh stuffToCount(const TriangleMesh& surface, int tetrahedra);
 
 }  // namespace calot

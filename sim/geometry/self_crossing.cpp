@@ -13,7 +13,8 @@ bool has(const Index3& triangle, int vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
 
-/// Does an edge of triangle `from` pass through triangle `through`? Edges that share a vertex with it start on it.
+/// Does an edge of triangle `from` pass through triangle `through`? Edges that share a vertex with it start on
+/// it and are skipped.
 bool passes(const TriangleMesh& mesh, int from, int through, Vec3& where) {
   for (int k = 0; k < 3; ++k) {
     const int a = mesh.triangle[slot(from)][k];
@@ -31,7 +32,7 @@ bool passes(const TriangleMesh& mesh, int from, int through, Vec3& where) {
 
 }  // namespace
 
-SelfCrossing findSelfCrossing(const TriangleMesh& mesh, std::size_t most) {
+SelfCrossing findSelfCrossing(const TriangleMesh& mesh, std::size_t maxPairs) {
   struct Bounds {
     Vec3 lower, upper;
     int triangle;
@@ -63,7 +64,7 @@ SelfCrossing findSelfCrossing(const TriangleMesh& mesh, std::size_t most) {
         result.second = t;
         result.where = where;
       }
-      if (++result.pairs >= most) return result;
+      if (++result.pairs >= maxPairs) return result;
     }
   }
   return result;

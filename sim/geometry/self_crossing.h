@@ -16,10 +16,10 @@ struct SelfCrossing {
 };
 
 /// Pairs of triangles of which an edge of one passes through the inside of the other, found by sweeping along the
-/// longest axis of the bounds. What only touches (in a point, along an edge, flat on each other) does not cross; nor do
-/// triangles that share an edge. Cost grows with the pairs whose bounds overlap along that axis.
-/// @param most stop after so many pairs
+/// longest axis of the bounds. Triangles that only touch (in a point, along an edge, coplanar) or share an edge do not
+/// cross. Cost grows with the pairs whose bounds overlap along that axis.
+/// @param maxPairs stop after this many pairs
 /// @pre indices are in range, coordinates finite
-[[nodiscard]] SelfCrossing findSelfCrossing(const TriangleMesh& mesh, std::size_t most = 1000);
+[[nodiscard]] SelfCrossing findSelfCrossing(const TriangleMesh& mesh, std::size_t maxPairs = 1000);
 
 }  // namespace calot

@@ -169,8 +169,8 @@ SurfaceDistance::Closest SurfaceDistance::closest(const Vec3& p, int guess) cons
 }
 
 double SurfaceDistance::windingNumber(const Vec3& p) const {
-  // A cluster farther away than this many radii counts as one dipole: all errors together stay below a tenth, and
-  // the question is whether the sum exceeds one half.
+  // A cluster farther than this many radii is approximated by one dipole: the total error stays below a tenth, and the
+  // test is whether the sum exceeds one half.
   constexpr double farAway = 2.0;
   double sum = 0.0;
   std::array<int, 64> stack;

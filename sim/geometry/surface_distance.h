@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signed distance to a triangle surface, exact, through a bounding volume hierarchy.
+// Exact signed distance to a triangle surface by a bounding volume hierarchy.
 #pragma once
 
 #include <array>
@@ -10,16 +10,16 @@
 
 namespace calot {
 
-/// How inside is told from outside.
+/// How inside and outside are distinguished.
 enum class InsideRule {
   automatic,     ///< pseudonormals when the surface is closed, manifold and consistently oriented, else winding number
   pseudonormal,  ///< angle-weighted pseudonormals (Baerentzen and Aanaes 2005): exact on closed manifolds without
                  ///< self-intersections
-  winding,       ///< generalized winding number above one half (Jacobson et al. 2013), clusters far away as dipoles
-                 ///< (Barill et al. 2018): holds up on holes and self-intersections, several times slower
+  winding,  ///< generalized winding number above one half (Jacobson et al. 2013), distant clusters as dipoles (Barill
+            ///< et al. 2018): robust to holes and self-intersections, several times slower
 };
 
-/// Distances to a surface. Immutable after construction: queries allocate nothing and may run on many threads.
+/// Distances to a surface. Immutable after construction: queries allocate nothing and are thread-safe.
 class SurfaceDistance {
  public:
   struct Closest {
@@ -66,7 +66,7 @@ class SurfaceDistance {
   std::vector<int> order_;
   std::vector<Node> node_;
   std::vector<Vec3> faceNormal_;                 ///< unit; zero for a degenerate triangle
-  std::vector<std::array<Vec3, 3>> edgeNormal_;  ///< not unit: only signs are asked
+  std::vector<std::array<Vec3, 3>> edgeNormal_;  ///< not unit: only signs are used
   std::vector<Vec3> vertexNormal_;
 };
 

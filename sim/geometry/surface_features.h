@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces, edges and vertices of a surface with what a distance needs of them.
+// Faces, edges and vertices of a surface with the normals that distances need.
 #pragma once
 
 #include <array>
@@ -48,7 +48,7 @@ class SurfaceFeatures {
   }
   /// Angle-weighted sums of the faces' normals, one a vertex.
   [[nodiscard]] const std::vector<Vec3>& vertexNormals() const { return vertexNormal_; }
-  /// Edges that are not run through as often in one direction as in the other.
+  /// Edges whose sides do not balance in both directions.
   [[nodiscard]] int openEdges() const { return openEdges_; }
   /// Every edge has exactly two sides, in opposite directions.
   [[nodiscard]] bool manifoldEdges() const { return manifold_; }

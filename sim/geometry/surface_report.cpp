@@ -11,7 +11,7 @@
 namespace calot {
 namespace {
 
-constexpr double halfTurn = 3.14159265358979323846;
+constexpr double straightAngle = 3.14159265358979323846;
 
 bool before(const Vec3& x, const Vec3& y) {
   for (int k = 0; k < 3; ++k) {
@@ -20,8 +20,8 @@ bool before(const Vec3& x, const Vec3& y) {
   return false;
 }
 
-/// For each vertex the smallest index at exactly its place.
-std::vector<int> firstAtPlace(const TriangleMesh& mesh) {
+/// For each vertex the smallest index at exactly its position.
+std::vector<int> firstCoincident(const TriangleMesh& mesh) {
   std::vector<int> order(mesh.vertex.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
   std::sort(order.begin(), order.end(), [&mesh](int x, int y) {
@@ -61,7 +61,7 @@ std::vector<char> duplicates(const TriangleMesh& mesh) {
 
 bool repeatsCorner(const Index3& v) { return v[0] == v[1] || v[1] == v[2] || v[2] == v[0]; }
 
-/// Height over the longest side, against that side.
+/// Is the height over the longest side negligible compared with that side?
 bool isDegenerate(const TriangleMesh& mesh, int t) {
   if (repeatsCorner(mesh.triangle[slot(t)])) return true;
   const Vec3& a = mesh.corner(t, 0);
@@ -83,7 +83,7 @@ double componentWinding(const TriangleMesh& mesh, const std::vector<int>& triang
     const double lz = z.norm();
     sum += 2.0 * arctangent2(x.dot(y.cross(z)), lx * ly * lz + x.dot(y) * lz + y.dot(z) * lx + z.dot(x) * ly);
   }
-  return sum / (4.0 * halfTurn);
+  return sum / (4.0 * straightAngle);
 }
 
 struct Component {
@@ -132,12 +132,12 @@ int depth(const TriangleMesh& mesh, const std::vector<Component>& all, std::size
   return inside;
 }
 
-/// Turns triangles so that they agree with the first of their manifold-connected group.
+/// Reverses triangles so that each manifold-connected group agrees with the majority of its triangles.
 int makeConsistent(TriangleMesh& mesh) {
   const std::vector<Index3> neighbour = triangleNeighbours(mesh);
-  std::vector<char> state(mesh.triangle.size(), 0);  // 0 not met, 1 as it was, 2 to be turned
+  std::vector<char> state(mesh.triangle.size(), 0);  // 0 not visited, 1 unchanged, 2 reversed
   std::vector<int> queue;
-  int turned = 0;
+  int flipped = 0;
   for (int seed = 0; seed < mesh.triangles(); ++seed) {
     if (state[slot(seed)] != 0) continue;
     state[slot(seed)] = 1;
@@ -158,15 +158,15 @@ int makeConsistent(TriangleMesh& mesh) {
         queue.push_back(other);
       }
     }
-    // The majority was right.
-    const char turn = 2 * as >= static_cast<int>(queue.size()) ? char{2} : char{1};
+    // Reverse the minority.
+    const char flip = 2 * as >= static_cast<int>(queue.size()) ? char{2} : char{1};
     for (const int t : queue) {
-      if (state[slot(t)] != turn) continue;
+      if (state[slot(t)] != flip) continue;
       std::swap(mesh.triangle[slot(t)][1], mesh.triangle[slot(t)][2]);
-      ++turned;
+      ++flipped;
     }
   }
-  return turned;
+  return flipped;
 }
 
 }  // namespace
@@ -184,7 +184,7 @@ SurfaceReport inspectSurface(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) used[slot(v[k])] = 1;
   }
   report.unusedVertices = static_cast<int>(std::count(used.begin(), used.end(), char{0}));
-  const std::vector<int> first = firstAtPlace(mesh);
+  const std::vector<int> first = firstCoincident(mesh);
   for (int i = 0; i < mesh.vertices(); ++i) report.coincidentVertices += first[slot(i)] != i ? 1 : 0;
   for (int t = 0; t < mesh.triangles(); ++t) report.degenerateTriangles += isDegenerate(mesh, t) ? 1 : 0;
   const std::vector<char> duplicate = duplicates(mesh);
@@ -231,7 +231,7 @@ SurfaceReport inspectSurface(const TriangleMesh& mesh) {
 SurfaceRepair repairSurface(const TriangleMesh& mesh) {
   SurfaceRepair repair;
   TriangleMesh welded = mesh;
-  const std::vector<int> first = firstAtPlace(mesh);
+  const std::vector<int> first = firstCoincident(mesh);
   for (int i = 0; i < mesh.vertices(); ++i) repair.weldedVertices += first[slot(i)] != i ? 1 : 0;
   for (Index3& v : welded.triangle) {
     for (int k = 0; k < 3; ++k) v[k] = first[slot(v[k])];

@@ -18,7 +18,7 @@ struct Face {
   int side = 0;
 };
 
-/// All faces; those of one triangle stand together.
+/// All faces, sorted so that those of one triangle are adjacent.
 std::vector<Face> sortedFaces(const TetrahedralMesh& mesh) {
   std::vector<Face> faces;
   faces.reserve(4 * mesh.tetrahedron.size());

@@ -86,7 +86,7 @@ std::vector<int> triangleComponents(const TriangleMesh& mesh, int& count) {
     const int y = root(sides[i].triangle);
     parent[slot(std::max(x, y))] = std::min(x, y);
   }
-  // A root is its component's smallest triangle, so it is met before its followers.
+  // A root is its component's smallest triangle, so it precedes the others.
   count = 0;
   std::vector<int> component(mesh.triangle.size(), -1);
   for (int t = 0; t < mesh.triangles(); ++t) {

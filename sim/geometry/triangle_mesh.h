@@ -9,7 +9,7 @@
 
 namespace calot {
 
-/// Indices are int, containers want std::size_t: one short word for the cast. @pre i >= 0
+/// Short cast from int indices to std::size_t. @pre i >= 0
 constexpr std::size_t slot(int i) { return static_cast<std::size_t>(i); }
 
 /// A triangle surface. An outward triangle is counter-clockwise seen from outside: (b - a) x (c - a) points out.
@@ -27,8 +27,8 @@ struct TriangleMesh {
 /// Sum of the triangles' areas (m^2).
 [[nodiscard]] double surfaceArea(const TriangleMesh& mesh);
 
-/// Enclosed volume by the divergence theorem, positive when outward (m^3):
-/// V = 1/6 sum (a - o) . ((b - o) x (c - o)), o the middle of the bounds (less cancellation than the origin).
+/// Enclosed volume by the divergence theorem, positive when outward (m^3): V = 1/6 sum (a - o) . ((b - o) x (c - o)), o
+/// the centre of the bounds (less cancellation than the origin).
 [[nodiscard]] double signedVolume(const TriangleMesh& mesh);
 
 /// Bounds of all vertices (m); an empty box without any.
@@ -43,10 +43,10 @@ struct TriangleSide {
   bool forward = false;  ///< the triangle runs from low to high
 };
 
-/// All sides, ordered by (low, high, triangle, side): sides of one edge stand together.
+/// All sides, ordered by (low, high, triangle, side): sides of one edge are adjacent.
 [[nodiscard]] std::vector<TriangleSide> sortedSides(const TriangleMesh& mesh);
 
-/// neighbour[t][k]: the triangle across side k of t; -1 where the edge has not exactly two sides.
+/// neighbour[t][k]: the triangle across side k of t; -1 if the edge does not have exactly two sides.
 [[nodiscard]] std::vector<Index3> triangleNeighbours(const TriangleMesh& mesh);
 
 /// Component of each triangle (connected across edges, manifold or not), numbered from 0 in order of each component's

@@ -10,7 +10,7 @@ namespace calot {
 
 namespace {
 
-constexpr double letGo = 0.9;  ///< share of the difference that is left after each tick
+constexpr double residualDecay = 0.9;  ///< factor per tick of the difference between contact sets
 constexpr double tickSeconds = 0.001;
 
 bool finite(const std::vector<double>& values) {
@@ -43,13 +43,13 @@ bool isConsistent(const HapticState& state, const ContactSet& set) {
   return state.set != set.step || state.lambda.size() == set.free.size();
 }
 
-ToolRow couplingStretch(const Pose& simulated, const Pose& real, double largestStretch) {
+ToolRow couplingStretch(const Pose& simulated, const Pose& real, double maxStretch) {
   ToolRow q;
   Vec3 way = real.position - simulated.position;
   const double size = way.norm();
-  if (size > largestStretch) way *= largestStretch / size;
+  if (size > maxStretch) way *= maxStretch / size;
   q.head<3>() = way;
-  q[3] = std::clamp(rollBetween(simulated.orientation, real.orientation), -largestRollStretch, largestRollStretch);
+  q[3] = std::clamp(rollBetween(simulated.orientation, real.orientation), -maxRollStretch, maxRollStretch);
   return q;
 }
 
@@ -65,10 +65,10 @@ HapticForce hapticTick(const HapticModel& model, HapticState& state, const Conta
   const Vec3 axis = state.orientation.toRotationMatrix().col(2);
   ToolRow out = ToolRow::Zero();
   if (rows > 0) {
-    // Free and final gaps at this tick's pose stand behind the forces in one array, which keeps its capacity.
+    // One array, whose capacity is reused, holds forces, free gaps and final gaps.
     state.lambda.resize(3 * rows);
     const std::span<double> all(state.lambda);
-    const ToolRow q = couplingStretch(set.reference, {state.tip, state.orientation}, model.largestStretch);
+    const ToolRow q = couplingStretch(set.reference, {state.tip, state.orientation}, model.maxStretch);
     const double since = tickSeconds * std::min(state.age + 1, model.ticksPerStep);
     for (std::size_t i = 0; i < rows; ++i) all[rows + i] = set.free[i] + since * set.rate[i] + set.direction[i].dot(q);
     sweepContacts({set.kind, set.limit, set.compliance, all.subspan(rows, rows)}, all.first(rows),
@@ -81,12 +81,12 @@ HapticForce hapticTick(const HapticModel& model, HapticState& state, const Conta
     state.forceResidual = state.force - out.head<3>();
     state.torqueResidual = state.torque - out[3];
   }
-  state.forceResidual *= letGo;
-  state.torqueResidual *= letGo;
+  state.forceResidual *= residualDecay;
+  state.torqueResidual *= residualDecay;
   state.force = out.head<3>() + state.forceResidual;
   state.torque = out[3] + state.torqueResidual;
   const double size = state.force.norm();
-  if (size > model.largestForce) state.force *= model.largestForce / size;
+  if (size > model.maxForce) state.force *= model.maxForce / size;
   return {state.force, state.torque * axis};
 }
 

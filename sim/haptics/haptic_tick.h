@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The 1 kHz tick: the only code that makes a force. It solves the reduced complementarity problem that the simulation
-// published (Saupin, Duriez and Cotin 2008, "Contact model for haptic medical simulations"), for the hand's newest
-// pose.
+// The 1 kHz tick, the only code that computes a device force. It solves the reduced complementarity problem of the last
+// step (Saupin, Duriez and Cotin 2008, "Contact model for haptic medical simulations") at the hand's newest pose.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +13,18 @@
 
 namespace calot {
 
-/// The contact problem of one hand as a step left it, reduced to the instrument (frame I: tip and roll). With q the
-/// stretch of the virtual coupling, from the simulated instrument to the real one,
+/// The contact problem of one hand after a step, reduced to the instrument (frame I: tip and roll). With q the stretch
+/// of the virtual coupling from the simulated instrument to the real one,
 ///   gap = free + t rate + T q + W lambda,  force on the instrument = T^T lambda,
 /// T one row of four for each constraint, W the compliance of organs and coupling together, t the time since the step.
 struct ContactSet {
-  std::int64_t step = -1;          ///< the step that made it; -1: before the first
+  std::int64_t step = -1;          ///< step that produced it; -1: before the first
   Pose reference;                  ///< simulated instrument from which the stretch is measured
   std::vector<BlockKind> kind;     ///< blocks of rows
   std::vector<double> limit;       ///< of each block
   std::vector<ToolRow> direction;  ///< rows of T
   std::vector<double> free;        ///< m
-  std::vector<double> rate;        ///< how the tissue's own motion opens the gaps (m/s)
+  std::vector<double> rate;        ///< rate at which tissue motion opens the gaps (m/s)
   std::vector<double> compliance;  ///< W, row-major (m/N)
   std::vector<double> lambda;      ///< the step's own solution (N), warm start
 
@@ -44,16 +43,16 @@ struct ContactSet {
   }
 };
 
-/// What the tick carries from one to the next. Never part of State.
+/// State of the tick from one to the next. Never part of State.
 struct HapticState {
-  Vec3 tip = Vec3::Zero();              ///< real tip of the newest measurement, held while there is none (m)
+  Vec3 tip = Vec3::Zero();              ///< real tip of the newest measurement (m)
   Quat orientation = Quat::Identity();  ///< of the real instrument
   std::int64_t set = -1;                ///< step of the contact set that `lambda` belongs to
   std::uint32_t age = 0;                ///< ticks that used this set so far
   std::vector<double> lambda;           ///< N
-  Vec3 force = Vec3::Zero();            ///< what the last tick gave out (N)
+  Vec3 force = Vec3::Zero();            ///< force of the last tick (N)
   double torque = 0.0;                  ///< about the axis (N m)
-  Vec3 forceResidual = Vec3::Zero();    ///< what is left of the difference at the last change of sets (N)
+  Vec3 forceResidual = Vec3::Zero();    ///< decaying difference from the last change of sets (N)
   double torqueResidual = 0.0;          ///< N m
 
   template <class Self, class Visitor>
@@ -70,34 +69,33 @@ struct HapticState {
   }
 };
 
-/// Do the sizes of a set's rows fit each other, and are its numbers finite? (For what was read from a file.)
+/// Are the sizes of a set consistent and its numbers finite? Checks data read from a file.
 bool isConsistent(const ContactSet& set);
-/// Can these states meet in a tick?
+/// Does this haptic state fit this contact set?
 bool isConsistent(const HapticState& state, const ContactSet& set);
 
-/// What the tick needs to know of a hand.
+/// Parameters of a hand for the tick.
 struct HapticModel {
-  double largestForce = 8.0;      ///< what the device can do (N)
-  double largestStretch = 0.008;  ///< of the coupling at the tip: largest force over stiffness (m)
+  double maxForce = 8.0;      ///< limit of the device (N)
+  double maxStretch = 0.008;  ///< of the coupling at the tip: largest force over stiffness (m)
   std::uint32_t ticksPerStep = 10;
   std::uint32_t sweeps = 4;  ///< of the reduced problem, from the last tick's forces
   double tolerance = 1e-6;   ///< m
 };
 
 /// Largest stretch of the coupling about the shaft (rad).
-inline constexpr double largestRollStretch = 0.5;
+inline constexpr double maxRollStretch = 0.5;
 
-/// Stretch of the virtual coupling, bounded: from a simulated instrument to a real one.
-ToolRow couplingStretch(const Pose& simulated, const Pose& real, double largestStretch);
+/// Bounded stretch of the virtual coupling, from the simulated instrument to the real one.
+ToolRow couplingStretch(const Pose& simulated, const Pose& real, double maxStretch);
 
 struct HapticForce {
   Vec3 force = Vec3::Zero();   ///< f_W on the hand (N)
   Vec3 torque = Vec3::Zero();  ///< about the tip, in W, along the shaft's axis (N m)
 };
 
-/// One tick. Where the set changes, the difference between what the old and the new one say is let go over the ticks
-/// that follow, so that the force has no steps. Allocates only where a contact set has more rows than any before it
-/// (HapticState's capacity).
+/// One tick. When the set changes, the difference between the forces of the old and the new one decays over the
+/// following ticks, so that the force does not jump. Allocates only when a contact set has more rows than any before.
 /// @pre takeSample() took this tick's sample
 HapticForce hapticTick(const HapticModel& model, HapticState& state, const ContactSet& set);
 

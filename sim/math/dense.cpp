@@ -31,7 +31,8 @@ bool invertPositive(std::span<double> a, std::size_t n) {
       a[i * n + j] = sum * a[i * n + i];
     }
   }
-  // L^-T L^-1: entry (i, j) needs rows from the larger index on, so going down row by row overwrites nothing needed.
+  // L^-T L^-1: entry (i, j) reads rows at or below the larger index, so that processing rows from the
+  // top overwrites nothing needed.
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       double sum = 0.0;

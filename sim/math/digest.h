@@ -7,7 +7,7 @@
 
 namespace calot {
 
-/// XXH3-64 (xxHash 0.8 specification, seed 0) of bytes. Not cryptographic: it finds differences, it proves no origin.
+/// XXH3-64 (xxHash 0.8 specification, seed 0) of bytes. Not cryptographic: it detects differences but proves no origin.
 std::uint64_t digest64(std::span<const std::byte> bytes);
 
 /// Streaming form of the same hash: feeding pieces one after the other equals hashing their concatenation.

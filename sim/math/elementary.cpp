@@ -15,8 +15,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
 
-// Constants in parts. Every part but the last has at most 33 bits, so that its product with an integer below 2^20 is
-// exact.
+// Constants in parts. Every part but the last has at most 33 bits, so that its product with an integer
+// below 2^20 is exact.
 constexpr std::array<double, 4> halfPiParts = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69,
                                                0x1.b839a252049c1p-104};
 constexpr std::array<double, 2> ln2Parts = {0x1.62e42fefp-1, 0x1.473de6af278edp-34};
@@ -48,17 +48,17 @@ struct ReducedAngle {
 
 ReducedAngle reduceAngle(double x) {
   const double n = std::floor(x * 0x1.45f306dc9c883p-1 + 0.5);
-  // The first difference is exact (Sterbenz); of the next two the rounding errors are kept.
+  // The first difference is exact (Sterbenz); the rounding errors of the next two are compensated.
   const TwoSum second(x - n * halfPiParts[0], -(n * halfPiParts[1]));
   const TwoSum third(second.sum, -(n * halfPiParts[2]));
   const double tail = (second.error + third.error) - n * halfPiParts[3];
-  // The clamp is idle where the reduction is exact; beyond, it keeps the result within [-1, 1].
+  // The clamp has no effect where the reduction is exact; beyond, it keeps the result within [-1, 1].
   const double value = std::clamp(third.sum + tail, -0.7854, 0.7854);
   return {value, std::clamp((third.sum - value) + tail, -1e-15, 1e-15),
           static_cast<int>(n - 4.0 * std::floor(n / 4.0))};
 }
 
-// Taylor's coefficients: on |r| <= pi/4 the first term left out is below 2^-58 of the result.
+// Taylor coefficients: on |r| <= pi/4 the first omitted term is below 2^-58 of the result.
 double sineKernel(double r, double tail) {
   static constexpr std::array<double, 8> c = {
       -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,          1.0 / 362880.0,
@@ -182,8 +182,8 @@ double arctangent2(double y, double x) {
     large *= 0x1p120;
     small *= 0x1p120;
   }
-  // atan(small / large) = atan(c) + atan((small - c large) / (large + c small)), c the nearest eighth; 0 reaches a
-  // little further, for 1/8 would lose half of a small angle to cancellation.
+  // atan(small / large) = atan(c) + atan((small - c large) / (large + c small)), c the nearest eighth; the interval of
+  // 0 is slightly wider, since 1/8 would lose half the digits of a small angle to cancellation.
   const double ratio = small / large;
   const double eighths = ratio < 3.0 / 32.0 ? 0.0 : std::floor(ratio * 8.0 + 0.5);
   const double c = eighths * 0.125;

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elementary functions of our own: libm differs between systems and versions, these give the same bits everywhere.
-// Errors are the largest found against correctly rounded references (tests/sim/math/elementary_test.cpp), in units in
-// the last place of the result.
+// Portable elementary functions: libm differs between systems and versions, these give the same bits everywhere. Errors
+// are the greatest found against correctly rounded references (tests/sim/math/elementary_test.cpp), in units in the
+// last place of the result.
 #pragma once
 
 namespace calot {
 
-/// sin(x), cos(x) for |x| <= 1e5 (reduction by pi/2 in four parts, after Cody and Waite). At most 1 ulp, next to
-/// zeros too. For larger finite arguments the reduction is inexact: the result is a number in [-1, 1] and the same
-/// everywhere, but callers clamp angles. NaN for an argument that is not finite.
+/// sin(x), cos(x) for |x| <= 1e5 (reduction by pi/2 in four parts, after Cody and Waite). At most 1 ulp, also near
+/// zeros. For larger finite arguments the reduction is inexact: the result is in [-1, 1] and the same everywhere, but
+/// not accurate, so callers clamp angles. NaN for an argument that is not finite.
 double sine(double x);
 double cosine(double x);
 
 /// e^x; 0 below -708, +infinity above 709.7. At most 1 ulp.
 double exponential(double x);
 
-/// Natural logarithm of x > 0, subnormal too; NaN for x < 0, -infinity at 0. At most 1.1 ulp.
+/// Natural logarithm of x > 0, including subnormals; NaN for x < 0, -infinity at 0. At most 1.1 ulp.
 double logarithm(double x);
 
-/// Angle of (x, y) in (-pi, pi]; 0 at the origin. The sign of a zero counts for nothing. At most 2 ulp.
+/// Angle of (x, y) in (-pi, pi]; 0 at the origin. The sign of a zero is ignored. At most 2 ulp.
 double arctangent2(double y, double x);
 
-/// Arc cosine, argument clamped to [-1, 1]. At most 3 ulp, next to 1 too.
+/// Arc cosine, argument clamped to [-1, 1]. At most 3 ulp, also near 1.
 double arccosine(double x);
 
 }  // namespace calot

@@ -21,16 +21,16 @@ class TaskRef {
   void (*call_)(void*, std::size_t);
 };
 
-/// Runs tasks 0 .. count-1, each exactly once, in any order and on any thread, and returns when all are done.
-/// What a task writes must not depend on which thread runs it or when: partitions and reduction orders are fixed by the
-/// caller, so one thread and many give the same bits. Tasks must not throw.
+/// Runs tasks 0 to count - 1, each exactly once, in any order and on any thread, and returns when all are done. Results
+/// of a task must not depend on the thread or the time: the caller fixes partitions and reduction orders, so that any
+/// number of threads gives the same bits. Tasks must not throw.
 class Executor {
  public:
   virtual ~Executor() = default;
   virtual void run(std::size_t count, TaskRef task) = 0;
 };
 
-/// The executor of one thread: the caller's.
+/// Runs all tasks on the caller's thread.
 class SerialExecutor final : public Executor {
  public:
   void run(std::size_t count, TaskRef task) override {

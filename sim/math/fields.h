@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One list of fields, many uses. A part of State declares its fields once:
+// One list of fields for many uses. A part of State declares its fields once:
 //
 //   template <class Self, class Visitor> static void fields(Self& self, Visitor& visit) {
 //     visit("position", self.position);
 //     visit("velocity", self.velocity);
 //   }
 //
-// Digest, keyframe, restore and "which field differs first" all run over that list, so that a field cannot be saved but
-// not hashed, or hashed but not saved. Values have a plain layout (no padding, no pointers): arithmetic types, enums,
-// Eigen vectors, matrices and quaternions, and vectors of these. Bytes are little-endian, as on every machine the
-// contract names.
+// Digest, keyframe, restore and divergence check all visit that list, so that every field is both saved and hashed.
+// Values have a plain layout (no padding, no pointers): arithmetic types, enums, Eigen vectors, matrices and
+// quaternions, and vectors of these. Bytes are little-endian, as on all supported machines.
 #pragma once
 
 #include <array>
@@ -94,8 +93,8 @@ class ByteWriter {
   std::vector<std::byte>& out_;
 };
 
-/// Reads what ByteWriter wrote. Never reads outside the bytes; after the first fault `ok()` is false and everything
-/// that is still asked for is left as it was.
+/// Reads what ByteWriter wrote. Never reads outside the bytes. After the first error `ok()` is false, and later reads
+/// leave their targets unchanged.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -143,7 +142,7 @@ class ByteReader {
   }
 
   [[nodiscard]] bool ok() const { return ok_; }
-  /// True when every byte was used and none was missing.
+  /// Were all bytes consumed and none missing?
   [[nodiscard]] bool complete() const { return ok_ && at_ == bytes_.size(); }
 
  private:

@@ -6,8 +6,8 @@
 namespace calot {
 
 /// Sets the floating-point environment of the determinism contract (round to nearest, no flush-to-zero, no
-/// denormals-are-zero, exceptions masked) for a scope and restores what was there. Any library of the process may have
-/// changed it; `step`, the haptic tick and every worker task hold one of these.
+/// denormals-are-zero, exceptions masked) for a scope and restores the previous one, since any library of the process
+/// may have changed it. `step`, the haptic tick and every worker task use one.
 class FloatingPointScope {
  public:
   FloatingPointScope();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kernels work on a fixed number of lanes, each an independent element, whatever the machine's vector width: wider
-// hardware is faster and gives the same bits. A kernel is a plain loop over the lanes whose body is scalar code; the
-// compiler turns it into vectors. CALOT_LANE_KERNEL makes clones for wider machines, chosen when the program starts.
+// Kernels process a fixed number of lanes, each an independent element, whatever the machine's vector width: wider
+// hardware is faster and gives the same bits. A kernel is a plain loop over the lanes with a scalar body, which the
+// compiler vectorises. CALOT_LANE_KERNEL adds clones for wider machines, selected at program start.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small fixed-size algebra of the core: Eigen without its vectorisation (see docs/determinism.md).
+// Small fixed-size linear algebra: Eigen without its vectorisation (docs/determinism.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@ namespace calot {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-using Quat = Eigen::Quaterniond;  ///< unit quaternion; written w, x, y, z wherever it leaves the program
+using Quat = Eigen::Quaterniond;  ///< unit quaternion; stored and printed as w, x, y, z
 using Index3 = Eigen::Matrix<int, 3, 1>;
 using Index4 = Eigen::Matrix<int, 4, 1>;
 

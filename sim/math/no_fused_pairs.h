@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// To be included first, before everything else. gcc 12 turns pairs a b - c d, a b + c d (rotations) into one fused
-// instruction (fmaddsub) where the machine has it, even with -ffp-contract=off: that changes bits. It does so in its
-// straight-line vectoriser only, which sources with such pairs therefore do without.
+// Include first. gcc 12 compiles pairs a b - c d, a b + c d (rotations) to one fused instruction (fmaddsub) where
+// available, even with -ffp-contract=off, which changes bits. Only its straight-line vectoriser does so; it is disabled
+// in sources with such pairs.
 #pragma once
 
 #if defined(__GNUC__) && !defined(__clang__)

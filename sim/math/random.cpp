@@ -9,7 +9,7 @@ namespace calot {
 
 double Random::normal() {
   // Marsaglia and Bray (1964): (u, v) uniform in the unit disc gives u sqrt(-2 ln(s) / s), s = u^2 + v^2. The second
-  // value is thrown away: kept, it would be hidden state.
+  // value is discarded: it would be hidden state.
   for (;;) {
     const double u = uniform(-1.0, 1.0);
     const double v = uniform(-1.0, 1.0);

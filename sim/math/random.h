@@ -6,14 +6,14 @@
 namespace calot {
 
 /// PCG32 (XSH-RR 64/32; O'Neill 2014, "PCG: a family of simple fast space-efficient statistically good algorithms for
-/// random number generation"). Two words, the same sequence everywhere; part of State where the simulation draws, and
-/// the generator of performers.
+/// random number generation"). Two words of state and the same sequence everywhere. Part of State where the simulation
+/// draws random numbers; also used by performers.
 struct Random {
   std::uint64_t state = 0;
   std::uint64_t increment = 1;
 
   Random() = default;
-  /// @param seed where to start. @param stream which of 2^63 sequences; two streams never run into each other.
+  /// @param seed position in the sequence. @param stream one of 2^63 disjoint sequences
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : increment((stream << 1U) | 1U) {
     next();
     state += seed;
@@ -38,7 +38,7 @@ struct Random {
 
   double uniform(double lower, double upper) { return lower + (upper - lower) * uniform(); }
 
-  /// Standard normal by the polar method of Marsaglia; draws until accepted, keeps no second value.
+  /// Standard normal by Marsaglia's polar method; draws until accepted and discards the second value.
   double normal();
 };
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors by name, for kernels (lanes.h) whose loops the compiler takes lane by lane when left to itself: where one
-// loop stands in another, or what a lane does is long. Operators act on each number as they would on it alone, so that
-// the bits are those of the loop. Passed by reference, for by value they would follow another calling convention where
-// the machine is not known to have registers as wide.
+// Explicit vector types for kernels (lanes.h) that the compiler does not vectorise by itself: nested loops or long
+// bodies. Operators act elementwise, so that the bits equal those of a scalar loop. Vectors are passed by reference: by
+// value, the calling convention would depend on the register width of the target.
 #pragma once
 
 #include <cmath>
@@ -20,7 +19,7 @@ using FourFloats = float __attribute__((vector_size(4 * sizeof(float))));
 using EightFloats = float __attribute__((vector_size(laneCount * sizeof(float))));
 using FourInts = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
 using EightInts = std::int32_t __attribute__((vector_size(laneCount * sizeof(std::int32_t))));
-/// As wide as most machines' registers: wider ones would be spilled.
+/// The register width of most machines; wider vectors would be spilled.
 using FourDoubles = double __attribute__((vector_size(4 * sizeof(double))));
 using EightDoubles = double __attribute__((vector_size(laneCount * sizeof(double))));
 
@@ -34,7 +33,7 @@ CALOT_INLINE void writeVector(const Vector& v, Number* at) {
   std::memcpy(at, &v, sizeof v);
 }
 
-/// Number l of vector k goes to number k of vector l.
+/// Transposes an 8x8 matrix: element l of vector k becomes element k of vector l.
 CALOT_INLINE void transpose(EightFloats (&v)[laneCount]) {
   EightFloats pair[8];
   for (std::size_t k = 0; k < 4; ++k) {
@@ -55,8 +54,8 @@ CALOT_INLINE void transpose(EightFloats (&v)[laneCount]) {
   }
 }
 
-/// v = its root.
-CALOT_INLINE void takeRoot(FourDoubles& v) {
+/// Elementwise square root.
+CALOT_INLINE void squareRoot(FourDoubles& v) {
   double number[4];
   writeVector(v, number);
   for (double& x : number) x = std::sqrt(x);

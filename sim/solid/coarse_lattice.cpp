@@ -11,12 +11,12 @@ namespace calot {
 
 namespace {
 
-constexpr std::size_t smallest = 2000;   ///< free nodes
-constexpr std::size_t nodesACell = 100;  ///< of the solid
-constexpr double mostCells = 128.0;      ///< so that E^-1 stays smaller than the matrix
-constexpr double leastWeight = 1.0;      ///< of a lattice node, in nodes of the solid: fewer leave E nearly singular
+constexpr std::size_t minNodes = 2000;     ///< free nodes
+constexpr std::size_t nodesPerCell = 100;  ///< of the solid
+constexpr double maxCells = 128.0;         ///< so that E^-1 stays smaller than the matrix
+constexpr double minWeight = 1.0;          ///< of a lattice node, in nodes of the solid: less makes E nearly singular
 
-/// Along one axis: cell and place in it.
+/// Cell along one axis and the position within it.
 struct Along {
   std::size_t cell;
   double rest;
@@ -29,8 +29,8 @@ Along along(double at, std::size_t cells) {
 
 }  // namespace
 
-bool CoarseLattice::isWorthIt(const SolidModel& model) {
-  return !model.madeOfCubes() && model.freeNodes().size() >= smallest;
+bool CoarseLattice::isWorthwhile(const SolidModel& model) {
+  return !model.madeOfCubes() && model.freeNodes().size() >= minNodes;
 }
 
 CoarseLattice::CoarseLattice(const SolidModel& model, std::span<const float> rest) : model_(model) {
@@ -48,7 +48,7 @@ void CoarseLattice::placeNodes() {
     high = high.cwiseMax(p);
   }
   const Vec3 size = (high - low).cwiseMax(1e-9);
-  const double wanted = std::min(mostCells, static_cast<double>(model_.freeNodes().size()) / nodesACell);
+  const double wanted = std::min(maxCells, static_cast<double>(model_.freeNodes().size()) / nodesPerCell);
   std::array<std::size_t, 3> cells{};
   double edge = size.maxCoeff();
   for (double count = 0.0; count < wanted; edge *= 0.95) {
@@ -86,11 +86,11 @@ void CoarseLattice::placeNodes() {
     const auto incident = system.incident(node);
     for (std::size_t s = 0; s < sampled; ++s) element_[row][s] = incident[s * incident.size() / sampled].element;
   }
-  // Only lattice nodes that hold something get a number.
-  std::vector<std::uint32_t> kept(weight.size(), 0);
+  // Only lattice nodes with sufficient weight get a number.
+  std::vector<std::uint32_t> compact(weight.size(), 0);
   std::uint32_t count = 0;
   for (std::size_t q = 0; q < weight.size(); ++q) {
-    if (weight[q] >= leastWeight) kept[q] = count++;
+    if (weight[q] >= minWeight) compact[q] = count++;
   }
   std::vector<std::vector<sweeps::Part>> parts(count);
   std::map<std::array<std::uint32_t, 2>, std::uint32_t> edges;
@@ -98,10 +98,10 @@ void CoarseLattice::placeNodes() {
     sweeps::Share& share = share_[row];
     for (std::size_t c = 0; c < corners; ++c) {
       const std::size_t q = nodeOf[row][c];
-      if (weight[q] < leastWeight) share.weight[c] = 0.0F;
-      nodeOf[row][c] = kept[q];
+      if (weight[q] < minWeight) share.weight[c] = 0.0F;
+      nodeOf[row][c] = compact[q];
       if (share.weight[c] == 0.0F) continue;
-      parts[kept[q]].push_back({static_cast<std::uint32_t>(row * rowStride), share.weight[c]});
+      parts[compact[q]].push_back({static_cast<std::uint32_t>(row * rowStride), share.weight[c]});
     }
     for (std::size_t e = 0; e < corners / 2; ++e) {
       const std::array<std::uint32_t, 2> ends{nodeOf[row][2 * e], nodeOf[row][2 * e + 1]};
@@ -158,9 +158,9 @@ bool CoarseLattice::invert(std::span<const float> rest) {
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < size; ++j) inverse_[i * stride_ + j] = static_cast<float>(e[i * size + j]);
   }
-  turned_.assign(matrix.rows() * rowStride, 0.0F);
+  rotated_.assign(matrix.rows() * rowStride, 0.0F);
   coarse_.assign(stride_, 0.0F);
-  answer_.assign(rowStride * count, 0.0F);
+  solution_.assign(rowStride * count, 0.0F);
   ends_.assign(2 * rowStride * edge_.size(), 0.0F);
   return true;
 }
@@ -189,22 +189,22 @@ void CoarseLattice::rotate(std::span<const RotationGroup> rotation) {
   }
 }
 
-void CoarseLattice::answer(const float* r, float* c) {
+void CoarseLattice::apply(const float* r, float* c) {
   if (inverse_.empty()) return;
   const std::size_t slices = element_.size() / laneCount;
   const std::size_t nodes = start_.size() - 1;
-  sweeps::turnRows(quaternion_.data(), r, turned_.data(), slices);
+  sweeps::unrotateRows(quaternion_.data(), r, rotated_.data(), slices);
   for (std::size_t q = 0; q < nodes; ++q) {
-    sweeps::gather(part_.data() + start_[q], start_[q + 1] - start_[q], turned_.data(), coarse_.data() + 3 * q);
+    sweeps::gather(part_.data() + start_[q], start_[q + 1] - start_[q], rotated_.data(), coarse_.data() + 3 * q);
   }
-  sweeps::denseTimes(inverse_.data(), coarse_.data(), 3 * nodes, stride_, answer_.data());
+  sweeps::denseTimes(inverse_.data(), coarse_.data(), 3 * nodes, stride_, solution_.data());
   for (std::size_t e = 0; e < edge_.size(); ++e) {
     for (std::size_t k = 0; k < 2; ++k) {
-      std::copy_n(answer_.data() + rowStride * edge_[e][k], rowStride, ends_.data() + (2 * e + k) * rowStride);
+      std::copy_n(solution_.data() + rowStride * edge_[e][k], rowStride, ends_.data() + (2 * e + k) * rowStride);
     }
   }
-  sweeps::spread(share_.data(), share_.size(), ends_.data(), turned_.data());
-  sweeps::turnRowsBack(quaternion_.data(), turned_.data(), c, slices);
+  sweeps::spread(share_.data(), share_.size(), ends_.data(), rotated_.data());
+  sweeps::rotateRows(quaternion_.data(), rotated_.data(), c, slices);
 }
 
 }  // namespace calot

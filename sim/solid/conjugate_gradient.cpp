@@ -27,8 +27,8 @@ sweeps::Slices ConjugateGradient::slicesOf(const BlockMatrix& matrix, std::span<
       matrix.slices()};
 }
 
-void ConjugateGradient::prepare(const BlockMatrix& matrix, std::span<const float> values,
-                                std::span<const ExtraBlock> extra) {
+void ConjugateGradient::precompute(const BlockMatrix& matrix, std::span<const float> values,
+                                   std::span<const ExtraBlock> extra) {
   extra_.assign(extra.begin(), extra.end());
   inverse_.resize(matrix.slices() * 9 * laneCount);
   sweeps::invertDiagonal(slicesOf(matrix, values), inverse_.data());
@@ -57,13 +57,13 @@ void ConjugateGradient::addExtraMany() {
   }
 }
 
-/// Nothing that an earlier solve left, not finite perhaps, may reach this one through a padded block.
+/// Values of an earlier solve, perhaps not finite, must not enter through padding.
 void ConjugateGradient::clear(std::size_t size) {
   for (std::vector<float>* v : {&r_, &z_, &p_, &t_, &s_}) v->assign(size, 0.0F);
 }
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
-                                     std::span<float> x, const SolveGoal& wanted) {
+                                     std::span<float> x, const SolveGoal& goal) {
   const sweeps::Slices slices = slicesOf(matrix, values);
   clear(matrix.vectorSize());
   sRows_.assign(matrix.rows() * rowStride, 0.0F);
@@ -92,23 +92,23 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
     report.converged = start == 0.0;
     return report;
   }
-  const double from = std::max(start, wanted.from());
-  const double goal = wanted.tolerance * wanted.tolerance * from;
+  const double from = std::max(start, goal.from());
+  const double target = goal.tolerance * goal.tolerance * from;
   double size = start;
   float beta = 0.0F;
-  while (size > goal && report.iterations < wanted.cap) {
+  while (size > target && report.iterations < goal.cap) {
     std::fill(u_.begin(), u_.end(), 0.0F);
     sweeps::backward(slices, z_.data(), beta, p_.data(), t_.data(), u_.data());
     addExtra();
     const double curvature = forward(s_);
-    if (!(curvature > 0.0)) break;  // not positive definite, or not a number: what is reached so far stands
+    if (!(curvature > 0.0)) break;  // not positive definite or NaN: keep the current iterate
     const double next = update(static_cast<float>(size / curvature));
     beta = static_cast<float>(next / size);
     size = next;
     ++report.iterations;
   }
   report.residual = std::sqrt(size / from);
-  report.converged = size <= goal;
+  report.converged = size <= target;
   return report;
 }
 
@@ -133,9 +133,9 @@ SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<co
   forward(r_);
   const Eight start = update({});
   Eight size = start;
-  Eight goal{};
-  for (std::size_t n = 0; n < laneCount; ++n) goal[n] = tolerance * tolerance * start[n];
-  const auto open = [&](std::size_t n) { return start[n] > 0.0 && std::isfinite(start[n]) && size[n] > goal[n]; };
+  Eight target{};
+  for (std::size_t n = 0; n < laneCount; ++n) target[n] = tolerance * tolerance * start[n];
+  const auto open = [&](std::size_t n) { return start[n] > 0.0 && std::isfinite(start[n]) && size[n] > target[n]; };
   const auto anyOpen = [&] {
     for (std::size_t n = 0; n < laneCount; ++n) {
       if (open(n)) return true;
@@ -167,7 +167,7 @@ SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<co
   for (std::size_t n = 0; n < laneCount; ++n) {
     if (start[n] == 0.0) continue;
     report.residual = std::max(report.residual, std::sqrt(size[n] / start[n]));
-    report.converged = report.converged && size[n] <= goal[n];
+    report.converged = report.converged && size[n] <= target[n];
   }
   return report;
 }

@@ -17,7 +17,7 @@ using CornerLanes = std::array<std::array<std::array<double, laneCount>, 3>, 8>;
 using Stiffness = std::array<std::array<double, 24>, 24>;
 using RotationLanes = std::array<std::array<std::array<double, laneCount>, 3>, 3>;
 
-/// -1 or +1: on which side of the middle corner c lies along an axis.
+/// -1 or +1: side of the centre on which corner c lies along an axis.
 constexpr double side(std::size_t c, std::size_t axis) { return ((c >> axis) & 1U) != 0 ? 1.0 : -1.0; }
 
 void gather(const HexahedronGroup& group, std::span<const Vec3> values, CornerLanes& out) {
@@ -114,14 +114,14 @@ CALOT_LANE_KERNEL void forces(const CornerLanes& x, const std::array<Vec3, 8>& c
   forcesOf(x, corner, stiffness, r, fill, 4, out);
 }
 
-CALOT_LANE_KERNEL void turnedStiffness(const Stiffness& stiffness, const RotationLanes& r,
+CALOT_LANE_KERNEL void rotateStiffness(const Stiffness& stiffness, const RotationLanes& r,
                                        const std::array<double, laneCount>& fill, HexahedronBlocks* out) {
-  EightFloats turn[3][3];
+  EightFloats rotation[3][3];
   EightFloats share;
   for (std::size_t l = 0; l < laneCount; ++l) share[l] = static_cast<float>(fill[l]);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t l = 0; l < laneCount; ++l) turn[i][j][l] = static_cast<float>(r[i][j][l]);
+      for (std::size_t l = 0; l < laneCount; ++l) rotation[i][j][l] = static_cast<float>(r[i][j][l]);
     }
   }
   for (std::size_t a = 0; a < 8; ++a) {
@@ -132,13 +132,13 @@ CALOT_LANE_KERNEL void turnedStiffness(const Stiffness& stiffness, const Rotatio
           const auto k0 = static_cast<float>(stiffness[3 * a][3 * b + j]);
           const auto k1 = static_cast<float>(stiffness[3 * a + 1][3 * b + j]);
           const auto k2 = static_cast<float>(stiffness[3 * a + 2][3 * b + j]);
-          half[i][j] = share * ((turn[i][0] * k0 + turn[i][1] * k1) + turn[i][2] * k2);
+          half[i][j] = share * ((rotation[i][0] * k0 + rotation[i][1] * k1) + rotation[i][2] * k2);
         }
       }
       EightFloats block[9];
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
-          block[3 * i + j] = (half[i][0] * turn[j][0] + half[i][1] * turn[j][1]) + half[i][2] * turn[j][2];
+          block[3 * i + j] = (half[i][0] * rotation[j][0] + half[i][1] * rotation[j][1]) + half[i][2] * rotation[j][2];
         }
       }
       EightFloats first[laneCount];
@@ -223,7 +223,7 @@ void HexahedralElements::blocks(const RotationGroup& rotation, const std::array<
                                 std::span<HexahedronBlocks, laneCount> out) const {
   RotationLanes r;
   matrices(rotation, r);
-  turnedStiffness(stiffness_, r, fill, out.data());
+  rotateStiffness(stiffness_, r, fill, out.data());
 }
 
 void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
@@ -240,7 +240,7 @@ void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<cons
       DeformationLanes f;
       gather(groups_[g], position, x);
       deformation(x, edge_, f);
-      turnTowardsPolar(f, sweeps, rotation[g]);
+      rotateTowardsPolar(f, sweeps, rotation[g]);
       RotationLanes r;
       matrices(rotation[g], r);
       gather(groups_[g], velocity, v);
@@ -255,7 +255,7 @@ void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<cons
 }
 
 double HexahedralElements::volume(std::span<const Vec3> position, std::span<const double> fill) const {
-  // The Jacobian is at most quadratic along each axis: two Gauss points an axis are exact.
+  // The Jacobian is at most quadratic along each axis, so two Gauss points per axis are exact.
   const double abscissa = 1.0 / std::sqrt(3.0);
   double total = 0.0;
   for (std::size_t e = 0; e < count_; ++e) {

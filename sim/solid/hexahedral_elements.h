@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Co-rotational trilinear hexahedra (cubes of one size at rest) in lanes of eight.
 //
-// One rotation a cube, the polar rotation of its mean deformation gradient; small strain in the rotated frame:
+// Each cube has one rotation, the polar rotation of its mean deformation gradient, and small strain
+// in the rotated frame:
 //   f = -fill R K (R^T x - X).
 // K integrates the deviatoric part at 2 x 2 x 2 Gauss points, which is exact for a cube, and the volumetric part with
 // the mean dilatation (Nagtegaal, Parks and Rice 1974; Hughes 1980, "B-bar"), so that nearly incompressible tissue does
-// not lock. All cubes are alike: one K serves them all.
+// not lock. All cubes share one K.
 #pragma once
 
 #include <array>
@@ -25,19 +26,19 @@ namespace calot {
 /// Nodes of a cube: corner c lies at (c & 1, (c >> 1) & 1, (c >> 2) & 1) edges from corner 0.
 using Index8 = std::array<int, 8>;
 
-/// Eight cubes side by side. Lanes past the last cube repeat it with weight 0: they add nothing.
+/// Eight cubes in lanes. Lanes past the last cube repeat it with weight 0.
 struct HexahedronGroup {
   std::array<std::array<int, laneCount>, 8> node;
   std::array<double, laneCount> weight;  ///< 1, or 0 where the lane is not used
 };
 
-/// What one pass over a group leaves for the assembly.
+/// Forces of a group, for the assembly.
 struct HexahedronResult {
   std::array<std::array<std::array<double, laneCount>, 3>, 8> force;  ///< on the nodes (N)
 };
 
 /// Blocks of one cube: fill R K_ab R^T for a <= b (N/m), pairs in the order of pairOf(), entry (i, j) at [3 i + j]. Not
-/// in lanes: the assembly takes each cube's by itself.
+/// in lanes, since the assembly reads cubes one by one.
 using HexahedronBlocks = std::array<std::array<float, 9>, 36>;
 
 class HexahedralElements {
@@ -51,13 +52,12 @@ class HexahedralElements {
   /// Stiffness of a full cube at rest: entry (3 a + i, 3 b + j), corners a, b (N/m).
   [[nodiscard]] const std::array<std::array<double, 24>, 24>& stiffness() const { return stiffness_; }
 
-  /// Where the block of corners a <= b stands.
+  /// Index of the block of corners a <= b.
   static constexpr std::size_t pairOf(std::size_t a, std::size_t b) { return 8 * a - a * (a - 1) / 2 + (b - a); }
 
-  /// For each group: turns `rotation` towards the polar rotation of the mean deformation gradient at `position` by
-  /// `sweeps` Newton steps, and forces at position + lookAhead * velocity. Groups without anything left are passed
-  /// over.
-  /// @param fill per cube, 0 to 1: share of stiffness and mass that is left; empty: all full
+  /// For each group: rotates `rotation` towards the polar rotation of the mean deformation gradient at `position` by
+  /// `sweeps` Newton steps, then computes forces at position + lookAhead * velocity. Skips empty groups.
+  /// @param fill per cube, 0 to 1: remaining share of stiffness and mass; empty span: all full
   /// @param rotation in: last step's; out: this step's (unit)
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead, int sweeps,
                 std::span<const double> fill, std::span<RotationGroup> rotation, std::span<HexahedronResult> result,
@@ -65,7 +65,7 @@ class HexahedralElements {
 
   /// Fill of a group's cubes, by lane: 0 where a lane is not used.
   [[nodiscard]] std::array<double, laneCount> fillOf(std::size_t group, std::span<const double> fill) const;
-  /// Stiffness of a group's cubes, turned by `rotation`. @param fill by lane @param out per lane
+  /// Stiffness of a group's cubes, rotated by `rotation`. @param fill by lane @param out per lane
   void blocks(const RotationGroup& rotation, const std::array<double, laneCount>& fill,
               std::span<HexahedronBlocks, laneCount> out) const;
 

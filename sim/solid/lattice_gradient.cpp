@@ -2,8 +2,8 @@
 // Conjugate gradients with a lattice beside the sweeps. With A = L + D + L^T and K = D + L, an iteration is
 //   z = K^-T D y + c,  p = z + beta p,  q = A p,  s = K^-1 q,  alpha = r.z / p.q,
 //   x += alpha p,  r -= alpha q,  y -= alpha s,
-// where y = K^-1 r is carried along beside r and c is what the lattice makes of r. So the blocks are read twice: going
-// back, each answers K^-T and is half of A p; going forth, it is the other half and answers K^-1.
+// where y = K^-1 r is updated along with r, and c is the lattice's correction for r. The blocks are read twice: the
+// backward sweep applies K^-T and forms half of A p; the forward sweep forms the other half and applies K^-1.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace calot {
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, CoarseLattice& lattice,
-                                     std::span<const float> b, std::span<float> x, const SolveGoal& wanted) {
+                                     std::span<const float> b, std::span<float> x, const SolveGoal& goal) {
   const sweeps::Slices slices = slicesOf(matrix, values);
   const std::size_t size = matrix.vectorSize();
   clear(size);
@@ -44,22 +44,22 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
     std::array<double, laneCount> dot{};
     sweeps::updatePairs(slices, alpha, p_.data(), q_.data(), s_.data(), x.data(), r_.data(), y_.data(), z_.data(),
                         dot.data());
-    lattice.answer(r_.data(), c_.data());
+    lattice.apply(r_.data(), c_.data());
     return sumOf(dot) + sweeps::dot(r_.data(), c_.data(), size);
   };
 
-  forward();  // of b, for there is no p yet
+  forward();  // of b: there is no p yet
   const double start = update(-1.0F);
   SolveReport report;
   if (!(start > 0.0) || !std::isfinite(start)) {
     report.converged = start == 0.0;
     return report;
   }
-  const double from = std::max(start, wanted.from());
-  const double goal = wanted.tolerance * wanted.tolerance * from;
+  const double from = std::max(start, goal.from());
+  const double target = goal.tolerance * goal.tolerance * from;
   double left = start;
   float beta = 0.0F;
-  while (left > goal && report.iterations < wanted.cap) {
+  while (left > target && report.iterations < goal.cap) {
     std::fill(uw_.begin(), uw_.end(), 0.0F);
     sweeps::backwardPairs(slices, z_.data(), c_.data(), beta, p_.data(), uw_.data(), pq_.data());
     for (const ExtraBlock& e : extra_) {
@@ -70,14 +70,14 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
       }
     }
     const double curvature = forward();
-    if (!(curvature > 0.0)) break;  // not positive definite, or not a number: what is reached so far stands
+    if (!(curvature > 0.0)) break;  // not positive definite or NaN: keep the current iterate
     const double next = update(static_cast<float>(left / curvature));
     ++report.iterations;
     beta = static_cast<float>(next / left);
     left = next;
   }
   report.residual = std::sqrt(std::max(0.0, left) / from);
-  report.converged = left <= goal;
+  report.converged = left <= target;
   return report;
 }
 

@@ -16,7 +16,7 @@ CALOT_LANE_KERNEL void backwardPairs(const Slices& matrix, const float* z, const
     const std::size_t pairs = s * laneCount * rows::pairStride;
     Eight y[3];
     Eight unused[3];
-    rows::turnedPairs(uw + pairs, rows::inOrder, y, unused);
+    rows::pairsToLanes(uw + pairs, rows::inOrder, y, unused);
     for (std::size_t i = 0; i < 3; ++i) {
       Eight own;
       readVector(z + s * laneStride + i * laneCount, own);
@@ -34,7 +34,7 @@ CALOT_LANE_KERNEL void backwardPairs(const Slices& matrix, const float* z, const
       direction[i] = (t[i] + more) + by * before;
       writeVector(direction[i], p + at);
     }
-    rows::keepFirst(direction, pq + pairs);
+    rows::storeFirst(direction, pq + pairs);
     for (std::size_t k = 0; k < lower.width; ++k) {
       const float* value = lower.value + k * 9 * laneCount;
       Eight ofT[3];
@@ -60,12 +60,12 @@ CALOT_LANE_KERNEL void forwardPairs(const Slices& matrix, const float* p, const 
     const std::size_t pairs = slice * laneCount * rows::pairStride;
     Eight times[3];
     Eight solved[3];
-    rows::turnedPairs(uw + pairs, rows::inOrder, solved, times);  // w; u is of no use any more
+    rows::pairsToLanes(uw + pairs, rows::inOrder, solved, times);  // w; u is no longer needed
     for (std::size_t i = 0; i < 3; ++i) solved[i] = Eight{};
     for (std::size_t k = 0; k < lower.width; ++k) {
       Eight theirP[3];
       Eight theirS[3];
-      rows::turnedPairs(pq, lower.column + k * laneCount, theirP, theirS);
+      rows::pairsToLanes(pq, lower.column + k * laneCount, theirP, theirS);
       for (std::size_t i = 0; i < 3; ++i) {
         Eight v[3];
         for (std::size_t j = 0; j < 3; ++j) readVector(lower.value + ((9 * k + 3 * i) + j) * laneCount, v[j]);
@@ -85,7 +85,7 @@ CALOT_LANE_KERNEL void forwardPairs(const Slices& matrix, const float* p, const 
     product<false>(inverseOf(matrix, slice), solved, part);
     std::memcpy(q + slice * laneStride, times, sizeof times);
     std::memcpy(s + slice * laneStride, part, sizeof part);
-    rows::keepSecond(part, pq + pairs);
+    rows::storeSecond(part, pq + pairs);
   }
   writeVector(sum, dot);
 }

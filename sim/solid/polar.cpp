@@ -9,8 +9,8 @@ namespace calot {
 
 namespace {
 
-/// turnTowardsPolar() of lanes `from` to `from` + 3.
-CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup& q, std::size_t from) {
+/// rotateTowardsPolar() of lanes `from` to `from` + 3.
+CALOT_INLINE void rotateFour(const DeformationLanes& f, int sweeps, RotationGroup& q, std::size_t from) {
   FourDoubles m[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) readVector(f[i][j].data() + from, m[i][j]);
@@ -61,7 +61,7 @@ CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup&
     const FourDoubles c12 = h01 * h02 - h00 * h12;
     const FourDoubles trace = (b00 + b11) + b22;
     FourDoubles length = (a0 * a0 + a1 * a1) + a2 * a2;
-    takeRoot(length);
+    squareRoot(length);
     const FourDoubles scale = (trace < none ? -trace : trace) + length;
     const auto definite = (h00 > 1e-3 * scale) & (minor > 1e-6 * scale * scale) & (det > 1e-9 * scale * scale * scale);
     const FourDoubles newton = definite ? 1.0 / det : none;
@@ -69,9 +69,9 @@ CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup&
     const FourDoubles w0 = newton * ((c00 * a0 + c01 * a1) + c02 * a2) + gradient * a0;
     const FourDoubles w1 = newton * ((c01 * a0 + c11 * a1) + c12 * a2) + gradient * a1;
     const FourDoubles w2 = newton * ((c02 * a0 + c12 * a1) + minor * a2) + gradient * a2;
-    // The half angle as the vector part; at most about 53 degrees a step.
+    // Half the angle as the vector part: at most about 53 degrees per step.
     FourDoubles size = (w0 * w0 + w1 * w1) + w2 * w2;
-    takeRoot(size);
+    squareRoot(size);
     const FourDoubles bound = size > 1.0 ? 0.5 / size : none + 0.5;
     const FourDoubles ex = bound * w0;
     const FourDoubles ey = bound * w1;
@@ -82,7 +82,7 @@ CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup&
     const FourDoubles ny = ((qy + w * ey) + qz * ex) - qx * ez;
     const FourDoubles nz = ((qz + w * ez) + qx * ey) - qy * ex;
     FourDoubles norm = (nw * nw + nx * nx) + (ny * ny + nz * nz);
-    takeRoot(norm);
+    squareRoot(norm);
     const FourDoubles inverse = 1.0 / norm;
     w = nw * inverse;
     qx = nx * inverse;
@@ -97,9 +97,9 @@ CALOT_INLINE void turnFour(const DeformationLanes& f, int sweeps, RotationGroup&
 
 }  // namespace
 
-CALOT_LANE_KERNEL void turnTowardsPolar(const DeformationLanes& f, int sweeps, RotationGroup& q) {
-  turnFour(f, sweeps, q, 0);
-  turnFour(f, sweeps, q, 4);
+CALOT_LANE_KERNEL void rotateTowardsPolar(const DeformationLanes& f, int sweeps, RotationGroup& q) {
+  rotateFour(f, sweeps, q, 0);
+  rotateFour(f, sweeps, q, 4);
 }
 
 }  // namespace calot

@@ -11,25 +11,25 @@ RestCompliance::RestCompliance(const SolidModel& model, const SolidSolver::Setti
                                const Surroundings& surroundings)
     : model_(model), settings_(settings), column_(model.nodes()) {
   const FloatingPointScope scope;
-  settings_.lattice = false;  // which no solve of many right-hand sides takes
+  settings_.lattice = false;  // not used with several right-hand sides
   SolidState rest = restState(model);
   solver_.solveUnconstrained(model, rest, Vec3::Zero(), {}, settings_, executor, surroundings);
 }
 
 void RestCompliance::precomputeCompliance(std::span<const int> nodes) {
-  // Eight right-hand sides cost as much as one, and each lane of a solve goes on until it is done, whatever the others
-  // do: lanes that are left take nodes next to those that are asked for, which are likely to be asked for as well.
+  // Eight right-hand sides cost as much as one, and lanes converge independently. Spare lanes compute the following
+  // nodes, which are likely to be requested as well.
   pending_.clear();
-  const auto take = [this](std::size_t node) {
+  const auto request = [this](std::size_t node) {
     if (!column_[node].empty()) return;
     column_[node].resize(9 * model_.nodes());
     for (std::size_t axis = 0; axis < 3; ++axis) pending_.emplace_back(node, axis);
   };
-  for (const int node : nodes) take(static_cast<std::size_t>(node));
-  const std::size_t room = laneGroups(pending_.size()) * laneCount;
+  for (const int node : nodes) request(static_cast<std::size_t>(node));
+  const std::size_t capacity = laneGroups(pending_.size()) * laneCount;
   for (const int node : nodes) {
     const std::size_t next = static_cast<std::size_t>(node) ^ 1U;
-    if (pending_.size() + 3 <= room && next < model_.nodes()) take(next);
+    if (pending_.size() + 3 <= capacity && next < model_.nodes()) request(next);
   }
   for (std::size_t from = 0; from < pending_.size(); from += laneCount) {
     const std::size_t count = std::min(pending_.size() - from, std::size_t{laneCount});

@@ -20,7 +20,7 @@ CALOT_LANE_KERNEL void sumRows(const double* a, std::size_t countA, const double
                                std::size_t countC, double* out) {
   FourDoubles sum[3] = {};
   for (std::size_t i = 0; i < countA; ++i) {
-    const double* turn = a + 12 * i;
+    const double* rotation = a + 12 * i;
     for (std::size_t j = 0; j < countC; ++j, block += 9) {
       FourDoubles row[3];
       FourDoubles column[3];
@@ -29,7 +29,7 @@ CALOT_LANE_KERNEL void sumRows(const double* a, std::size_t countA, const double
         readVector(c + 12 * j + 4 * k, column[k]);
       }
       for (std::size_t r = 0; r < 3; ++r) {
-        const FourDoubles once = turn[r] * row[0] + (turn[4 + r] * row[1] + turn[8 + r] * row[2]);
+        const FourDoubles once = rotation[r] * row[0] + (rotation[4 + r] * row[1] + rotation[8 + r] * row[2]);
         FourDoubles x;
         FourDoubles y;
         FourDoubles z;

@@ -13,15 +13,15 @@ namespace calot::rows {
 using Four = FourFloats;
 using Eight = EightFloats;
 
-/// Two rows of four numbers after one another in each half.
+/// Concatenates two rows of four numbers.
 CALOT_INLINE void join(const Four& low, const Four& high, Eight& out) {
   out = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// Eight rows, which begin row[l] numbers from x, as three components of eight lanes.
-CALOT_INLINE void turned(const float* x, const std::int32_t* row, Eight* out) {
+/// Transposes eight rows, the l-th at x + row[l], to three components of eight lanes.
+CALOT_INLINE void toLanes(const float* x, const std::int32_t* row, Eight* out) {
   Four first[4];  // of rows 2 l and 2 l + 1: x x y y
-  Four last[4];   // and z z and what fills up
+  Four last[4];   // and z z and padding
   for (std::size_t l = 0; l < 4; ++l) {
     Four a;
     Four b;
@@ -41,8 +41,8 @@ CALOT_INLINE void turned(const float* x, const std::int32_t* row, Eight* out) {
   out[2] = __builtin_shufflevector(even, odd, 0, 1, 8, 9, 4, 5, 12, 13);
 }
 
-/// Three components of eight lanes, and what fills up, as eight rows: row l in half l / 4 of out[l % 4].
-CALOT_INLINE void turnedBack(const Eight* lanes, const Eight& last, Eight* out) {
+/// Transposes three components of eight lanes, and padding, to eight rows: row l in half l / 4 of out[l % 4].
+CALOT_INLINE void toRows(const Eight* lanes, const Eight& last, Eight* out) {
   const Eight low = __builtin_shufflevector(lanes[0], lanes[1], 0, 8, 1, 9, 4, 12, 5, 13);
   const Eight high = __builtin_shufflevector(lanes[0], lanes[1], 2, 10, 3, 11, 6, 14, 7, 15);
   const Eight lowLast = __builtin_shufflevector(lanes[2], last, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -53,7 +53,7 @@ CALOT_INLINE void turnedBack(const Eight* lanes, const Eight& last, Eight* out) 
   out[3] = __builtin_shufflevector(high, highLast, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-CALOT_INLINE void turnedBack(const Eight* lanes, Eight* out) { turnedBack(lanes, Eight{}, out); }
+CALOT_INLINE void toRows(const Eight* lanes, Eight* out) { toRows(lanes, Eight{}, out); }
 
 /// Adds four numbers.
 CALOT_INLINE void addTo(float* at, const Four& what) {
@@ -63,24 +63,24 @@ CALOT_INLINE void addTo(float* at, const Four& what) {
   writeVector(own, at);
 }
 
-/// Adds three components of eight lanes to rows, which begin row[l] numbers from x, in order of the lanes.
+/// Adds three components of eight lanes to rows, the l-th at x + row[l], in order of the lanes.
 CALOT_INLINE void addRows(const Eight* lanes, const std::int32_t* row, float* x) {
   Eight rows[4];
-  turnedBack(lanes, rows);
+  toRows(lanes, rows);
   for (std::size_t l = 0; l < 4; ++l) addTo(x + row[l], __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3));
   for (std::size_t l = 0; l < 4; ++l) addTo(x + row[4 + l], __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7));
 }
 
-/// Numbers of two rows side by side, one of each of two vectors.
+/// Numbers of a pair of rows, one from each of two vectors.
 inline constexpr std::size_t pairStride = 2 * rowStride;
 
-/// Numbers of a and b in turn: the first two of each half, and (high) the last two.
-CALOT_INLINE void crossed(const Eight& a, const Eight& b, Eight& low, Eight& high) {
+/// Interleaves numbers of a and b: the first two of each half, and (high) the last two.
+CALOT_INLINE void interleave(const Eight& a, const Eight& b, Eight& low, Eight& high) {
   low = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
   high = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
 }
-/// Pairs of numbers of a and b in turn: the first of each half, and (high) the second.
-CALOT_INLINE void joined(const Eight& a, const Eight& b, Eight& low, Eight& high) {
+/// Interleaves pairs of numbers of a and b: the first of each half, and (high) the second.
+CALOT_INLINE void interleavePairs(const Eight& a, const Eight& b, Eight& low, Eight& high) {
   low = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
   high = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
 }
@@ -90,18 +90,18 @@ CALOT_INLINE void halves(const Eight& a, const Eight& b, Eight& low, Eight& high
   high = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
-/// Eight pairs of rows, which begin 2 row[l] numbers from x, as three components of eight lanes of each vector.
-CALOT_INLINE void turnedPairs(const float* x, const std::int32_t* row, Eight* first, Eight* second) {
+/// Transposes eight pairs of rows, the l-th at x + 2 row[l], to three components of eight lanes of each vector.
+CALOT_INLINE void pairsToLanes(const float* x, const std::int32_t* row, Eight* first, Eight* second) {
   Eight part[2][3];  // component i of rows 4 h to 4 h + 3, of each vector in a half
   for (std::size_t h = 0; h < 2; ++h) {
     Eight own[4];
     for (std::size_t l = 0; l < 4; ++l) readVector(x + 2 * row[4 * h + l], own[l]);
     Eight cross[4];
-    crossed(own[0], own[1], cross[0], cross[1]);
-    crossed(own[2], own[3], cross[2], cross[3]);
+    interleave(own[0], own[1], cross[0], cross[1]);
+    interleave(own[2], own[3], cross[2], cross[3]);
     Eight fill;
-    joined(cross[0], cross[2], part[h][0], part[h][1]);
-    joined(cross[1], cross[3], part[h][2], fill);
+    interleavePairs(cross[0], cross[2], part[h][0], part[h][1]);
+    interleavePairs(cross[1], cross[3], part[h][2], fill);
   }
   for (std::size_t i = 0; i < 3; ++i) halves(part[0][i], part[1][i], first[i], second[i]);
 }
@@ -113,11 +113,11 @@ CALOT_INLINE void addPairs(const Eight* first, const Eight* second, const std::i
   const Eight none{};
   for (std::size_t h = 0; h < 2; ++h) {
     Eight cross[4];
-    crossed(part[h][0], part[h][1], cross[0], cross[1]);
-    crossed(part[h][2], none, cross[2], cross[3]);
+    interleave(part[h][0], part[h][1], cross[0], cross[1]);
+    interleave(part[h][2], none, cross[2], cross[3]);
     Eight out[4];
-    joined(cross[0], cross[2], out[0], out[1]);
-    joined(cross[1], cross[3], out[2], out[3]);
+    interleavePairs(cross[0], cross[2], out[0], out[1]);
+    interleavePairs(cross[1], cross[3], out[2], out[3]);
     for (std::size_t l = 0; l < 4; ++l) {
       float* at = x + 2 * row[4 * h + l];
       Eight own;
@@ -128,32 +128,32 @@ CALOT_INLINE void addPairs(const Eight* first, const Eight* second, const std::i
   }
 }
 
-/// Rows that follow one another.
+/// Offsets of consecutive rows.
 inline constexpr std::int32_t inOrder[laneCount] = {0, 4, 8, 12, 16, 20, 24, 28};
 static_assert(rowStride == 4 && laneCount == 8);
 
-/// Keeps a slice's rows in the copy of the vector by rows.
-CALOT_INLINE void keepRows(const Eight* lanes, float* rows) {
+/// Stores a slice's rows in a vector stored by rows.
+CALOT_INLINE void storeRows(const Eight* lanes, float* rows) {
   Eight out[4];
-  turnedBack(lanes, out);
+  toRows(lanes, out);
   for (std::size_t l = 0; l < 4; ++l) {
     writeVector(Four(__builtin_shufflevector(out[l], out[l], 0, 1, 2, 3)), rows + inOrder[l]);
     writeVector(Four(__builtin_shufflevector(out[l], out[l], 4, 5, 6, 7)), rows + inOrder[4 + l]);
   }
 }
 
-/// Keeps a slice's rows as the first, or the second, of pairs.
-CALOT_INLINE void keepFirst(const Eight* lanes, float* pairs) {
+/// Stores a slice's rows as the first or the second of pairs.
+CALOT_INLINE void storeFirst(const Eight* lanes, float* pairs) {
   Eight out[4];
-  turnedBack(lanes, out);
+  toRows(lanes, out);
   for (std::size_t l = 0; l < 4; ++l) {
     writeVector(Four(__builtin_shufflevector(out[l], out[l], 0, 1, 2, 3)), pairs + l * pairStride);
     writeVector(Four(__builtin_shufflevector(out[l], out[l], 4, 5, 6, 7)), pairs + (4 + l) * pairStride);
   }
 }
-CALOT_INLINE void keepSecond(const Eight* lanes, float* pairs) { keepFirst(lanes, pairs + rowStride); }
+CALOT_INLINE void storeSecond(const Eight* lanes, float* pairs) { storeFirst(lanes, pairs + rowStride); }
 
-/// The rows of a slice as lanes. @param rows where its first begins
-CALOT_INLINE void lanesOf(const float* rows, Eight* out) { turned(rows, inOrder, out); }
+/// The rows of a slice as lanes. @param rows the first of them
+CALOT_INLINE void lanesOf(const float* rows, Eight* out) { toLanes(rows, inOrder, out); }
 
 }  // namespace calot::rows

@@ -28,16 +28,16 @@ CALOT_INLINE void rotate(const float* quaternion, bool back, Eight* v) {
 
 }  // namespace
 
-CALOT_LANE_KERNEL void turnRows(const float* quaternion, const float* in, float* out, std::size_t slices) {
+CALOT_LANE_KERNEL void unrotateRows(const float* quaternion, const float* in, float* out, std::size_t slices) {
   for (std::size_t s = 0; s < slices; ++s) {
     Eight v[3];
     std::memcpy(v, in + s * laneStride, sizeof v);
     rotate(quaternion + s * 4 * laneCount, true, v);
-    rows::keepRows(v, out + s * sliceRows);
+    rows::storeRows(v, out + s * sliceRows);
   }
 }
 
-CALOT_LANE_KERNEL void turnRowsBack(const float* quaternion, const float* in, float* out, std::size_t slices) {
+CALOT_LANE_KERNEL void rotateRows(const float* quaternion, const float* in, float* out, std::size_t slices) {
   for (std::size_t s = 0; s < slices; ++s) {
     Eight v[3];
     rows::lanesOf(in + s * sliceRows, v);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A deformable solid: what is fixed (SolidModel) and what changes (SolidState).
+// A deformable solid: constant data (SolidModel) and State (SolidState).
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace calot {
 
-/// Fixed data of one solid: of tetrahedra, or of cubes.
+/// Constant data of one solid, made of tetrahedra or of cubes.
 class SolidModel {
  public:
   struct Material {
@@ -25,7 +25,7 @@ class SolidModel {
     double stiffnessDamping = 0.0;  ///< Rayleigh beta (s)
   };
 
-  /// @param fixed per node: held at its rest position.
+  /// @param fixed per node: constrained to its reference position.
   /// @pre positive volumes; every node belongs to a tetrahedron.
   SolidModel(std::vector<Vec3> rest, std::vector<Index4> tetrahedra, const std::vector<bool>& fixed, Material material);
 
@@ -45,18 +45,18 @@ class SolidModel {
   /// @pre made of cubes
   [[nodiscard]] const HexahedralElements& hexahedra() const { return std::get<HexahedralElements>(elements_); }
   [[nodiscard]] bool madeOfCubes() const { return std::holds_alternative<HexahedralElements>(elements_); }
-  /// Groups of lanes that hold its elements: so many rotations has its State.
+  /// Number of lane groups of its elements; `State` stores one rotation per group.
   [[nodiscard]] std::size_t groups() const;
-  /// Lumped masses (kg): an equal share of each incident element, where all are full.
+  /// Lumped masses (kg): an equal share of each incident element, all full.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
   /// Their sum.
   [[nodiscard]] double wholeMass() const { return wholeMass_; }
-  /// Deformed volume (m^3). @param fill share of each cube that is there; empty: all of it
+  /// Deformed volume (m^3). @param fill remaining share of each cube; empty span: all full
   [[nodiscard]] double volume(std::span<const Vec3> position, std::span<const double> fill = {}) const;
-  /// Row of a node in the system, or -1 where it is fixed. Some rows have no node: they only fill slices up.
+  /// Row of a node in the system, or -1 if it is fixed. Padding rows have no node.
   [[nodiscard]] int row(std::size_t node) const { return system_.row(node); }
   [[nodiscard]] const std::vector<int>& freeNodes() const { return system_.nodes(); }
-  /// Of all elements.
+  /// The system of all elements.
   [[nodiscard]] const SolidSystem& system() const { return system_; }
   [[nodiscard]] std::size_t elementCount() const { return madeOfCubes() ? cube_.size() : tetrahedra_.size(); }
   /// Nodal masses of partly filled cubes (kg). @pre made of cubes
@@ -75,13 +75,13 @@ class SolidModel {
   SolidSystem system_;
 };
 
-/// Everything of one solid that changes.
+/// State of one solid.
 struct SolidState {
   std::vector<Vec3> position;           ///< in W (m)
   std::vector<Vec3> velocity;           ///< (m/s)
-  std::vector<RotationGroup> rotation;  ///< co-rotation of each element, warm start of the next step's
-  std::uint32_t quietSteps = 0;         ///< steps in a row without touch and slower than the sleeping speed
-  double volume = 0.0;                  ///< deformed (m^3); kept because a sleeping organ does not recompute it
+  std::vector<RotationGroup> rotation;  ///< co-rotation of each element; the next step starts from it
+  std::uint32_t quietSteps = 0;         ///< consecutive steps without contact and below the sleeping speed
+  double volume = 0.0;                  ///< deformed (m^3); stored because a sleeping organ does not recompute it
   double largestDisplacement = 0.0;     ///< (m)
 
   template <class Self, class Visitor>
@@ -95,7 +95,7 @@ struct SolidState {
   }
 };
 
-/// Rest: no displacement, no velocity, asleep.
+/// Reference state: no displacement, no velocity, asleep.
 SolidState restState(const SolidModel& model);
 
 }  // namespace calot

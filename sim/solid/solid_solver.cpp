@@ -11,16 +11,16 @@ namespace calot {
 namespace {
 
 constexpr std::size_t nodesPerTask = 128;
-/// Of a cube's corner, and of any other node beyond the mean of its solid (m/s). No hand moves tissue as fast; what
-/// does is a corner that only a nearly empty cube holds, thrown about by what holds that cube elsewhere, or contact in
-/// crumpled tissue, decided on a compliance that is not that of its shape.
+/// Greatest speed of a cube's corner, and of any other node relative to the mean of its solid (m/s). No hand moves
+/// tissue as fast. It occurs at a corner that belongs only to a nearly empty cube, or in contact of crumpled tissue,
+/// whose compliance differs much from that of the reference configuration.
 constexpr double fastestNode = 5.0;
-/// Beside a lattice the residual leaves no smooth error behind, which is what displaces most: ten times the tolerance
-/// errs as much as sweeps alone do (docs/simulation.md).
-constexpr double asSmooth = 10.0;
-constexpr double weightless = 0.1;  ///< of a node's mass at rest: what has less left is held back without a word
+/// With a lattice, the remaining error has no smooth part, which displaces most: ten times the tolerance gives the same
+/// error as sweeps alone (docs/simulation.md).
+constexpr double smoothErrorFactor = 10.0;
+constexpr double weightless = 0.1;  ///< share of a node's reference mass below which clamping is not reported
 
-/// What mass and stiffness weigh in the matrix of a step.
+/// Coefficients of mass and stiffness in the matrix of a step.
 StiffnessAssembly::Scale scaleOf(const SolidModel& model, double step) {
   const SolidModel::Material& m = model.material();
   return {1.0 + m.massDamping * step, step * step + m.stiffnessDamping * step};
@@ -28,7 +28,7 @@ StiffnessAssembly::Scale scaleOf(const SolidModel& model, double step) {
 
 }  // namespace
 
-Vec3 SolidPlace::of(std::span<const Vec3> values) const {
+Vec3 MaterialPoint::of(std::span<const Vec3> values) const {
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k < count; ++k) sum += weight[k] * values[static_cast<std::size_t>(node[k])];
   return sum;
@@ -38,7 +38,7 @@ Mat3 JointAttachment::block(std::size_t i, std::size_t j) const {
   Mat3 m;
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b < 3; ++b) {
-      m(static_cast<int>(a), static_cast<int>(b)) = damper[(3 * i + a) * 3 * place.size() + 3 * j + b];
+      m(static_cast<int>(a), static_cast<int>(b)) = damper[(3 * i + a) * 3 * point.size() + 3 * j + b];
     }
   }
   return m;
@@ -52,7 +52,7 @@ inline Vec3 SolidSolver::cornerForce(const SolidModel& model, const SolidSystem:
   return {lanes[0][l], lanes[1][l], lanes[2][l]};
 }
 
-/// The whole system, or that of the cubes that are there.
+/// Chooses the whole system or that of the remaining cubes.
 void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> fill) {
   if (std::find(fill.begin(), fill.end(), 0.0) == fill.end()) {
     system_ = &model.system();
@@ -71,10 +71,10 @@ void SolidSolver::assemble(const SolidModel& model, const SolidState& state, con
                            const Surroundings& surroundings, Executor& executor) {
   const StiffnessAssembly::Scale scale = scaleOf(model, settings.step);
   precompute(model, settings, executor);
-  if (settings.lattice && CoarseLattice::isWorthIt(model)) {
+  if (settings.lattice && CoarseLattice::isWorthwhile(model)) {
     lattice_->rotate(state.rotation);
   } else {
-    lattice_.reset();  // an earlier step's
+    lattice_.reset();  // from an earlier step
     latticeModel_ = nullptr;
   }
   const std::vector<double>& masses = surroundings.fill.empty() ? model.mass() : mass_;
@@ -85,7 +85,7 @@ void SolidSolver::assemble(const SolidModel& model, const SolidState& state, con
 }
 
 void SolidSolver::precompute(const SolidModel& model, const Settings& settings, Executor& executor) {
-  if (!settings.lattice || !CoarseLattice::isWorthIt(model)) return;
+  if (!settings.lattice || !CoarseLattice::isWorthwhile(model)) return;
   const StiffnessAssembly::Scale scale = scaleOf(model, settings.step);
   if (latticeModel_ == &model && latticeScale_.mass == scale.mass && latticeScale_.stiffness == scale.stiffness) return;
   std::vector<float> rest;
@@ -97,32 +97,32 @@ void SolidSolver::precompute(const SolidModel& model, const Settings& settings, 
 
 /// x_ = A^-1 b_
 SolveReport SolidSolver::solve(const Settings& settings) {
-  SolveGoal wanted{settings.tolerance, settings.cap, settings.speedTolerance * std::sqrt(wholeMass_)};
-  if (!lattice_) return cg_.solve(system_->matrix(), values_, b_, x_, wanted);
-  wanted.tolerance *= asSmooth;
-  wanted.least *= asSmooth;
-  return cg_.solve(system_->matrix(), values_, *lattice_, b_, x_, wanted);
+  SolveGoal goal{settings.tolerance, settings.cap, settings.speedTolerance * std::sqrt(wholeMass_)};
+  if (!lattice_) return cg_.solve(system_->matrix(), values_, b_, x_, goal);
+  goal.tolerance *= smoothErrorFactor;
+  goal.absolute *= smoothErrorFactor;
+  return cg_.solve(system_->matrix(), values_, *lattice_, b_, x_, goal);
 }
 
 void SolidSolver::addAttachments(const Settings& settings, std::span<const Attachment> attachments) {
   for (const Attachment& attachment : attachments) {
     if (addToElement(attachment, settings.step)) continue;
-    addPair(attachment.place, attachment.place, attachment.damper, settings.step);
+    addPair(attachment.point, attachment.point, attachment.damper, settings.step);
   }
 }
 
-/// The same as addPair() for a spring without a direction of its own in a known element, without a search.
-/// @return false: it is none
+/// Same as addPair() for an isotropic spring in a known element, without a search.
+/// @return false: not such a spring
 bool SolidSolver::addToElement(const Attachment& attachment, double step) {
-  const SolidPlace& place = attachment.place;
+  const MaterialPoint& point = attachment.point;
   const double damper = attachment.damper(0, 0);
-  if (system_ == &part_ && place.element >= 0 && present_[static_cast<std::size_t>(place.element)] == 0) return false;
-  if (place.element < 0 || attachment.damper != Mat3(damper * Mat3::Identity())) return false;
-  const std::uint32_t* slot = system_->placesOf(static_cast<std::size_t>(place.element));
-  for (std::size_t a = 0; a < place.count; ++a) {
-    for (std::size_t b = 0; b < place.count; ++b, ++slot) {
+  if (system_ == &part_ && point.element >= 0 && present_[static_cast<std::size_t>(point.element)] == 0) return false;
+  if (point.element < 0 || attachment.damper != Mat3(damper * Mat3::Identity())) return false;
+  const std::uint32_t* slot = system_->blockOffsets(static_cast<std::size_t>(point.element));
+  for (std::size_t a = 0; a < point.count; ++a) {
+    for (std::size_t b = 0; b < point.count; ++b, ++slot) {
       if (*slot == SolidSystem::noSlot) continue;
-      const auto own = static_cast<float>((step * (place.weight[a] * place.weight[b])) * damper);
+      const auto own = static_cast<float>((step * (point.weight[a] * point.weight[b])) * damper);
       for (std::size_t i = 0; i < 3; ++i) values_[*slot + 4 * i * laneCount] += own;
     }
   }
@@ -130,16 +130,16 @@ bool SolidSolver::addToElement(const Attachment& attachment, double step) {
 }
 
 void SolidSolver::addJoint(const Settings& settings, const JointAttachment& joint) {
-  for (std::size_t i = 0; i < joint.place.size(); ++i) {
-    for (std::size_t j = 0; j < joint.place.size(); ++j) {
+  for (std::size_t i = 0; i < joint.point.size(); ++i) {
+    for (std::size_t j = 0; j < joint.point.size(); ++j) {
       const Mat3 damper = joint.block(i, j);
-      if (!damper.isZero(0.0)) addPair(joint.place[i], joint.place[j], damper, settings.step);
+      if (!damper.isZero(0.0)) addPair(joint.point[i], joint.point[j], damper, settings.step);
     }
   }
 }
 
-/// Adds step * damper between two places to the matrix, rows at p.
-void SolidSolver::addPair(const SolidPlace& p, const SolidPlace& q, const Mat3& damper, double step) {
+/// Adds step * damper between two points to the matrix, rows at p.
+void SolidSolver::addPair(const MaterialPoint& p, const MaterialPoint& q, const Mat3& damper, double step) {
   const bool isotropic = damper == Mat3(damper(0, 0) * Mat3::Identity());
   for (std::size_t a = 0; a < p.count; ++a) {
     const int row = system_->row(static_cast<std::size_t>(p.node[a]));
@@ -147,8 +147,8 @@ void SolidSolver::addPair(const SolidPlace& p, const SolidPlace& q, const Mat3& 
     for (std::size_t b = 0; b < q.count; ++b) {
       const int column = system_->row(static_cast<std::size_t>(q.node[b]));
       if (column < 0) continue;
-      const bool mirrored = column > row;  // its transpose comes as well, for the damper is symmetric
-      const std::uint32_t at = mirrored ? system_->placeOf(column, row) : system_->placeOf(row, column);
+      const bool mirrored = column > row;  // its transpose is added as well, since the damper is symmetric
+      const std::uint32_t at = mirrored ? system_->blockOffset(column, row) : system_->blockOffset(row, column);
       if (mirrored && at != SolidSystem::noSlot) continue;
       const double share = step * (p.weight[a] * q.weight[b]);
       if (isotropic && at != SolidSystem::noSlot) {
@@ -189,24 +189,24 @@ SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState&
   }
   assemble(model, state, settings, surroundings, executor);
 
-  // In double until all that acts on a node is known.
+  // Accumulate loads in double.
   load_.assign(external.begin(), external.end());
   if (!surroundings.attachments.empty() || !surroundings.joints.empty()) load_.resize(model.nodes(), Vec3::Zero());
-  const auto addLoad = [&](const SolidPlace& place, const Vec3& force) {
-    for (std::size_t k = 0; k < place.count; ++k) {
-      load_[static_cast<std::size_t>(place.node[k])] += place.weight[k] * force;
+  const auto addLoad = [&](const MaterialPoint& point, const Vec3& force) {
+    for (std::size_t k = 0; k < point.count; ++k) {
+      load_[static_cast<std::size_t>(point.node[k])] += point.weight[k] * force;
     }
   };
   for (const Attachment& attachment : surroundings.attachments) {
-    addLoad(attachment.place, attachment.force - attachment.damper * attachment.place.of(state.velocity));
+    addLoad(attachment.point, attachment.force - attachment.damper * attachment.point.of(state.velocity));
   }
   for (const JointAttachment& joint : surroundings.joints) {
-    for (std::size_t i = 0; i < joint.place.size(); ++i) {
+    for (std::size_t i = 0; i < joint.point.size(); ++i) {
       Vec3 force = joint.force[i];
-      for (std::size_t j = 0; j < joint.place.size(); ++j) {
-        force -= joint.block(i, j) * joint.place[j].of(state.velocity);
+      for (std::size_t j = 0; j < joint.point.size(); ++j) {
+        force -= joint.block(i, j) * joint.point[j].of(state.velocity);
       }
-      addLoad(joint.place[i], force);
+      addLoad(joint.point[i], force);
     }
   }
   const std::vector<double>& masses = surroundings.fill.empty() ? model.mass() : mass_;
@@ -228,7 +228,7 @@ SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState&
     }
   });
   wholeMass_ = model.wholeMass();
-  cg_.prepare(system_->matrix(), values_, extra_);
+  cg_.precompute(system_->matrix(), values_, extra_);
   const SolveReport report = solve(settings);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());
   for (const int f : model.freeNodes()) {
@@ -270,7 +270,7 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
   return report;
 }
 
-SolveReport SolidSolver::push(std::span<const Vec3> impulse, const Settings& settings) {
+SolveReport SolidSolver::applyImpulses(std::span<const Vec3> impulse, const Settings& settings) {
   b_.assign(system_->matrix().vectorSize(), 0.0F);
   x_.resize(system_->matrix().vectorSize());
   for (const int f : system_->nodes()) {

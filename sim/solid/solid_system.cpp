@@ -10,11 +10,11 @@ namespace calot {
 
 namespace {
 
-/// Rows of one colour that are sorted among themselves by how many blocks they have, so that a slice holds like ones;
-/// few enough to stay close to each other.
+/// Window of rows of one colour that are sorted by number of blocks, so that the rows of a slice have similar lengths;
+/// small enough to preserve locality.
 constexpr std::size_t sortedRows = 128;
 
-/// Sorts the rows of one colour, most blocks first. @param blocks how many of a row
+/// Sorts the rows of one colour, most blocks first. @param blocks number of blocks of a row
 template <class Blocks>
 void sortRows(std::vector<int>& rows, Blocks&& blocks) {
   for (std::size_t first = 0; first < rows.size(); first += sortedRows) {
@@ -126,7 +126,7 @@ SolidSystem::SolidSystem(const ElementCorners& elements, const std::vector<bool>
         for (const Contribution& c : perSlot[r][k]) {
           source_.push_back(static_cast<std::uint32_t>((static_cast<std::size_t>(c.element) * 4 + c.a) * 4 + c.b));
         }
-        slot.last = slot.turned = source_.size();
+        slot.last = slot.transposedFrom = source_.size();
         slot_.push_back(slot);
         continue;
       }
@@ -138,7 +138,7 @@ SolidSystem::SolidSystem(const ElementCorners& elements, const std::vector<bool>
               static_cast<std::uint32_t>(36 * static_cast<std::size_t>(c.element) +
                                          HexahedralElements::pairOf(std::min(c.a, c.b), std::max(c.a, c.b))));
         }
-        if (!transposed) slot.turned = source_.size();
+        if (!transposed) slot.transposedFrom = source_.size();
       }
       slot.last = source_.size();
       slot_.push_back(slot);
@@ -150,7 +150,7 @@ SolidSystem::SolidSystem(const ElementCorners& elements, const std::vector<bool>
     incidentStart_.push_back(incident_.size());
   }
   buildMatrix(columns);
-  placeElements();
+  locateElements();
   sumColumns();
 }
 
@@ -169,7 +169,7 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
   }
   row_.assign(whole.row_.size(), -1);
   std::vector<int> rowOf(whole.nodeOf_.size(), -1);  // new, of each old one
-  std::vector<int> old;                              // of each new one; -1: fills up
+  std::vector<int> old;                              // of each new one; -1: padding
   for (std::size_t c = 0; c + 1 < whole.colourStart_.size(); ++c) {
     colourStart_.push_back(old.size());
     std::vector<int> rows;
@@ -206,11 +206,11 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
       slot.node = was.node;
       slot.first = source_.size();
       for (std::size_t c = was.first; c < was.last; ++c) {
-        if (c == was.turned) slot.turned = source_.size();
+        if (c == was.transposedFrom) slot.transposedFrom = source_.size();
         if (isThere(whole.source_[c])) source_.push_back(whole.source_[c]);
       }
       slot.last = source_.size();
-      if (was.turned == was.last) slot.turned = slot.last;
+      if (was.transposedFrom == was.last) slot.transposedFrom = slot.last;
       slot_.push_back(slot);
     }
   }
@@ -227,7 +227,7 @@ SolidSystem::SolidSystem(const SolidSystem& whole, std::span<const std::uint8_t>
     incidentStart_.push_back(incident_.size());
   }
   buildMatrix(columns);
-  placeElements();
+  locateElements();
   sumColumns();
 }
 
@@ -236,21 +236,21 @@ void SolidSystem::buildMatrix(const std::vector<std::vector<int>>& columns) {
   for (std::size_t r = 0; r < columns.size(); ++r) {
     rowSlot_.push_back(slotColumn_.size());
     for (std::size_t k = 0; k < columns[r].size(); ++k) {
-      slot_[slotColumn_.size()].place = matrix_.slot(r, k);
+      slot_[slotColumn_.size()].offset = matrix_.slot(r, k);
       slotColumn_.push_back(columns[r][k]);
     }
   }
   rowSlot_.push_back(slotColumn_.size());
 }
 
-void SolidSystem::placeElements() {
-  elementPlace_.resize(elementSlot_.size());
+void SolidSystem::locateElements() {
+  elementOffset_.resize(elementSlot_.size());
   for (std::size_t k = 0; k < elementSlot_.size(); ++k) {
-    elementPlace_[k] = elementSlot_[k] == none ? noSlot : static_cast<std::uint32_t>(slot_[elementSlot_[k]].place);
+    elementOffset_[k] = elementSlot_[k] == none ? noSlot : static_cast<std::uint32_t>(slot_[elementSlot_[k]].offset);
   }
 }
 
-/// Slices by their least node: what a slice of one colour takes from elements, those of other colours take soon after.
+/// Slices by their lowest node: slices of different colours then read the same elements in close succession.
 std::vector<std::size_t> SolidSystem::slicesByNodes() const {
   std::vector<std::pair<std::int32_t, std::size_t>> order;
   for (std::size_t s = 0; s < matrix_.slices(); ++s) {
@@ -276,7 +276,7 @@ void SolidSystem::sumColumns() {
     const std::size_t width = matrix_.lower(s).width;
     for (std::size_t k = 0; k <= width; ++k) {
       Column column{};
-      column.place = k == width ? matrix_.diagonal(s) : matrix_.lower(s).value() + k * 9 * laneCount;
+      column.offset = k == width ? matrix_.diagonal(s) : matrix_.lower(s).value() + k * 9 * laneCount;
       column.first = columnSource_.size();
       for (std::size_t l = 0; l < laneCount; ++l) {
         const std::span<const Slot> row = ofRow(s * laneCount + l);
@@ -291,24 +291,24 @@ void SolidSystem::sumColumns() {
             continue;
           }
           const std::size_t at = slot->first + c;
-          columnSource_.push_back(areCubes ? 2 * source_[at] + (at >= slot->turned ? 1U : 0U) : source_[at]);
+          columnSource_.push_back(areCubes ? 2 * source_[at] + (at >= slot->transposedFrom ? 1U : 0U) : source_[at]);
         }
       }
       column_.push_back(column);
     }
   }
-  if (!areCubes) source_ = {};  // nothing is ever taken out of these
+  if (!areCubes) source_ = {};  // no subsystem is ever built from these
 }
 
-std::uint32_t SolidSystem::placeOf(int row, int column) const {
+std::uint32_t SolidSystem::blockOffset(int row, int column) const {
   const std::size_t first = rowSlot_[static_cast<std::size_t>(row)];
   const std::size_t last = rowSlot_[static_cast<std::size_t>(row) + 1];
-  // Counted rather than searched for: a few vectors, and no branch that goes either way.
+  // Counting instead of searching takes a few vector operations and no unpredictable branch.
   std::uint32_t below = 0;
   for (std::size_t k = first; k < last; ++k) below += slotColumn_[k] < column ? 1U : 0U;
   const std::size_t found = first + below;
   if (found == last || slotColumn_[found] != column) return noSlot;
-  return static_cast<std::uint32_t>(slot_[found].place);
+  return static_cast<std::uint32_t>(slot_[found].offset);
 }
 
 }  // namespace calot

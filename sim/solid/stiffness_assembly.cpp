@@ -23,29 +23,30 @@ CALOT_LANE_KERNEL void cubeColumns(const Block* block, std::span<const SolidSyst
     EightFloats lane[laneCount];
     float last[laneCount];
     for (std::size_t l = 0; l < laneCount; ++l) {
-      // Of the blocks as they are, and of those that are transposed. To the other sum each adds zero, which changes
-      // nothing: a sum that began with zero is never -0.
+      // One sum for blocks as stored, one for transposed blocks. Each block adds zero to the other sum, which is exact:
+      // a sum that starts at zero is never -0.
       EightFloats sum[2] = {};
       FourFloats sumLast{};
       const std::uint32_t* source = which + column.first + l;
       for (std::size_t c = 0; c < column.count; ++c, source += laneCount) {
         const float* from = block[*source >> 1U].data();
-        const std::int32_t turned = -static_cast<std::int32_t>(*source & 1U);
-        const EightInts mask = {turned, turned, turned, turned, turned, turned, turned, turned};
+        const std::int32_t transposed = -static_cast<std::int32_t>(*source & 1U);
+        const EightInts mask = {transposed, transposed, transposed, transposed,
+                                transposed, transposed, transposed, transposed};
         EightInts own;
         readVector(from, own);
         sum[0] += reinterpret_cast<EightFloats>(own & ~mask);
         sum[1] += reinterpret_cast<EightFloats>(own & mask);
         FourInts ends = {0, 0, 0, 0};
         std::memcpy(&ends, from + 8, sizeof(float));
-        ends = __builtin_shufflevector(ends, ends, 0, 0, 0, 0) & FourInts{~turned, turned, 0, 0};
+        ends = __builtin_shufflevector(ends, ends, 0, 0, 0, 0) & FourInts{~transposed, transposed, 0, 0};
         sumLast += reinterpret_cast<FourFloats>(ends);
       }
       lane[l] = scale * (sum[0] + __builtin_shufflevector(sum[1], sum[1], 0, 3, 6, 1, 4, 7, 2, 5));
       last[l] = scale * (sumLast[0] + sumLast[1]);
     }
     transpose(lane);
-    float* out = values + column.place;
+    float* out = values + column.offset;
     for (std::size_t k = 0; k < laneCount; ++k) writeVector(lane[k], out + k * laneCount);
     std::memcpy(out + 8 * laneCount, last, sizeof last);
   }
@@ -55,7 +56,7 @@ CALOT_LANE_KERNEL void cubeColumns(const Block* block, std::span<const SolidSyst
 constexpr std::size_t cornerStride = rowStride;
 constexpr std::size_t elementStride = 4 * cornerStride;
 
-/// Lanes of a group as tetrahedra one after the other.
+/// Transposes a lane group to consecutive tetrahedra.
 CALOT_LANE_KERNEL void byElements(const RotatedGradients& gradient, const double* volume, float* out) {
   EightDoubles exact;
   readVector(volume, exact);
@@ -64,7 +65,7 @@ CALOT_LANE_KERNEL void byElements(const RotatedGradients& gradient, const double
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t i = 0; i < 3; ++i) readVector(gradient[a][i].data(), lanes[i]);
     EightFloats row[4];
-    rows::turnedBack(lanes, lanes[3], row);
+    rows::toRows(lanes, lanes[3], row);
     for (std::size_t l = 0; l < 4; ++l) {
       float* at = out + l * elementStride + a * cornerStride;
       writeVector(FourFloats(__builtin_shufflevector(row[l], row[l], 0, 1, 2, 3)), at);
@@ -116,7 +117,7 @@ CALOT_LANE_KERNEL void tetrahedraColumns(const float* element, std::span<const S
                                   __builtin_shufflevector(gb, gb, 2, 2, 2, 2, 6, 6, 6, 6)};
         for (std::size_t i = 0; i < 3; ++i) {
           block[i] += lv * (a[i] * gb) + mv * (b[i] * ga);
-          // Zero elsewhere, which changes nothing: a sum that began with zero is never -0.
+          // Adds zero elsewhere, which is exact: a sum that starts at zero is never -0.
           block[i] += reinterpret_cast<EightFloats>(reinterpret_cast<EightInts>(diagonal) & onDiagonal[i]);
         }
       }
@@ -129,7 +130,7 @@ CALOT_LANE_KERNEL void tetrahedraColumns(const float* element, std::span<const S
     for (std::size_t i = 0; i < 3; ++i) {
       EightFloats entry[3];
       rows::lanesOf(byRows[i], entry);
-      for (std::size_t j = 0; j < 3; ++j) writeVector(entry[j], values + column.place + (3 * i + j) * laneCount);
+      for (std::size_t j = 0; j < 3; ++j) writeVector(entry[j], values + column.offset + (3 * i + j) * laneCount);
     }
   }
 }
@@ -150,7 +151,7 @@ void StiffnessAssembly::assemble(const SolidModel& model, const SolidSystem& sys
   for (const int node : system.nodes()) {
     const auto row = static_cast<std::size_t>(system.row(static_cast<std::size_t>(node)));
     const auto own = static_cast<float>(scale.mass * mass[static_cast<std::size_t>(node)]);
-    float* diagonal = values.data() + system.ofRow(row).back().place;
+    float* diagonal = values.data() + system.ofRow(row).back().offset;
     for (std::size_t i = 0; i < 3; ++i) diagonal[4 * i * laneCount] += own;
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matrix of a step without what is attached to the solid: (1 + alpha h) M + (h^2 + beta h) K, K with the elements'
-// rotations of this step. (Kept for some steps, or to a grain of rotation, it is cheaper; but where stiffness differs a
-// thousandfold, as between a full cube and the next one that is nearly carved away, an error of 2 degrees in one is
-// enough to make an implicit step unstable.)
+// The matrix of a step without attachments: (1 + alpha h) M + (h^2 + beta h) K, with the elements' rotations of this
+// step in K. Reusing K for several steps or small rotations would be cheaper. But where stiffness differs a
+// thousandfold, as between a full cube and a nearly empty neighbour, a rotation error of 2 degrees is enough to make
+// an implicit step unstable.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class StiffnessAssembly {
   };
 
   /// Writes the values of the matrix (BlockMatrix).
-  /// @param system of the model, or of the part of it that is there
+  /// @param system of the model, or of its remaining part
   /// @param fill per cube, or empty  @param mass of the nodes (kg)
   void assemble(const SolidModel& model, const SolidSystem& system, std::span<const RotationGroup> rotation,
                 std::span<const double> fill, std::span<const double> mass, const Scale& scale, Executor& executor,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What sweeps are made of: blocks times vectors, eight lanes at a time. Internal to this folder.
+// Block-vector products of the sweeps, eight lanes at a time. Internal to this folder.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace calot::sweeps {
 
 using rows::Eight;
 
-/// One row of a block times d. @param value its first entry: of all lanes each its own, or (many) of one row for all
+/// One row of a block times d. @param value its first entry: one per lane, or (many) one for all lanes
 template <bool many>
 CALOT_INLINE void rowTimes(const float* value, const Eight* d, Eight& out) {
   if constexpr (many) {
@@ -43,7 +43,7 @@ CALOT_INLINE void columnTimes(const float* value, const Eight* d, Eight& out) {
   }
 }
 
-/// Blocks left of the diagonal of a slice, or (many) of one of its rows: advanced to its lane.
+/// Blocks left of the diagonal of a slice, or (many) of one of its rows, starting at its lane.
 struct Blocks {
   const float* value;
   const std::int32_t* column;

@@ -11,15 +11,15 @@ namespace {
 
 using rows::addRows;
 using rows::Eight;
-using rows::keepRows;
-using rows::turned;
+using rows::storeRows;
+using rows::toLanes;
 
-/// Of a row of a matrix of eight right-hand sides: where it begins.
+/// Offset of a row in a vector of eight right-hand sides.
 CALOT_INLINE std::size_t manyAt(std::int32_t column) {
   return static_cast<std::size_t>(column) / rowStride * laneStride;
 }
 
-/// Where the rows of a slice begin in a vector by rows, or the row itself (many).
+/// Offset of a slice's rows in a vector stored by rows, or (many) of the row itself.
 template <bool many>
 CALOT_INLINE std::size_t rowsAt(std::size_t at) {
   return many ? at : at / 3 * rowStride;
@@ -34,9 +34,9 @@ CALOT_INLINE void readRows(const float* rows, std::size_t at, Eight* out) {
   }
 }
 
-/// u += block^T t where the blocks' columns are.
+/// u += block^T t at the blocks' columns.
 template <bool many>
-CALOT_INLINE void handOn(const Blocks& lower, const Eight* t, float* u) {
+CALOT_INLINE void propagate(const Blocks& lower, const Eight* t, float* u) {
   for (std::size_t k = 0; k < lower.width; ++k) {
     const std::int32_t* column = lower.column + k * laneCount;
     Eight part[3];
@@ -70,7 +70,7 @@ CALOT_INLINE void backwardLanes(const Blocks& lower, const float* inverse, const
   Eight out[3];
   product<many>(inverse, y, out);
   std::memcpy(t + at, out, sizeof out);
-  handOn<many>(lower, out, u);
+  propagate<many>(lower, out, u);
 }
 
 /// out = inverse (u - sum of lower s). @param s by rows (many: it is the same)
@@ -84,7 +84,7 @@ CALOT_INLINE void lowerLanes(const Blocks& lower, const float* inverse, const fl
     if constexpr (many) {
       std::memcpy(d, s + manyAt(column[0]), sizeof d);
     } else {
-      turned(s, column, d);
+      toLanes(s, column, d);
     }
     Eight part[3];
     product<many>(lower.value + k * 9 * laneCount, d, part);
@@ -102,7 +102,7 @@ CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const 
   Eight out[3];
   lowerLanes<many>(lower, inverse, u, many ? s : sRows, at, out);
   std::memcpy(s + at, out, sizeof out);
-  if constexpr (!many) keepRows(out, sRows + rowsAt<many>(at));
+  if constexpr (!many) storeRows(out, sRows + rowsAt<many>(at));
   for (std::size_t i = 0; i < 3; ++i) {
     Eight direction;
     Eight before;
@@ -119,15 +119,15 @@ CALOT_INLINE void updateLanes(const float* diagonal, const Eight& by, const floa
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t a = at + i * laneCount;
     Eight step;
-    Eight rest;
+    Eight remainder;
     Eight own;
     readVector(t + a, step);
-    readVector(s + a, rest);
+    readVector(s + a, remainder);
     readVector(x + a, own);
     own += by * step;
     writeVector(own, x + a);
     readVector(r + a, own);
-    next[i] = own - by * (step + rest);
+    next[i] = own - by * (step + remainder);
   }
   Eight scaled[3];
   product<many>(diagonal, next, scaled);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernels of ConjugateGradient. Internal to this folder. Each goes over a whole matrix and takes eight lanes at a
-// time: the rows of one slice, or (Many) of one row eight right-hand sides. Vectors have three components of eight
-// lanes for each of them; but what the blocks are multiplied with or added to, u and s, also or only goes by rows:
-// rowStride numbers for each (Many: it is the same). Gathering lanes one by one would take three times as long.
+// The kernels of ConjugateGradient. Internal to this folder. Each processes a whole matrix eight lanes at a time: the
+// rows of one slice, or (Many) eight right-hand sides of one row. Vectors have three components of eight lanes each.
+// Vectors that blocks multiply or add to, u and s, are stored by rows as well or instead, rowStride numbers each (Many:
+// both layouts coincide): gathering single lanes would take three times as long.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,21 @@
 
 namespace calot::sweeps {
 
-/// A matrix with the inverses of its diagonal blocks: of each slice 9 x 8 lanes.
+/// A matrix and the inverses of its diagonal blocks, 9 x 8 lanes per slice.
 struct Slices {
   const float* value;
   const float* inverse;
   const std::int32_t* column;
-  const std::size_t* first;     ///< per slice: the block column that it begins with
+  const std::size_t* first;     ///< per slice: its first block column
   const std::size_t* diagonal;  ///< per slice: the block column of its diagonal
   std::size_t count;
 };
 
-/// Inverts the diagonal blocks; zero where one is singular, which is a row that only fills a slice up.
+/// Inverts the diagonal blocks; zero for singular ones, which are padding rows.
 void invertDiagonal(const Slices& matrix, float* inverse);
 
-/// From the last row to the first: p = z + beta p,  t = inverse (p - u), and where the blocks' columns are,
-/// u += block^T t. @param u by rows: what rows further down added to it
+/// From the last row to the first: p = z + beta p, t = inverse (p - u), and u += block^T t at the blocks' columns.
+/// @param u by rows: contributions of later rows
 void backward(const Slices& matrix, const float* z, float beta, float* p, float* t, float* u);
 /// @param beta per lane
 void backwardMany(const Slices& matrix, const float* z, const float* beta, float* p, float* t, float* u);
@@ -43,7 +43,7 @@ void updateMany(const Slices& matrix, const float* alpha, const float* t, const 
                 double* dot);
 
 /// With a lattice (lattice_gradient.cpp): from the last row to the first t = inverse (z - u),  p = t + c + beta p, and
-/// where the blocks' columns are, u += block^T t and w += block^T p.
+/// u += block^T t, w += block^T p at the blocks' columns.
 /// @param uw u and w, pairs of rows @param pq p in the first of pairs of rows
 void backwardPairs(const Slices& matrix, const float* z, const float* c, float beta, float* p, float* uw, float* pq);
 

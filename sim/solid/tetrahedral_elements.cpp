@@ -166,7 +166,7 @@ void TetrahedralElements::evaluate(std::span<const Vec3> position, std::span<con
       DeformationLanes f;
       gather(groups_[g], position, x);
       deformation(x, groups_[g], f);
-      turnTowardsPolar(f, sweeps, rotation[g]);
+      rotateTowardsPolar(f, sweeps, rotation[g]);
       gather(groups_[g], velocity, v);
       for (std::size_t a = 0; a < 4; ++a) {
         for (std::size_t i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Co-rotational linear tetrahedra (Mueller and Gross 2004, "Interactive virtual materials"; Etzmuss et al. 2003) in
-// lanes of eight.
+// Co-rotational linear tetrahedra (Mueller and Gross 2004, "Interactive virtual materials"; Etzmuss et al. 2003)
+// in lanes of eight.
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@ struct LameConstants {
 /// lambda = E nu / ((1 + nu)(1 - 2 nu)), mu = E / (2 (1 + nu)). @pre E > 0, 0 <= nu < 0.5
 LameConstants lameConstants(double youngModulus, double poissonRatio);
 
-/// Eight tetrahedra side by side. Lanes past the last element repeat it with volume 0: they add nothing.
+/// Eight tetrahedra in lanes. Lanes past the last element repeat it with volume 0.
 struct ElementGroup {
   std::array<std::array<int, laneCount>, 4> node;                        ///< node indices
   std::array<std::array<std::array<double, laneCount>, 3>, 4> gradient;  ///< of the shape functions at rest (1/m)
   std::array<double, laneCount> volume;                                  ///< at rest (m^3)
 };
 
-/// What one pass over an element group leaves for the right-hand side.
+/// Forces of an element group, for the right-hand side.
 struct ElementResult {
   std::array<std::array<std::array<double, laneCount>, 3>, 4> force;  ///< on the nodes (N)
 };
@@ -51,11 +51,11 @@ class TetrahedralElements {
     return groups_[element / laneCount].volume[element % laneCount];
   }
 
-  /// For each group: turns `rotation` towards the polar rotation of F(position) by `sweeps` Newton steps, then the
-  /// forces of the linear law in the rotated frame, evaluated at position + lookAhead * velocity:
+  /// For each group: rotates `rotation` towards the polar rotation of F(position) by `sweeps` Newton steps, then
+  /// computes forces of the linear law in the rotated frame at position + lookAhead * velocity:
   ///   F = sum_a x_a grad_a^T,  eps = sym(R^T F) - I,  sigma = 2 mu eps + lambda tr(eps) I,  f_a = -V R sigma grad_a.
-  /// With lookAhead = dt + beta this is the elastic part of the right-hand side of implicit Euler with stiffness
-  /// damping.
+  /// With lookAhead = dt + beta this is the elastic part of the right-hand side of implicit
+  /// Euler with stiffness damping.
   /// @param rotation in: last step's; out: this step's (unit). It is part of State.
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                 LameConstants material, int sweeps, std::span<RotationGroup> rotation, std::span<ElementResult> result,

@@ -20,7 +20,7 @@ namespace calot {
 /// A spring and a damper between a place of a body and one of another, linearised over a step, implicit on the side of
 /// the body that it is given to.
 struct TieLoad {
-  SolidPlace place;
+  MaterialPoint place;
   double stiffness = 0.0;        ///< N/m
   double damping = 0.0;          ///< N s/m
   Vec3 target = Vec3::Zero();    ///< where the other end is now (m)

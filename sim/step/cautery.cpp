@@ -34,7 +34,7 @@ void CauteryEffects::burnVessel(std::size_t hand, std::size_t structure, const S
   const VesselTree& tree = model_.vesselTrees()[s.index];
   BeamState& vessels = tissue.state.vessel[s.index];
   double distance = 0.0;
-  const BeamPlace where = nearestPlace(tree.beams, vessels, s.branch, contact.onAxis, distance);
+  const BeamPoint where = closestPoint(tree.beams, vessels, s.branch, contact.onAxis, distance);
   if (vessels.parting[where.element] != Parting::none) return;
   vessels.exposure[where.element] += time;
   tissue.activity.disturb(tissue.bodies, tissue.state, s.body);

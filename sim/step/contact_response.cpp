@@ -90,7 +90,7 @@ void ContactResponse::integrateInstrument(std::size_t hand, const InstrumentTrav
   const double size = way.norm();
   if (size > maxSlide) way *= maxSlide / size;
   const double roll =
-      std::clamp(travel.stretch[3] + push[3] / description.rollStiffness, -largestRollStretch, largestRollStretch);
+      std::clamp(travel.stretch[3] + push[3] / description.rollStiffness, -maxRollStretch, maxRollStretch);
   const Pose pose = movedTool(description.port, simulatedPose(s), way, roll);
   s.simulatedPosition = pose.position;
   s.simulatedOrientation = pose.orientation;

@@ -62,7 +62,7 @@ SolveReport FatMotion::solveUnconstrained(State& state, const Vec3& gravity, std
                                     {load_, fat_.fill(), loads.joints});
 }
 
-SolveReport FatMotion::push(std::span<const Vec3> impulse) { return solver_.push(impulse, responses_); }
+SolveReport FatMotion::push(std::span<const Vec3> impulse) { return solver_.applyImpulses(impulse, responses_); }
 
 Mat3 FatMotion::rotation(const State& state, int node) const { return fat_.rotation(state.fat[index_], node); }
 
@@ -82,7 +82,7 @@ bool FatSkin::follow(const State& /*state*/) {
 }
 
 void FatSkin::place(const State& state, std::vector<Vec3>& out) const {
-  motion_.fat_.contact().place(motion_.position(state), out);
+  motion_.fat_.contact().positions(motion_.position(state), out);
 }
 
 SolidSolver::Impulse FatSkin::influence(const std::array<int, 3>& corner, const Vec3& weight) const {

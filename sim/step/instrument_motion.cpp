@@ -25,7 +25,7 @@ double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size
       const double search = capsuleSearch(c.radius, std::max(least - allowed, 0.0));
       const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, search);
       if (near.empty()) continue;
-      least = allowed + leastGap(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, least - allowed);
+      least = allowed + minGap(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, least - allowed);
     }
   }
   return least;
@@ -72,7 +72,7 @@ void InstrumentMotion::advance(Surfaces& surfaces, std::size_t hand, State& stat
     }
   }
   travel.reference = simulatedPose(h);
-  travel.stretch = couplingStretch(travel.reference, real, hapticModel(model_, hand).largestStretch);
+  travel.stretch = couplingStretch(travel.reference, real, hapticModel(model_, hand).maxStretch);
   travel.reach = contactMargin + std::min(left, maxSlide);
 }
 

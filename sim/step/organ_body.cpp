@@ -22,7 +22,7 @@ void addAttachments(std::span<const TieLoad> ties, double step, std::span<const 
                     std::vector<Attachment>& out) {
   for (const TieLoad& tie : ties) {
     Attachment attachment;
-    attachment.place = tie.place;
+    attachment.point = tie.place;
     const double damper = step * tie.stiffness + tie.damping;
     attachment.force = tie.stiffness * (tie.target - tie.place.of(position)) + damper * tie.velocity;
     attachment.damper = damper * Mat3::Identity();
@@ -38,7 +38,7 @@ SolveReport OrganBody::solveUnconstrained(State& state, const Vec3& gravity, std
                                     {load_, {}, loads.joints});
 }
 
-SolveReport OrganBody::push(std::span<const Vec3> impulse) { return solver_.push(impulse, responses_); }
+SolveReport OrganBody::push(std::span<const Vec3> impulse) { return solver_.applyImpulses(impulse, responses_); }
 
 Mat3 OrganBody::rotation(const State& state, int node) const {
   return nodeRotation(solid_, state.organ[organ_], node).toRotationMatrix();

@@ -24,7 +24,7 @@ bool isClosedOnClip(const Model& model, const State& state, const HandState& han
   const double reach = 1.5 * model.scene().clip.legs;
   for (std::size_t c = 0; c < vessels.clips(); ++c) {
     if (vessels.clipBranch[c] != s.branch) continue;
-    const Vec3 where = centreLine(beams, vessels, placeAt(beams, s.branch, vessels.clipPlace[c])).position;
+    const Vec3 where = centreLine(beams, vessels, pointAt(beams, s.branch, vessels.clipPlace[c])).position;
     if ((where - hand.simulatedPosition).squaredNorm() < reach * reach) return true;
   }
   return false;

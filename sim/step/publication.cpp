@@ -130,13 +130,13 @@ void Publication::publishVessels(const ContactSystem& contact, Surfaces& surface
         displacement = std::max(displacement, (beams.position[n] - tree.beams.rest()[n]).squaredNorm());
       }
       beams.largestDisplacement = std::sqrt(displacement);
-      countQuietSteps(model_, bodies, contact.blocks, b, report.largestSpeed, state);
+      countQuietSteps(model_, bodies, contact.blocks, b, report.maxSpeed, state);
       if (report.torn >= 0) {
         const auto torn = static_cast<std::size_t>(report.torn);
         const BeamElement& element = tree.beams.elements()[torn];
         log.emit(EventKind::vesselTorn, StepLog::noHand,
                  bodies.structureOfVessel(t, static_cast<std::size_t>(element.branch)),
-                 beams.position[static_cast<std::size_t>(element.a)], report.largestStrain);
+                 beams.position[static_cast<std::size_t>(element.a)], report.maxStrain);
         reportTear(model_, t, torn, state, log);
         activity.disturb(bodies, state, b);
         surfaces.markBodyStale(b);

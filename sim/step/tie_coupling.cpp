@@ -38,11 +38,11 @@ Mat3 blockOf(std::span<const double> matrix, std::size_t n, std::size_t i, std::
 TieCoupling::TieCoupling(const Model& model, std::size_t organ, std::vector<std::size_t> ties, double step)
     : model_(model), organ_(organ), tie_(std::move(ties)), step_(step) {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
-    const SolidPlace& place = tie(i).place[0];
+    const MaterialPoint& place = tie(i).place[0];
     assert(tie(i).body[0] == organ_ && tie(i).place[1].count == 1);
     organNode_.insert(organNode_.end(), place.node.begin(),
                       place.node.begin() + static_cast<std::ptrdiff_t>(place.count));
-    joint_.place.push_back(place);
+    joint_.point.push_back(place);
   }
   std::sort(organNode_.begin(), organNode_.end());
   organNode_.erase(std::unique(organNode_.begin(), organNode_.end()), organNode_.end());
@@ -127,7 +127,7 @@ void TieCoupling::passOn(std::span<const std::unique_ptr<Body>> body, std::vecto
     if (more.isZero(0.0)) continue;
     joint_.force[i] += more;
     if (impulse.empty()) impulse.assign(body[organ_]->nodes(), Vec3::Zero());
-    const SolidPlace& place = tie(i).place[0];
+    const MaterialPoint& place = tie(i).place[0];
     for (std::size_t k = 0; k < place.count; ++k) {
       impulse[static_cast<std::size_t>(place.node[k])] += (step_ * place.weight[k]) * more;
     }
@@ -153,8 +153,8 @@ void TieCoupling::stiffen(const State& state, std::span<const std::unique_ptr<Bo
   rigidity(body, tight_);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
-      const SolidPlace& p = tie(i).place[0];
-      const SolidPlace& q = tie(j).place[0];
+      const MaterialPoint& p = tie(i).place[0];
+      const MaterialPoint& q = tie(j).place[0];
       Mat3 sum = Mat3::Zero();
       for (std::size_t a = 0; a < p.count; ++a) {
         for (std::size_t b = 0; b < q.count; ++b) {
@@ -190,7 +190,7 @@ void TieCoupling::responses(const Body& body, std::size_t which, const SolidSolv
     atNode[a] = rotation_[a] * atNode[a];
   }
   for (std::size_t i = 0; i < tie_.size(); ++i) {
-    const SolidPlace& at = tie(i).place[0];
+    const MaterialPoint& at = tie(i).place[0];
     for (std::size_t k = 0; k < at.count; ++k) {
       const auto a = std::lower_bound(organNode_.begin(), organNode_.end(), at.node[k]) - organNode_.begin();
       out[i] += at.weight[k] * atNode[static_cast<std::size_t>(a)];

@@ -23,7 +23,7 @@ void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, do
   log.emit(EventKind::organPerforated, StepLog::noHand, organ, where, exposure);
 }
 
-void partVessel(const Model& model, std::size_t structure, const BeamPlace& where, EventKind kind, std::size_t hand,
+void partVessel(const Model& model, std::size_t structure, const BeamPoint& where, EventKind kind, std::size_t hand,
                 Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log) {
   const StructureModel& s = model.structures()[structure];
   const VesselTree& tree = model.vesselTrees()[s.index];
@@ -33,13 +33,13 @@ void partVessel(const Model& model, std::size_t structure, const BeamPlace& wher
   if (!part(vessels, where, kind == EventKind::vesselCut ? Parting::cut : Parting::burned)) return;
   activity.disturb(bodies, state, s.body);
   surfaces.markBodyStale(s.body);
-  log.emit(kind, hand, structure, place, where.place);
+  log.emit(kind, hand, structure, place, where.arcLength);
   if (openSides(cut) > 0.0) log.emit(EventKind::cutOpen, hand, structure, place, openSides(cut));
   if (kind == EventKind::vesselCut) {
     log.emit(EventKind::clipsTowardsStart, hand, structure, place, static_cast<double>(cut.before));
     log.emit(EventKind::clipsTowardsEnd, hand, structure, place, static_cast<double>(cut.after));
   }
-  if (cut.throughClip) log.emit(EventKind::cutThroughClip, hand, structure, place, where.place);
+  if (cut.throughClip) log.emit(EventKind::cutThroughClip, hand, structure, place, where.arcLength);
 }
 
 void reportTear(const Model& model, std::size_t tree, std::size_t element, State& state, StepLog& log) {
@@ -48,11 +48,11 @@ void reportTear(const Model& model, std::size_t tree, std::size_t element, State
   BeamState& vessels = state.vessel[tree];
   const BeamElement& torn = beams.elements()[element];
   const BeamModel::Branch& branch = beams.branches()[static_cast<std::size_t>(torn.branch)];
-  BeamPlace where;
+  BeamPoint where;
   where.branch = static_cast<std::size_t>(torn.branch);
   where.element = element;
   where.share = vessels.partedAt[element];
-  where.place = branch.place[element - branch.firstElement] + where.share * torn.length;
+  where.arcLength = branch.arcLength[element - branch.firstElement] + where.share * torn.length;
   vessels.parting[element] = Parting::none;  // as it was before
   const CutSides cut = cutSides(beams, vessels, where);
   vessels.parting[element] = Parting::torn;

@@ -15,7 +15,7 @@ void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, do
 
 /// Parts a vessel; reports it, what that leaves open, and the clips on either side of a cut.
 /// @param kind vesselCut or vesselBurned
-void partVessel(const Model& model, std::size_t structure, const BeamPlace& where, EventKind kind, std::size_t hand,
+void partVessel(const Model& model, std::size_t structure, const BeamPoint& where, EventKind kind, std::size_t hand,
                 Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
 
 /// Reports what a vessel that tore in this step leaves open. @param element that tore

@@ -61,7 +61,7 @@ void UnconstrainedMotion::gatherRetractions(const Bodies& bodies, const State& s
     const Vec3 speed = 6.0 * s * (1.0 - s) / d.duration * d.displacement;
     const auto share = 1.0 / static_cast<double>(retraction.node.size());
     for (const int node : retraction.node) {
-      SolidPlace place;
+      MaterialPoint place;
       place.node[0] = node;
       place.weight[0] = 1.0;
       place.count = 1;

@@ -28,7 +28,7 @@ SolveReport VesselBody::solveUnconstrained(State& state, const Vec3& gravity, st
 }
 
 SolveReport VesselBody::push(std::span<const Vec3> impulse) {
-  solver_.push(beams_, impulse);
+  solver_.applyImpulses(beams_, impulse);
   SolveReport report;
   report.converged = true;
   return report;
@@ -57,12 +57,12 @@ bool TubeSkin::follow(const State& state) {
   rest.parting = beams.parting;
   rest.partedAt = beams.partedAt;
   std::vector<Vec3> vertex;
-  tube_.place(rest, vertex);
+  tube_.positions(rest, vertex);
   contact_.emplace(vertex, tube_.triangles());
   return true;
 }
 
-void TubeSkin::place(const State& state, std::vector<Vec3>& out) const { tube_.place(state.vessel[tree_], out); }
+void TubeSkin::place(const State& state, std::vector<Vec3>& out) const { tube_.positions(state.vessel[tree_], out); }
 
 SolidSolver::Impulse TubeSkin::influence(const std::array<int, 3>& corner, const Vec3& weight) const {
   SolidSolver::Impulse out;

@@ -27,7 +27,7 @@ class VesselBody final : public Body {
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return solver_.block(a, b); }
   bool advance(State& state) override;
-  [[nodiscard]] double heldBack() const override { return report_.limited ? report_.asked : 0.0; }
+  [[nodiscard]] double heldBack() const override { return report_.limited ? report_.requestedSpeed : 0.0; }
   void stop(State& state) const override;
 
   /// Of the last advance().

@@ -52,7 +52,7 @@ VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t
       best.place.element = e;
       best.place.share = close.t;
       const std::size_t i = e - branch.firstElement;
-      best.place.place = branch.place[i] + close.t * (branch.place[i + 1] - branch.place[i]);
+      best.place.arcLength = branch.arcLength[i] + close.t * (branch.arcLength[i + 1] - branch.arcLength[i]);
       best.depth = close.s * (length + 2.0 * beyond) - beyond;
     }
   }
@@ -101,7 +101,7 @@ void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& 
   BeamState& vessels = state.vessel[structure.index];
   const ClipDescription& clip = model_.scene().clip;
   ClipAttempt attempt;
-  attempt.place = crossing.place;
+  attempt.point = crossing.place;
   attempt.width = clip.width;
   // A vessel that runs askew takes up more of the legs.
   attempt.legs = clip.legs * crossing.sine;
@@ -119,7 +119,7 @@ void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& 
     log.emit(kind, hand, crossing.structure, crossing.frame.position, value);
   };
   report(EventKind::clipSet, seat.enclosed);
-  report(EventKind::clipPlace, attempt.place.place);
+  report(EventKind::clipPlace, attempt.point.arcLength);
   if (seat.clip >= 0) report(EventKind::clipGap, seat.clipGap);
   if (seat.junctionGap < ClipSeat::none) report(EventKind::clipJunctionGap, seat.junctionGap);
   report(EventKind::clipEndGap, seat.endGap);

@@ -19,7 +19,7 @@ class VesselTools {
   /// Where a vessel runs between jaws.
   struct Crossing {
     std::size_t structure = ContactBlock::none;
-    BeamPlace place;
+    BeamPoint place;
     double depth = 0.0;  ///< of its centre line from the jaws' crotch (m)
     double sine = 1.0;   ///< of the angle between vessel and jaws
     Pose frame;          ///< centre line there

@@ -35,7 +35,7 @@ struct Tie {
   static constexpr std::size_t none = ~std::size_t{0};
 
   std::array<std::size_t, 2> body{};
-  std::array<SolidPlace, 2> place;
+  std::array<MaterialPoint, 2> place;
   Vec3 offset = Vec3::Zero();  ///< of the first point from its node, in the node's frame; of vessels only (m)
   std::size_t fat = none;      ///< body of fat with which it fades, as
   std::size_t fatTie = 0;      ///< its tie of that number

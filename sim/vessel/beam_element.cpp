@@ -25,17 +25,17 @@ BeamStrain strainOf(const BeamElement& e, const BeamState& state, std::size_t in
   out.chord = state.position[b] - state.position[a];
   const Mat3 middle = blend(state.orientation[a], state.orientation[b], 0.5).toRotationMatrix();
   out.axis = middle * e.axis;
-  out.turn = quarterTangent(state.orientation[a], state.orientation[b]);
-  out.bendRate = 1.0 + out.turn.squaredNorm();
+  out.rotation = quarterTangent(state.orientation[a], state.orientation[b]);
+  out.bendRate = 1.0 + out.rotation.squaredNorm();
   const double inverse = 1.0 / e.length;
   const Vec3 scaled = inverse * out.chord;
   out.stretch = scaled.norm() - 1.0;
   out.force = e.stretching * (scaled - out.axis);
-  Vec3 bend = bent(e, out.axis, out.turn - middle * e.bend);
+  Vec3 bend = bent(e, out.axis, out.rotation - middle * e.bend);
   const double sleeve = state.sleeve[index];
   if (sleeve > 0.0) {
     out.force += (sleeve * e.stretching) * (scaled - middle * state.sleeveStretch[index]);
-    bend += sleeve * bent(e, out.axis, out.turn - middle * state.sleeveBend[index]);
+    bend += sleeve * bent(e, out.axis, out.rotation - middle * state.sleeveBend[index]);
   }
   out.moment = (4.0 * inverse * out.bendRate) * bend;
   out.tension = out.force.dot(out.axis);
@@ -47,7 +47,7 @@ BeamStiffness stiffnessOf(const BeamElement& e, const BeamStrain& s, double slee
   const double inverse = 1.0 / e.length;
   // G_a = [d]x (1 + [p]x) / 2 with [d]x [p]x = p d^T - (d.p) 1; G_b likewise with -p.
   const Vec3& d = s.chord;
-  const Vec3& p = s.turn;
+  const Vec3& p = s.rotation;
   Mat3 cross;
   cross << 0.0, -d[2], d[1], d[2], 0.0, -d[0], -d[1], d[0], 0.0;
   const double dot = d.dot(p);

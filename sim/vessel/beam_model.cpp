@@ -111,8 +111,8 @@ std::string BeamModel::faultOf(const std::vector<BeamBranch>& branches) {
   return branches.empty() ? "no branches" : "";
 }
 
-void BeamModel::addNode(const Vec3& place, const Quat& orientation, int parent, bool fixed) {
-  rest_.push_back(place);
+void BeamModel::addNode(const Vec3& position, const Quat& orientation, int parent, bool fixed) {
+  rest_.push_back(position);
   restOrientation_.push_back(orientation);
   parent_.push_back(parent);
   elementBefore_.push_back(-1);
@@ -137,7 +137,7 @@ BeamModel::BeamModel(const std::vector<BeamBranch>& branches) {
     Quat frame;
     if (from.join >= 0) {
       const Quat& joined = restOrientation_[static_cast<std::size_t>(from.join)];
-      frame = normalised(leastTurn(joined * Vec3::UnitZ(), tangent[0]) * joined);
+      frame = normalised(minimalRotation(joined * Vec3::UnitZ(), tangent[0]) * joined);
       branch.startFrame = normalised(joined.conjugate() * frame);
       branch.node.push_back(from.join);
       if (from.fixedStart) fixed_[static_cast<std::size_t>(from.join)] = true;
@@ -146,12 +146,12 @@ BeamModel::BeamModel(const std::vector<BeamBranch>& branches) {
       branch.node.push_back(static_cast<int>(rest_.size()));
       addNode(node[0], frame, -1, from.fixedStart);
     }
-    branch.place.push_back(0.0);
+    branch.arcLength.push_back(0.0);
     const double area = from.section.area();
     const double second = from.section.secondMoment();
     const BeamMaterial& m = from.material;
     for (std::size_t i = 1; i < node.size(); ++i) {
-      frame = normalised(leastTurn(tangent[i - 1], tangent[i]) * frame);
+      frame = normalised(minimalRotation(tangent[i - 1], tangent[i]) * frame);
       BeamElement e;
       e.a = branch.node.back();
       e.b = static_cast<int>(rest_.size());
@@ -169,7 +169,7 @@ BeamModel::BeamModel(const std::vector<BeamBranch>& branches) {
       e.bending = m.young * second;
       e.twisting = m.young / (1.0 + m.poisson) * second;
       e.damping = m.stiffnessDamping;
-      branch.place.push_back(branch.place.back() + e.length);
+      branch.arcLength.push_back(branch.arcLength.back() + e.length);
       for (const int end : {e.a, e.b}) {
         const auto n = static_cast<std::size_t>(end);
         const double half = 0.5 * m.density * area * e.length;
@@ -190,7 +190,7 @@ std::vector<double> BeamModel::junctions(std::size_t branch) const {
   for (std::size_t other = 0; other < branch_.size(); ++other) {
     if (other == branch || branch_[other].join < 0) continue;
     for (std::size_t i = 0; i < own.node.size(); ++i) {
-      if (own.node[i] == branch_[other].join) out.push_back(own.place[i]);
+      if (own.node[i] == branch_[other].join) out.push_back(own.arcLength[i]);
     }
   }
   std::sort(out.begin(), out.end());

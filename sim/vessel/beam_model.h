@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is fixed about vessels: tubes as geometrically exact beams (Simo 1985), one or several, branching or not.
+// Constant data of vessels: one or several tubes, branching or not, as geometrically exact beams (Simo 1985).
 //
-// A vessel is a chain of nodes, each a place and an orientation (unit quaternion), joined by two-node elements with one
-// point of integration. The strains of an element are measured in its middle frame R_m, the geodesic mean of its nodes'
-// orientations:
+// A vessel is a chain of nodes, each with a position and an orientation (unit quaternion), joined by two-node
+// elements with one integration point. The strains of an element are measured in its middle frame R_m, the geodesic
+// mean of its nodes' orientations:
 //   gamma = d / L - R_m a      d = x_b - x_a, L the rest length, a the rest axis in the middle frame
 //   kappa = 4 / L (P - P_0)    P = tan(theta/4) n: relative rotation of the nodes by theta about n, in the middle frame
-// and the energy is L/2 (E A |gamma|^2 + kappa . D kappa) with D = diag(EI, EI, GJ) about the axis. Both strains do not
-// change under rigid motions, however large, and both stay defined for every state, a collapsed or inverted element
-// included; that is why this form was taken instead of a frame that follows the chord.
+// and the energy is L/2 (E A |gamma|^2 + kappa . D kappa) with D = diag(EI, EI, GJ) about the axis. Both strains are
+// invariant under rigid motions of any size and defined for every state, including collapsed and inverted elements,
+// unlike strains in a frame that follows the chord.
 //
 // Shear has the stiffness E A of stretch, not k G A. Shear flexibility adds less than 1 % to the deflection of a vessel
 // twenty times as long as thick; with k G A (a fifth to a third of E A) a linear law would lose stability in *tension*
@@ -29,7 +29,7 @@ struct TubeSection {
   double outerRadius = 0.0;                   ///< m
   double wall = 0.0;                          ///< thickness (m); the outer radius or more: solid
   [[nodiscard]] double area() const;          ///< A of the wall (m^2)
-  [[nodiscard]] double secondMoment() const;  ///< I about a diameter (m^4); the polar one, J, is twice that
+  [[nodiscard]] double secondMoment() const;  ///< I about a diameter (m^4); the polar moment J is twice that
 };
 
 struct BeamMaterial {
@@ -41,21 +41,21 @@ struct BeamMaterial {
   double ultimateStrain = 1e300;  ///< stretch (length / rest length - 1) above which an element tears
 };
 
-/// One tube to be built.
+/// Description of one tube.
 struct BeamBranch {
-  std::vector<Vec3> node;  ///< rest places along the centre line (m), evenly spaced for best accuracy
+  std::vector<Vec3> node;  ///< reference positions along the centre line (m), evenly spaced for best accuracy
   TubeSection section;
   BeamMaterial material;
   int join = -1;  ///< node of an earlier branch that this branch grows out of (its node[0] is there); -1: none
-  bool fixedStart = false;  ///< first node held, place and orientation (and carried: carry())
-  bool fixedEnd = false;    ///< last node held
+  bool fixedStart = false;  ///< first node constrained in position and orientation (moved by moveFixedNode())
+  bool fixedEnd = false;    ///< last node constrained
 };
 
 /// `elements` + 1 nodes at equal arc lengths on the (uniform) Catmull-Rom curve through the points.
-/// @pre at least two points, neighbours apart
+/// @pre at least two points, consecutive ones distinct
 std::vector<Vec3> evenNodes(std::span<const Vec3> points, std::size_t elements);
 
-/// Two nodes joined. Its index is its place among the model's elements; those of one branch follow each other.
+/// A two-node element. Elements of one branch have consecutive indices.
 struct BeamElement {
   int a = 0;  ///< nearer to the branch's start
   int b = 0;
@@ -75,25 +75,26 @@ class BeamModel {
   struct Branch {
     TubeSection section;
     BeamMaterial material;
-    std::vector<int> node;      ///< from start to end; the first may belong to another branch
-    std::vector<double> place;  ///< arc length of each node at rest (m)
+    std::vector<int> node;          ///< from start to end; the first may belong to another branch
+    std::vector<double> arcLength;  ///< arc length of each node at rest (m)
     std::size_t firstElement = 0;
     int join = -1;
-    Quat startFrame = Quat::Identity();  ///< the branch's first frame in that of its first node (a turn where it joins)
+    Quat startFrame =
+        Quat::Identity();  ///< the branch's first frame in that of its first node (a rotation where it joins)
 
     [[nodiscard]] std::size_t elements() const { return node.size() - 1; }
-    [[nodiscard]] double length() const { return place.back(); }
+    [[nodiscard]] double length() const { return arcLength.back(); }
   };
 
   /// @pre faultOf(branches) is empty
   explicit BeamModel(const std::vector<BeamBranch>& branches);
 
-  /// What is wrong with a description, naming branch and value, or nothing.
+  /// Error of a description, naming branch and value; empty if there is none.
   static std::string faultOf(const std::vector<BeamBranch>& branches);
 
   [[nodiscard]] std::size_t nodes() const { return rest_.size(); }
   [[nodiscard]] const std::vector<Vec3>& rest() const { return rest_; }
-  /// Rest orientation of each node: z along the centre line, x and y carried along it without twist.
+  /// Reference orientation of each node: z along the centre line, x and y transported along it without twist.
   [[nodiscard]] const std::vector<Quat>& restOrientation() const { return restOrientation_; }
   [[nodiscard]] const std::vector<BeamElement>& elements() const { return element_; }
   [[nodiscard]] const std::vector<Branch>& branches() const { return branch_; }
@@ -104,8 +105,8 @@ class BeamModel {
   [[nodiscard]] bool fixed(std::size_t node) const { return fixed_[node]; }
   /// Lumped masses (kg): half of each element at the node.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
-  /// Lumped rotary inertias (kg m^2), taken as those about the axis for every direction: exact in torsion, of second
-  /// order in radius / wavelength for bending, and free of gyroscopic terms.
+  /// Lumped rotary inertias (kg m^2), isotropic with the value about the axis: exact in torsion, with an error of
+  /// second order in radius / wavelength in bending, and without gyroscopic terms.
   [[nodiscard]] const std::vector<double>& inertia() const { return inertia_; }
   /// Rayleigh alpha of each node (1/s): mean over its elements by mass.
   [[nodiscard]] const std::vector<double>& massDamping() const { return massDamping_; }
@@ -113,7 +114,7 @@ class BeamModel {
   [[nodiscard]] std::vector<double> junctions(std::size_t branch) const;
 
  private:
-  void addNode(const Vec3& place, const Quat& orientation, int parent, bool fixed);
+  void addNode(const Vec3& position, const Quat& orientation, int parent, bool fixed);
 
   std::vector<Vec3> rest_;
   std::vector<Quat> restOrientation_;

@@ -14,9 +14,9 @@ namespace calot {
 
 namespace {
 
-/// Of a chord in one step, as a share of its rest length; of a node in one step (rad).
-constexpr double largestTurn = 0.7;
-/// Of a node (m/s). No hand moves tissue as fast; it keeps loose pieces within the range of numbers.
+/// Greatest relative motion of a chord's ends per step, as a share of its rest length, and rotation of a node (rad).
+constexpr double maxRotation = 0.7;
+/// Greatest speed of a node (m/s). No hand moves tissue as fast; the limit prevents overflow in loose pieces.
 constexpr double fastest = 10.0;
 
 /// Adds scale * m to the 3 x 3 part of a block at (row, column) in {0, 3}.
@@ -69,19 +69,19 @@ void BeamSolver::assembleElement(const BeamModel& model, const BeamState& state,
   const BeamStrain s = strainOf(e, state, index);
   const BeamStiffness k = stiffnessOf(e, s, state.sleeve[index]);
 
-  // Forces at x, and what the velocities change about them.
+  // Forces at x and their change by the velocities.
   const Vec3 apart = state.velocity[b] - state.velocity[a];
   const Vec3& wa = state.angularVelocity[a];
   const Vec3& wb = state.angularVelocity[b];
   const double ahead = h + e.damping;
   const Vec3 viscous = (ahead * k.stretch) * (apart + k.ga * wa + k.gb * wb);
-  const Vec3 pull = s.force + viscous;
-  const Vec3 full = pull + (h * k.string) * (k.across * apart);
-  const Vec3 turn = s.moment + ahead * (k.bend * (wb - wa));
+  const Vec3 force = s.force + viscous;
+  const Vec3 full = force + (h * k.string) * (k.across * apart);
+  const Vec3 moment = s.moment + ahead * (k.bend * (wb - wa));
   add(right_[a], 0, h, full);
   add(right_[b], 0, -h, full);
-  add(right_[a], 3, h, turn - k.ga.transpose() * pull);
-  add(right_[b], 3, -h, turn + k.gb.transpose() * pull);
+  add(right_[a], 3, h, moment - k.ga.transpose() * force);
+  add(right_[b], 3, -h, moment + k.gb.transpose() * force);
 
   const double c = h * ahead * k.stretch;
   const double bend = h * ahead;
@@ -124,7 +124,7 @@ bool BeamSolver::solveUnconstrained(const BeamModel& model, const BeamState& sta
   for (std::size_t e = 0; e < model.elements().size(); ++e) {
     if (state.parting[e] == Parting::none) assembleElement(model, state, e);
   }
-  // Held nodes: identity rows without couplings, nothing on the right.
+  // Constrained nodes: identity rows without couplings, zero right-hand side.
   for (std::size_t n = 0; n < nodes; ++n) {
     const int p = model.parents()[n];
     if (model.fixed(n) || (p >= 0 && model.fixed(static_cast<std::size_t>(p)))) tree_.coupling(n).fill(0.0);
@@ -136,7 +136,7 @@ bool BeamSolver::solveUnconstrained(const BeamModel& model, const BeamState& sta
   }
   const bool positive = tree_.factor(model.parents());
   freeVelocity_.assign(state.velocity.begin(), state.velocity.end());
-  freeSpin_.assign(state.angularVelocity.begin(), state.angularVelocity.end());
+  freeAngularVelocity_.assign(state.angularVelocity.begin(), state.angularVelocity.end());
   solveInto(model);
   return positive;
 }
@@ -145,11 +145,11 @@ void BeamSolver::solveInto(const BeamModel& model) {
   tree_.solve(model.parents(), right_);
   for (std::size_t n = 0; n < right_.size(); ++n) {
     freeVelocity_[n] += Vec3(right_[n][0], right_[n][1], right_[n][2]);
-    freeSpin_[n] += Vec3(right_[n][3], right_[n][4], right_[n][5]);
+    freeAngularVelocity_[n] += Vec3(right_[n][3], right_[n][4], right_[n][5]);
   }
 }
 
-void BeamSolver::push(const BeamModel& model, std::span<const Vec3> impulse) {
+void BeamSolver::applyImpulses(const BeamModel& model, std::span<const Vec3> impulse) {
   assert(impulse.size() == right_.size());
   for (std::size_t n = 0; n < right_.size(); ++n) {
     right_[n].fill(0.0);
@@ -198,9 +198,9 @@ void BeamSolver::attachmentForces(const BeamState& state, std::span<const BeamAt
   }
 }
 
-/// A linear step cannot follow a chord that turns or grows by about its own length: velocities of a whole piece are
-/// then scaled down together, so that the pattern of motion stays what was solved for. Pieces that are not finite are
-/// left to advance().
+/// A linear step cannot follow a chord whose ends move by about its own length relative to each other. All
+/// velocities of such a piece are scaled down together, which preserves the pattern of motion. advance() handles
+/// pieces that are not finite.
 bool BeamSolver::limitPieces(const BeamModel& model, const BeamState& state) {
   const std::size_t nodes = model.nodes();
   piece_.resize(nodes);
@@ -210,11 +210,12 @@ bool BeamSolver::limitPieces(const BeamModel& model, const BeamState& state) {
     const bool joined = before >= 0 && state.parting[static_cast<std::size_t>(before)] == Parting::none;
     piece_[n] = joined ? piece_[static_cast<std::size_t>(model.parents()[n])] : static_cast<int>(n);
     double& excess = excess_[static_cast<std::size_t>(piece_[n])];
-    excess = std::max({excess, step_ * freeSpin_[n].norm() / largestTurn, freeVelocity_[n].norm() / fastest});
+    excess =
+        std::max({excess, step_ * freeAngularVelocity_[n].norm() / maxRotation, freeVelocity_[n].norm() / fastest});
     if (!joined) continue;
     const BeamElement& e = model.elements()[static_cast<std::size_t>(before)];
     const Vec3 apart = freeVelocity_[n] - freeVelocity_[static_cast<std::size_t>(e.a)];
-    excess = std::max(excess, step_ * apart.norm() / (largestTurn * e.length));
+    excess = std::max(excess, step_ * apart.norm() / (maxRotation * e.length));
   }
   bool limited = false;
   for (std::size_t n = 0; n < nodes; ++n) {
@@ -222,7 +223,7 @@ bool BeamSolver::limitPieces(const BeamModel& model, const BeamState& state) {
     if (!(excess > 1.0) || model.fixed(n)) continue;
     limited = true;
     freeVelocity_[n] /= excess;
-    freeSpin_[n] /= excess;
+    freeAngularVelocity_[n] /= excess;
   }
   return limited;
 }
@@ -231,19 +232,19 @@ BeamReport BeamSolver::advance(const BeamModel& model, BeamState& state) {
   BeamReport report;
   double asked = 0.0;
   for (const Vec3& v : freeVelocity_) asked = std::max(asked, v.squaredNorm());
-  if (asked > fastest * fastest) report.asked = std::sqrt(asked);
+  if (asked > fastest * fastest) report.requestedSpeed = std::sqrt(asked);
   report.limited = limitPieces(model, state);
   double displacement = 0.0;
   double speed = 0.0;
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     const Vec3 position = state.position[n] + step_ * freeVelocity_[n];
-    const Quat orientation = turned(state.orientation[n], step_ * freeSpin_[n]);
-    if (position.allFinite() && freeVelocity_[n].allFinite() && freeSpin_[n].allFinite() &&
+    const Quat orientation = rotated(state.orientation[n], step_ * freeAngularVelocity_[n]);
+    if (position.allFinite() && freeVelocity_[n].allFinite() && freeAngularVelocity_[n].allFinite() &&
         orientation.coeffs().allFinite() && orientation.coeffs().squaredNorm() > 0.5) {
       state.position[n] = position;
       state.orientation[n] = orientation;
       state.velocity[n] = freeVelocity_[n];
-      state.angularVelocity[n] = freeSpin_[n];
+      state.angularVelocity[n] = freeAngularVelocity_[n];
     } else {
       report.finite = false;
       state.velocity[n].setZero();
@@ -252,7 +253,7 @@ BeamReport BeamSolver::advance(const BeamModel& model, BeamState& state) {
     speed = std::max(speed, state.velocity[n].squaredNorm());
     displacement = std::max(displacement, (state.position[n] - model.rest()[n]).squaredNorm());
   }
-  report.largestSpeed = std::sqrt(speed);
+  report.maxSpeed = std::sqrt(speed);
   state.largestDisplacement = std::sqrt(displacement);
 
   const std::size_t elements = model.elements().size();
@@ -268,13 +269,13 @@ BeamReport BeamSolver::advance(const BeamModel& model, BeamState& state) {
     tension_[e] = s.tension;
     strain_[e] = s.stretch;
     state.peakStrain[e] = std::max(state.peakStrain[e], s.stretch);
-    if (s.stretch > report.largestStrain) {
-      report.largestStrain = s.stretch;
-      report.mostStrained = static_cast<int>(e);
+    if (s.stretch > report.maxStrain) {
+      report.maxStrain = s.stretch;
+      report.maxStrainElement = static_cast<int>(e);
     }
-    if (s.tension > report.largestTension) {
-      report.largestTension = s.tension;
-      report.mostTense = static_cast<int>(e);
+    if (s.tension > report.maxTension) {
+      report.maxTension = s.tension;
+      report.maxTensionElement = static_cast<int>(e);
     }
     const double share = s.stretch / model.branches()[static_cast<std::size_t>(element.branch)].material.ultimateStrain;
     if (share > excess) {

@@ -11,8 +11,8 @@ namespace calot {
 
 namespace {
 
-/// A stump keeps at least this share of its element.
-constexpr double leastStump = 0.1;
+/// Smallest share of its element that a stump keeps.
+constexpr double minStump = 0.1;
 
 }  // namespace
 
@@ -35,16 +35,16 @@ BeamState restState(const BeamModel& model) {
   return state;
 }
 
-void carry(const BeamModel& model, BeamState& state, int node, const Pose& target, double step) {
+void moveFixedNode(const BeamModel& model, BeamState& state, int node, const Pose& target, double step) {
   const auto n = static_cast<std::size_t>(node);
   assert(model.fixed(n));
   (void)model;
   state.velocity[n] = (target.position - state.position[n]) / step;
-  Quat turn = target.orientation * state.orientation[n].conjugate();
-  if (turn.w() < 0.0) turn.coeffs() = -turn.coeffs();
-  // turned() turns by the angle whose tangent is |w|; here sin = 2 |v| w and cos = w^2 - |v|^2.
-  const double cosine = std::max(turn.w() * turn.w() - turn.vec().squaredNorm(), 0.342);
-  state.angularVelocity[n] = (2.0 * turn.w() / (cosine * step)) * turn.vec();
+  Quat rotation = target.orientation * state.orientation[n].conjugate();
+  if (rotation.w() < 0.0) rotation.coeffs() = -rotation.coeffs();
+  // rotated() rotates by the angle whose tangent is |w|; here sin = 2 |v| w and cos = w^2 - |v|^2.
+  const double cosine = std::max(rotation.w() * rotation.w() - rotation.vec().squaredNorm(), 0.342);
+  state.angularVelocity[n] = (2.0 * rotation.w() / (cosine * step)) * rotation.vec();
 }
 
 bool fits(const BeamModel& model, const BeamState& state) {
@@ -69,7 +69,7 @@ bool fits(const BeamModel& model, const BeamState& state) {
   for (std::size_t e = 0; e < elements; ++e) {
     if (state.parting[e] > Parting::burned) return false;
     const bool parted = state.parting[e] != Parting::none;
-    if (parted && !within(state.partedAt[e], leastStump, 1.0 - leastStump)) return false;
+    if (parted && !within(state.partedAt[e], minStump, 1.0 - minStump)) return false;
     if (!within(state.sleeve[e], 0.0, 1e6) || !state.sleeveStretch[e].allFinite() || !state.sleeveBend[e].allFinite()) {
       return false;
     }
@@ -85,31 +85,31 @@ bool fits(const BeamModel& model, const BeamState& state) {
   return true;
 }
 
-BeamPlace placeAt(const BeamModel& model, std::size_t branch, double place) {
+BeamPoint pointAt(const BeamModel& model, std::size_t branch, double arcLength) {
   const BeamModel::Branch& b = model.branches()[branch];
-  BeamPlace out;
+  BeamPoint out;
   out.branch = branch;
-  out.place = std::clamp(place, 0.0, b.length());
+  out.arcLength = std::clamp(arcLength, 0.0, b.length());
   std::size_t i = 0;
-  while (i + 2 < b.place.size() && b.place[i + 1] <= out.place) ++i;
+  while (i + 2 < b.arcLength.size() && b.arcLength[i + 1] <= out.arcLength) ++i;
   out.element = b.firstElement + i;
-  out.share = std::clamp((out.place - b.place[i]) / (b.place[i + 1] - b.place[i]), 0.0, 1.0);
+  out.share = std::clamp((out.arcLength - b.arcLength[i]) / (b.arcLength[i + 1] - b.arcLength[i]), 0.0, 1.0);
   return out;
 }
 
-bool part(BeamState& state, const BeamPlace& where, Parting how) {
+bool part(BeamState& state, const BeamPoint& where, Parting how) {
   if (state.parting[where.element] != Parting::none || how == Parting::none) return false;
   state.parting[where.element] = how;
-  state.partedAt[where.element] = std::clamp(where.share, leastStump, 1.0 - leastStump);
-  // What was asleep now moves.
+  state.partedAt[where.element] = std::clamp(where.share, minStump, 1.0 - minStump);
+  // Wake the vessel.
   state.quietSteps = 0;
   return true;
 }
 
-BeamPlace nearestPlace(const BeamModel& model, const BeamState& state, std::size_t branch, const Vec3& point,
+BeamPoint closestPoint(const BeamModel& model, const BeamState& state, std::size_t branch, const Vec3& point,
                        double& distance) {
   const BeamModel::Branch& b = model.branches()[branch];
-  BeamPlace out;
+  BeamPoint out;
   out.branch = branch;
   double best = 1e300;
   const auto consider = [&](std::size_t i, const Vec3& from, const Vec3& to, double first, double last) {
@@ -121,7 +121,7 @@ BeamPlace nearestPlace(const BeamModel& model, const BeamState& state, std::size
     best = d;
     out.element = b.firstElement + i;
     out.share = first + t * (last - first);
-    out.place = b.place[i] + out.share * (b.place[i + 1] - b.place[i]);
+    out.arcLength = b.arcLength[i] + out.share * (b.arcLength[i + 1] - b.arcLength[i]);
   };
   for (std::size_t i = 0; i < b.elements(); ++i) {
     const std::size_t e = b.firstElement + i;

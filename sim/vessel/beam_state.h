@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that changes about vessels.
+// State of vessels.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace calot {
 
-/// How an element was parted. A parted element carries nothing; what is left of it stays on its two nodes.
+/// How an element was parted. A parted element transmits no force; its remains stay on its two nodes.
 enum class Parting : std::uint8_t { none, cut, torn, burned };
 
 struct BeamState {
@@ -20,22 +20,23 @@ struct BeamState {
   std::vector<Vec3> velocity;         ///< (m/s)
   std::vector<Vec3> angularVelocity;  ///< in W (rad/s)
   std::vector<Parting> parting;       ///< per element
-  std::vector<double> partedAt;       ///< per element: where, as a share of its length from its first node
+  std::vector<double> partedAt;       ///< per element: parting position as a share of its length from its first node
   std::vector<double> peakStrain;     ///< per element: largest stretch so far
   std::vector<double> exposure;       ///< per element: cautery so far (s)
-  /// Per element: what clips on it add to its stiffness, in multiples of its own; 0 without clips.
+  /// Per element: stiffness added by clips, in multiples of its own; 0 without clips.
   std::vector<double> sleeve;
-  std::vector<Vec3> sleeveStretch;  ///< R_m^T d / L at which the sleeves are without force
-  std::vector<Vec3> sleeveBend;     ///< P at which they are
-  /// Clips, in the order in which they were set. They stay with the wall: places are arc lengths at rest.
+  std::vector<Vec3> sleeveStretch;  ///< R_m^T d / L at which the sleeves are free of force
+  std::vector<Vec3> sleeveBend;     ///< P at which they are free of force
+  /// Clips in the order in which they were set. They are attached to the wall: positions are arc lengths at rest.
   std::vector<std::uint32_t> clipBranch;
   std::vector<double> clipPlace;  ///< middle of the clip (m)
   std::vector<double> clipWidth;  ///< along the vessel (m)
   std::vector<double> clipRoll;   ///< direction in which it flattens, about z of the branch's frame there, from x (rad)
   std::vector<double> clipClosure;   ///< 0 open to 1 closed
   std::vector<double> clipEnclosed;  ///< share of the flattened section between its legs, 1: all of it
-  std::uint32_t quietSteps = 0;      ///< steps in a row without touch and slower than the sleeping speed
-  double largestDisplacement = 0.0;  ///< from rest (m); kept because sleeping vessels do not recompute it
+  std::uint32_t quietSteps = 0;      ///< consecutive steps without contact and below the sleeping speed
+  double largestDisplacement =
+      0.0;  ///< from the reference configuration (m); stored because sleeping vessels do not recompute it
 
   [[nodiscard]] std::size_t clips() const { return clipPlace.size(); }
 
@@ -63,36 +64,36 @@ struct BeamState {
   }
 };
 
-/// Rest: no displacement, no velocity, whole, without clips, asleep.
+/// Reference state: no displacement, no velocity, whole, without clips, asleep.
 BeamState restState(const BeamModel& model);
 
-/// Gives a held node the velocities that take it to a pose in one step (held nodes move at the velocities that State
-/// has for them, by default none): an end that is grown to something that moves. The pose is reached while it is turned
-/// by less than 70 degrees, else nearly. @pre model.fixed(node)
-void carry(const BeamModel& model, BeamState& state, int node, const Pose& target, double step);
+/// Sets the velocities of a fixed node so that it reaches a pose in one step, for an end that is grown to a moving
+/// body. (Fixed nodes move at the velocities in State, by default zero.) The pose is reached exactly for rotations
+/// below 70 degrees, else approximately. @pre model.fixed(node)
+void moveFixedNode(const BeamModel& model, BeamState& state, int node, const Pose& target, double step);
 
-/// Could this be a state of the model (numbers of nodes and elements, lists of one length, clips on branches, places in
-/// range)? For what comes from outside.
+/// Is this a valid state of the model (numbers of nodes and elements, equal lengths of lists, clips on branches,
+/// positions in range)? Checks external data.
 bool fits(const BeamModel& model, const BeamState& state);
 
-/// A place on a branch.
-struct BeamPlace {
+/// A material point of a branch's centre line.
+struct BeamPoint {
   std::size_t branch = 0;
   std::size_t element = 0;  ///< of the model
   double share = 0.0;       ///< of the element's length, from its first node, in [0, 1]
-  double place = 0.0;       ///< arc length at rest from the branch's start (m)
+  double arcLength = 0.0;   ///< at rest, from the branch's start (m)
 };
 
-/// @param place arc length, clamped to the branch
-BeamPlace placeAt(const BeamModel& model, std::size_t branch, double place);
+/// @param arcLength at rest (m), clamped to the branch
+BeamPoint pointAt(const BeamModel& model, std::size_t branch, double arcLength);
 
-/// Parts a vessel there, if the element is whole. The share is kept within [0.1, 0.9], so that both stumps have length.
-/// @return false where it was parted before.
-bool part(BeamState& state, const BeamPlace& where, Parting how);
+/// Parts a vessel there if the element is whole. The share is clamped to [0.1, 0.9], so that both stumps have length.
+/// @return false if it was already parted.
+bool part(BeamState& state, const BeamPoint& where, Parting how);
 
-/// The place of a branch that is nearest to a point in W, on the chords of whole elements and what is left of parted
-/// ones. @param[out] distance from the centre line (m)
-BeamPlace nearestPlace(const BeamModel& model, const BeamState& state, std::size_t branch, const Vec3& point,
+/// Point of a branch closest to a point in W, on the chords of whole elements and the remains of parted ones.
+/// @param[out] distance from the centre line (m)
+BeamPoint closestPoint(const BeamModel& model, const BeamState& state, std::size_t branch, const Vec3& point,
                        double& distance);
 
 }  // namespace calot

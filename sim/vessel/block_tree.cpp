@@ -33,7 +33,7 @@ bool factorBlock(Block6& a) {
   return positive;
 }
 
-/// One row of the columns that are taken together, and how rows are read and written.
+/// One row of several columns that are processed together, and access to such rows.
 template <std::size_t width>
 struct Row {
   double number[width];
@@ -55,7 +55,7 @@ CALOT_INLINE void write(const Row<width>& row, double* at) {
 
 /// row -= f other.
 template <std::size_t width>
-CALOT_INLINE void take(Row<width>& row, double f, const Row<width>& other) {
+CALOT_INLINE void subtractMultiple(Row<width>& row, double f, const Row<width>& other) {
   if constexpr (width == 4) {
     row.number -= f * other.number;
   } else {
@@ -88,7 +88,7 @@ CALOT_INLINE void forward(const Block6& l, double* x) {
   Row<width> row[6];
   readAll(x, row);
   for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t k = 0; k < i; ++k) take(row[i], l[6 * i + k], row[k]);
+    for (std::size_t k = 0; k < i; ++k) subtractMultiple(row[i], l[6 * i + k], row[k]);
     scale(row[i], l[7 * i]);
   }
   writeAll(row, x);
@@ -100,7 +100,7 @@ CALOT_INLINE void backward(const Block6& l, double* x) {
   Row<width> row[6];
   readAll(x, row);
   for (std::size_t i = 6; i-- > 0;) {
-    for (std::size_t k = i + 1; k < 6; ++k) take(row[i], l[6 * k + i], row[k]);
+    for (std::size_t k = i + 1; k < 6; ++k) subtractMultiple(row[i], l[6 * k + i], row[k]);
     scale(row[i], l[7 * i]);
   }
   writeAll(row, x);
@@ -114,7 +114,7 @@ CALOT_INLINE void subtractTransposed(const Block6& w, const double* x, double* y
   readAll(x, from);
   readAll(y, to);
   for (std::size_t k = 0; k < 6; ++k) {
-    for (std::size_t i = 0; i < 6; ++i) take(to[i], w[6 * k + i], from[k]);
+    for (std::size_t i = 0; i < 6; ++i) subtractMultiple(to[i], w[6 * k + i], from[k]);
   }
   writeAll(to, y);
 }
@@ -127,17 +127,17 @@ CALOT_INLINE void subtract(const Block6& w, const double* x, double* y) {
   readAll(x, from);
   readAll(y, to);
   for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t k = 0; k < 6; ++k) take(to[i], w[6 * i + k], from[k]);
+    for (std::size_t k = 0; k < 6; ++k) subtractMultiple(to[i], w[6 * i + k], from[k]);
   }
   writeAll(to, y);
 }
 
-/// BlockTree::columns(). @param x room for each node
+/// BlockTree::columns(). @param x scratch for each node
 CALOT_LANE_KERNEL void columnsOf(const Block6* diagonal, const Block6* coupling, std::span<const int> parent,
                                  std::size_t node, Columns* x, double* out) {
   for (std::size_t i = 0; i < parent.size(); ++i) x[i].fill(0.0);
   for (std::size_t k = 0; k < 3; ++k) x[node][5 * k] = 1.0;
-  // Going up, only the way from the node to its root is touched.
+  // Upward, only the path from the node to its root changes.
   for (int at = static_cast<int>(node); at >= 0;) {
     const auto i = static_cast<std::size_t>(at);
     forward<4>(diagonal[i], x[i].data());

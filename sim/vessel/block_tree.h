@@ -3,10 +3,10 @@
 // chain (block-tridiagonal) or branching chains. Eliminating every node before its parent fills nothing in, so block
 // Cholesky is exact and linear in the number of nodes.
 //
-// With A_i the diagonal block of node i, B_i = A_{i,p} its block in the column of its parent p, from the last node to
-// the first:
+// With A_i the diagonal block of node i, B_i = A_{i,p} its block in the column of its parent p, from the last
+// node to the first:
 //   L_i L_i^T = A_i,   W_i = L_i^-1 B_i,   A_p -= W_i^T W_i.
-// Plain scalar loops in an order that the source fixes.
+// Scalar loops in an order fixed by the source.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ using Vector6 = std::array<double, 6>;
 
 class BlockTree {
  public:
-  /// Three columns of one node's block row, and one to fill up.
+  /// Three columns of one node's block row and one of padding.
   using Columns = std::array<double, 24>;
 
   /// Sets all blocks to zero. Allocates only when the number of nodes grows. @param nodes rows of the system
@@ -36,7 +36,7 @@ class BlockTree {
   [[nodiscard]] Block6& coupling(std::size_t node) { return coupling_[node]; }
 
   /// Factorises in place. @param parent per node: a smaller index, or -1
-  /// @return false where a pivot was not positive and finite: that unknown is then held at zero.
+  /// @return false if a pivot was not positive and finite: that unknown is then fixed at zero.
   bool factor(std::span<const int> parent);
 
   /// Solves in place. @pre factor(); x.size() is the number of nodes

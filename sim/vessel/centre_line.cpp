@@ -9,19 +9,19 @@ namespace calot {
 
 namespace {
 
-/// Frame of a branch at a node: the node's own, but turned where the branch grows out of another.
+/// Frame of a branch at a node: the node's own, rotated where the branch grows out of another.
 Quat branchFrame(const BeamModel::Branch& branch, const Quat& node, bool first) {
   return first && branch.join >= 0 ? normalised(node * branch.startFrame) : node;
 }
 
 }  // namespace
 
-Stump stumpAt(const BeamState& state, const BeamPlace& where) {
+Stump stumpAt(const BeamState& state, const BeamPoint& where) {
   if (state.parting[where.element] == Parting::none) return Stump::none;
   return where.share <= state.partedAt[where.element] ? Stump::before : Stump::after;
 }
 
-Pose centreLine(const BeamModel& model, const BeamState& state, const BeamPlace& where, Stump stump) {
+Pose centreLine(const BeamModel& model, const BeamState& state, const BeamPoint& where, Stump stump) {
   const BeamModel::Branch& branch = model.branches()[where.branch];
   const BeamElement& e = model.elements()[where.element];
   const auto a = static_cast<std::size_t>(e.a);
@@ -48,7 +48,7 @@ Pose centreLine(const BeamModel& model, const BeamState& state, const BeamPlace&
   return {line, blend(qa, qb, t)};
 }
 
-BeamInfluence influenceOf(const BeamModel& model, const BeamPlace& where, Stump stump) {
+BeamInfluence influenceOf(const BeamModel& model, const BeamPoint& where, Stump stump) {
   const BeamElement& e = model.elements()[where.element];
   BeamInfluence out;
   if (stump != Stump::none || where.share == 0.0 || where.share == 1.0) {

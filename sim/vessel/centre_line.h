@@ -11,27 +11,28 @@
 
 namespace calot {
 
-/// On which side of a parting a place of a parted element is.
+/// Side of the parting on which a point of a parted element lies.
 enum class Stump : std::uint8_t { none, before, after };
 
-/// Place and frame (z along the vessel towards its end, x and y across it) in W.
-/// In a whole element: cubic Hermite through the nodes with the nodes' own z axes as tangents, as long as the chord,
-/// and the nodes' frames blended; so lines and frames have no kinks at nodes. In a parted element: the rest chord,
-/// fixed to the node that the stump is left on. @param where.element is of branch where.branch
-Pose centreLine(const BeamModel& model, const BeamState& state, const BeamPlace& where, Stump stump = Stump::none);
+/// Position and frame (z along the vessel towards its end, x and y across it) in W. In a whole element: a cubic
+/// Hermite curve through the nodes, with their z axes times the chord's length as tangents, and blended frames; both
+/// are free of kinks at nodes. In a parted element: the reference chord, fixed to the stump's node. @param
+/// where.element is of branch where.branch
+Pose centreLine(const BeamModel& model, const BeamState& state, const BeamPoint& where, Stump stump = Stump::none);
 
-/// Nodes that a place of the centre line hangs on, with weights that sum to one.
+/// Nodes that a point of the centre line depends on, with weights that sum to one.
 struct BeamInfluence {
   std::array<int, 2> node{};
   std::array<double, 2> weight{};
   std::size_t count = 0;
 };
 
-/// A force on the wall acts on the centre line there: linear in the share. What it turns about the centre line (force
-/// times radius) is neglected; the vessel is held by its surroundings, and tools drag rather than twist it.
-BeamInfluence influenceOf(const BeamModel& model, const BeamPlace& where, Stump stump = Stump::none);
+/// A force on the wall acts on the centre line, distributed linearly over the element's nodes. Its moment about
+/// the centre line (force times radius) is neglected: the surroundings constrain the vessel, and tools drag
+/// rather than twist it.
+BeamInfluence influenceOf(const BeamModel& model, const BeamPoint& where, Stump stump = Stump::none);
 
-/// The side on which a place of a parted element is; none in a whole one.
-Stump stumpAt(const BeamState& state, const BeamPlace& where);
+/// Side of the parting on which a point lies; none in a whole element.
+Stump stumpAt(const BeamState& state, const BeamPoint& where);
 
 }  // namespace calot

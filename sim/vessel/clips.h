@@ -14,11 +14,12 @@ namespace calot {
 
 /// A clip about to close around a vessel.
 struct ClipAttempt {
-  BeamPlace place;       ///< middle of the clip
-  double width = 0.0;    ///< along the vessel (m)
-  double legs = 0.0;     ///< from the crotch to the tips of its legs (m)
-  double depth = 0.0;    ///< of the centre line between the legs: distance from the crotch (m), negative behind it
-  double roll = 0.0;     ///< direction in which it flattens, about z of centreLine() there, from x (rad)
+  BeamPoint point;     ///< middle of the clip
+  double width = 0.0;  ///< along the vessel (m)
+  double legs = 0.0;   ///< from the crotch to the tips of its legs (m)
+  double depth =
+      0.0;            ///< of the centre line: distance from the crotch towards the tips (m), negative behind the crotch
+  double roll = 0.0;  ///< direction in which it flattens, about z of centreLine() there, from x (rad)
   double closure = 1.0;  ///< 0 open to 1 closed
 };
 
@@ -44,14 +45,14 @@ void setClip(const BeamModel& model, BeamState& state, const ClipAttempt& attemp
 /// Does this clip close the lumen? It encloses all of the section and is closed to at least 95 %.
 bool closes(const BeamState& state, std::size_t clip);
 
-/// How flat the tube is at a place: 0 round to 1 (walls on each other), and in which direction.
+/// Flattening of the tube at a point: 0 round to 1 (walls touching), and its direction.
 struct Pinch {
   double amount = 0.0;
-  double roll = 0.0;  ///< of the clip that pinches most there
+  double roll = 0.0;  ///< of the clip that flattens most there
 };
 
 /// Flat over the width of a clip, round again one and a half radii beside it (smoothstep).
-Pinch pinchAt(const BeamModel& model, const BeamState& state, std::size_t branch, double place);
+Pinch pinchAt(const BeamModel& model, const BeamState& state, std::size_t branch, double arcLength);
 
 /// Half the thickness and half the width of a section (m): r and r when round; the wall's thickness and pi r / 2 when
 /// flat (the girth stays about the same).
@@ -70,14 +71,14 @@ struct CutSides {
   double gapBefore = 1e300;  ///< from the cut to that clip's edge (m)
   double gapAfter = 1e300;
   bool throughClip = false;  ///< within the width of a clip
-  bool opensBefore = false;  ///< nothing closes this side: it leaks from the start or the next junction
+  bool opensBefore = false;  ///< no clip closes this side: it leaks from the start or the next junction
   bool opensAfter = false;
 };
 
 /// To be asked before part(): the cut's own place must still be whole.
-CutSides cutSides(const BeamModel& model, const BeamState& state, const BeamPlace& cut);
+CutSides cutSides(const BeamModel& model, const BeamState& state, const BeamPoint& cut);
 
-/// Is the lumen open from one place of a branch to another: no closing clip and no parting between?
+/// Is the lumen open between two points of a branch: no closing clip and no parting in between?
 bool lumenOpen(const BeamModel& model, const BeamState& state, std::size_t branch, double from, double to);
 
 }  // namespace calot

@@ -23,7 +23,7 @@ Quat blend(const Quat& a, const Quat& b, double t) {
   return normalised({s * a.w() + u * b.w(), s * a.x() + u * b.x(), s * a.y() + u * b.y(), s * a.z() + u * b.z()});
 }
 
-Quat leastTurn(const Vec3& from, const Vec3& to) {
+Quat minimalRotation(const Vec3& from, const Vec3& to) {
   const double dot = from.dot(to);
   if (dot < -0.999999) {
     const Vec3 normal = frameAlong(from) * Vec3::UnitX();
@@ -46,14 +46,14 @@ Quat frameAlong(const Vec3& z) {
 }
 
 Vec3 quarterTangent(const Quat& a, const Quat& b) {
-  Quat turn = b * a.conjugate();
-  if (turn.w() < 0.0) turn.coeffs() = -turn.coeffs();
-  return turn.vec() / (1.0 + turn.w());
+  Quat rotation = b * a.conjugate();
+  if (rotation.w() < 0.0) rotation.coeffs() = -rotation.coeffs();
+  return rotation.vec() / (1.0 + rotation.w());
 }
 
-Quat turned(const Quat& q, const Vec3& w) {
-  const Quat turn(1.0 + std::sqrt(1.0 + w.squaredNorm()), w[0], w[1], w[2]);
-  return normalised(turn * q);
+Quat rotated(const Quat& q, const Vec3& w) {
+  const Quat rotation(1.0 + std::sqrt(1.0 + w.squaredNorm()), w[0], w[1], w[2]);
+  return normalised(rotation * q);
 }
 
 }  // namespace calot

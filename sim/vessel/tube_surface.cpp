@@ -39,10 +39,10 @@ bool TubeSurface::update(const BeamState& state) {
   return changed;
 }
 
-BeamPlace TubeSurface::placeOn(std::size_t element, double share) const {
+BeamPoint TubeSurface::pointOn(std::size_t element, double share) const {
   const BeamModel::Branch& b = model_.branches()[branch_];
   return {branch_, b.firstElement + element, share,
-          b.place[element] + share * (b.place[element + 1] - b.place[element])};
+          b.arcLength[element] + share * (b.arcLength[element + 1] - b.arcLength[element])};
 }
 
 int TubeSurface::addRing(const Ring& ring) {
@@ -82,8 +82,8 @@ void TubeSurface::cap(int centre, int ring, bool atEnd) {
   }
 }
 
-/// The rings of the whole branch. In a parted element those on each side are spread evenly over what is left of it, so
-/// that none falls on the parting.
+/// Rings of the whole branch. In a parted element, those on each side are spread evenly over its stump, so that none
+/// falls on the parting.
 void TubeSurface::layRings() {
   const std::size_t per = settings_.ringsPerElement;
   for (std::size_t i = 0; i < parting_.size(); ++i) {
@@ -93,16 +93,16 @@ void TubeSurface::layRings() {
     while (before + 1 < per && static_cast<double>(before + 1) <= cut * static_cast<double>(per)) ++before;
     for (std::size_t k = 0; k < per; ++k) {
       if (!parted || k == 0) {
-        addRing({placeOn(i, static_cast<double>(k) / static_cast<double>(per)), Stump::none});
+        addRing({pointOn(i, static_cast<double>(k) / static_cast<double>(per)), Stump::none});
       } else if (k <= before) {
-        addRing({placeOn(i, cut * static_cast<double>(k) / static_cast<double>(before + 1)), Stump::before});
+        addRing({pointOn(i, cut * static_cast<double>(k) / static_cast<double>(before + 1)), Stump::before});
       } else {
         const double t = static_cast<double>(k - before) / static_cast<double>(per - before);
-        addRing({placeOn(i, cut + (1.0 - cut) * t), Stump::after});
+        addRing({pointOn(i, cut + (1.0 - cut) * t), Stump::after});
       }
     }
   }
-  addRing({placeOn(parting_.size() - 1, 1.0), Stump::none});
+  addRing({pointOn(parting_.size() - 1, 1.0), Stump::none});
 }
 
 void TubeSurface::build() {
@@ -132,12 +132,12 @@ void TubeSurface::build() {
       ++gap.from;
     }
     gap.to = gap.from + 1;
-    gap.before = addRing({placeOn(i, partedAt_[i]), Stump::before});
+    gap.before = addRing({pointOn(i, partedAt_[i]), Stump::before});
     gap.beforeMiddle = addMiddle(gap.before);
     gap.afterMiddle = static_cast<int>(vertex_.size());
     vertex_.push_back({gap.before + 1, middle});
-    influence_.push_back(influenceOf(model_, placeOn(i, partedAt_[i]), Stump::after));
-    gap.after = addRing({placeOn(i, partedAt_[i]), Stump::after});
+    influence_.push_back(influenceOf(model_, pointOn(i, partedAt_[i]), Stump::after));
+    gap.after = addRing({pointOn(i, partedAt_[i]), Stump::after});
     gaps.push_back(gap);
   }
   std::size_t next = 0;
@@ -155,11 +155,11 @@ void TubeSurface::build() {
   }
 }
 
-BeamPlace TubeSurface::where(int vertex) const {
+BeamPoint TubeSurface::where(int vertex) const {
   return ring_[static_cast<std::size_t>(vertex_[static_cast<std::size_t>(vertex)].ring)].where;
 }
 
-void TubeSurface::place(const BeamState& state, std::vector<Vec3>& out) const {
+void TubeSurface::positions(const BeamState& state, std::vector<Vec3>& out) const {
   out.resize(vertex_.size());
   int ring = -1;
   Vec3 centre = Vec3::Zero();
@@ -173,7 +173,7 @@ void TubeSurface::place(const BeamState& state, std::vector<Vec3>& out) const {
       const Pose pose = centreLine(model_, state, r.where, r.stump);
       centre = pose.position;
       frame = pose.orientation.toRotationMatrix();
-      const Pinch pinch = pinchAt(model_, state, branch_, r.where.place);
+      const Pinch pinch = pinchAt(model_, state, branch_, r.where.arcLength);
       section = pinchedSection(model_.branches()[branch_].section, pinch.amount);
       direction[0] = pinch.amount > 0.0 ? calot::cosine(pinch.roll) : 1.0;
       direction[1] = pinch.amount > 0.0 ? calot::sine(pinch.roll) : 0.0;

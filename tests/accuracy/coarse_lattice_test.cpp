@@ -67,8 +67,8 @@ double differenceOf(const SolidModel& model, const SolidState& a, const SolidSta
 }
 
 TEST(CoarseLattice, OnlyLargeSolidsHaveOne) {
-  EXPECT_FALSE(CoarseLattice::isWorthIt(boxModel(10, 5, 5)));
-  EXPECT_TRUE(CoarseLattice::isWorthIt(boxModel(18, 10, 10)));
+  EXPECT_FALSE(CoarseLattice::isWorthwhile(boxModel(10, 5, 5)));
+  EXPECT_TRUE(CoarseLattice::isWorthwhile(boxModel(18, 10, 10)));
 }
 
 /// Both go to the same solution, and at their tolerances err alike.

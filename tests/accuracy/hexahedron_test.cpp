@@ -70,12 +70,12 @@ TEST(Hexahedra, AKnownElementChangesNoBitOfASpring) {
   for (int i = 0; i < 60; ++i) {
     Attachment& a = known.emplace_back();
     const auto cube = static_cast<std::size_t>(random.uniform() * static_cast<double>(box.cube.size()));
-    a.place.element = static_cast<int>(cube);
-    a.place.node = box.cube[cube];
-    a.place.count = 8;
+    a.point.element = static_cast<int>(cube);
+    a.point.node = box.cube[cube];
+    a.point.count = 8;
     const Vec3 s{random.uniform(), random.uniform(), random.uniform()};
     for (std::size_t c = 0; c < 8; ++c) {
-      a.place.weight[c] = ((c & 1U) != 0 ? s[0] : 1.0 - s[0]) * ((c >> 1U & 1U) != 0 ? s[1] : 1.0 - s[1]) *
+      a.point.weight[c] = ((c & 1U) != 0 ? s[0] : 1.0 - s[0]) * ((c >> 1U & 1U) != 0 ? s[1] : 1.0 - s[1]) *
                           ((c >> 2U & 1U) != 0 ? s[2] : 1.0 - s[2]);
     }
     a.force = Vec3{random.normal(), random.normal(), random.normal()};
@@ -83,7 +83,7 @@ TEST(Hexahedra, AKnownElementChangesNoBitOfASpring) {
     if (i % 7 == 0) a.damper(1, 1) += 0.5;  // has a direction of its own
   }
   std::vector<Attachment> unknown = known;
-  for (Attachment& a : unknown) a.place.element = -1;
+  for (Attachment& a : unknown) a.point.element = -1;
   SerialExecutor executor;
   std::array<std::vector<Vec3>, 2> velocity;
   for (const auto& [loads, out] : {std::pair(&known, &velocity[0]), {&unknown, &velocity[1]}}) {
@@ -287,9 +287,9 @@ TEST(Attachments, BlockOnASpring) {
   EXPECT_NEAR(mass, 0.008, 1e-12);
   const double stiffness = 2.0;
   Attachment spring;
-  spring.place.node[0] = box.index(1, 1, 1);
-  spring.place.weight[0] = 1.0;
-  spring.place.count = 1;
+  spring.point.node[0] = box.index(1, 1, 1);
+  spring.point.weight[0] = 1.0;
+  spring.point.count = 1;
   SolidState state = restState(model);
   for (Vec3& p : state.position) p += Vec3(0.0, 0.001, 0.0);
   SerialExecutor executor;
@@ -319,10 +319,10 @@ TEST(Attachments, StiffSpringsAreStable) {
   for (const double stiffness : {1.0, 1e3, 1e6}) {
     Attachment spring;
     for (std::size_t a = 0; a < 8; ++a) {
-      spring.place.node[a] = box.cube[0][a];
-      spring.place.weight[a] = 0.125;
+      spring.point.node[a] = box.cube[0][a];
+      spring.point.weight[a] = 0.125;
     }
-    spring.place.count = 8;
+    spring.point.count = 8;
     SolidState state = restState(model);
     SerialExecutor executor;
     SolidSolver solver;
@@ -330,14 +330,14 @@ TEST(Attachments, StiffSpringsAreStable) {
     settings.step = 0.02;
     const Vec3 target(0.01, 0.02, -0.005);
     for (int i = 0; i < 600; ++i) {
-      spring.force = stiffness * (target - spring.place.of(state.position));
+      spring.force = stiffness * (target - spring.point.of(state.position));
       spring.damper = (settings.step * stiffness + 0.05) * Mat3::Identity();
       solver.solveUnconstrained(model, state, Vec3::Zero(), {}, settings, executor, {{&spring, 1}, {}});
       ASSERT_TRUE(solver.advance(model, state, {}, settings.step));
       for (const Vec3& p : state.position) ASSERT_LT(p.norm(), 0.2);
     }
     // It hangs by a corner and spins on: the softer the spring, the farther out.
-    EXPECT_LT((spring.place.of(state.position) - target).norm(), 1e-3) << stiffness;
+    EXPECT_LT((spring.point.of(state.position) - target).norm(), 1e-3) << stiffness;
   }
 }
 

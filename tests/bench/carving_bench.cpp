@@ -117,7 +117,7 @@ struct Carving {
         islands(model.lattice, anchors(model.lattice)),
         surface(model.lattice),
         adaptive(model.lattice) {
-    field.prepare(state);
+    field.reserve(state);
     islands.rebuild(field);
     surface.rebuild(field);
     adaptive.rebuild(field);
@@ -160,7 +160,7 @@ Times strokes(Carving& body, int count, double toolRadius, double scale = 1.0) {
   Times times;
   const double overhead = clockOverhead();
   const double depth = carveDepth * body.model.lattice.cell();
-  const RestingTissue tissue(body.model.lattice);
+  const UndeformedTissue tissue(body.model.lattice);
   for (int i = 0; i < count; ++i) {
     SweptCapsule c;
     c.radius = toolRadius;

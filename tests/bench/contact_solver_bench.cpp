@@ -26,7 +26,7 @@ constexpr int calls = 50;
 /// The problem of a published set at its own pose; without friction the first row of each block.
 OwnedProblem problemOf(const PublishedSet& published, bool friction) {
   const ContactSet& set = published.set;
-  const ToolRow q = couplingStretch(set.reference, published.real, published.model.largestStretch);
+  const ToolRow q = couplingStretch(set.reference, published.real, published.model.maxStretch);
   OwnedProblem problem;
   std::vector<std::size_t> rows;
   std::size_t at = 0;

@@ -135,7 +135,7 @@ void steps(benchmark::State& bench, bool strokes) {
         const FatTie& tie = model->allTies()[t];
         const double share = body.tieShare(t);
         if (share == 0.0) continue;
-        ties.push_back({tie.place, share * tie.stiffness * (tie.rest - tie.place.of(state.solid.position)),
+        ties.push_back({tie.point, share * tie.stiffness * (tie.rest - tie.point.of(state.solid.position)),
                         share * (settings.step * tie.stiffness + tie.damping) * Mat3::Identity()});
       }
       const SolveReport report =
@@ -150,7 +150,7 @@ void steps(benchmark::State& bench, bool strokes) {
         cut = body.stroke(state, tool).changed;
       }
       const double carved = threadSeconds();
-      body.contact().place(state.solid.position, skin);
+      body.contact().positions(state.solid.position, skin);
       const double mapped = threadSeconds();
       before.swap(bounds);
       patchBounds(body.contact().surface(), skin, 0.0, bounds);
@@ -164,7 +164,7 @@ void steps(benchmark::State& bench, bool strokes) {
       if (cut) {
         const double asked = threadSeconds();
         picture.update(state.carved);
-        picture.place(state.solid.position, pictured);
+        picture.positions(state.solid.position, pictured);
         drawn.push_back(threadSeconds() - asked);
       }
       move.push_back(moved - start);

@@ -158,7 +158,7 @@ void roofline(benchmark::State& bench, const BoxSize& size) {
   assemble();
   const BlockMatrix& matrix = model.system().matrix();
   ConjugateGradient cg;
-  cg.prepare(matrix, values);
+  cg.precompute(matrix, values);
   std::vector<float> b(matrix.vectorSize(), 0.0F);
   std::vector<float> x(matrix.vectorSize());
   for (const int node : model.freeNodes())

@@ -53,7 +53,7 @@ struct SliverBox {
       if (good) ++made;
     }
     for (const Index4& t : box.tetrahedron) slivers += volumeOf(box, t) < 1e-3 * cell * cell * cell ? 1 : 0;
-    leastAngle = dihedralRange({box.node, box.tetrahedron}).smallest * 180.0 / std::numbers::pi;
+    leastAngle = dihedralRange({box.node, box.tetrahedron}).min * 180.0 / std::numbers::pi;
   }
   [[nodiscard]] SolidModel model(const std::vector<bool>& fixed) const {
     return {box.node, box.tetrahedron, fixed, {lameConstants(5e3, 0.45), 1060.0, 1.0, 0.02}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was measured of a device, when, and whether that is good enough (schemas/calibration.schema.json).
+// Calibration of a device: measurements, date and verdict (schemas/calibration.schema.json).
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace calot::recorder {
 
-/// Of one hand's tool. What could not be measured with this device is absent.
+/// Measurements of one hand's tool. What could not be measured with this device is absent.
 struct HandCalibration {
   std::optional<Vec3> tipOffset;        ///< p_IT: the tool's tip in its sensor's frame (m)
   std::optional<double> pivotResidual;  ///< root mean square distance of the tip from its dimple (m)
@@ -30,7 +30,7 @@ struct HandCalibration {
   double invalidShare = 0.0;            ///< of all samples
 };
 
-/// What a calibration must reach; stored in it, as limits change.
+/// Limits that a calibration must meet; stored in it, since limits change.
 struct CalibrationLimits {
   double pivotResidual = 0.0015;  ///< m
   double scaleSpread = 0.03;
@@ -52,8 +52,8 @@ struct Calibration {
   CalibrationLimits limits;
 };
 
-/// What falls short of the limits, one phrase each; empty: passed. Rate, noise, intervals and invalid share must be
-/// there for one hand at least; what is absent does not count against it.
+/// Violated limits, one phrase each; empty: passed. Rate, noise, intervals and invalid share must be present for at
+/// least one hand; other absent values are not violations.
 std::vector<std::string> shortcomings(const Calibration& calibration);
 
 /// Whole days from its date to `now` (ISO 8601 with Z); negative where it lies in the future.

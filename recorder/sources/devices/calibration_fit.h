@@ -21,8 +21,8 @@ struct PivotFit {
 
 /// Least squares over all poses of a tool whose tip stays in a dimple (the algebraic one-step method: Yaniv 2015,
 /// "Which pivot calibration?", Proc. SPIE 9415).
-/// @returns nothing for fewer than 10 poses, or where they turn so little that the offset is not determined: the least
-/// eigenvalue of the normal matrix, per pose, is below 0.01 (turns of about 10 degrees about two axes).
+/// @returns nothing for fewer than 10 poses, or where they rotate so little that the offset is not determined: the
+/// smallest eigenvalue of the normal matrix, per pose, is below 0.01 (rotations of about 10 degrees about two axes).
 std::optional<PivotFit> fitPivot(std::span<const DeviceSample> samples);
 
 struct StrokeFit {
@@ -32,7 +32,7 @@ struct StrokeFit {
   double axesResidual = 0.0;     ///< largest angle between axes * stroke and its axis (rad)
 };
 
-/// Rotation and scale that lay three measured strokes onto the three axes right, down, away, each `length` long
+/// Rotation and scale that map three measured strokes onto the three axes right, down, away, each `length` long
 /// (Umeyama 1991, IEEE PAMI 13:376, without translation).
 /// @returns nothing where a stroke is shorter than a tenth of the longest, or where they are mirrored.
 std::optional<StrokeFit> fitStrokes(const std::array<Vec3, 3>& strokes, double length);

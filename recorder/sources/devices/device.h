@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a trainee holds: the interface between a driver and the source of samples. Frame D is the device's own; a
-// mapping (device_mapping.h) lays it into the scene. Lengths are metres, angles radians, times nanoseconds.
+// Input devices: the interface between a driver and the source of samples. Frame D is the device's own; a mapping
+// (device_mapping.h) relates it to the scene. Lengths are metres, angles radians, times nanoseconds.
 #pragma once
 
 #include <array>
@@ -17,20 +17,20 @@
 
 namespace calot::recorder {
 
-/// Once a device is open its faults are events, not exceptions: it may vanish at any moment and come back.
+/// Faults of an open device are events, not exceptions: it may disconnect at any time and come back.
 struct DeviceEvent {
   enum class Kind : std::uint8_t {
     connected,
     disconnected,
-    malformed,  ///< something was received that is no sample; told once for each kind of fault and connection
-    status,     ///< the device says something of itself
+    malformed,  ///< invalid input was received; reported once per kind of fault and connection
+    status,     ///< status message of the device
   };
   Kind kind = Kind::status;
   std::int64_t hostTime = 0;  ///< ns
   std::string text;           ///< one line
 };
 
-/// What one poll brought, in the order of arrival.
+/// Result of one poll, in the order of arrival.
 struct DeviceInput {
   std::vector<DeviceSample> samples;
   std::vector<DeviceEvent> events;
@@ -53,10 +53,10 @@ struct DeviceCapabilities {
 };
 
 struct DeviceInfo {
-  std::string name;      ///< class: gamepad, openigtlink, null, scripted; what attempts are compared by
-  std::string identity;  ///< which one of its class: what a calibration belongs to
+  std::string name;      ///< class: gamepad, openigtlink, null, scripted; part of the comparability key
+  std::string identity;  ///< identity within its class, to which a calibration belongs
   std::string detail;    ///< for people
-  /// Who acts through it: human where a person may; what plays a script is a performer, what plays a motion file that.
+  /// Operator: human if a person may act; performer for scripts; kinematics for motion files.
   OperatorKind operatorKind = OperatorKind::human;
   std::string sourceFile;    ///< script or motion file, base name; or empty
   std::string sourceSha256;  ///< of its bytes
@@ -87,17 +87,17 @@ class Device {
   /// @param wait blocks at most so long for the first new sample; 0: not at all.
   virtual void poll(std::chrono::nanoseconds wait, DeviceInput& out) = 0;
 
-  /// There and answering.
+  /// Is the device connected?
   [[nodiscard]] virtual bool connected() const = 0;
 
-  /// Its motion has come to its end (scripts).
+  /// Has its motion ended (scripts)?
   [[nodiscard]] virtual bool ended() const { return false; }
 
-  /// What the hand shall feel; the device clamps it to what it can do, and lets go when no call came for 50 ms.
-  /// A device without motors ignores it.
+  /// Sets the force on the hand. The device clamps it to its limits and releases it if no call arrives for 50 ms. A
+  /// device without motors ignores it.
   virtual void setWrench(Hand, const Wrench&) {}
 
-  /// Lets go of everything; further polls bring nothing.
+  /// Closes the device; further polls return nothing.
   virtual void close() = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a kind of device declares of itself. Each device's own source defines its DeviceKind; the table in
-// open_device.cpp lists them. Help texts, `calot devices`, `--device` and the trainer's choice run over that table.
+// Declaration of a kind of device. Each device's own source file defines its DeviceKind; the table in open_device.cpp
+// lists them. Help texts, `calot devices`, `--device` and the trainer's menu use that table.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct TickClock {
   std::int64_t now = 0;  ///< ns
 };
 
-/// What a user asks for.
+/// A user's request for a device.
 struct DeviceRequest {
   std::string name;      ///< as written: "openigtlink:localhost:18944"
   std::string argument;  ///< behind the first colon, never empty where there is a colon: "localhost:18944"
@@ -46,8 +46,8 @@ struct DeviceKind {
   const char* name;          ///< before the colon, and DeviceInfo::name: "gamepad"; stored, never reused
   const char* usage;         ///< how to ask for one: "gamepad[:NAME]"
   const char* help;          ///< one line for people
-  bool needsWindow = false;  ///< its input comes from a window, which opens it itself; `open` refuses
-  /// What is there, or could be. Does not throw.
+  bool needsWindow = false;  ///< its input comes from a window, which opens it; `open` refuses
+  /// Lists devices that are, or could be, available. Does not throw.
   std::vector<ListedDevice> (*list)();
   /// @throws Error: invalid, for a request that makes no sense; damaged, for a bad file; failure, where it is not
   /// there.

@@ -6,7 +6,7 @@
 
 namespace calot::recorder {
 
-/// How device frame D is laid into the scene for one hand:
+/// Mapping of device frame D into the scene for one hand:
 ///
 ///   p_WT = anchor_W + scale R_WC R_CD (tip_D - tip_D(0)),   tip_D = p_DI + q_DI tipOffset
 ///   q_WI = R (q_DI q_DI(0)^-1) R^-1 q_WI(0),                R = R_WC R_CD
@@ -23,7 +23,7 @@ class DeviceMapping {
 
   [[nodiscard]] bool anchored() const { return anchored_; }
 
-  /// From now on `sample` means this pose.
+  /// Anchors the hand: from now on `sample` corresponds to this pose.
   void anchor(const DeviceSample& sample, const Vec3& position, const Quat& orientation);
   /// Anchors at the scene's home position, roll 0.
   void anchorAtHome(const DeviceSample& sample);

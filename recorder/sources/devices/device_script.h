@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stream of device samples as a file: what a scripted device plays, and what a calibration may be measured from
-// (docs/devices.md has the format).
+// A stream of device samples as a file, which a scripted device plays or a calibration is measured
+// from (format in docs/devices.md).
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 namespace calot::recorder {
 
 struct DeviceScript {
-  /// A stretch of time that means something to a calibration: rest, pivot, stroke x, stroke y, stroke z.
+  /// A labelled time interval for a calibration: rest, pivot, stroke x, stroke y, stroke z.
   struct Phase {
     std::string name;
     std::int64_t from = 0, to = 0;  ///< ns
@@ -33,8 +33,8 @@ struct DeviceScript {
   std::vector<Phase> phases;
 };
 
-/// Reads a script: JSON where the text begins with "{", else two-handed kinematics (kinematics_file.h), row i at i/30
-/// s.
+/// Reads a script: JSON where the text begins with "{", else two-handed kinematics (kinematics_file.h), row
+/// i at i/30 s.
 /// @throws Error (damaged) with file and place.
 DeviceScript readDeviceScript(const std::filesystem::path& file);
 DeviceScript parseDeviceScript(std::span<const std::byte> bytes, const std::string& file);

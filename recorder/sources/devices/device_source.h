@@ -24,23 +24,23 @@ struct DeviceSourceSettings {
   std::shared_ptr<TickClock> tickClock;
 };
 
-/// What came from the device; for the report.
+/// Statistics of the device, for the report.
 struct DeviceCounts {
   std::uint64_t samples = 0;
   std::uint64_t invalid = 0;
-  std::uint64_t losses = 0;       ///< how often it was gone
+  std::uint64_t losses = 0;       ///< number of disconnections
   std::vector<std::string> told;  ///< its events, one line each, the first 100
 };
 
 /// An attempt by a device. Each tick takes the newest valid sample of each hand, mapped into the scene (DeviceMapping)
 /// and held until a newer one comes; the tick says that the hand is not measured where that sample is older than
 /// `staleAfter`, or the device is gone. Each hand is anchored when the attempt begins, so that its instrument starts at
-/// the scene's home; when a clutch is let go; and when the device was gone, so that nothing jumps.
+/// the scene's home; when a clutch is released; and after a disconnection, so that nothing jumps.
 ///
-/// A hand that the device has not driven yet has no instrument: checkpoints of it, and of both hands, are not
-/// applicable.
+/// A hand that the device has not driven yet has no instrument: checkpoints of it, and of both
+/// hands, are not applicable.
 ///
-/// The device gone: practice pauses until it is back; an assessment fails (SourceStatus).
+/// When the device disconnects, practice pauses until it is back and an assessment fails (SourceStatus).
 class DeviceSource final : public SampleSource {
  public:
   /// The calibration must be one that checkCalibration accepts.
@@ -63,12 +63,12 @@ class DeviceSource final : public SampleSource {
   void rest() override;
   [[nodiscard]] std::string statusText() const override { return lost_; }
   [[nodiscard]] DeviceSource* device() override { return this; }
-  /// What the hands shall feel; for devices with motors.
+  /// Sets forces on the hands, for devices with motors.
   void feedback(const std::array<Wrench, handCount>& inWorld);
 
-  /// What the device measured since the attempt began, in the order of arrival, for the recording: also those that no
-  /// tick used. It begins with what the first tick found. Another thread than the one that asks for ticks may take
-  /// them.
+  /// What the device measured since the attempt began, in the order of arrival, for the recording: also those
+  /// that no tick used. It begins with what the first tick found. Another thread than the one that asks for
+  /// ticks may take them.
   [[nodiscard]] RawSampleFeed& rawSamples() { return raw_; }
 
   [[nodiscard]] const DeviceCounts& counts() const { return counts_; }

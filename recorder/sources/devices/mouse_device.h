@@ -14,10 +14,10 @@ namespace calot::recorder {
 ///
 /// D is x right, y down, z away. The pointer moves the tip right and down, 0.15 mm a pixel; the wheel along the shaft,
 /// 3 mm a notch. Keys do the same at 30 mm/s, roll at 1.5 rad/s, open and close the jaw at 1.8 rad/s. No motion is
-/// faster than 0.5 m/s: what the pointer is ahead, the tip makes good. `fine` divides all of it by four.
+/// faster than 0.5 m/s: the tip catches up with the pointer later. `fine` divides all of it by four.
 ///
-/// The hand that is driven gives 250 samples a second. The other one holds: it stands still as it was left, without a
-/// pedal, and says so 50 times a second, so that it is measured.
+/// The hand that is driven gives 250 samples a second. The other one stays as it was left, without a pedal, and reports
+/// this 50 times a second, so that it counts as measured.
 class MouseDevice final : public Device {
  public:
   /// @param input what the window writes to; not null

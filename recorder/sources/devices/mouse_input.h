@@ -9,7 +9,7 @@
 
 namespace calot::recorder {
 
-/// What a person does while a key or a button is down.
+/// Actions while a key or button is pressed.
 enum class MouseControl : std::uint8_t {
   right,
   left,
@@ -28,8 +28,8 @@ enum class MouseControl : std::uint8_t {
 };
 inline constexpr std::size_t mouseControls = 14;
 
-/// What a window saw of mouse and keyboard and a MouseDevice turns into samples. Any thread may call anything: it is
-/// never the haptic thread that does.
+/// Mouse and keyboard input of a window, which a MouseDevice converts to samples. Thread-safe by a lock; the haptic
+/// thread never calls it.
 class MouseInput {
  public:
   /// The pointer went by so many pixels.
@@ -39,10 +39,10 @@ class MouseInput {
   void hold(MouseControl control, bool held);
   /// Ratchet of the driven hand's grasper: locks, or lets go.
   void toggleLock();
-  /// Passes mouse and keyboard to the other hand. The one that is left stays where and as it is, its lock too, but
-  /// without pedals.
+  /// Passes mouse and keyboard to the other hand. The one that is left stays where and as it is, its lock
+  /// too, but without pedals.
   void switchHand();
-  /// Nothing is held any more and what was not yet turned into motion is dropped: the window lost the keyboard.
+  /// Releases everything and drops pending motion: the window lost the keyboard focus.
   void release();
 
   /// The hand that is driven now; the right one first.

@@ -6,8 +6,8 @@
 
 namespace calot::recorder {
 
-/// A device that never moves: both hands rest at D's origin, a sample a millisecond of the tick clock. It measures what
-/// a run costs, and what the simulation does untouched.
+/// A device that never moves: both hands stay at D's origin, with one sample per millisecond of the tick clock. For
+/// measuring the cost of a run, and the simulation without input.
 class NullDevice final : public Device {
  public:
   /// @param clock of its samples (ns).

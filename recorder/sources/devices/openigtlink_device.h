@@ -23,9 +23,8 @@ struct OpenIgtLinkSettings {
 /// or QTDATA; the opening of a tool's gripper (rad) by SENSOR with the tool's name and "Jaw" behind it; STATUS is told
 /// as an event. Other messages and tools are passed over.
 ///
-/// Connects at the first poll and again after a loss, every half second. Malformed input is counted as an invalid
-/// sample where it names one of the tools, told once a kind, and never more than that; a stream that is no OpenIGTLink
-/// is disconnected.
+/// Connects at the first poll and again after a loss, every half second. Malformed input that names one of the tools
+/// counts as an invalid sample; each kind is reported once. A stream that is not OpenIGTLink is disconnected.
 class OpenIgtLinkDevice final : public Device {
  public:
   explicit OpenIgtLinkDevice(OpenIgtLinkSettings settings, DeviceClock clock = monotonicNanoseconds);

@@ -9,8 +9,8 @@
 
 namespace calot::recorder {
 
-/// Raw samples on their way from the thread that asks a device source for ticks to the one that records. Neither side
-/// waits or allocates. Where nobody takes them in time, what finds no room is dropped, and counted.
+/// Raw samples in transit from the thread that requests ticks from a device source to the one that records. Neither
+/// side waits or allocates. Samples that exceed the capacity are dropped and counted.
 class RawSampleQueue final : public RawSampleFeed {
  public:
   /// @param capacity samples that may wait. The default is two seconds of two hands at 1 kHz, twenty times the lag that

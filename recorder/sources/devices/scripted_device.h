@@ -9,7 +9,7 @@
 namespace calot::recorder {
 
 /// Plays a script on the clock that it is given: the same motion, the same unplugging, at the same ticks every time.
-/// While it is unplugged its script stands still, as a hand waits when nothing moves any more.
+/// While it is unplugged its script pauses, as an operator would.
 class ScriptedDevice final : public Device {
  public:
   /// @param clock (ns); the script begins when the device is made.
@@ -22,7 +22,7 @@ class ScriptedDevice final : public Device {
   void setWrench(Hand hand, const Wrench& wrench) override;
   void close() override { open_ = connected_ = false; }
 
-  /// What its motors show now; zero where the script gives it none.
+  /// Current force of its motors; zero if the script gives it none.
   [[nodiscard]] Wrench shown(Hand hand) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace calot::recorder {
 
-/// A connected stream. Nothing throws: a connection that breaks is closed, and is asked for that.
+/// A connected stream. Nothing throws: a broken connection is closed, which callers can query.
 class TcpStream {
  public:
   TcpStream() = default;

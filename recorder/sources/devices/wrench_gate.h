@@ -5,8 +5,8 @@
 
 namespace calot::recorder {
 
-/// Stands before a motor: no more than it can do, nothing that is not finite, and nothing that nobody renews. A loop
-/// that hangs must not leave a hand under force.
+/// Safety gate before a motor: limits wrenches to the motor's range, rejects values that are not finite, and times out.
+/// A loop that hangs must not leave a hand under force.
 class WrenchGate {
  public:
   static constexpr std::int64_t watchdog = 50'000'000;  ///< ns without a command after which the wrench is zero
@@ -17,7 +17,7 @@ class WrenchGate {
   /// Force and torque are shortened to their largest length, keeping their direction; what is not finite becomes zero.
   void command(const Wrench& wrench, std::int64_t now);
 
-  /// What the motors shall show now.
+  /// Current wrench for the motors.
   [[nodiscard]] Wrench output(std::int64_t now) const;
 
  private:

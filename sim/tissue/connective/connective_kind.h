@@ -80,7 +80,8 @@ struct ConnectiveResult {
     visit(ResultField{"lower_attached", "1", "", 4,
                       "share of the bed's lower third that is attached; 0 for a tissue without thirds"},
           &ConnectiveResult::lowerAttached);
-    visit(ResultField{"middle_attached", "1", "", 4, "the same of its middle third"}, &ConnectiveResult::middleAttached);
+    visit(ResultField{"middle_attached", "1", "", 4, "the same of its middle third"},
+          &ConnectiveResult::middleAttached);
     visit(ResultField{"upper_attached", "1", "", 4, "the same of its upper third"}, &ConnectiveResult::upperAttached);
   }
 };

@@ -106,11 +106,11 @@ std::string addFat(const SceneDescription& scene, const FatDescription& descript
     std::vector<Vec3> points;
     points.reserve(ties.size());
     for (const FatTie& tie : ties) points.push_back(tie.rest);
-    std::vector<SolidPlace> places;
-    if (!known[p].vessel && !points.empty()) places = placesOnOrgan(organs[known[p].index], points);
+    std::vector<MaterialPoint> places;
+    if (!known[p].vessel && !points.empty()) places = pointsOnOrgan(organs[known[p].index], points);
     for (std::size_t i = 0; i < ties.size(); ++i) {
       Tie tie;
-      tie.place[1] = ties[i].place;
+      tie.place[1] = ties[i].point;
       tie.stiffness = ties[i].stiffness;
       tie.damping = ties[i].damping;
       tie.fat = model.fat().size();

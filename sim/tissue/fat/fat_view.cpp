@@ -54,7 +54,7 @@ void FatView::fill(const FatState& state, SurfaceView& surface) {
   surface.rest = picture_.rest();
   surface.triangle = picture_.triangles();
   if (!state.carved.brick.empty()) surface.charred = seared_;
-  picture_.place(state.solid.position, surface.position);
+  picture_.positions(state.solid.position, surface.position);
 }
 
 class FatViewer final : public TissueViewer {

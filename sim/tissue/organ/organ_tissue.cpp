@@ -126,11 +126,11 @@ bool OrganTissue::fits(const Model& model, const States& states) {
 
 void OrganTissue::resize(const Model& model, Results& results) { results.organ.resize(model.organs().size()); }
 
-std::vector<SolidPlace> placesOnOrgan(const OrganModel& organ, const std::vector<Vec3>& points) {
+std::vector<MaterialPoint> pointsOnOrgan(const OrganModel& organ, const std::vector<Vec3>& points) {
   const Embedding embedding(points, {organ.solid.rest(), organ.solid.tetrahedra()});
-  std::vector<SolidPlace> places;
+  std::vector<MaterialPoint> places;
   for (const Embedding::Anchor& anchor : embedding.anchors()) {
-    SolidPlace& place = places.emplace_back();
+    MaterialPoint& place = places.emplace_back();
     place.count = anchor.node.size();
     std::copy(anchor.node.begin(), anchor.node.end(), place.node.begin());
     std::copy(anchor.weight.begin(), anchor.weight.end(), place.weight.begin());

@@ -113,7 +113,8 @@ struct OrganResult {
     visit(ResultField{"largest_displacement", "m", "", 1, "over its nodes, from the reference configuration"},
           &OrganResult::largestDisplacement);
     visit(ResultField{"largest_speed", "m/s", "", 1, "over its nodes"}, &OrganResult::largestSpeed);
-    visit(ResultField{"residual", "1", "", 1, "relative residual of the linear solve; 0 asleep"}, &OrganResult::residual);
+    visit(ResultField{"residual", "1", "", 1, "relative residual of the linear solve; 0 asleep"},
+          &OrganResult::residual);
     visit(ResultField{"iterations", "", "", 1, "of the linear solve; 0 asleep"}, &OrganResult::iterations);
     visit(ResultField{"asleep", "", "", 1, "1: untouched and idle, not solved in this step"}, &OrganResult::asleep);
     visit(ResultField{"charred_area", "m^2", "", 3, "of the organ's skin in the reference configuration"},
@@ -134,7 +135,8 @@ struct OrganTissue {
   using Result = OrganResult;
   static constexpr const char* componentPrefix = "organ.";
   static constexpr bool hasStructures = true;
-  static constexpr ResultGroup results{"/observables/organs", 1, "one column an organ, in the order of `/scene/organs`"};
+  static constexpr ResultGroup results{"/observables/organs", 1,
+                                       "one column an organ, in the order of `/scene/organs`"};
 
   struct Descriptions {
     std::vector<OrganDescription> organs;
@@ -184,6 +186,6 @@ struct OrganTissue {
 };
 
 /// Material points of an organ's solid that lie at points of the reference configuration (m).
-std::vector<SolidPlace> placesOnOrgan(const OrganModel& organ, const std::vector<Vec3>& points);
+std::vector<MaterialPoint> pointsOnOrgan(const OrganModel& organ, const std::vector<Vec3>& points);
 
 }  // namespace calot

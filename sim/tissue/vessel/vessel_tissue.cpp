@@ -22,8 +22,8 @@ int nearestNode(const BeamModel& beams, std::size_t branch, const Vec3& point) {
   });
 }
 
-SolidPlace placeOnNode(int node) {
-  SolidPlace place;
+MaterialPoint placeOnNode(int node) {
+  MaterialPoint place;
   place.node[0] = node;
   place.weight[0] = 1.0;
   place.count = 1;
@@ -86,13 +86,13 @@ std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
       }
       std::vector<int> grown;
       for (std::size_t i = 0; i < branch.node.size(); ++i) {
-        const double away = atEnd ? branch.length() - branch.place[i] : branch.place[i];
+        const double away = atEnd ? branch.length() - branch.arcLength[i] : branch.arcLength[i];
         if (away <= grownLength) grown.push_back(branch.node[i]);
       }
       std::vector<Vec3> points;
       points.reserve(grown.size());
       for (const int node : grown) points.push_back(beams.rest()[static_cast<std::size_t>(node)]);
-      const std::vector<SolidPlace> places = placesOnOrgan(organs[organ], points);
+      const std::vector<MaterialPoint> places = pointsOnOrgan(organs[organ], points);
       for (std::size_t i = 0; i < grown.size(); ++i) {
         Tie tie;
         tie.body = {organ, organs.size() + home[v].tree};

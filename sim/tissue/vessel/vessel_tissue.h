@@ -94,16 +94,17 @@ struct VesselResult {
 
   template <class Visit>
   static void fields(Visit&& visit) {
-    visit(
-        ResultField{"largest_strain", "1", "", 3, "stretch (length / reference length - 1) of any whole element; 0 asleep"},
-        &VesselResult::largestStrain);
+    visit(ResultField{"largest_strain", "1", "", 3,
+                      "stretch (length / reference length - 1) of any whole element; 0 asleep"},
+          &VesselResult::largestStrain);
     visit(ResultField{"largest_tension", "N", "", 3, "tension in any whole element; 0 asleep"},
           &VesselResult::largestTension);
     visit(ResultField{"largest_displacement", "m", "", 3,
                       "of any node of the vessels that it grows together with, from the reference configuration"},
           &VesselResult::largestDisplacement);
     visit(ResultField{"clips", "", "", 3, "clips on it"}, &VesselResult::clips);
-    visit(ResultField{"partings", "", "", 3, "places where it is cut, burned or torn through"}, &VesselResult::partings);
+    visit(ResultField{"partings", "", "", 3, "places where it is cut, burned or torn through"},
+          &VesselResult::partings);
     visit(ResultField{"charred", "1", "", 3, "most cautery at any spot, as a share of what parts it"},
           &VesselResult::charred);
     visit(ResultField{"asleep", "", "", 3, "1: untouched and idle, not solved in this step"}, &VesselResult::asleep);
@@ -134,7 +135,8 @@ struct VesselTissue {
   using Result = VesselResult;
   static constexpr const char* componentPrefix = "vessels.";
   static constexpr bool hasStructures = true;
-  static constexpr ResultGroup results{"/observables/vessels", 3, "one column a vessel, in the order of `/scene/vessels`"};
+  static constexpr ResultGroup results{"/observables/vessels", 3,
+                                       "one column a vessel, in the order of `/scene/vessels`"};
 
   struct Descriptions {
     std::vector<VesselDescription> vessels;

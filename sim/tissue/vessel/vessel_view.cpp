@@ -74,7 +74,7 @@ void addDome(int ring, std::size_t cap, double away, SurfaceView& surface) {
 }
 
 /// Cautery at a place: linear between the middles of elements.
-double exposureAt(const BeamModel& beams, const BeamState& vessels, const BeamPlace& where) {
+double exposureAt(const BeamModel& beams, const BeamState& vessels, const BeamPoint& where) {
   const auto& branch = beams.branches()[where.branch];
   const double own = vessels.exposure[where.element];
   const double off = where.share - 0.5;
@@ -149,7 +149,8 @@ std::vector<bool> openFaces(const BeamModel& beams, const BeamState& vessels, st
     BeamState whole = vessels;
     whole.parting[e] = Parting::none;
     const double share = vessels.partedAt[e];
-    const double place = branch.place[element] + share * (branch.place[element + 1] - branch.place[element]);
+    const double place =
+        branch.arcLength[element] + share * (branch.arcLength[element + 1] - branch.arcLength[element]);
     const CutSides judged = cutSides(beams, whole, {which, e, share, place});
     open.push_back(judged.opensBefore);
     open.push_back(judged.opensAfter);
@@ -190,13 +191,13 @@ void VesselView::layRest(const BeamState& vessels) {
   BeamState rest = restState(tree_.beams);
   rest.parting = vessels.parting;
   rest.partedAt = vessels.partedAt;
-  tube_.place(rest, rest_);
+  tube_.positions(rest, rest_);
 }
 
 void VesselView::addChar(const BeamState& vessels, SurfaceView& surface) const {
   const double through = model_.scene().vessels[tree_.vessel[structure_.branch]].burnThrough;
   for (std::size_t v = 0; v < tube_.vertices(); ++v) {
-    const BeamPlace where = tube_.where(static_cast<int>(v));
+    const BeamPoint where = tube_.where(static_cast<int>(v));
     surface.charred.push_back(static_cast<float>(exposureAt(tree_.beams, vessels, where) / through));
   }
 }
@@ -204,7 +205,7 @@ void VesselView::addChar(const BeamState& vessels, SurfaceView& surface) const {
 void VesselView::fill(const State& state, SurfaceView& surface) {
   const BeamState& vessels = state.vessel[structure_.index];
   if (tube_.update(vessels)) layRest(vessels);
-  tube_.place(vessels, surface.position);
+  tube_.positions(vessels, surface.position);
   surface.rest = rest_;
   surface.triangle = tube_.triangles();
   addChar(vessels, surface);
@@ -226,7 +227,7 @@ void addClips(const Model& model, const State& state, SceneView& view) {
     const BeamModel& beams = model.vesselTrees()[t].beams;
     const BeamState& vessels = state.vessel[t];
     for (std::size_t c = 0; c < vessels.clips(); ++c) {
-      const BeamPlace where = placeAt(beams, vessels.clipBranch[c], vessels.clipPlace[c]);
+      const BeamPoint where = pointAt(beams, vessels.clipBranch[c], vessels.clipPlace[c]);
       const Pose frame = centreLine(beams, vessels, where, stumpAt(vessels, where));
       ClipView clip;
       clip.pose = {frame.position, frame.orientation * aboutZ(vessels.clipRoll[c])};

@@ -33,14 +33,14 @@ TEST(Allocation, NoStrokeAllocates) {
   const FieldModel model = test::lump(65);
   CarvedField field(model);
   CarvedBricks state;
-  field.prepare(state);
+  field.reserve(state);
   Islands islands(model.lattice, test::floorAnchors(model.lattice));
   islands.rebuild(field);
   CarvedSurface surface(model.lattice);
   surface.rebuild(field);
   Fill fill(model.lattice, 4);
   fill.rebuild(field);
-  const RestingTissue tissue(model.lattice);
+  const UndeformedTissue tissue(model.lattice);
   const double depth = carveDepth * model.lattice.cell();
   Random random(8, 8);
   const Box box{{-0.02, -0.015, -0.005}, {0.02, 0.015, 0.008}};

@@ -132,7 +132,7 @@ class Affine final : public TissueMotion {
   Affine(const BrickLattice& lattice, const Mat3& now, const Vec3& shiftNow, const Mat3& before,
          const Vec3& shiftBefore)
       : lattice_(lattice), now_(now), before_(before), shiftNow_(shiftNow), shiftBefore_(shiftBefore) {}
-  void place(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const override {
+  void fillLanes(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const override {
     for (int i = 0; i < count; ++i) {
       const Vec3 rest = lattice_.position(first + Index3(i, 0, 0));
       const Vec3 x = now_ * rest + shiftNow_;
@@ -240,7 +240,7 @@ TEST(Carve, HowNodesAreDealtIntoBoxesDoesNotMatter) {
     test::carveAtRest(one, tool);
     one.commit(stateOne);
     many.begin();
-    carve(many, tool, cells, RestingTissue(model.lattice), depth);
+    carve(many, tool, cells, UndeformedTissue(model.lattice), depth);
     many.commit(stateMany);
   }
   EXPECT_GT(stateOne.brick.size(), 10U);

@@ -28,7 +28,7 @@ TEST(CarvedField, StateIsEnoughToGetItBack) {
   const FieldModel model = test::lump(41);
   CarvedField field(model);
   CarvedBricks state;
-  field.prepare(state);
+  field.reserve(state);
   const std::size_t capacity = state.value.capacity();
   carveSome(field, state, 20);
   EXPECT_EQ(state.value.capacity(), capacity);  // no growth on the way

@@ -45,7 +45,7 @@ TEST(CubeTable, EveryCaseIsClosedAgainstItsNeighboursAndOutward) {
     }
     EXPECT_EQ(used.size(), cut);
   }
-  EXPECT_EQ(most, CubeCase::most);
+  EXPECT_EQ(most, CubeCase::maxTriangles);
 }
 
 TEST(CarvedSurface, IsTheBodysSurface) {
@@ -88,13 +88,13 @@ TEST(CarvedSurface, CutsKeepAwayFromTheNodes) {
   surface.rebuild(field);
   double least = 1.0;
   surface.forEachPatch([&](const SurfacePatch& p) {
-    EXPECT_LE(p.triangleCount, SurfacePatch::mostTriangles);
+    EXPECT_LE(p.triangleCount, SurfacePatch::maxTriangles);
     for (std::size_t i = 0; i < p.vertexCount; ++i) {
       const double t = surface_vertex::cut(field, p.vertex[i]);
       least = std::min({least, t, 1.0 - t});
     }
   });
-  EXPECT_EQ(least, surface_vertex::leastCut);
+  EXPECT_EQ(least, surface_vertex::minCut);
 }
 
 TEST(CarvedSurface, LeastAngleOfACarvedBody) {
@@ -161,7 +161,7 @@ void expectAdjacency(const FieldModel& model) {
     std::vector<std::uint32_t> expected;
     const std::uint32_t vertex = cornerOf[i].first;
     for (; i < cornerOf.size() && cornerOf[i].first == vertex; ++i) expected.push_back(cornerOf[i].second);
-    std::array<std::uint32_t, SurfaceAdjacency::mostAround> around{};
+    std::array<std::uint32_t, SurfaceAdjacency::maxAround> around{};
     const std::size_t count = adjacency.around(vertex, around);
     std::vector<std::uint32_t> got(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(count));
     std::sort(got.begin(), got.end());

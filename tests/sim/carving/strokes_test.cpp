@@ -41,7 +41,7 @@ struct Bench {
         freshAdaptive(model.lattice),
         fill(model.lattice, 4),
         freshFill(model.lattice, 4) {
-    field.prepare(state);
+    field.reserve(state);
     islands.rebuild(field);
     field.begin();
     islands.remove(field);

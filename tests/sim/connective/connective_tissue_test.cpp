@@ -33,12 +33,12 @@ struct Pair {
     }
     return fixed;
   }
-  static SolidPlace corner(int node) {
-    SolidPlace place;
-    place.node[0] = node;
-    place.weight[0] = 1.0;
-    place.count = 1;
-    return place;
+  static MaterialPoint corner(int node) {
+    MaterialPoint point;
+    point.node[0] = node;
+    point.weight[0] = 1.0;
+    point.count = 1;
+    return point;
   }
   std::vector<Strand> strands() const {
     std::vector<Strand> out;

@@ -15,11 +15,11 @@ namespace calot {
 namespace {
 
 /// With cells, and without.
-constexpr std::size_t mostSwept[] = {0, 2048};
+constexpr std::size_t maxSwept[] = {0, 2048};
 
 TEST(SortedGrid, FindsEveryOverlapSortedAndOnce) {
   SCOPED_TRACE("seed 51");
-  for (const std::size_t swept : mostSwept) {
+  for (const std::size_t swept : maxSwept) {
     SortedGrid grid(0.02, swept);
     test::checkUpdates(grid, 51);
   }
@@ -27,7 +27,7 @@ TEST(SortedGrid, FindsEveryOverlapSortedAndOnce) {
 
 TEST(SortedGrid, RefitsWhatMoved) {
   SCOPED_TRACE("seed 52");
-  for (const std::size_t swept : mostSwept) {
+  for (const std::size_t swept : maxSwept) {
     SortedGrid grid(0.02, swept);
     test::checkRefits(grid, 52);
   }
@@ -35,7 +35,7 @@ TEST(SortedGrid, RefitsWhatMoved) {
 
 TEST(SortedGrid, BoxesThatOnlyTouchOverlap) {
   SCOPED_TRACE("seed 53");
-  for (const std::size_t swept : mostSwept) {
+  for (const std::size_t swept : maxSwept) {
     SortedGrid grid(0.02, swept);
     test::checkTightBoxes(grid, 53);
   }

@@ -159,11 +159,11 @@ TEST(CapsuleContact, AppendsInOrderOfKeysEachOnce) {
   for (std::size_t i = 2; i < out.size(); ++i) EXPECT_LT(out[i - 1].key, out[i].key);
   double least = 1.0;
   for (std::size_t i = 1; i < out.size(); ++i) least = std::min(least, out[i].gap);
-  EXPECT_EQ(leastGap(slab.surface, slab.skin.vertex, slab.patches, Vec3(-0.04, 0.0031, top + 0.002),
-                     Vec3(0.04, 0.0057, top + 0.002), radius, 0.003),
+  EXPECT_EQ(minGap(slab.surface, slab.skin.vertex, slab.patches, Vec3(-0.04, 0.0031, top + 0.002),
+                   Vec3(0.04, 0.0057, top + 0.002), radius, 0.003),
             least);
   EXPECT_EQ(
-      leastGap(slab.surface, slab.skin.vertex, slab.patches, Vec3(0.0, 0.0, 0.05), Vec3(0.0, 0.0, 0.06), radius, 0.003),
+      minGap(slab.surface, slab.skin.vertex, slab.patches, Vec3(0.0, 0.0, 0.05), Vec3(0.0, 0.0, 0.06), radius, 0.003),
       0.003)
       << "nothing near: the reach";
 }
@@ -178,7 +178,7 @@ TEST(ContactSurface, PatchesPartitionTheTrianglesAndBoundThem) {
   for (std::size_t p = 0; p < bounds.size(); ++p) {
     const ContactSurface::Patch& patch = slab.surface.patches()[p];
     EXPECT_EQ(patch.first, next) << "no gap, no overlap";
-    EXPECT_LE(patch.last - patch.first, ContactSurface::largestPatch);
+    EXPECT_LE(patch.last - patch.first, ContactSurface::maxPatchTriangles);
     next = patch.last;
     for (std::size_t t = patch.first; t < patch.last; ++t) {
       for (int k = 0; k < 3; ++k) {

@@ -36,7 +36,7 @@ struct PlacedBody {
     return out;
   }
   [[nodiscard]] double gap(const Vec3& p0, const Vec3& p1, double radius, double reach) const {
-    return leastGap(surface, skin.vertex, patches, p0, p1, radius, reach);
+    return minGap(surface, skin.vertex, patches, p0, p1, radius, reach);
   }
   [[nodiscard]] double distance(const Vec3& p) const {
     TriangleMesh mesh{skin.vertex, skin.triangle};
@@ -77,7 +77,7 @@ TEST(CapsuleDepth, AnAxisDeepBelowTheFaceIsFound) {
     }
   }
   EXPECT_TRUE(body.contacts(Vec3(0.0, 0.0, 0.0049), Vec3(0.003, 0.0, 0.0049), thin, 0.001).empty())
-      << "deeper than deepestAxis: stated not to be seen";
+      << "deeper than maxAxisDepth: stated not to be seen";
 }
 
 TEST(CapsuleDepth, ATipPushedInIsFoundHoweverDeep) {
@@ -94,7 +94,7 @@ TEST(CapsuleDepth, ATipPushedInIsFoundHoweverDeep) {
         least = std::min(least, c.gap);
         EXPECT_LT((c.normal - Vec3::UnitZ()).norm(), 1e-9) << "never towards the other side";
       }
-      EXPECT_NEAR(least, -std::min(depth, deepestAxis) - thin, 1e-12);
+      EXPECT_NEAR(least, -std::min(depth, maxAxisDepth) - thin, 1e-12);
     }
   }
 }
@@ -257,7 +257,7 @@ TEST(CapsuleDepth, AgreesWithDenseSamplingOfTheDistance) {
         const double expected = std::min(reach, least - radius);
         EXPECT_LE(gap, expected + 1e-12) << report();
         EXPECT_GE(gap, expected - step) << report();
-      } else if (least < -step && least > -deepestAxis) {
+      } else if (least < -step && least > -maxAxisDepth) {
         (most > 0.0 ? crossing : inside) += 1;
         ASSERT_FALSE(found.empty()) << report();
         EXPECT_LE(gap, -radius + 1e-12) << report();
@@ -281,7 +281,7 @@ TEST(CapsuleDepth, AgreesWithDenseSamplingOfTheDistance) {
           EXPECT_GE(at, -1e-9) << report();
           EXPECT_GE(c.gap, at - radius - 1e-9) << report() << ": no nearer than the surface is";
           EXPECT_LT((foot + (c.gap + radius) * c.normal - c.onAxis).norm(), 1e-9) << report();
-        } else if (at > -deepestAxis) {
+        } else if (at > -maxAxisDepth) {
           EXPECT_NEAR(c.gap, std::min(at, 0.0) - radius, 1e-8) << report();
         }
       }

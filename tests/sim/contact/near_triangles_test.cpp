@@ -161,11 +161,11 @@ TEST(NearTriangles, ASheetThatFoldsOntoItself) {
       if (step == steps / 2) warm.reset();
     }
     std::printf("pace %g: %zu contacts, %zu patches renewed, %zu vertices searched, %zu triangles looked at\n", pace,
-                found, warm.counts().renewed, warm.counts().searched, warm.counts().looked);
+                found, warm.counts().rebuilt, warm.counts().searched, warm.counts().tested);
     EXPECT_GT(found, 0U);
-    EXPECT_GT(warm.counts().looked, 0U);
+    EXPECT_GT(warm.counts().tested, 0U);
     if (pace == paces.front()) {
-      EXPECT_LT(warm.counts().renewed, 6 * sheet.surface.patches().size()) << "old lists were used";
+      EXPECT_LT(warm.counts().rebuilt, 6 * sheet.surface.patches().size()) << "old lists were used";
     }
   }
 }
@@ -197,7 +197,7 @@ TEST(NearTriangles, ABallThatRollsIntoABentPlate) {
         found += agree(up, plate, b, ball, a, warmUp);
         ASSERT_FALSE(::testing::Test::HasFailure()) << "pace " << pace << ", step " << step;
       }
-      std::printf("pace %g: %zu contacts, %zu patches renewed\n", pace, found, warmDown.counts().renewed);
+      std::printf("pace %g: %zu contacts, %zu patches renewed\n", pace, found, warmDown.counts().rebuilt);
       EXPECT_GT(found, 0U);
     }
   }
@@ -228,7 +228,7 @@ TEST(NearTriangles, CrumpledSurfaces) {
     found += agree(pair, ball, at, ball, at, warm);
     ASSERT_FALSE(::testing::Test::HasFailure()) << "step " << step;
   }
-  std::printf("%zu contacts, %zu patches renewed in 150 steps\n", found, warm.counts().renewed);
+  std::printf("%zu contacts, %zu patches renewed in 150 steps\n", found, warm.counts().rebuilt);
   EXPECT_GT(found, 100U);
 }
 
@@ -242,13 +242,13 @@ TEST(NearTriangles, SmallMotionsNeedNoSearch) {
   const std::vector<Vec3> shape = bent.apply(sheet.skin.vertex, 0.01);
   NearTriangles warm;
   EXPECT_EQ(agree(pair, sheet, shape, sheet, shape, warm), 0U);
-  const std::size_t first = warm.counts().renewed;
+  const std::size_t first = warm.counts().rebuilt;
   EXPECT_GT(first, 5U) << "far from rest, so lists are made";
   for (int step = 0; step < 3; ++step) agree(pair, sheet, shape, sheet, shape, warm);
-  EXPECT_GT(warm.counts().renewed, first) << "those that live for a third of the patches at a time,";
-  EXPECT_LE(warm.counts().renewed, 3 * first) << "and once for each";
-  const std::size_t settled = warm.counts().renewed;
-  const std::size_t looked = warm.counts().looked;
+  EXPECT_GT(warm.counts().rebuilt, first) << "those that live for a third of the patches at a time,";
+  EXPECT_LE(warm.counts().rebuilt, 3 * first) << "and once for each";
+  const std::size_t settled = warm.counts().rebuilt;
+  const std::size_t looked = warm.counts().tested;
   for (int step = 1; step <= 100; ++step) {
     std::vector<Vec3> at = shape;
     const Quat turn = Quat(1.0, 0.0, 0.0001 * step, 0.0).normalized();
@@ -258,13 +258,13 @@ TEST(NearTriangles, SmallMotionsNeedNoSearch) {
     }
     EXPECT_EQ(agree(pair, sheet, at, sheet, at, warm), 0U);
   }
-  EXPECT_EQ(warm.counts().renewed, settled) << "the lists hold";
-  EXPECT_EQ(warm.counts().looked, looked) << "and nothing in them is near enough to be looked at";
+  EXPECT_EQ(warm.counts().rebuilt, settled) << "the lists hold";
+  EXPECT_EQ(warm.counts().tested, looked) << "and nothing in them is near enough to be looked at";
   // Forgotten, they are made anew.
   warm.reset();
-  EXPECT_EQ(warm.counts().renewed, 0U);
+  EXPECT_EQ(warm.counts().rebuilt, 0U);
   agree(pair, sheet, shape, sheet, shape, warm);
-  EXPECT_EQ(warm.counts().renewed, first);
+  EXPECT_EQ(warm.counts().rebuilt, first);
 }
 
 /// Up to a tenth of a turn is told from the places; whatever they are, it stays rigid.
@@ -307,14 +307,14 @@ TEST(NearTriangles, ListsLiveWhileAllTurns) {
   std::vector<Vec3> at = bent.apply(sheet.skin.vertex, 0.01);
   NearTriangles warm;
   agree(pair, sheet, at, sheet, at, warm);
-  const std::size_t first = warm.counts().renewed;
+  const std::size_t first = warm.counts().rebuilt;
   const Quat turn = Quat(1.0, 0.03, 0.04, 0.0).normalized();  // a tenth of a radian a step
   for (int step = 0; step < 100; ++step) {
     for (Vec3& p : at) p = turn * p;
     agree(pair, sheet, at, sheet, at, warm);
   }
-  std::printf("%zu lists, renewed %zu times in 100 steps\n", first, warm.counts().renewed);
-  EXPECT_LT(warm.counts().renewed, 40 * first);
+  std::printf("%zu lists, renewed %zu times in 100 steps\n", first, warm.counts().rebuilt);
+  EXPECT_LT(warm.counts().rebuilt, 40 * first);
 }
 
 }  // namespace

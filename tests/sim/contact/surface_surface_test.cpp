@@ -153,7 +153,7 @@ TEST(SurfaceSurface, AgreesWithTheSignedDistance) {
     double expected = reach;
     for (std::size_t v = 0; v < at.size(); ++v) {
       const double d = distance.signedDistance(at[v]);
-      if (d < reach && d >= -deepestOverlap) expected = std::min(expected, d);
+      if (d < reach && d >= -maxOverlap) expected = std::min(expected, d);
     }
     if (expected < reach) {
       ASSERT_FALSE(found.empty());
@@ -217,7 +217,7 @@ TEST(SurfaceSurface, DisplacementsSettleNothingWrongly) {
     double expected = reach;
     for (const Vec3& p : at) {
       const double d = distance.signedDistance(p);
-      if (d >= -deepestOverlap) expected = std::min(expected, d);
+      if (d >= -maxOverlap) expected = std::min(expected, d);
     }
     const std::vector<VertexContact> found = contacts(pair, a, at, b, below, reach);
     if (expected < reach) {

@@ -100,7 +100,7 @@ TEST(TriangleLanes, ABoxKeepsEveryTriangleThatReachesIntoIt) {
     Box box;
     box.include(randomPoint(random));
     box.grow(0.008);
-    std::array<std::uint32_t, ContactSurface::largestPatch> near{};
+    std::array<std::uint32_t, ContactSurface::maxPatchTriangles> near{};
     const std::size_t count = trianglesInBox(c.surface, c.position, 0, box, near);
     kept += static_cast<int>(count);
     std::size_t next = 0;

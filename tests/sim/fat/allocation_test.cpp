@@ -42,7 +42,7 @@ TEST(FatAllocation, NoStrokeAllocates) {
     const SweptCapsule tool[1] = {test::randomSweep(random, box, 0.0012, 0.003, 0.002)};
     body.beginStep(state);
     changed += body.stroke(state, tool).changed ? 1 : 0;
-    body.contact().place(state.solid.position, skin);
+    body.contact().positions(state.solid.position, skin);
   }
   EXPECT_EQ(allocations - before, 0U);
   EXPECT_EQ(body.growths(), 0U);

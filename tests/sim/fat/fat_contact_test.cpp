@@ -24,11 +24,11 @@ void expectSame(const FatBody& x, const FatBody& y, const FatState& state) {
   const ContactSurface& a = x.contact().surface();
   const ContactSurface& b = y.contact().surface();
   ASSERT_EQ(a.patches().size(), b.patches().size());
-  ASSERT_EQ(x.contact().nodeRoom(), y.contact().nodeRoom());
+  ASSERT_EQ(x.contact().nodeCapacity(), y.contact().nodeCapacity());
   for (std::size_t p = 0; p < a.patches().size(); ++p) {
     ASSERT_EQ(a.patches()[p].first, b.patches()[p].first);
     ASSERT_EQ(a.patches()[p].last, b.patches()[p].last);
-    ASSERT_LE(a.patches()[p].last - a.patches()[p].first, ContactSurface::largestPatch);
+    ASSERT_LE(a.patches()[p].last - a.patches()[p].first, ContactSurface::maxPatchTriangles);
     const auto mine = a.patchCorners(static_cast<std::uint32_t>(p));
     const auto theirs = b.patchCorners(static_cast<std::uint32_t>(p));
     ASSERT_TRUE(std::equal(mine.begin(), mine.end(), theirs.begin(), theirs.end()));
@@ -39,8 +39,8 @@ void expectSame(const FatBody& x, const FatBody& y, const FatState& state) {
   }
   std::vector<Vec3> here;
   std::vector<Vec3> there;
-  x.contact().place(state.solid.position, here);
-  y.contact().place(state.solid.position, there);
+  x.contact().positions(state.solid.position, here);
+  y.contact().positions(state.solid.position, there);
   ASSERT_EQ(std::memcmp(here.data(), there.data(), here.size() * sizeof(Vec3)), 0);
   for (int n = 0; n < static_cast<int>(here.size()); ++n) {
     ASSERT_EQ(x.contact().exists(n), y.contact().exists(n));
@@ -81,9 +81,9 @@ void expectSound(const FatBody& body) {
     std::sort(sorted.begin(), sorted.end());
     ASSERT_EQ(sorted, triangles);
     for (std::size_t c = 0; c < 8; ++c) {
-      const SolidPlace place = body.contact().anchor(node);
+      const MaterialPoint point = body.contact().anchor(node);
       bool held = false;
-      for (const std::int32_t cube : body.model().cubesAt(place.node[c])) held = held || body.fill()[slot(cube)] > 0.0;
+      for (const std::int32_t cube : body.model().cubesAt(point.node[c])) held = held || body.fill()[slot(cube)] > 0.0;
       ASSERT_TRUE(held);
     }
   }
@@ -164,7 +164,7 @@ struct Probe {
   std::vector<std::uint32_t> patches;
 
   void place(const test::FatRig& rig) {
-    rig.body.contact().place(rig.state.solid.position, skin);
+    rig.body.contact().positions(rig.state.solid.position, skin);
     const std::vector<Box> before = bounds;
     patchBounds(rig.body.contact().surface(), skin, 0.0, bounds);
     if (before.size() == bounds.size()) {
@@ -186,8 +186,8 @@ struct Probe {
     return patches;
   }
   double gap(const test::FatRig& rig, const Vec3& p0, const Vec3& p1, double radius, double reach) {
-    return leastGap(rig.body.contact().surface(), skin, near(p0, p1, capsuleSearch(radius, reach)), p0, p1, radius,
-                    reach);
+    return minGap(rig.body.contact().surface(), skin, near(p0, p1, capsuleSearch(radius, reach)), p0, p1, radius,
+                  reach);
   }
   std::vector<SurfaceContact> contacts(const test::FatRig& rig, const Vec3& p0, const Vec3& p1, double radius) {
     std::vector<SurfaceContact> out;

@@ -56,7 +56,7 @@ TEST(FatModel, TiesStandForTheFatWithinReach) {
     for (const FatTie& tie : model->ties(p)) {
       stiffness += tie.stiffness;
       EXPECT_LE(partners[p].distance(tie.rest), partners[p].reach + 1e-12);  // both are convex
-      EXPECT_EQ((tie.place.of(model->solid().rest()) - tie.rest).norm(), 0.0);
+      EXPECT_EQ((tie.point.of(model->solid().rest()) - tie.rest).norm(), 0.0);
     }
     int nodes = 0;
     for (std::uint32_t n = 0; n < model->field().value.size(); ++n) {

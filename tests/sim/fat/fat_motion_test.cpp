@@ -69,7 +69,7 @@ TEST(FatMotion, ForcesOnTheSurfaceKeepSumAndMoment) {
   std::vector<Vec3> skin;
   const Vec3 press(2e-5, 1e-5, -5e-5);  // small: elements of small strain keep the moment to first order only
   Vec3 point = Vec3::Zero();
-  rig.body.contact().place(rig.state.solid.position, skin);
+  rig.body.contact().positions(rig.state.solid.position, skin);
   const int triangle = topTriangle(rig.body.contact(), skin);
   const Index3 t = rig.body.contact().surface().triangles()[slot(triangle)];
   const Vec3 weight(0.2, 0.5, 0.3);
@@ -79,7 +79,7 @@ TEST(FatMotion, ForcesOnTheSurfaceKeepSumAndMoment) {
     for (std::size_t k = 0; k < place.count; ++k) force[slot(place.node[k])] += place.weight[k] * press;
     rig.move(Vec3::Zero(), force);
   }
-  rig.body.contact().place(rig.state.solid.position, skin);
+  rig.body.contact().positions(rig.state.solid.position, skin);
   for (int k = 0; k < 3; ++k) point += weight[k] * skin[slot(t[k])];
   Vec3 force;
   Vec3 moment;
@@ -90,7 +90,7 @@ TEST(FatMotion, ForcesOnTheSurfaceKeepSumAndMoment) {
   for (Vec3& p : rig.state.solid.position) {
     for (int a = 0; a < 3; ++a) p[a] += random.uniform(-5e-4, 5e-4);
   }
-  rig.body.contact().place(rig.state.solid.position, skin);
+  rig.body.contact().positions(rig.state.solid.position, skin);
   std::size_t most = 0;
   for (const ContactSurface::Patch& patch : rig.body.contact().surface().patches()) {
     for (std::size_t i = patch.first; i < patch.last; ++i) {
@@ -124,7 +124,7 @@ TEST(FatMotion, ComplianceOfRestKnowsTheTies) {
   double least = 1e300;
   double loosest = 0.0;
   const auto measure = [&](bool free_) {
-    rig.body.contact().place(rig.state.solid.position, skin);
+    rig.body.contact().positions(rig.state.solid.position, skin);
     Random random(9, 9);
     for (const ContactSurface::Patch& patch : rig.body.contact().surface().patches()) {
       if (random.uniform() > 0.1) continue;

@@ -27,8 +27,8 @@ void expectSame(const FatPicture& a, const FatPicture& b, const FatState& state)
   ASSERT_EQ(a.rest(), b.rest());
   ASSERT_EQ(a.triangles(), b.triangles());
   std::vector<Vec3> here, there;
-  a.place(state.solid.position, here);
-  b.place(state.solid.position, there);
+  a.positions(state.solid.position, here);
+  b.positions(state.solid.position, there);
   ASSERT_EQ(here, there);
 }
 
@@ -62,7 +62,7 @@ TEST(FatPicture, AtRestItLiesAtRest) {
   const auto model = lump();
   const FatPicture picture(*model);
   std::vector<Vec3> places;
-  picture.place(restState(*model).solid.position, places);
+  picture.positions(restState(*model).solid.position, places);
   ASSERT_EQ(places.size(), picture.rest().size());
   ASSERT_FALSE(places.empty());
   for (std::size_t v = 0; v < places.size(); ++v) ASSERT_LT((places[v] - picture.rest()[v]).norm(), 1e-14);

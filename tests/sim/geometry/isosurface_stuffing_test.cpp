@@ -36,8 +36,8 @@ TEST(BccLattice, TilesItsCoreWithoutGapOrOverlap) {
   const TetrahedralMesh mesh = stuff(lattice, value, 0.0);
   for (const Index4& v : mesh.tetrahedron) EXPECT_NEAR(volumeOf(mesh, v), 0.125 / 12.0, 1e-15);
   const DihedralRange range = dihedralRange(mesh);
-  EXPECT_NEAR(range.smallest / degree, 60.0, 1e-9);
-  EXPECT_NEAR(range.largest / degree, 90.0, 1e-9);
+  EXPECT_NEAR(range.min / degree, 60.0, 1e-9);
+  EXPECT_NEAR(range.max / degree, 90.0, 1e-9);
   // No face in three tetrahedra, and the boundary is closed: nothing overlaps, nothing is missing.
   const SurfaceReport report = inspectSurface(boundarySurface(mesh));
   EXPECT_TRUE(report.closedManifold());
@@ -117,8 +117,8 @@ TEST(Stuffing, DihedralAnglesHoldForAnyCuts) {
     if (mesh.tetrahedron.empty()) continue;
     for (const Index4& v : mesh.tetrahedron) ASSERT_GT(volumeOf(mesh, v), 1e-4);
     const DihedralRange range = dihedralRange(mesh);
-    smallest = std::min(smallest, range.smallest / degree);
-    largest = std::max(largest, range.largest / degree);
+    smallest = std::min(smallest, range.min / degree);
+    largest = std::max(largest, range.max / degree);
     tetrahedra += mesh.tetrahedron.size();
   }
   std::cout << tetrahedra << " tetrahedra, dihedral angles in [" << smallest << ", " << largest << "] degrees\n";
@@ -203,8 +203,8 @@ TEST(DihedralRange, RegularTetrahedron) {
   mesh.vertex = {Vec3(1.0, 1.0, 1.0), Vec3(1.0, -1.0, -1.0), Vec3(-1.0, 1.0, -1.0), Vec3(-1.0, -1.0, 1.0)};
   mesh.tetrahedron = {Index4(0, 1, 3, 2)};
   if (volumeOf(mesh, mesh.tetrahedron[0]) < 0.0) std::swap(mesh.tetrahedron[0][2], mesh.tetrahedron[0][3]);
-  EXPECT_NEAR(dihedralRange(mesh).smallest, std::acos(1.0 / 3.0), 1e-14);
-  EXPECT_NEAR(dihedralRange(mesh).largest, std::acos(1.0 / 3.0), 1e-14);
+  EXPECT_NEAR(dihedralRange(mesh).min, std::acos(1.0 / 3.0), 1e-14);
+  EXPECT_NEAR(dihedralRange(mesh).max, std::acos(1.0 / 3.0), 1e-14);
   EXPECT_NEAR(meshVolume(mesh), 8.0 / 3.0, 1e-14);
 }
 

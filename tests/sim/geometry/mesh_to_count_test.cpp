@@ -25,8 +25,8 @@ void expectPromises(const TriangleMesh& surface, int requested, const StuffedMes
   EXPECT_NEAR(count, requested, 0.15 * requested);
   EXPECT_NEAR(meshVolume(stuffed.mesh), signedVolume(surface), 0.01 * signedVolume(surface));
   const DihedralRange range = dihedralRange(stuffed.mesh);
-  EXPECT_GE(range.smallest / degree, 10.6);
-  EXPECT_LE(range.largest / degree, 164.8);
+  EXPECT_GE(range.min / degree, 10.6);
+  EXPECT_LE(range.max / degree, 164.8);
   EXPECT_EQ(stuffed.report.tetrahedra, static_cast<int>(stuffed.mesh.tetrahedron.size()));
   EXPECT_EQ(stuffed.report.meshVolume, meshVolume(stuffed.mesh));
   EXPECT_EQ(stuffed.report.lostComponents, 0);
@@ -118,7 +118,7 @@ TEST(StuffToCount, RefusesWhatItCannotDo) {
   const TriangleMesh box = test::boxSurface(-Vec3::Ones(), Vec3::Ones());
   EXPECT_FALSE(stuffToCount(box, 11).ok());
   EXPECT_FALSE(stuffToCount(box, -5).ok());
-  EXPECT_FALSE(stuffToCount(box, largestTetrahedronCount + 1).ok());
+  EXPECT_FALSE(stuffToCount(box, maxTetrahedronCount + 1).ok());
   EXPECT_TRUE(stuffToCount({}, 500).unusable);
 
   TriangleMesh open = box;

@@ -60,7 +60,7 @@ TEST(HapticTick, OneRowIsASpring) {
 TEST(HapticTick, TheStretchSaturates) {
   const ContactSet set = oneRow(0.0);
   HapticModel model;
-  model.largestStretch = 0.003;
+  model.maxStretch = 0.003;
   HapticState state;
   state.tip = Vec3(0.0, 0.0, -0.003);
   const double most = settled(model, state, set).force[2];
@@ -73,14 +73,14 @@ TEST(HapticTick, TheStretchSaturates) {
           .norm(),
       1e-15);
   const Quat rolled(Eigen::AngleAxisd(2.0, Vec3::UnitZ()));
-  EXPECT_NEAR(couplingStretch(origin, {Vec3::Zero(), rolled}, 0.001)[3], largestRollStretch, 1e-12);
+  EXPECT_NEAR(couplingStretch(origin, {Vec3::Zero(), rolled}, 0.001)[3], maxRollStretch, 1e-12);
 }
 
 TEST(HapticTick, ForceIsBoundedInSizeNotInDirection) {
   ContactSet set = oneRow(-0.02);
   set.direction = {ToolRow(0.6, 0.0, 0.8, 0.0)};
   HapticModel model;
-  model.largestForce = 2.5;
+  model.maxForce = 2.5;
   HapticState state;
   const Vec3 force = settled(model, state, set).force;
   EXPECT_NEAR(force.norm(), 2.5, 1e-12);
@@ -193,9 +193,9 @@ TEST_F(HapticRun, ReproducesTheStepsForceAtTheStepsPose) {
       haptic.set = set.step;
       haptic.lambda = set.lambda;
       const HapticForce force = hapticTick(model, haptic, set);
-      EXPECT_LE(force.force.norm(), model.largestForce * (1.0 + 1e-12));
+      EXPECT_LE(force.force.norm(), model.maxForce * (1.0 + 1e-12));
       Vec3 expected = result.hand[h].contactForce;
-      if (expected.norm() > model.largestForce) expected *= model.largestForce / expected.norm();
+      if (expected.norm() > model.maxForce) expected *= model.maxForce / expected.norm();
       const double rows = static_cast<double>(set.free.size());
       EXPECT_LE((force.force - expected).norm(), (1.0 + rows) * model.tolerance * 1000.0)
           << "step " << i << " hand " << h;

@@ -140,7 +140,7 @@ TEST_F(Viewer, ACutHasTwoFacesAndAVesselThatIsWholeHasNone) {
   EXPECT_TRUE(named(whole, "duct").face.empty());
   EXPECT_TRUE(named(whole, "duct").charred.empty());
   const BeamModel& beams = model_->vesselTrees()[0].beams;
-  const BeamPlace where = placeAt(beams, 0, 0.020);
+  const BeamPoint where = pointAt(beams, 0, 0.020);
   ASSERT_TRUE(part(state.vessel[0], where, Parting::cut));
   const SceneView view = viewOf(*model_, state);
   const SurfaceView& cut = named(view, "duct");
@@ -167,7 +167,7 @@ TEST_F(Viewer, ClipsSitOnTheirVesselWithTheCrotchTowardsThePorts) {
   const BeamModel& beams = model_->vesselTrees()[0].beams;
   for (const double roll : {0.3, 0.3 + 3.14159265358979}) {
     ClipAttempt attempt;
-    attempt.place = placeAt(beams, 0, 0.035);
+    attempt.point = pointAt(beams, 0, 0.035);
     attempt.width = 0.0012;
     attempt.legs = 0.0085;
     attempt.roll = roll;
@@ -205,16 +205,16 @@ TEST_F(Viewer, AFaceIsOpenUntilAClipClosesItsSide) {
   State state = initialState(*model_, 1);
   EXPECT_TRUE(middles(state).empty());
   const BeamModel& beams = model_->vesselTrees()[0].beams;
-  ASSERT_TRUE(part(state.vessel[0], placeAt(beams, 0, 0.025), Parting::cut));
+  ASSERT_TRUE(part(state.vessel[0], pointAt(beams, 0, 0.025), Parting::cut));
   EXPECT_EQ(middles(state), (std::vector<float>{2.0F, 2.0F}));
   ClipAttempt clip;
-  clip.place = placeAt(beams, 0, 0.018);
+  clip.point = pointAt(beams, 0, 0.018);
   clip.width = 0.0015;
   clip.legs = 0.0085;
   clip.depth = 0.004;
   setClip(beams, state.vessel[0], clip, 1.0);
   EXPECT_EQ(middles(state), (std::vector<float>{1.5F, 2.0F}));
-  clip.place = placeAt(beams, 0, 0.032);
+  clip.point = pointAt(beams, 0, 0.032);
   clip.closure = 0.5;  // it does not shut
   setClip(beams, state.vessel[0], clip, 1.0);
   EXPECT_EQ(middles(state), (std::vector<float>{1.5F, 2.0F}));

@@ -354,7 +354,7 @@ TEST(ConjugateGradient, AgreesWithDenseFactorisation) {
     const System system = randomSystem(nodes, 2 * nodes, random);
     const Eigen::VectorXd b = system.randomVector(random);
     std::vector<float> x(system.matrix.vectorSize(), 7.0F);
-    cg.prepare(system.matrix, system.values);
+    cg.precompute(system.matrix, system.values);
     constexpr double tolerance = 3e-5;
     const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, {tolerance, 1000});
     EXPECT_TRUE(report.converged) << nodes << " nodes";
@@ -387,7 +387,7 @@ TEST(ConjugateGradient, EndsWhereWhatIsLeftIsNotWorthAnIteration) {
   const Eigen::MatrixXd m = system.preconditioner();
   const double size = std::sqrt(b.dot(m.ldlt().solve(b)));
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values);
+  cg.precompute(system.matrix, system.values);
   std::vector<float> x(system.matrix.vectorSize());
   std::uint32_t before = 1000;
   for (const double share : {0.0, 1e-4, 1e-2, 0.3}) {
@@ -438,7 +438,7 @@ TEST(ConjugateGradient, BlocksThatTheStructureHasNoPlaceFor) {
   }
   const Eigen::VectorXd b = system.randomVector(random);
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values, extra);
+  cg.precompute(system.matrix, system.values, extra);
   std::vector<float> x(system.matrix.vectorSize());
   EXPECT_TRUE(cg.solve(system.matrix, system.values, system.packed(b), x, {1e-6, 1000}).converged);
   const Eigen::VectorXd wanted = a.ldlt().solve(b);
@@ -459,7 +459,7 @@ TEST(ConjugateGradient, SweepsHalveTheIterations) {
   const System system = gridSystem(6);
   const Eigen::VectorXd b = system.randomVector(random);
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values);
+  cg.precompute(system.matrix, system.values);
   std::vector<float> x(system.matrix.vectorSize());
   const SolveReport report = cg.solve(system.matrix, system.values, system.packed(b), x, {1e-4, 1000});
   const int sweeps = iterationsWith(system.whole(), system.preconditioner(), b, 1e-4);
@@ -478,7 +478,7 @@ TEST(ConjugateGradient, CompanyChangesNoBit) {
   Eigen::MatrixXd b(system.size(), laneCount);
   for (int k = 0; k < laneCount; ++k) b.col(k) = system.randomVector(random) * (k % 3 == 0 ? 1e-3 : 1.0);
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values);
+  cg.precompute(system.matrix, system.values);
   std::vector<float> together(system.matrix.vectorSize() * laneCount);
   EXPECT_TRUE(cg.solveMany(system.matrix, system.values, system.packedMany(b), together, 1e-4, 500).converged);
   for (int k = 0; k < laneCount; ++k) {
@@ -502,7 +502,7 @@ TEST(ConjugateGradient, EightRightHandSidesWithZerosAmongThem) {
     Eigen::MatrixXd b = Eigen::MatrixXd::Zero(system.size(), laneCount);
     for (const int k : {0, 1, 3, 6}) b.col(k) = system.randomVector(random) * (k == 3 ? 1e-6 : 1.0);
     std::vector<float> x(system.matrix.vectorSize() * laneCount, 7.0F);
-    cg.prepare(system.matrix, system.values);
+    cg.precompute(system.matrix, system.values);
     constexpr double tolerance = 1e-5;
     const SolveReport report = cg.solveMany(system.matrix, system.values, system.packedMany(b), x, tolerance, 1000);
     EXPECT_TRUE(report.converged) << nodes << " nodes";
@@ -523,7 +523,7 @@ TEST(ConjugateGradient, ZeroRightHandSide) {
   Random random(35);
   const System system = randomSystem(20, 40, random);
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values);
+  cg.precompute(system.matrix, system.values);
   const std::vector<float> b(system.matrix.vectorSize(), 0.0F);
   std::vector<float> x(b.size(), 7.0F);
   const SolveReport report = cg.solve(system.matrix, system.values, b, x, {1e-6, 100});
@@ -537,7 +537,7 @@ TEST(ConjugateGradient, ACapThatBindsIsReported) {
   Random random(36);
   const System system = randomSystem(140, 420, random);
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values);
+  cg.precompute(system.matrix, system.values);
   const Eigen::VectorXd b = system.randomVector(random);
   std::vector<float> x(system.matrix.vectorSize());
   const SolveReport one = cg.solve(system.matrix, system.values, system.packed(b), x, {1e-6, 2});
@@ -562,7 +562,7 @@ TEST(ConjugateGradient, AnIndefiniteMatrixIsNoSilentMiss) {
   blocks.block<3, 3>(0, 3) = blocks.block<3, 3>(3, 0) = 2.0 * Eigen::Matrix3d::Identity();
   const System system(blocks, {{1}, {0}});
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values);
+  cg.precompute(system.matrix, system.values);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(system.size());
   b[3 * system.row[0]] = 1.0;
   b[3 * system.row[1]] = -1.0;
@@ -577,7 +577,7 @@ TEST(ConjugateGradient, WhatIsNotFiniteIsAMissAndLeavesNoTrace) {
   Random random(40);
   const System system = randomSystem(30, 60, random);
   ConjugateGradient cg;
-  cg.prepare(system.matrix, system.values);
+  cg.precompute(system.matrix, system.values);
   const std::vector<float> good = system.packed(system.randomVector(random));
   std::vector<float> before(good.size());
   cg.solve(system.matrix, system.values, good, before, {1e-4, 100});

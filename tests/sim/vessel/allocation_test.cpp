@@ -54,11 +54,11 @@ TEST(BeamSolver, AStepAllocatesNothing) {
   const auto step = [&] {
     solver.solveUnconstrained(model, state, loads, 0.01);
     solver.precomputeCompliance(model, nodes);
-    solver.push(model, impulse);
+    solver.applyImpulses(model, impulse);
     solver.attachmentForces(state, attachments, reaction);
     solver.advance(model, state);
     tube.update(state);
-    tube.place(state, skin);
+    tube.positions(state, skin);
   };
   step();
 #ifndef CALOT_TEST_SANITIZED

@@ -215,8 +215,8 @@ TEST(Beam, ComplianceIsTheAnswerToAPush) {
   const BeamModel model = biliaryTree();
   Random random(8);
   BeamState state = shaken(model, random, 0.05);
-  part(state, placeAt(model, 2, 0.01), Parting::cut);
-  setClip(model, state, {placeAt(model, 1, 0.01), 0.002, 0.01, 0.005, 0.0, 1.0}, 1.0);
+  part(state, pointAt(model, 2, 0.01), Parting::cut);
+  setClip(model, state, {pointAt(model, 1, 0.01), 0.002, 0.01, 0.005, 0.0, 1.0}, 1.0);
   BeamSolver solver;
   ASSERT_TRUE(solver.solveUnconstrained(model, state, {}, 0.01));
   const std::vector<int> nodes{5, 12, 20, 30, 0};
@@ -226,7 +226,7 @@ TEST(Beam, ComplianceIsTheAnswerToAPush) {
       const std::vector<Vec3> before = solver.freeVelocity();
       std::vector<Vec3> impulse(model.nodes(), Vec3::Zero());
       impulse[static_cast<std::size_t>(b)] = 1e-3 * Vec3::Unit(k);
-      solver.push(model, impulse);
+      solver.applyImpulses(model, impulse);
       for (std::size_t a = 0; a < model.nodes(); ++a) {
         const Vec3 expected = solver.block(static_cast<int>(a), b).col(k);
         const Vec3 found = (solver.freeVelocity()[a] - before[a]) / 1e-3;
@@ -258,7 +258,7 @@ TEST(Beam, APushEqualsAForceOverTheStep) {
   one.solveUnconstrained(model, state, loads, 0.01);
   two.solveUnconstrained(model, state, {}, 0.01);
   for (Vec3& f : force) f *= 0.01;
-  two.push(model, force);
+  two.applyImpulses(model, force);
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     EXPECT_LT((one.freeVelocity()[n] - two.freeVelocity()[n]).norm(), 1e-10);
     EXPECT_LT((one.freeAngularVelocity()[n] - two.freeAngularVelocity()[n]).norm(), 1e-7);
@@ -305,7 +305,7 @@ TEST(Beam, ACarriedEndTakesTheVesselAlong) {
     const double share = std::min(1.0, k / 200.0);
     const Quat turn(Eigen::AngleAxisd(2.0 * share, axis));
     target = {model.rest()[0] + share * Vec3(0.02, -0.01, 0.03), turn * model.restOrientation()[0]};
-    carry(model, state, 0, target, 0.01);
+    moveFixedNode(model, state, 0, target, 0.01);
     solver.solveUnconstrained(model, state, {}, 0.01);
     ASSERT_FALSE(solver.advance(model, state).limited);
     ASSERT_LT((state.position[0] - target.position).norm(), 1e-15);
@@ -322,12 +322,12 @@ TEST(Beam, ARestoredStateGoesOnWithTheSameBits) {
   const BeamModel model = biliaryTree();
   Random random(10);
   BeamState state = shaken(model, random, 0.1);
-  setClip(model, state, {placeAt(model, 0, 0.02), 0.002, 0.01, 0.005, 0.3, 1.0}, 1.0);
+  setClip(model, state, {pointAt(model, 0, 0.02), 0.002, 0.01, 0.005, 0.3, 1.0}, 1.0);
   BeamSolver solver;
   BeamLoads loads;
   loads.gravity = Vec3(0.0, -2.0, 1.0);
   for (int k = 0; k < 50; ++k) {
-    if (k == 30) part(state, placeAt(model, 2, 0.012), Parting::cut);
+    if (k == 30) part(state, pointAt(model, 2, 0.012), Parting::cut);
     solver.solveUnconstrained(model, state, loads, 0.01);
     solver.advance(model, state);
   }

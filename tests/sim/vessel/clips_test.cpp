@@ -30,7 +30,7 @@ BeamModel straightDuct() {
 }
 
 ClipAttempt clipAt(const BeamModel& model, double place, double depth = 0.004) {
-  return {placeAt(model, 0, place), 0.0015, 0.008, depth, 0.0, 1.0};
+  return {pointAt(model, 0, place), 0.0015, 0.008, depth, 0.0, 1.0};
 }
 
 TEST(Clips, AWellSetClipEnclosesTheVesselAndIsNearNothing) {
@@ -71,7 +71,7 @@ TEST(Clips, OtherClipsJunctionsAndEndsAreSeen) {
   EXPECT_NEAR(at(0.020).junctionGap, -0.00075, 1e-12) << "across the junction";
   EXPECT_NEAR(at(0.0395).endGap, -0.00025, 1e-12) << "beyond the end";
   // A parting between them: neither the other clip nor the junction counts; the stump's end does.
-  part(state, placeAt(model, 0, 0.0095), Parting::cut);
+  part(state, pointAt(model, 0, 0.0095), Parting::cut);
   EXPECT_EQ(at(0.010).clip, -1);
   EXPECT_LT(at(0.010).endGap, 0.0);
 }
@@ -80,7 +80,7 @@ TEST(Clips, AClippedWallNeitherStretchesNorMovesAlong) {
   const BeamModel model = straightDuct();
   for (const bool clipped : {false, true}) {
     BeamState state = restState(model);
-    if (clipped) setClip(model, state, {placeAt(model, 0, 0.030), 0.002, 0.008, 0.004, 0.0, 1.0}, 1.0);
+    if (clipped) setClip(model, state, {pointAt(model, 0, 0.030), 0.002, 0.008, 0.004, 0.0, 1.0}, 1.0);
     std::vector<BeamAttachment> pull{{40, 1e6, 1.0, model.rest()[40] + Vec3(0.002, 0.0, 0.0), Vec3::Zero()}};
     BeamLoads loads;
     loads.attachments = pull;
@@ -92,7 +92,7 @@ TEST(Clips, AClippedWallNeitherStretchesNorMovesAlong) {
     EXPECT_GT(free, 0.04);
     // Tension is the same all along: E A times the strain of a free element.
     EXPECT_NEAR(solver.tension()[10], 1e6 * model.branches()[0].section.area() * free, 1e-6);
-    EXPECT_NEAR(solver.tension()[30], solver.tension()[10], 1e-4 * report.largestTension);
+    EXPECT_NEAR(solver.tension()[30], solver.tension()[10], 1e-4 * report.maxTension);
     EXPECT_NEAR(solver.strain()[30] / free, clipped ? 0.02 : 1.0, 1e-3);
   }
 }
@@ -106,8 +106,8 @@ TEST(Clips, SettingAClipMovesNothing) {
   loads.attachments = pull;
   ASSERT_LT(test::settle(model, state, loads, 0.01, 20000), 1e-9);
   const std::vector<Vec3> before = state.position;
-  setClip(model, state, {placeAt(model, 0, 0.0303), 0.0024, 0.008, 0.004, 0.0, 1.0}, 1.0);
-  setClip(model, state, {placeAt(model, 0, 0.0310), 0.0024, 0.008, 0.004, 0.0, 1.0}, 1.0);
+  setClip(model, state, {pointAt(model, 0, 0.0303), 0.0024, 0.008, 0.004, 0.0, 1.0}, 1.0);
+  setClip(model, state, {pointAt(model, 0, 0.0310), 0.0024, 0.008, 0.004, 0.0, 1.0}, 1.0);
   ASSERT_LT(test::settle(model, state, loads, 0.01, 20000), 1e-9);
   for (std::size_t n = 0; n < before.size(); ++n) EXPECT_LT((state.position[n] - before[n]).norm(), 1e-9);
   // Let loose, the wall under the clips stays nearly as long as it was.
@@ -122,7 +122,7 @@ TEST(Cuts, BetweenClipsNothingOpens) {
   setClip(model, state, clipAt(model, 0.006), 1.0);
   setClip(model, state, clipAt(model, 0.009), 1.0);
   setClip(model, state, clipAt(model, 0.015), 1.0);
-  const CutSides cut = cutSides(model, state, placeAt(model, 0, 0.012));
+  const CutSides cut = cutSides(model, state, pointAt(model, 0, 0.012));
   EXPECT_EQ(cut.clipBefore, 1);
   EXPECT_EQ(cut.clipAfter, 2);
   EXPECT_EQ(cut.before, 2U);
@@ -136,23 +136,23 @@ TEST(Cuts, BetweenClipsNothingOpens) {
 TEST(Cuts, OpenSidesLeak) {
   const BeamModel model = straightDuct();
   BeamState state = restState(model);
-  CutSides cut = cutSides(model, state, placeAt(model, 0, 0.012));
+  CutSides cut = cutSides(model, state, pointAt(model, 0, 0.012));
   EXPECT_TRUE(cut.opensBefore && cut.opensAfter);
   // A clip that is half on, and one beyond the junction, close nothing.
   setClip(model, state, clipAt(model, 0.006), 0.7);
   setClip(model, state, clipAt(model, 0.030), 1.0);
-  cut = cutSides(model, state, placeAt(model, 0, 0.012));
+  cut = cutSides(model, state, pointAt(model, 0, 0.012));
   EXPECT_TRUE(cut.opensBefore && cut.opensAfter);
   setClip(model, state, clipAt(model, 0.009), 1.0);
-  cut = cutSides(model, state, placeAt(model, 0, 0.012));
+  cut = cutSides(model, state, pointAt(model, 0, 0.012));
   EXPECT_FALSE(cut.opensBefore);
   EXPECT_TRUE(cut.opensAfter);
   // Through the clip itself: it no longer closes anything.
-  cut = cutSides(model, state, placeAt(model, 0, 0.0092));
+  cut = cutSides(model, state, pointAt(model, 0, 0.0092));
   EXPECT_TRUE(cut.throughClip && cut.opensBefore);
   // What is parted already has nothing behind it to leak.
-  part(state, placeAt(model, 0, 0.015), Parting::cut);
-  cut = cutSides(model, state, placeAt(model, 0, 0.012));
+  part(state, pointAt(model, 0, 0.015), Parting::cut);
+  cut = cutSides(model, state, pointAt(model, 0, 0.012));
   EXPECT_FALSE(cut.opensAfter);
 }
 
@@ -174,9 +174,9 @@ TEST(Tears, AVesselPulledTooFarTearsOnceAndLetsGo) {
     if (report.torn >= 0) {
       torn = report.torn;
       ++tears;
-      EXPECT_GT(report.largestStrain, 0.5);
+      EXPECT_GT(report.maxStrain, 0.5);
     }
-    if (tears == 0) tension = report.largestTension;
+    if (tears == 0) tension = report.maxTension;
   }
   ASSERT_EQ(tears, 1);
   EXPECT_EQ(state.parting[static_cast<std::size_t>(torn)], Parting::torn);
@@ -184,7 +184,7 @@ TEST(Tears, AVesselPulledTooFarTearsOnceAndLetsGo) {
   EXPECT_NEAR(tension, 0.5 * 1e6 * model.branches()[0].section.area(), 0.1 * tension);
   // The held stump has gone back to its own length.
   solver.solveUnconstrained(model, state, {}, 0.01);
-  EXPECT_LT(solver.advance(model, state).largestTension, 0.05 * tension);
+  EXPECT_LT(solver.advance(model, state).maxTension, 0.05 * tension);
   std::printf("tore at element %d under %.3f N\n", torn, tension);
 }
 
@@ -192,20 +192,20 @@ TEST(CentreLine, NearestPlaceFindsArcLengths) {
   const BeamModel model({test::duct(40, true, true)});
   BeamState state = restState(model);
   for (const double place : {0.0, 0.0051, 0.02, 0.031}) {
-    const BeamPlace where = placeAt(model, 0, place);
+    const BeamPoint where = pointAt(model, 0, place);
     const Pose pose = centreLine(model, state, where);
     double distance = 0.0;
     const Vec3 beside = pose.position + 0.001 * (pose.orientation * Vec3::UnitX());
-    const BeamPlace found = nearestPlace(model, state, 0, beside, distance);
-    EXPECT_NEAR(found.place, place, 5e-5);
+    const BeamPoint found = closestPoint(model, state, 0, beside, distance);
+    EXPECT_NEAR(found.arcLength, place, 5e-5);
     EXPECT_NEAR(distance, 0.001, 2e-5);
   }
   // Next to a stump, the stump is found, not the chord that was.
-  part(state, placeAt(model, 0, 0.02), Parting::cut);
+  part(state, pointAt(model, 0, 0.02), Parting::cut);
   for (std::size_t n = 20; n < model.nodes(); ++n) state.position[n] += Vec3(0.0, 0.03, 0.0);
   double distance = 0.0;
-  const Vec3 stump = centreLine(model, state, placeAt(model, 0, 0.0195), Stump::before).position;
-  EXPECT_NEAR(nearestPlace(model, state, 0, stump, distance).place, 0.0195, 1e-4);
+  const Vec3 stump = centreLine(model, state, pointAt(model, 0, 0.0195), Stump::before).position;
+  EXPECT_NEAR(closestPoint(model, state, 0, stump, distance).arcLength, 0.0195, 1e-4);
   EXPECT_LT(distance, 1e-4);
 }
 

@@ -58,9 +58,9 @@ TEST(HarshVessels, StayFiniteAndComeToRest) {
         std::fill(force.begin(), force.end(), Vec3::Zero());
         attachments.clear();
       }
-      if (k == 400) setClip(model, state, {placeAt(model, 1, 0.01), 0.002, 0.01, 0.005, 0.0, 1.0}, 1.0);
+      if (k == 400) setClip(model, state, {pointAt(model, 1, 0.01), 0.002, 0.01, 0.005, 0.0, 1.0}, 1.0);
       if (k == 700 || k == 900 || k == 901) {
-        part(state, placeAt(model, random.next() % 2, random.uniform(0.0, 0.03)), Parting::cut);
+        part(state, pointAt(model, random.next() % 2, random.uniform(0.0, 0.03)), Parting::cut);
       }
       BeamLoads loads;
       loads.force = force;
@@ -71,8 +71,8 @@ TEST(HarshVessels, StayFiniteAndComeToRest) {
       ASSERT_TRUE(test::isFinite(state)) << k;
       torn += report.torn >= 0 ? 1 : 0;
       limited += report.limited ? 1 : 0;
-      strain = std::max(strain, report.largestStrain);
-      speed = report.largestSpeed;
+      strain = std::max(strain, report.maxStrain);
+      speed = report.maxSpeed;
     }
     std::printf("seed %2d: torn %d, slowed down in %d steps, strain up to %.1f, last speed %.1e m/s\n",
                 static_cast<int>(seed), torn, limited, strain, speed);
@@ -87,9 +87,9 @@ TEST(HarshVessels, StayFiniteAndComeToRest) {
 TEST(HarshVessels, ALoosePieceDriftsToAStop) {
   const BeamModel model({test::duct(40, true, true)});
   BeamState state = restState(model);
-  ASSERT_TRUE(part(state, placeAt(model, 0, 0.010), Parting::cut));
-  ASSERT_TRUE(part(state, placeAt(model, 0, 0.020), Parting::cut));
-  EXPECT_FALSE(part(state, placeAt(model, 0, 0.020), Parting::cut));
+  ASSERT_TRUE(part(state, pointAt(model, 0, 0.010), Parting::cut));
+  ASSERT_TRUE(part(state, pointAt(model, 0, 0.020), Parting::cut));
+  EXPECT_FALSE(part(state, pointAt(model, 0, 0.020), Parting::cut));
   for (Vec3& v : state.velocity) v = Vec3(0.1, 0.2, -0.1);
   state.velocity.front().setZero();
   state.velocity.back().setZero();
@@ -100,7 +100,7 @@ TEST(HarshVessels, ALoosePieceDriftsToAStop) {
     report = solver.advance(model, state);
     ASSERT_TRUE(test::isFinite(state));
   }
-  EXPECT_LT(report.largestSpeed, 1e-6);
+  EXPECT_LT(report.maxSpeed, 1e-6);
   EXPECT_LT((state.position.front() - model.rest().front()).norm(), 1e-15);
   // With alpha = 5 / s a piece at 0.245 m/s goes 49 mm.
   EXPECT_NEAR(state.largestDisplacement, 0.049, 0.008);

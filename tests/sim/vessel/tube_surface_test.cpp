@@ -20,7 +20,7 @@ namespace {
 
 TriangleMesh meshOf(const TubeSurface& tube, const BeamState& state) {
   TriangleMesh mesh;
-  tube.place(state, mesh.vertex);
+  tube.positions(state, mesh.vertex);
   mesh.triangle = tube.triangles();
   return mesh;
 }
@@ -75,10 +75,10 @@ TEST(TubeSurface, PartingsCloseBothStumpsAndKeepNumbers) {
     TubeSurface tube(model, 0, {8, rings});
     const TriangleMesh before = meshOf(tube, state);
     EXPECT_FALSE(tube.update(state));
-    part(state, placeAt(model, 0, 0.0201), Parting::cut);
-    part(state, placeAt(model, 0, 0.0099), Parting::torn);
-    part(state, placeAt(model, 0, 0.0001), Parting::cut);
-    part(state, placeAt(model, 0, 1.0), Parting::cut);
+    part(state, pointAt(model, 0, 0.0201), Parting::cut);
+    part(state, pointAt(model, 0, 0.0099), Parting::torn);
+    part(state, pointAt(model, 0, 0.0001), Parting::cut);
+    part(state, pointAt(model, 0, 1.0), Parting::cut);
     EXPECT_TRUE(tube.update(state));
     EXPECT_FALSE(tube.update(state));
     const TriangleMesh after = meshOf(tube, state);
@@ -108,22 +108,22 @@ TEST(TubeSurface, AClipFlattensTheTubeWhereItIs) {
   BeamState state = restState(model);
   const TubeSurface tube(model, 0, {10, 2});
   const double roll = 0.4;
-  const double place = model.branches()[0].place[20];
-  setClip(model, state, {placeAt(model, 0, place), 0.002, 0.01, 0.005, roll, 1.0}, 1.0);
+  const double place = model.branches()[0].arcLength[20];
+  setClip(model, state, {pointAt(model, 0, place), 0.002, 0.01, 0.005, roll, 1.0}, 1.0);
   const TriangleMesh mesh = meshOf(tube, state);
   expectClosed(mesh);
   double thin = 0.0;
   double wide = 0.0;
   double far = 0.0;
   for (std::size_t v = 0; v < mesh.vertex.size(); ++v) {
-    const BeamPlace where = tube.where(static_cast<int>(v));
+    const BeamPoint where = tube.where(static_cast<int>(v));
     const Pose pose = centreLine(model, state, where);
     const Vec3 out = pose.orientation.conjugate() * (mesh.vertex[v] - pose.position);
     EXPECT_LT(std::abs(out[2]), 1e-12);
-    if (std::abs(where.place - place) < 0.0009) {
+    if (std::abs(where.arcLength - place) < 0.0009) {
       thin = std::max(thin, std::abs(out[0] * std::cos(roll) + out[1] * std::sin(roll)));
       wide = std::max(wide, std::abs(out[1] * std::cos(roll) - out[0] * std::sin(roll)));
-    } else if (std::abs(where.place - place) > 0.001 + 1.5 * 0.0025) {
+    } else if (std::abs(where.arcLength - place) > 0.001 + 1.5 * 0.0025) {
       far = std::max(far, out.norm());
     }
   }
@@ -140,11 +140,11 @@ TEST(TubeSurface, VerticesFollowTheirNodes) {
   const BeamState state = restState(model);
   std::vector<Vec3> before;
   std::vector<Vec3> after;
-  tube.place(state, before);
+  tube.positions(state, before);
   for (const std::size_t node : {0U, 17U, 40U}) {
     BeamState moved = state;
     moved.position[node] += Vec3(0.0, 0.0, 1e-7);
-    tube.place(moved, after);
+    tube.positions(moved, after);
     for (std::size_t v = 0; v < before.size(); ++v) {
       const BeamInfluence& influence = tube.influence(static_cast<int>(v));
       double weight = 0.0;

@@ -92,7 +92,7 @@ SweptCapsule randomSweep(Random& random, const Box& box, double radius, double s
 void carveAtRest(CarvedField& field, const std::vector<SweptCapsule>& tool) {
   const double depth = carveDepth * field.lattice().cell();
   const std::vector<NodeBox> boxes{nodesWithin(field.lattice(), sweptBounds(tool, depth, 1.0))};
-  carve(field, tool, boxes, RestingTissue(field.lattice()), depth);
+  carve(field, tool, boxes, UndeformedTissue(field.lattice()), depth);
 }
 
 TriangleMesh meshOf(const CarvedField& field, const CarvedSurface& surface) {

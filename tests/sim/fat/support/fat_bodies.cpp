@@ -90,9 +90,9 @@ void FatRig::move(const Vec3& gravity, std::span<const Vec3> force, const Vec3& 
     const double share = body.tieShare(t);
     if (share == 0.0) continue;
     Attachment& a = attachments.emplace_back();
-    a.place = tie.place;
+    a.point = tie.point;
     a.damper = share * (settings.step * tie.stiffness + tie.damping) * Mat3::Identity();
-    a.force = share * tie.stiffness * (tie.rest + shift - tie.place.of(state.solid.position));
+    a.force = share * tie.stiffness * (tie.rest + shift - tie.point.of(state.solid.position));
   }
   body.beginStep(state);
   const SolveReport report = solver.solveUnconstrained(model.solid(), state.solid, gravity, force, settings, executor,
@@ -106,7 +106,7 @@ void FatRig::tieForces(Vec3& force, Vec3& moment) const {
   moment.setZero();
   for (std::size_t t = 0; t < model.allTies().size(); ++t) {
     const FatTie& tie = model.allTies()[t];
-    const Vec3 x = tie.place.of(state.solid.position);
+    const Vec3 x = tie.point.of(state.solid.position);
     const Vec3 f = body.tieShare(t) * tie.stiffness * (tie.rest - x);
     force += f;
     moment += x.cross(f);

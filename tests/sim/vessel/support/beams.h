@@ -45,7 +45,7 @@ inline double settle(const BeamModel& model, BeamState& state, const BeamLoads& 
   double speed = 1e300;
   for (int i = 0; i < steps && speed > still; ++i) {
     solver.solveUnconstrained(model, state, loads, step);
-    speed = solver.advance(model, state).largestSpeed;
+    speed = solver.advance(model, state).maxSpeed;
   }
   return speed;
 }
