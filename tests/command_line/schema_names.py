@@ -101,9 +101,12 @@ class Checker:
         organs, vessels, fat = count("/scene/organs"), count("/scene/vessels"), count("/scene/fat")
         self.counts = {"O": organs, "V": vessels, "A": fat, "S": organs + vessels + fat, "C": len(components),
                        "F": count("/steps/field_names"), "V2": version >= 2, "V3": version >= 3,
-                       "O3": organs if version >= 3 else 0, "P": int(version >= 3 and b"procedure" in components),
+                       "O3": organs if version >= 3 else 0, "P": int(version == 3 and b"procedure" in components),
+                       "O4": organs if version >= 4 else 0, "T4": vessels if version >= 4 else 0,
+                       "A4": fat if version >= 4 else 0,
                        "D": int("/device" in file), "G": int(as_text(file.attrs["purpose"]) == b"golden"),
                        "K": sum(name.startswith(b"connective.") for name in components) if version >= 2 else 0}
+        self.counts["K4"] = self.counts["K"] if version >= 4 else 0
         if version < 3 and vessels + fat > 0:
             self.fault(f"/scene: version {version} has neither vessels nor fat")
         ticks = int(file.attrs["ticks_per_step"])
