@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The OpenGL 4.5 functions that the renderer uses, loaded through the context: no loader library works with every
-// off-screen context.
+// The OpenGL 4.5 functions that the renderer uses, loaded through the context, since no loader library works with
+// every off-screen context.
 #pragma once
 
 #include <GL/gl.h>
@@ -26,7 +26,6 @@
   ENTRY(decltype(&glFrontFace), FrontFace)                         \
   ENTRY(decltype(&glGenTextures), GenTextures)                     \
   ENTRY(decltype(&glGetError), GetError)                           \
-  ENTRY(decltype(&glGetString), GetString)                         \
   ENTRY(decltype(&glPixelStorei), PixelStorei)                     \
   ENTRY(decltype(&glReadPixels), ReadPixels)                       \
   ENTRY(decltype(&glScissor), Scissor)                             \

@@ -52,7 +52,7 @@ struct RecordingWriter::Impl {
   bool ended = false;
   RawSampleFeed* feed = nullptr;
   std::uint64_t feedFirstTick = 0;
-  std::array<std::uint64_t, handCount> dropped{};  // that the feed told of so far
+  std::array<std::uint64_t, handCount> dropped{};  // reported by the feed so far
 
   // Between the two threads.
   SpscQueue<Block*> full, empty;
@@ -229,7 +229,5 @@ WriterStatistics RecordingWriter::statistics() const {
   s.largestFlushSeconds = impl_->largestFlush.load(std::memory_order_relaxed);
   return s;
 }
-
-std::uint64_t RecordingWriter::keyframeInterval() const { return impl_->layout.keyframeInterval; }
 
 }  // namespace calot::recorder

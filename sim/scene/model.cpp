@@ -95,8 +95,7 @@ Model::Built Model::build(SceneDescription scene) {
     }
     names.push_back(organ.name);
     model->organs_.push_back({organ.name, organ.appearance, std::move(solid), organ.surface.vertex,
-                              std::move(embedding), std::move(contact), vertexAreas(organ.surface), stuffed.cellSize,
-                              stuffed.report});
+                              std::move(embedding), std::move(contact), vertexAreas(organ.surface), stuffed.cellSize});
   }
   const std::vector<OrganModel>& organs = model->organs_;
   for (std::size_t a = 0; a < organs.size(); ++a) {

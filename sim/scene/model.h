@@ -33,7 +33,6 @@ struct OrganModel {
   ContactSurface surface;          ///< triangles over the skin's vertices
   std::vector<double> vertexArea;  ///< a third of the triangles around each vertex, at rest (m^2)
   double cellSize = 0.0;           ///< of the tetrahedral lattice (m)
-  StuffingReport meshing;
 };
 
 /// Vessels that grow out of one another, solved together: branch b is the scene's vessel vessel[b].

@@ -187,17 +187,6 @@ Mat3 BeamSolver::block(int a, int b) const {
   return m;
 }
 
-void BeamSolver::attachmentForces(const BeamState& state, std::span<const BeamAttachment> attachments,
-                                  std::vector<Vec3>& force) const {
-  force.resize(attachments.size());
-  for (std::size_t i = 0; i < attachments.size(); ++i) {
-    const BeamAttachment& a = attachments[i];
-    const auto n = static_cast<std::size_t>(a.node);
-    const Vec3 relative = freeVelocity_[n] - a.velocity;
-    force[i] = a.stiffness * (state.position[n] - a.target + step_ * relative) + a.damping * relative;
-  }
-}
-
 /// A linear step cannot follow a chord that turns or grows by about its own length: velocities of a whole piece are
 /// then scaled down together, so that the pattern of motion stays what was solved for. Pieces that are not finite are
 /// left to advance().

@@ -59,7 +59,6 @@ class BeamSolver {
 
   /// Velocities that the step ends with, as far as they are known: free motion and what push() added since.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
-  [[nodiscard]] const std::vector<Vec3>& freeAngularVelocity() const { return freeSpin_; }
 
   /// Adds the answer to impulses on the nodes. @pre solveUnconstrained() of this step was called. @param impulse per
   /// node (N s)
@@ -70,10 +69,6 @@ class BeamSolver {
 
   /// C_ab, exactly that of push(): velocity of node a (m/s) for an impulse on node b (N s). @pre b was required
   [[nodiscard]] Mat3 block(int a, int b) const;
-
-  /// Force of each attachment on what it is attached to, at the velocities of now (N): minus that on the node.
-  void attachmentForces(const BeamState& state, std::span<const BeamAttachment> attachments,
-                        std::vector<Vec3>& force) const;
 
   /// Moves the nodes, measures strains, and tears the element that exceeds its ultimate strain most, if any: one a
   /// step, since the rest slackens then. Values that are not finite stop the node instead of entering State.

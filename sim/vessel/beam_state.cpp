@@ -35,18 +35,6 @@ BeamState restState(const BeamModel& model) {
   return state;
 }
 
-void carry(const BeamModel& model, BeamState& state, int node, const Pose& target, double step) {
-  const auto n = static_cast<std::size_t>(node);
-  assert(model.fixed(n));
-  (void)model;
-  state.velocity[n] = (target.position - state.position[n]) / step;
-  Quat turn = target.orientation * state.orientation[n].conjugate();
-  if (turn.w() < 0.0) turn.coeffs() = -turn.coeffs();
-  // turned() turns by the angle whose tangent is |w|; here sin = 2 |v| w and cos = w^2 - |v|^2.
-  const double cosine = std::max(turn.w() * turn.w() - turn.vec().squaredNorm(), 0.342);
-  state.angularVelocity[n] = (2.0 * turn.w() / (cosine * step)) * turn.vec();
-}
-
 bool fits(const BeamModel& model, const BeamState& state) {
   const std::size_t nodes = model.nodes();
   const std::size_t elements = model.elements().size();

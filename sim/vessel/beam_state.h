@@ -66,11 +66,6 @@ struct BeamState {
 /// Rest: no displacement, no velocity, whole, without clips, asleep.
 BeamState restState(const BeamModel& model);
 
-/// Gives a held node the velocities that take it to a pose in one step (held nodes move at the velocities that State
-/// has for them, by default none): an end that is grown to something that moves. The pose is reached while it is turned
-/// by less than 70 degrees, else nearly. @pre model.fixed(node)
-void carry(const BeamModel& model, BeamState& state, int node, const Pose& target, double step);
-
 /// Could this be a state of the model (numbers of nodes and elements, lists of one length, clips on branches, places in
 /// range)? For what comes from outside.
 bool fits(const BeamModel& model, const BeamState& state);

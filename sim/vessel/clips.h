@@ -85,7 +85,4 @@ struct CutJudgement {
 /// Judge before part(): the cut's own place must still be whole.
 CutJudgement judgeCut(const BeamModel& model, const BeamState& state, const BeamPlace& cut);
 
-/// Is the lumen open from one place of a branch to another: no closing clip and no parting between?
-bool lumenOpen(const BeamModel& model, const BeamState& state, std::size_t branch, double from, double to);
-
 }  // namespace calot

@@ -34,20 +34,18 @@ class MouseInput {
  public:
   /// The pointer went by so many pixels.
   void move(double right, double down);
-  /// The wheel turned by so many notches; positive: away from the hand, deeper.
+  /// The wheel rotated by so many notches; positive: away from the hand, deeper.
   void turnWheel(double notches);
   void hold(MouseControl control, bool held);
   /// Ratchet of the driven hand's grasper: locks, or lets go.
   void toggleLock();
-  /// Passes mouse and keyboard to the other hand. The one that is left stays where and as it is, its lock too, but
-  /// without pedals.
+  /// Passes mouse and keyboard to the other hand. The first hand keeps pose and lock, and releases its pedals.
   void switchHand();
-  /// Nothing is held any more and what was not yet turned into motion is dropped: the window lost the keyboard.
+  /// Releases everything and drops what has not become motion yet: the window lost the keyboard.
   void release();
 
   /// The hand that is driven now; the right one first.
   [[nodiscard]] Hand hand() const;
-  [[nodiscard]] bool locked(Hand hand) const;
   /// A new attempt: the right hand, nothing held, nothing locked.
   void reset();
 

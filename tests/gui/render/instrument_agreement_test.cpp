@@ -6,6 +6,7 @@
 
 #include "gui/render/instrument_mesh.h"
 #include "sim/instruments/instrument_shape.h"
+#include "tests/sim/instruments/support/shape_distance.h"
 
 namespace calot::gui {
 namespace {
@@ -28,7 +29,7 @@ TEST(InstrumentAgreement, PictureAndContactShapeLieTogether) {
         if (part.appearance == Appearance::titanium) continue;  // the loaded clip
         for (const Vec3& p : part.mesh.position) {
           if (p[2] < -length) continue;
-          farthest = std::max(farthest, shape.distance(p));
+          farthest = std::max(farthest, test::distanceTo(shape, p));
           drawn.include(p);
         }
       }
