@@ -43,7 +43,7 @@ struct RunSettings {
   bool live = false;                        ///< paced, the haptic ticks on a thread of their own
   const std::atomic<bool>* stop = nullptr;  ///< asked between steps
   std::function<void(std::uint64_t step)> progress;  ///< called after every step
-  /// Told of every tick's forces at once, by the thread that made them (live: the haptic thread): for devices with
+  /// Called with every tick's forces at once, by the thread that made them (live: the haptic thread): for devices with
   /// motors. Must neither wait nor throw.
   std::function<void(const TickOutcome&)> feedback;
 };
@@ -71,7 +71,7 @@ struct RunReport {
 };
 
 /// Runs the session from the source until it ends or fails, the scene's time limit, `seconds`, or `stop`, or until a
-/// step says that the simulation ran away (Outcome::technicalFailure, and `fault` tells where); then ends the
+/// step says that the simulation ran away (Outcome::technicalFailure, and `fault` says where); then ends the
 /// session. A step begins only when the source gave all its ticks; what is left of a last, unfinished step is dropped.
 /// Where the session has steps already (a branch), the source begins with its tick 0 all the same.
 ///

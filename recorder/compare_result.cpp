@@ -38,7 +38,7 @@ struct Numbers {
   }
   template <class T>
   void list(const char* folder, const char* name, const char*, const std::vector<T>& values, std::size_t width) {
-    // An earlier version of StepResult tells of fewer structures: of the first ones.
+    // An earlier version of StepResult holds fewer structures: the first ones.
     const std::size_t count = std::min(values.size(), width);
     number(folder, name, ofSize, count);
     for (std::size_t i = 0; i < count; ++i) number(folder, name, static_cast<std::ptrdiff_t>(i), values[i]);

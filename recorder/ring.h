@@ -7,8 +7,7 @@
 
 namespace calot::recorder {
 
-/// Lock-free queue of one producer and one consumer over a fixed number of slots; allocates when it is made and never
-/// again.
+/// Lock-free queue of one producer and one consumer over a fixed number of slots; allocates in its constructor alone.
 template <class T>
 class Ring {
  public:

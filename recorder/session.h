@@ -21,8 +21,6 @@
 
 namespace calot::recorder {
 
-/// Step numbers of the contact sets that the ticks of a step used, per tick and hand.
-using SetNumbers = std::vector<std::array<std::int64_t, handCount>>;
 using ContactSets = std::array<ContactSet, handCount>;
 using HapticStates = std::array<HapticState, handCount>;
 
@@ -35,13 +33,13 @@ class Session {
   /// @param model, executor outlive the session.
   Session(const Model& model, std::uint64_t seed, Executor& executor);
 
-  /// Observers are told of every step from here on, in the order of joining.
+  /// Subscribes to every step from here on; observers are called in the order of joining.
   void join(Observer& observer) { observers_.push_back(&observer); }
 
-  /// Is told of nothing more. Nothing happens where it never joined.
+  /// Unsubscribes. No effect if not subscribed.
   void leave(Observer& observer) { std::erase(observers_, &observer); }
 
-  /// Is told of the contact sets as soon as a step has made them, before any observer is told of the step.
+  /// Called with the contact sets as soon as a step has made them, before any observer gets the step.
   void onContactSets(std::function<void(const ContactSets&)> tell) { tell_ = std::move(tell); }
 
   /// For live runs, before the first tick: see Stepper::precompute().
@@ -54,9 +52,8 @@ class Session {
   TickOutcome tick(const TickSamples& samples,
                    const std::optional<std::array<std::int64_t, handCount>>& sets = std::nullopt);
 
-  /// The step after its ticks; then tells the observers. Where the ticks' lateness says that the tick clock was
-  /// stretched, the step's events end with one EventKind::clockStretched: sum over its ticks of what exceeds
-  /// longestLag.
+  /// The step after its ticks; then notifies the observers. Where a tick is later than longestLag, the tick clock was
+  /// stretched, and the step's events end with one EventKind::clockStretched: the sum over its ticks of the excess.
   void step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness);
 
   void end(Outcome outcome);

@@ -109,7 +109,4 @@ std::vector<CheckpointValue> CheckpointCollector::values() const {
   return result;
 }
 
-bool CheckpointCollector::ended() const { return storage_->ended; }
-std::uint64_t CheckpointCollector::steps() const { return storage_->steps; }
-
 }  // namespace calot::analytics

@@ -30,8 +30,6 @@ class CheckpointCollector final : public recorder::Observer {
   /// Every figure in the registry's order, subjects in the order of hands or organs. After onEnd() they are final;
   /// before, those whose definition says `final` are provisional.
   [[nodiscard]] std::vector<CheckpointValue> values() const;
-  [[nodiscard]] bool ended() const;
-  [[nodiscard]] std::uint64_t steps() const;
 
  private:
   struct Storage;

@@ -8,7 +8,7 @@ namespace calot::analytics {
 
 /// Effective rate of a tracker, from the intervals between its samples.
 ///
-/// Where samples are told by their poses, a sample that is equal to the one before isn't seen, so a hand that stands
+/// Where poses alone tell samples apart, one that is equal to the one before isn't seen, so a hand that stands
 /// still makes intervals of several periods. Therefore: the mean of the intervals of at most 1.5 times their median.
 /// Intervals over 0.1 s are rest or no measurement. Deterministic contract.
 class SampleRate {

@@ -22,7 +22,7 @@ struct SceneFacts {
   struct Vessel {
     std::string name;
     bool cystic = false;  ///< cystic duct or cystic artery
-    bool spared = false;  ///< the procedure tells to spare it
+    bool spared = false;  ///< the procedure says that it must be spared
   };
   struct Connective {
     std::string name;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Smoothness of a movement from its speed. Equations and conventions: S. Balasubramanian, A. Melendez-Calderon,
-// A. Roby-Brami, E. Burdet, "On the analysis of movement smoothness", J. NeuroEngineering and Rehabilitation 12 (2015)
-// 112.
+// A. Roby-Brami, E. Burdet, "On the analysis of movement smoothness", J. NeuroEng. Rehabil. 12:112 (2015).
 #pragma once
 
 #include <optional>

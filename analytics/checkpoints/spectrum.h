@@ -17,10 +17,9 @@ struct Spectrum {
 /// `highest` (Hz), that one included.
 ///
 /// A transform of our own in source-fixed order: the bins k = 2^padding m + r with one r are a transform of length
-/// 2^ceil(log2 n) of the signal turned by exp(-2 pi i n r / length), so the zeros are never touched; those of the
+/// 2^ceil(log2 n) of the signal multiplied by exp(-2 pi i n r / length), so the zeros are never touched; those of the
 /// remainders r and 2^padding - r are each other's mirror image. The same bits everywhere. O(2^padding n log n).
-/// @pre rate > 0, 0 < highest < rate / 2, 1 <= padding <= 8, the signal is not empty, nowhere negative and not 0
-/// throughout.
+/// @pre rate > 0, 0 < highest < rate / 2, 1 <= padding <= 8, no value of the signal is negative, one is positive
 Spectrum amplitudeSpectrum(std::span<const double> signal, double rate, double highest, int padding);
 
 }  // namespace calot::analytics

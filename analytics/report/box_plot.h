@@ -23,8 +23,8 @@ struct BoxPlot {
 /// close for a scale are answered with none, as are two empty groups.
 std::optional<Drawing> drawBoxPlot(const BoxPlot& plot);
 
-/// Four to nine round numbers (1, 2 or 5 times a power of ten apart) that lie within [low, high]. @pre low < high,
-/// finite.
+/// Four to nine round numbers (1, 2 or 5 times a power of ten apart) that lie within [low, high].
+/// @pre low < high, finite
 std::vector<double> roundTicks(double low, double high);
 
 }  // namespace calot::analytics

@@ -11,7 +11,7 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t longestTitle = 42;  // in letters: what has room at the size of page_html.cpp
+constexpr std::size_t longestTitle = 42;  // in letters: what fits at the size of page_html.cpp
 
 }  // namespace
 

@@ -19,8 +19,7 @@ std::size_t widthOf(const std::string& text) {
 
 constexpr std::size_t narrowest = 10;
 
-/// The text over as many lines as it takes, broken at blanks, those below indented; a word that is too long by itself
-/// is cut.
+/// The text broken at blanks into lines, those below the first indented; a word longer than a line is cut.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   if (widthOf(text) <= width) return {text};
   std::vector<std::string> lines;

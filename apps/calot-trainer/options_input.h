@@ -14,7 +14,7 @@ class OptionsInput final : public gui::AttemptInput {
   /// @param seed of a performer
   OptionsInput(SourceOptions options, std::uint64_t seed);
 
-  /// Opens it once, so that what is wrong is told before there is a window. @throws Error as makeSource
+  /// Opens it once, so that what is wrong is reported before there is a window. @throws Error as makeSource
   void check(const SceneDescription& scene);
 
   std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;

@@ -81,7 +81,7 @@ void ComparisonChart::showComparison(const Comparison& comparison, const QString
   auto* groups = new QBarCategoryAxis;
   double lower = comparison.group.front().smallest, upper = comparison.group.front().largest;
   for (const ComparisonGroup& group : comparison.group) {
-    // In two lines: Qt Charts cuts off a long label though there is room.
+    // In two lines: Qt Charts cuts off a long label though there is space.
     groups->append(
         QString("%1<br>n = %2").arg(QString::fromStdString(group.name).toHtmlEscaped()).arg(group.point.size()));
     lower = std::min(lower, group.smallest);

@@ -7,8 +7,7 @@
 
 namespace calot::gui {
 
-/// Keeps an attempt out of studies, or takes that back; either can be undone. The database notes each way with reason
-/// and name.
+/// Keeps an attempt out of studies, or takes that back; both can be undone, and the database notes reason and name.
 class ExclusionCommand : public QUndoCommand {
  public:
   struct Change {

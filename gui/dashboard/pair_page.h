@@ -34,7 +34,6 @@ class PairPage : public QWidget {
   /// Whether both stand where they were sent to, with their timelines.
   [[nodiscard]] bool settled() const;
   [[nodiscard]] Replay& replay(std::size_t side) { return sides_[side]->replay(); }
-  [[nodiscard]] double commonTime() const { return common_; }
 
  protected:
   void showEvent(QShowEvent* event) override;

@@ -14,8 +14,7 @@
 
 namespace calot::gui {
 
-/// Reads a recording's timeline, then the moments of its figures, on a thread of its own. Signals come on the thread of
-/// the object.
+/// Reads a recording's timeline, then the moments of its figures, on a worker thread; signals come on the object's.
 class RecordingReader : public QObject {
   Q_OBJECT
  public:
@@ -23,8 +22,8 @@ class RecordingReader : public QObject {
 
   explicit RecordingReader(QObject* parent = nullptr);
   ~RecordingReader() override;
-  /// Breaks off what it is at, without waiting for it, and begins anew. @pre the file was opened by openRecording()
-  /// before
+  /// Breaks off what it is at, without waiting for it, and begins anew.
+  /// @pre the file was opened by openRecording()
   void read(const std::filesystem::path& file, const Figures& figures);
   void stop();
 

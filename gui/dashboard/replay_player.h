@@ -32,7 +32,7 @@ inline constexpr double slowestReplay = 0.1, fastestReplay = 16.0;  ///< times r
 
 /// Plays a recording by simulating it again, on a thread of its own. A moment is reached from the nearest keyframe; the
 /// keyframe is shown at once where the way from there is long. Every picture is of a State that the recording gives;
-/// its time is told with it. Knows no window.
+/// its time is reported with it. Knows no window.
 class ReplayPlayer {
  public:
   struct Receiver {

@@ -26,7 +26,6 @@
   ENTRY(decltype(&glFrontFace), FrontFace)                         \
   ENTRY(decltype(&glGenTextures), GenTextures)                     \
   ENTRY(decltype(&glGetError), GetError)                           \
-  ENTRY(decltype(&glGetString), GetString)                         \
   ENTRY(decltype(&glPixelStorei), PixelStorei)                     \
   ENTRY(decltype(&glReadPixels), ReadPixels)                       \
   ENTRY(decltype(&glScissor), Scissor)                             \

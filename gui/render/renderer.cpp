@@ -17,11 +17,11 @@ namespace calot::gui {
 class Renderer::Worker {
  public:
   Worker() {
-    std::promise<std::string> started;
-    std::future<std::string> description = started.get_future();
+    std::promise<void> started;
+    std::future<void> ready = started.get_future();
     thread_ = std::thread([this, &started] { run(started); });
     try {
-      description_ = description.get();
+      ready.get();
     } catch (...) {
       thread_.join();
       throw;
@@ -54,17 +54,15 @@ class Renderer::Worker {
     return image.get();
   }
 
-  [[nodiscard]] const std::string& description() const { return description_; }
-
  private:
-  void run(std::promise<std::string>& started) {
+  void run(std::promise<void>& started) {
     std::unique_ptr<GraphicsContext> context;
     std::unique_ptr<ScenePainter> painter;
     try {
       context = createSoftwareContext();
       context->makeCurrent();
       painter = std::make_unique<ScenePainter>(*context);
-      started.set_value(painter->description());
+      started.set_value();
     } catch (...) {
       painter.reset();
       started.set_exception(std::current_exception());
@@ -88,7 +86,6 @@ class Renderer::Worker {
   std::condition_variable wake_;
   std::deque<std::packaged_task<Image(ScenePainter&)>> tasks_;
   bool stopping_ = false;
-  std::string description_;
   std::thread thread_;
 };
 
@@ -102,7 +99,5 @@ Image Renderer::render(const SceneView& view, int width, int height, const Rende
   checkSmoke(smoke);
   return worker_->render(view, width, height, settings, smoke);
 }
-
-std::string Renderer::description() const { return worker_->description(); }
 
 }  // namespace calot::gui

@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <span>
-#include <string>
 
 #include "gui/render/image.h"
 #include "gui/render/smoke.h"
@@ -53,9 +52,6 @@ class Renderer {
     settings.quality = quality;
     return render(view, width, height, settings);
   }
-
-  /// Name of the graphics driver, for logs: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
-  [[nodiscard]] std::string description() const;
 
  private:
   class Worker;

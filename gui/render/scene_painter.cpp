@@ -58,14 +58,6 @@ ScenePainter::ScenePainter(const GraphicsContext& context)
 
 ScenePainter::~ScenePainter() { gl_.DeleteVertexArrays(1, &emptyArray_); }
 
-std::string ScenePainter::description() const {
-  const auto text = [&](GLenum name) {
-    const GLubyte* const found = gl_.GetString(name);
-    return found == nullptr ? std::string("unknown") : std::string(reinterpret_cast<const char*>(found));
-  };
-  return text(GL_RENDERER) + ", " + text(GL_VERSION);
-}
-
 void ScenePainter::drawPart(const DrawPart& part) const {
   // Of a closed body only the near side is seen; of the cavity, from outside, only the far wall. Other surfaces may be
   // open: both sides are drawn.

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <string>
 
 #include "gui/render/draw_list.h"
 #include "gui/render/gl_functions.h"
@@ -28,7 +27,6 @@ class ScenePainter {
   /// @pre checkPictureSize(width, height) and checkView() have passed
   [[nodiscard]] Image paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
                             const RenderSettings& settings);
-  [[nodiscard]] std::string description() const;
 
  private:
   struct Frame;

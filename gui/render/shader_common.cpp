@@ -27,7 +27,7 @@ vec2 hash(uvec2 v) {
   return vec2(v >> 8u) / 16777216.0;
 }
 
-// Places of samples on a disk: sunflower seeds, turned as a whole by a share of a turn.
+// Places of samples on a disk: sunflower seeds, rotated as a whole by a share of a revolution.
 vec2 spiral(int i) { return vec2(cos(2.39996 * float(i)), sin(2.39996 * float(i))); }
 mat2 rotation(float turn) {
   float c = cos(2.0 * pi * turn), s = sin(2.0 * pi * turn);

@@ -18,7 +18,7 @@ class QStackedWidget;
 namespace calot::gui {
 
 /// Beside the picture: what the attempt is at, what to do next, the keys; paused and afterwards the mistakes to go back
-/// to. It shows what it is told and asks for what is pressed.
+/// to. It shows what it is given and requests what is pressed.
 class RunPanel : public QWidget {
   Q_OBJECT
  public:

@@ -9,8 +9,8 @@
 
 namespace calot::recorder {
 
-/// Reads the list; names differ, and each joins two different organs of the scene. @throws Error damaged, naming the
-/// place.
+/// Reads the list; names differ, and each joins two different organs of the scene.
+/// @throws Error damaged, naming the place.
 std::vector<ConnectiveDescription> readConnective(const JsonPlace& place, const std::vector<OrganDescription>& organs);
 
 }  // namespace calot::recorder

@@ -20,8 +20,7 @@ bool statesRoles(const JsonObject& root);
 /// Gives roles to the tissue of a scene that states none, as recordings made before scenes had roles: liver and
 /// gallbladder by appearance; a vessel grown to a gallbladder is the cystic duct or, where it does not look like a
 /// duct, the cystic artery; other vessels are bile ducts or arteries by appearance; connective tissue on a gallbladder
-/// is the cystic plate, and all fat is that of Calot's triangle. This is the only place where appearance says more than
-/// a look.
+/// is the cystic plate, and all fat is that of Calot's triangle. Nowhere else is appearance more than a look.
 void deriveRoles(SceneDescription& scene);
 
 }  // namespace calot::recorder

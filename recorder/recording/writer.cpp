@@ -230,6 +230,4 @@ WriterStatistics RecordingWriter::statistics() const {
   return s;
 }
 
-std::uint64_t RecordingWriter::keyframeInterval() const { return impl_->layout.keyframeInterval; }
-
 }  // namespace calot::recorder

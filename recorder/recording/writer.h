@@ -68,10 +68,6 @@ class RecordingWriter final : public Observer {
 
   [[nodiscard]] WriterStatistics statistics() const;
 
-  /// Keyframes are kept after steps n with (n + 1) % keyframeInterval() == 0: about every second; where fat was carved
-  /// since the last one, four times as often, for there a second takes longest to simulate again.
-  [[nodiscard]] std::uint64_t keyframeInterval() const;
-
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

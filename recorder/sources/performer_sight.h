@@ -50,7 +50,6 @@ struct Sight {
   std::array<SeenHand, handCount> hand;
   Vec3 grip = Vec3::Zero();         ///< the place on the specimen that is to be held (m, W)
   Vec3 gripNormal = Vec3::UnitY();  ///< outward there, at rest
-  bool clipMissed = false;          ///< since the last look a clip fell or sat badly
 };
 
 /// Reference positions, which an operator knows from anatomy.
@@ -89,7 +88,6 @@ class PerformerSight {
   [[nodiscard]] bool hasFat() const { return !fat_.empty(); }
   /// Are the vessels to be clipped and cut?
   [[nodiscard]] bool divides() const { return divides_; }
-  [[nodiscard]] bool hasBed() const { return !bed_.empty(); }
   [[nodiscard]] const Vec3& neck() const { return neck_; }  ///< of the specimen, at rest (m)
 
  private:

@@ -107,12 +107,6 @@ bool CarvedField::raiseTo(const CarvedBricks& bricks) {
   return true;
 }
 
-std::int64_t CarvedField::insideNodes() const {
-  std::int64_t n = 0;
-  for (const BrickBits& bits : inside_) n += countBits(bits);
-  return n;
-}
-
 void CarvedField::begin() {
   for (const std::uint32_t b : changed_) touched_[b] = 0;
   changed_.clear();

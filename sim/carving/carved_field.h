@@ -62,7 +62,6 @@ class CarvedField {
   }
   /// Inside nodes of a brick.
   [[nodiscard]] const BrickBits& bits(std::uint32_t brick) const { return inside_[brick]; }
-  [[nodiscard]] std::int64_t insideNodes() const;
 
   /// Starts a stroke: clears the list of changes.
   void begin();
@@ -83,9 +82,7 @@ class CarvedField {
 
   /// Bricks of this stroke with a changed value, ascending after commit().
   [[nodiscard]] std::span<const std::uint32_t> changed() const { return changed_; }
-  /// Inside nodes at begin(). @pre the brick is among changed()
-  [[nodiscard]] const BrickBits& insideBefore(std::uint32_t brick) const { return before_[brick]; }
-  /// Nodes of a brick whose value this stroke changed. @pre as above
+  /// Nodes of a brick whose value this stroke changed. @pre the brick is among changed()
   [[nodiscard]] const BrickBits& raised(std::uint32_t brick) const { return raised_[brick]; }
   /// Nodes of a brick that this stroke moved outside. @pre as above
   [[nodiscard]] BrickBits removed(std::uint32_t brick) const;

@@ -71,13 +71,6 @@ class CarvedSurface {
   void forEachPatchOfBlock(std::uint32_t block, Visit&& visit) const {
     for (std::int32_t p = first_[block]; p >= 0; p = next_[slot(p)]) visit(pool_[slot(p)]);
   }
-  /// Calls visit(patch) for each patch, in order of keys.
-  template <class Visit>
-  void forEachPatch(Visit&& visit) const {
-    for (const std::uint32_t brick : brick_) {
-      for (std::uint32_t block = 8 * brick; block < 8 * brick + 8; ++block) forEachPatchOfBlock(block, visit);
-    }
-  }
 
  private:
   static constexpr int rows = 9;  ///< nodes that a brick's cells have along each axis

@@ -125,7 +125,6 @@ std::string FatModel::cast(const TriangleMesh& surface, double cell) {
 /// Finds the nodes attached to each partner.
 void FatModel::attach(std::span<const FatPartner> partners) {
   partnerNodes_.resize(partners.size());
-  for (const FatPartner& p : partners) partnerName_.push_back(p.name);
   forEachInside(field_, [&](std::uint32_t node, const Index3& n) {
     const Vec3 x = lattice().position(n);
     bool any = false;

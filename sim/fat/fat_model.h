@@ -78,8 +78,7 @@ class FatModel {
   /// Lattice nodes attached to any partner, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& anchors() const { return anchor_; }
 
-  [[nodiscard]] std::size_t partners() const { return partnerName_.size(); }
-  [[nodiscard]] const std::string& partnerName(std::size_t partner) const { return partnerName_[partner]; }
+  [[nodiscard]] std::size_t partners() const { return tieStart_.size() - 1; }
   /// Ties of a partner, by cubes.
   [[nodiscard]] std::span<const FatTie> ties(std::size_t partner) const {
     return std::span(tie_).subspan(tieStart_[partner], tieStart_[partner + 1] - tieStart_[partner]);
@@ -139,7 +138,6 @@ class FatModel {
   std::vector<double> restFill_;
   std::vector<std::vector<std::uint32_t>> partnerNodes_;  ///< per partner: lattice nodes, ascending
   std::vector<std::uint32_t> anchor_;
-  std::vector<std::string> partnerName_;
   std::vector<std::size_t> tieStart_;
   std::vector<FatTie> tie_;
   std::vector<std::uint32_t> tieNode_;

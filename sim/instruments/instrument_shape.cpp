@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "sim/geometry/closest_point.h"
 #include "sim/instruments/shape_builder.h"
 
 namespace calot {
@@ -28,15 +27,6 @@ InstrumentShape placed(const InstrumentShape& shape, const Pose& pose) {
     out.capsule_[k].p1 = pose.position + rotation * shape.capsule_[k].p1;
   }
   return out;
-}
-
-double InstrumentShape::distance(const Vec3& p) const {
-  double least = 1e300;
-  for (const Capsule& c : capsules()) {
-    const Vec3 q = c.p0 + closestOnSegment(p, c.p0, c.p1) * (c.p1 - c.p0);
-    least = std::min(least, (p - q).norm() - c.radius);
-  }
-  return least;
 }
 
 std::pair<Vec3, Vec3> graspLine(const InstrumentDefinition& instrument, double shaftRadius) {

@@ -55,9 +55,6 @@ class InstrumentShape {
   /// than |d| times this.
   [[nodiscard]] double lateralReach() const { return lateralReach_; }
 
-  /// The implicit function (m) in the frame of the capsules; negative inside, 1e300 without capsules.
-  [[nodiscard]] double distance(const Vec3& p) const;
-
  private:
   friend class ShapeBuilder;
   friend InstrumentShape placed(const InstrumentShape& shape, const Pose& pose);

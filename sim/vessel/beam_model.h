@@ -47,7 +47,7 @@ struct BeamBranch {
   TubeSection section;
   BeamMaterial material;
   int join = -1;  ///< node of an earlier branch that this branch grows out of (its node[0] is there); -1: none
-  bool fixedStart = false;  ///< first node constrained in position and orientation (moved by moveFixedNode())
+  bool fixedStart = false;  ///< first node constrained in position and orientation
   bool fixedEnd = false;    ///< last node constrained
 };
 

@@ -187,17 +187,6 @@ Mat3 BeamSolver::block(int a, int b) const {
   return m;
 }
 
-void BeamSolver::attachmentForces(const BeamState& state, std::span<const BeamAttachment> attachments,
-                                  std::vector<Vec3>& force) const {
-  force.resize(attachments.size());
-  for (std::size_t i = 0; i < attachments.size(); ++i) {
-    const BeamAttachment& a = attachments[i];
-    const auto n = static_cast<std::size_t>(a.node);
-    const Vec3 relative = freeVelocity_[n] - a.velocity;
-    force[i] = a.stiffness * (state.position[n] - a.target + step_ * relative) + a.damping * relative;
-  }
-}
-
 /// A linear step cannot follow a chord whose ends move by about its own length relative to each other. All
 /// velocities of such a piece are scaled down together, which preserves the pattern of motion. advance() handles
 /// pieces that are not finite.

@@ -59,7 +59,6 @@ class BeamSolver {
 
   /// Velocities at the end of the step: unconstrained motion plus what applyImpulses() has added so far.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
-  [[nodiscard]] const std::vector<Vec3>& freeAngularVelocity() const { return freeAngularVelocity_; }
 
   /// Adds the response to impulses on the nodes. @pre solveUnconstrained() of this step was called. @param impulse
   /// per node (N s)
@@ -72,10 +71,6 @@ class BeamSolver {
   /// C_ab, identical to that of applyImpulses(): velocity of node a (m/s) per impulse on node b (N s). @pre
   /// precomputeCompliance() was called for b
   [[nodiscard]] Mat3 block(int a, int b) const;
-
-  /// Force of each attachment on the other body at the current velocities (N): the negative of that on the node.
-  void attachmentForces(const BeamState& state, std::span<const BeamAttachment> attachments,
-                        std::vector<Vec3>& force) const;
 
   /// Moves the nodes, measures strains and tears the element that exceeds its ultimate strain most, if any. Only
   /// one tears per step, because the others then slacken. A node whose values are not finite is stopped, so that

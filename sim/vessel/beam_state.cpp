@@ -35,18 +35,6 @@ BeamState restState(const BeamModel& model) {
   return state;
 }
 
-void moveFixedNode(const BeamModel& model, BeamState& state, int node, const Pose& target, double step) {
-  const auto n = static_cast<std::size_t>(node);
-  assert(model.fixed(n));
-  (void)model;
-  state.velocity[n] = (target.position - state.position[n]) / step;
-  Quat rotation = target.orientation * state.orientation[n].conjugate();
-  if (rotation.w() < 0.0) rotation.coeffs() = -rotation.coeffs();
-  // rotated() rotates by the angle whose tangent is |w|; here sin = 2 |v| w and cos = w^2 - |v|^2.
-  const double cosine = std::max(rotation.w() * rotation.w() - rotation.vec().squaredNorm(), 0.342);
-  state.angularVelocity[n] = (2.0 * rotation.w() / (cosine * step)) * rotation.vec();
-}
-
 bool fits(const BeamModel& model, const BeamState& state) {
   const std::size_t nodes = model.nodes();
   const std::size_t elements = model.elements().size();

@@ -67,11 +67,6 @@ struct BeamState {
 /// Reference state: no displacement, no velocity, whole, without clips, asleep.
 BeamState restState(const BeamModel& model);
 
-/// Sets the velocities of a fixed node so that it reaches a pose in one step, for an end that is grown to a moving
-/// body. (Fixed nodes move at the velocities in State, by default zero.) The pose is reached exactly for rotations
-/// below 70 degrees, else approximately. @pre model.fixed(node)
-void moveFixedNode(const BeamModel& model, BeamState& state, int node, const Pose& target, double step);
-
 /// Is this a valid state of the model (numbers of nodes and elements, equal lengths of lists, clips on branches,
 /// positions in range)? Checks external data.
 bool fits(const BeamModel& model, const BeamState& state);

@@ -181,21 +181,4 @@ CutSides cutSides(const BeamModel& model, const BeamState& state, const BeamPoin
   return out;
 }
 
-bool lumenOpen(const BeamModel& model, const BeamState& state, std::size_t branch, double from, double to) {
-  const double lower = std::min(from, to);
-  const double upper = std::max(from, to);
-  const BeamModel::Branch& b = model.branches()[branch];
-  for (std::size_t i = 0; i < b.elements(); ++i) {
-    const double at = partingOf(b, state, i);
-    if (at >= lower && at <= upper) return false;
-  }
-  for (std::size_t c = 0; c < state.clips(); ++c) {
-    if (state.clipBranch[c] == branch && closes(state, c) && state.clipPlace[c] >= lower &&
-        state.clipPlace[c] <= upper) {
-      return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace calot

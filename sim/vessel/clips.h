@@ -78,7 +78,4 @@ struct CutSides {
 /// To be asked before part(): the cut's own place must still be whole.
 CutSides cutSides(const BeamModel& model, const BeamState& state, const BeamPoint& cut);
 
-/// Is the lumen open between two points of a branch: no closing clip and no parting in between?
-bool lumenOpen(const BeamModel& model, const BeamState& state, std::size_t branch, double from, double to);
-
 }  // namespace calot

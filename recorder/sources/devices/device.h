@@ -37,8 +37,7 @@ struct DeviceInput {
 };
 
 struct DeviceCapabilities {
-  int hands = 1;               ///< that it can drive at the same time
-  int sensedTranslations = 3;  ///< degrees of freedom
+  int hands = 1;  ///< that it can drive at the same time
   int sensedRotations = 3;
   bool sensesGripper = false;
   int actuated = 0;               ///< degrees of freedom with a motor; 0: it shows no force

@@ -46,11 +46,6 @@ Hand MouseInput::hand() const {
   return wish_.hand;
 }
 
-bool MouseInput::locked(Hand hand) const {
-  const Lock lock(mutex_);
-  return wish_.locked[static_cast<std::size_t>(hand)];
-}
-
 void MouseInput::reset() {
   const Lock lock(mutex_);
   const auto port = wish_.port;

@@ -34,7 +34,7 @@ class MouseInput {
  public:
   /// The pointer went by so many pixels.
   void move(double right, double down);
-  /// The wheel turned by so many notches; positive: away from the hand, deeper.
+  /// The wheel rotated by so many notches; positive: away from the hand, deeper.
   void turnWheel(double notches);
   void hold(MouseControl control, bool held);
   /// Ratchet of the driven hand's grasper: locks, or lets go.
@@ -47,7 +47,6 @@ class MouseInput {
 
   /// The hand that is driven now; the right one first.
   [[nodiscard]] Hand hand() const;
-  [[nodiscard]] bool locked(Hand hand) const;
   /// A new attempt: the right hand, nothing held, nothing locked.
   void reset();
 

@@ -30,7 +30,7 @@ class OpenIgtLinkServer {
   [[nodiscard]] int port() const { return listener_.port(); }
 
   /// Runs until `stop`, or with `once` until the first client has gone.
-  /// @param tell a line for each client that comes or goes.
+  /// @param tell takes a line for each client that comes or goes.
   void run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell);
 
  private:

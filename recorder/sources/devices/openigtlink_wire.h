@@ -42,7 +42,7 @@ struct Item {
 /// (a header that can't be one) cannot be read on.
 class Decoder {
  public:
-  /// Takes bytes as they arrive and tells every item. @returns false when the stream is lost: close the connection.
+  /// Takes bytes as they arrive and reports every item. @returns false when the stream is lost: close the connection.
   bool take(std::span<const std::byte> bytes, const std::function<void(const Item&)>& tell);
   void reset();
 

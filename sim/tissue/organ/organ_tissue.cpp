@@ -77,7 +77,7 @@ std::string OrganTissue::build(const SceneDescription& scene, Model& model) {
     SolidModel solid(std::move(nodes), std::move(stuffed.mesh.tetrahedron), fixed, solidMaterial(organ.material));
     if (solid.freeNodes().empty()) return "organ '" + organ.name + "': its anchors hold every node";
     organs.push_back({organ.name, organ.appearance, std::move(solid), organ.surface.vertex, std::move(embedding),
-                      std::move(contact), vertexAreas(organ.surface), stuffed.cellSize, stuffed.report});
+                      std::move(contact), vertexAreas(organ.surface), stuffed.cellSize});
   }
   for (std::size_t a = 0; a < organs.size(); ++a) {
     for (std::size_t b = 0; b < organs.size(); ++b) {

@@ -71,7 +71,6 @@ struct OrganModel {
   ContactSurface surface;          ///< triangles over the skin's vertices
   std::vector<double> vertexArea;  ///< a third of the triangles around each vertex, at rest (m^2)
   double cellSize = 0.0;           ///< of the tetrahedral lattice (m)
-  StuffingReport meshing;
 };
 
 /// Two organs that may touch each other, or one that may touch itself: vertices of `a` against triangles of `b`.

@@ -7,6 +7,7 @@
 #include "gui/render/instrument_mesh.h"
 #include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"
+#include "tests/sim/instruments/support/shape_distance.h"
 
 namespace calot::gui {
 namespace {
@@ -30,7 +31,7 @@ TEST(InstrumentAgreement, PictureAndContactShapeLieTogether) {
         if (part.appearance == Appearance::titanium) continue;  // the loaded clip
         for (const Vec3& p : part.mesh.position) {
           if (p[2] < -length) continue;
-          farthest = std::max(farthest, shape.distance(p));
+          farthest = std::max(farthest, test::distanceTo(shape, p));
           drawn.include(p);
         }
       }

@@ -87,7 +87,7 @@ TEST(CarvedSurface, CutsKeepAwayFromTheNodes) {
   CarvedSurface surface(model.lattice);
   surface.rebuild(field);
   double least = 1.0;
-  surface.forEachPatch([&](const SurfacePatch& p) {
+  test::forEachPatch(surface, [&](const SurfacePatch& p) {
     EXPECT_LE(p.triangleCount, SurfacePatch::maxTriangles);
     for (std::size_t i = 0; i < p.vertexCount; ++i) {
       const double t = surface_vertex::cut(field, p.vertex[i]);
@@ -133,7 +133,7 @@ void expectAdjacency(const FieldModel& model) {
   const SurfaceAdjacency adjacency(field);
   std::size_t triangles = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> cornerOf;  // vertex, triangle
-  surface.forEachPatch([&](const SurfacePatch& p) {
+  test::forEachPatch(surface, [&](const SurfacePatch& p) {
     for (std::size_t t = 0; t < p.triangleCount; ++t) {
       ++triangles;
       const std::uint32_t name = p.triangle[t];

@@ -111,7 +111,7 @@ void harshStrokes(int count, std::uint64_t seed, int nodes) {
     ASSERT_NO_FATAL_FAILURE(bench->expectEqualToFullPasses());
     ASSERT_NO_FATAL_FAILURE(expectNoFault(test::meshOf(bench->field, bench->surface)));
     ASSERT_NO_FATAL_FAILURE(expectNoFault(bench->adaptive.mesh()));
-    if (bench->field.insideNodes() < 500) {
+    if (test::insideNodes(bench->field) < 500) {
       bench = std::make_unique<Bench>(test::lump(nodes));
       ++bodies;
     }

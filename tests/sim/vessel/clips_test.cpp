@@ -129,8 +129,6 @@ TEST(Cuts, BetweenClipsNothingOpens) {
   EXPECT_EQ(cut.after, 1U);
   EXPECT_NEAR(cut.gapBefore, 0.003 - 0.00075, 1e-12);
   EXPECT_FALSE(cut.opensBefore || cut.opensAfter || cut.throughClip);
-  EXPECT_FALSE(lumenOpen(model, state, 0, 0.0, 0.012));
-  EXPECT_TRUE(lumenOpen(model, state, 0, 0.010, 0.014));
 }
 
 TEST(Cuts, OpenSidesLeak) {

@@ -102,11 +102,10 @@ TEST(Mouse, TheHandThatIsLeftHolds) {
   const DeviceSample held = rig.run(1, Hand::right);
   EXPECT_EQ(held.position, right.position);
   EXPECT_EQ(held.buttons, button::lock) << "the ratchet holds, the pedal does not";
-  EXPECT_TRUE(rig.mouse->locked(Hand::right));
-  EXPECT_FALSE(rig.mouse->locked(Hand::left));
+  EXPECT_EQ(rig.run(1, Hand::left).buttons, button::cutPedal) << "the lock is the other hand's";
   rig.mouse->reset();
   EXPECT_EQ(rig.mouse->hand(), Hand::right);
-  EXPECT_FALSE(rig.mouse->locked(Hand::right));
+  EXPECT_EQ(rig.run(200, Hand::right).buttons, 0U);
 }
 
 // Whatever is done: samples are numbers within reach, in rising order, and no hand is ever silent for 100 ms, after

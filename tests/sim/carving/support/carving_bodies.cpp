@@ -97,13 +97,14 @@ void carveAtRest(CarvedField& field, const std::vector<SweptCapsule>& tool) {
 
 TriangleMesh meshOf(const CarvedField& field, const CarvedSurface& surface) {
   std::vector<std::uint32_t> name;
-  surface.forEachPatch(
-      [&](const SurfacePatch& p) { name.insert(name.end(), p.vertex.begin(), p.vertex.begin() + p.vertexCount); });
+  forEachPatch(surface, [&](const SurfacePatch& p) {
+    name.insert(name.end(), p.vertex.begin(), p.vertex.begin() + p.vertexCount);
+  });
   std::sort(name.begin(), name.end());
   name.erase(std::unique(name.begin(), name.end()), name.end());
   TriangleMesh mesh;
   for (const std::uint32_t v : name) mesh.vertex.push_back(surface_vertex::restPosition(field, v));
-  surface.forEachPatch([&](const SurfacePatch& p) {
+  forEachPatch(surface, [&](const SurfacePatch& p) {
     for (std::size_t t = 0; t < p.triangleCount; ++t) {
       Index3 v;
       for (int k = 0; k < 3; ++k) {
@@ -166,13 +167,19 @@ std::vector<std::uint8_t> fullFlood(const CarvedField& field, const std::vector<
   return held;
 }
 
+std::int64_t insideNodes(const CarvedField& field) {
+  std::int64_t count = 0;
+  for (std::uint32_t brick = 0; brick < field.lattice().brickCount(); ++brick) count += countBits(field.bits(brick));
+  return count;
+}
+
 bool samePatches(const CarvedSurface& x, const CarvedSurface& y) {
   if (x.patches() != y.patches() || x.triangles() != y.triangles()) return false;
   std::vector<const SurfacePatch*> list;
-  y.forEachPatch([&](const SurfacePatch& p) { list.push_back(&p); });
+  forEachPatch(y, [&](const SurfacePatch& p) { list.push_back(&p); });
   std::size_t i = 0;
   bool same = list.size() == x.patches();
-  x.forEachPatch([&](const SurfacePatch& p) {
+  forEachPatch(x, [&](const SurfacePatch& p) {
     if (!same || i >= list.size()) {
       same = false;
       return;

@@ -52,6 +52,17 @@ EdgeFaults edgeFaults(const TriangleMesh& mesh);
 /// Node by node, without bricks: inside nodes that hang together with an anchor. 1 for each such node of the lattice.
 std::vector<std::uint8_t> fullFlood(const CarvedField& field, const std::vector<std::uint32_t>& anchors);
 
+/// Inside nodes of the whole field.
+std::int64_t insideNodes(const CarvedField& field);
+
+/// Calls visit(patch) for each patch, in order of keys.
+template <class Visit>
+void forEachPatch(const CarvedSurface& surface, Visit&& visit) {
+  for (const std::uint32_t brick : surface.bricks()) {
+    for (std::uint32_t block = 8 * brick; block < 8 * brick + 8; ++block) surface.forEachPatchOfBlock(block, visit);
+  }
+}
+
 /// Are all patches of both the same, byte for byte?
 bool samePatches(const CarvedSurface& x, const CarvedSurface& y);
 
