@@ -53,11 +53,11 @@ struct RunReport {
   std::uint64_t steps = 0;  ///< of the session
   std::uint64_t ticks = 0;  ///< of this run's steps; what follows counts these, as the recording does
   std::uint64_t missedDeadlines =
-      0;                         ///< paced: ticks whose force was ready later than tickDeadline after they were due
-  double largestLateness = 0.0;  ///< of a tick (s)
-  double stretched = 0.0;        ///< by how much the tick clock was stretched: lag beyond longestLag (s)
-  std::uint64_t pauses = 0;      ///< of the source
-  double paused = 0.0;           ///< s
+      0;                     ///< paced: ticks whose force was ready later than tickDeadline after they were due
+  double maxLateness = 0.0;  ///< of a tick (s)
+  double stretched = 0.0;    ///< by how much the tick clock was stretched: lag beyond maxLag (s)
+  std::uint64_t pauses = 0;  ///< of the source
+  double paused = 0.0;       ///< s
   double wallSeconds = 0.0;
   StepMisses misses;  ///< of this run's steps
   std::string fault;  ///< why the attempt had to end, in one line: the simulation ran away (miss::runaway); or empty

@@ -28,13 +28,13 @@ struct HandTick {
 /// A tick is over when the next one is due (s): one that is later missed its deadline.
 inline constexpr float tickDeadline = 0.001F;
 /// How far a run at real time may lag behind the tick clock (s). What exceeds it stretches the clock.
-inline constexpr float longestLag = 0.1F;
+inline constexpr float maxLag = 0.1F;
 
 /// One tick: both hands, and how late it ran.
 struct TickOutcome {
   std::array<HandTick, handCount> hand;
   /// From when the tick was due until its force was ready (s); 0 when the run is not paced. Above tickDeadline the
-  /// deadline was missed. Above longestLag the tick clock was stretched before this tick, by what exceeds it: an event
+  /// deadline was missed. Above maxLag the tick clock was stretched before this tick, by what exceeds it: an event
   /// of the step (EventKind::clockStretched).
   float lateness = 0.0F;
 };

@@ -105,7 +105,7 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
     session.step(samples, ticks, settings.paced ? lateness(clock.due(tick)) : 0.0F);
     report.ticks = tick;
     report.missedDeadlines = clock.missed();
-    report.largestLateness = seconds(clock.largestLateness());
+    report.maxLateness = seconds(clock.maxLateness());
     report.stretched = seconds(clock.stretched());
     if (settings.progress) settings.progress(session.steps());
     if (!watch.fault().empty()) {
@@ -165,7 +165,7 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
   report.outcome = ranAway.load() ? Outcome::technicalFailure : seen.outcome;
   report.ticks = seen.ticks;
   report.missedDeadlines = seen.missedDeadlines;
-  report.largestLateness = seen.largestLateness;
+  report.maxLateness = seen.maxLateness;
   report.stretched = seen.stretched;
   report.pauses = seen.pauses.count;
   report.paused = seen.pauses.seconds;

@@ -40,7 +40,7 @@ TickOutcome Session::tick(const TickSamples& samples, const std::optional<std::a
 const StepResult& Session::withStretch(const StepResult& result, std::span<const TickOutcome> ticks) {
   double stretched = 0.0;
   for (const TickOutcome& tick : ticks) {
-    if (tick.lateness > longestLag) stretched += static_cast<double>(tick.lateness) - static_cast<double>(longestLag);
+    if (tick.lateness > maxLag) stretched += static_cast<double>(tick.lateness) - static_cast<double>(maxLag);
   }
   if (stretched <= 0.0) return result;
   flagged_ = result;

@@ -26,7 +26,7 @@ using HapticStates = std::array<HapticState, handCount>;
 
 class Session {
  public:
-  /// How many steps' contact sets are at hand: more than a live run's ticks can lag behind (longestLag, in the shortest
+  /// How many steps' contact sets are at hand: more than a live run's ticks can lag behind (maxLag, in the shortest
   /// steps there are, of one tick).
   static constexpr std::size_t keptSets = 128;
 
@@ -52,7 +52,7 @@ class Session {
   TickOutcome tick(const TickSamples& samples,
                    const std::optional<std::array<std::int64_t, handCount>>& sets = std::nullopt);
 
-  /// The step after its ticks; then notifies the observers. Where a tick is later than longestLag, the tick clock was
+  /// The step after its ticks; then notifies the observers. Where a tick is later than maxLag, the tick clock was
   /// stretched, and the step's events end with one EventKind::clockStretched: the sum over its ticks of the excess.
   void step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness);
 

@@ -8,7 +8,7 @@
 namespace calot::analytics {
 
 std::string plainName(const recorder::JsonPlace& place) {
-  std::string name = place.text(longestName);
+  std::string name = place.text(maxName);
   const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
            c == '.';
@@ -27,7 +27,7 @@ void readHead(const recorder::JsonObject& root, const std::string& format, std::
   document.sha256 = recorder::sha256Hex(bytes);
   document.name = plainName(root.at("name"));
   root.read("version", document.version);
-  root.read("title", document.title, longestText);
+  root.read("title", document.title, maxText);
 }
 
 }  // namespace calot::analytics

@@ -11,7 +11,7 @@
 
 namespace calot::analytics {
 
-inline constexpr std::size_t longestName = 64, longestText = 2000;
+inline constexpr std::size_t maxName = 64, maxText = 2000;
 
 struct DeclaredDocument {
   std::string name;

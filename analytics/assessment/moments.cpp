@@ -15,9 +15,9 @@
 namespace calot::analytics {
 namespace {
 
-constexpr double shortestWindow = 1.0;  // s
-constexpr double mostWindows = 200.0;
-constexpr std::size_t mostMoments = 3;
+constexpr double minWindow = 1.0;  // s
+constexpr double maxWindows = 200.0;
+constexpr std::size_t maxMoments = 3;
 constexpr double standsOut = 2.0;  // times the mean
 /// A figure whose filter looks ahead falls a little where its newest points are not settled yet.
 constexpr double settled = 0.02;
@@ -48,7 +48,7 @@ FigureMoments momentsOf(const std::vector<double>& series, double length, Direct
   std::vector<std::size_t> order(gained.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gained[a] > gained[b]; });
-  order.resize(std::min(order.size(), mostMoments));
+  order.resize(std::min(order.size(), maxMoments));
   std::sort(order.begin(), order.end());
   const double mean = total / static_cast<double>(gained.size());
   for (const std::size_t w : order) {
@@ -73,7 +73,7 @@ std::vector<FigureMoments> findMoments(recorder::Recording& recording,
   CheckpointCollector collector(header, scene, Origin::observables);
   const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
   const std::uint64_t steps = recording.stepCount();
-  const double wanted = std::max(shortestWindow, static_cast<double>(steps) * stepSeconds / mostWindows);
+  const double wanted = std::max(minWindow, static_cast<double>(steps) * stepSeconds / maxWindows);
   const auto window = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(wanted / stepSeconds)));
   std::vector<std::vector<double>> series(figures.size());
   for (std::uint64_t n = 0; n < steps; ++n) {

@@ -20,9 +20,9 @@ using recorder::JsonPlace;
 using recorder::ObjectRule;
 using recorder::Outcome;
 
-constexpr std::size_t mostBytes = 1U << 20U;
-constexpr std::size_t mostHypotheses = 200, mostCriteria = 20, mostReasons = 50;
-constexpr double largestBound = 1e9;
+constexpr std::size_t maxBytes = 1U << 20U;
+constexpr std::size_t maxHypotheses = 200, maxCriteria = 20, maxReasons = 50;
+constexpr double maxBound = 1e9;
 
 const ObjectRule rootRule{"",
                           {{"format"},
@@ -44,8 +44,8 @@ const ObjectRule rootRule{"",
 const ObjectRule populationRule{"population", {{"group"}, {"definition"}, {"criteria", false}}};
 const ObjectRule criterionRule{"criterion",
                                {{"criterion"},
-                                {"atLeast", false, -largestBound, largestBound},
-                                {"atMost", false, -largestBound, largestBound},
+                                {"atLeast", false, -maxBound, maxBound},
+                                {"atMost", false, -maxBound, maxBound},
                                 {"equals", false}}};
 const ObjectRule exclusionsRule{"exclusions", {{"outcomes"}, {"reasons"}}};
 const ObjectRule hypothesisRule{
@@ -54,7 +54,7 @@ const ObjectRule hypothesisRule{
 PopulationCriterion criterionAt(const JsonPlace& place) {
   const JsonObject o = place.object(criterionRule);
   PopulationCriterion criterion;
-  o.read("criterion", criterion.criterion, longestName);
+  o.read("criterion", criterion.criterion, maxName);
   const auto bound = [&](const char* key) {
     double value = 0.0;
     o.read(key, value);
@@ -62,7 +62,7 @@ PopulationCriterion criterionAt(const JsonPlace& place) {
   };
   criterion.atLeast = bound("atLeast");
   criterion.atMost = bound("atMost");
-  o.read("equals", criterion.equals, longestName);
+  o.read("equals", criterion.equals, maxName);
   const bool bounded = criterion.atLeast || criterion.atMost;
   if (bounded == o.has("equals")) o.fail("either \"equals\", or \"atLeast\" or \"atMost\" or both are wanted");
   if (criterion.atLeast && criterion.atMost && *criterion.atLeast > *criterion.atMost)
@@ -73,10 +73,10 @@ PopulationCriterion criterionAt(const JsonPlace& place) {
 Population populationAt(const JsonPlace& place) {
   const JsonObject o = place.object(populationRule);
   Population population;
-  o.read("group", population.group, longestName);
-  o.read("definition", population.definition, longestText);
+  o.read("group", population.group, maxName);
+  o.read("definition", population.definition, maxText);
   if (o.has("criteria")) {
-    for (const JsonPlace& item : o.at("criteria").list(0, mostCriteria))
+    for (const JsonPlace& item : o.at("criteria").list(0, maxCriteria))
       population.criteria.push_back(criterionAt(item));
   }
   return population;
@@ -94,15 +94,15 @@ DirectedHypothesis hypothesisAt(const Protocol& protocol, const JsonPlace& place
   if (o.has("checkpoint") == o.has("outcome"))
     o.fail("either \"checkpoint\" or, for a table from elsewhere, \"outcome\" is wanted");
   if (o.has("outcome")) {
-    o.read("outcome", hypothesis.checkpoint, longestName);
+    o.read("outcome", hypothesis.checkpoint, maxName);
     if (o.has("subject")) o.at("subject").fail("an outcome has none: it is a column of a table");
   } else {
-    o.read("checkpoint", hypothesis.checkpoint, longestName);
+    o.read("checkpoint", hypothesis.checkpoint, maxName);
     if (findCheckpoint(hypothesis.checkpoint) == nullptr)
       o.at("checkpoint").fail("no checkpoint of this name (calot checkpoints lists them)");
   }
-  o.read("subject", hypothesis.subject, longestName);
-  o.read("larger", hypothesis.larger, longestName);
+  o.read("subject", hypothesis.subject, maxName);
+  o.read("larger", hypothesis.larger, maxName);
   askForGroup(protocol, o.at("larger"), hypothesis.larger);
   o.read("primary", hypothesis.primary);
   return hypothesis;
@@ -115,8 +115,8 @@ void readExclusions(Protocol& protocol, const JsonObject& o) {
                                                             {"stopped", Outcome::stopped},
                                                             {"technical failure", Outcome::technicalFailure}}));
   }
-  for (const JsonPlace& item : o.at("reasons").list(0, mostReasons))
-    protocol.exclusionReasons.push_back(item.text(longestText));
+  for (const JsonPlace& item : o.at("reasons").list(0, maxReasons))
+    protocol.exclusionReasons.push_back(item.text(maxText));
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ const std::vector<ObjectRule>& protocolRules() {
 
 Protocol readProtocol(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseProtocol(recorder::readFileBytes(file, name, mostBytes), name);
+  return parseProtocol(recorder::readFileBytes(file, name, maxBytes), name);
 }
 
 Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file) {
@@ -136,26 +136,26 @@ Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file
   const JsonObject o = JsonPlace(json, file).object(rootRule);
   Protocol protocol;
   readHead(o, "calot-protocol", bytes, file, protocol);
-  o.read("question", protocol.question, longestText);
+  o.read("question", protocol.question, maxText);
   if (o.has("operators")) protocol.performers = o.at("operators").word<bool>({{"people", false}, {"performers", true}});
   const std::vector<JsonPlace> populations = o.at("populations").list(2, 2);
   for (std::size_t i = 0; i < 2; ++i) protocol.populations[i] = populationAt(populations[i]);
   if (protocol.populations[0].group == protocol.populations[1].group)
     populations[1].fail("has the group of the first population");
-  o.read("better", protocol.better, longestName);
+  o.read("better", protocol.better, maxName);
   askForGroup(protocol, o.at("better"), protocol.better);
   (void)o.at("unit").word<int>({{"participant", 0}});
   protocol.attemptRule =
       o.at("attemptRule")
           .word<std::optional<AttemptRule>>(
               {{"single", std::nullopt}, {"first", AttemptRule::first}, {"mean", AttemptRule::mean}});
-  o.read("scene", protocol.scene, longestName);
+  o.read("scene", protocol.scene, maxName);
   readExclusions(protocol, o.at("exclusions").object(exclusionsRule));
   protocol.missing = o.at("missing").word<MissingRule>(
       {{"complete-cases", MissingRule::completeCases}, {"worst-rank", MissingRule::worstRank}});
   o.read("level", protocol.level);
   std::set<std::string> seen;
-  for (const JsonPlace& place : o.at("hypotheses").list(1, mostHypotheses)) {
+  for (const JsonPlace& place : o.at("hypotheses").list(1, maxHypotheses)) {
     const DirectedHypothesis h = hypothesisAt(protocol, place);
     // As tables name it: the column "path-length left" is the left hand's path length.
     if (!seen.insert(h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject).second)

@@ -18,8 +18,8 @@ using recorder::JsonPlace;
 using recorder::ObjectRule;
 using recorder::shown;
 
-constexpr std::size_t mostFormBytes = 1U << 20U;
-constexpr std::size_t mostSections = 20, mostItems = 60;
+constexpr std::size_t maxFormBytes = 1U << 20U;
+constexpr std::size_t maxSections = 20, maxItems = 60;
 
 const ObjectRule formRule{"",
                           {{"format"},
@@ -40,7 +40,7 @@ const ObjectRule publishedRule{"published", {{"expert", true, 0, 100}, {"novice"
 std::vector<std::string> wordsAt(const JsonPlace& place, const RatingForm& form) {
   const std::size_t scores = static_cast<std::size_t>(form.most) - static_cast<std::size_t>(form.least) + 1;
   std::vector<std::string> words;
-  for (const JsonPlace& word : place.list(scores, scores)) words.push_back(word.text(longestText));
+  for (const JsonPlace& word : place.list(scores, scores)) words.push_back(word.text(maxText));
   return words;
 }
 
@@ -48,8 +48,8 @@ FormItem itemAt(const RatingForm& form, const JsonPlace& place) {
   const JsonObject o = place.object(itemRule);
   FormItem item;
   item.key = plainName(o.at("key"));
-  o.read("text", item.text, longestText);
-  o.read("primaryGroup", item.primaryGroup, longestName);
+  o.read("text", item.text, maxText);
+  o.read("primaryGroup", item.primaryGroup, maxName);
   if (o.has("anchors")) item.anchors = wordsAt(o.at("anchors"), form);
   if (o.has("published")) {
     const JsonObject published = o.at("published").object(publishedRule);
@@ -73,7 +73,7 @@ const std::vector<ObjectRule>& ratingFormRules() {
 
 RatingForm readRatingForm(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseRatingForm(recorder::readFileBytes(file, name, mostFormBytes), name);
+  return parseRatingForm(recorder::readFileBytes(file, name, maxFormBytes), name);
 }
 
 RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& file) {
@@ -81,7 +81,7 @@ RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& 
   const JsonObject o = JsonPlace(json, file).object(formRule);
   RatingForm form;
   readHead(o, "calot-form", bytes, file, form);
-  o.read("source", form.source, longestText);
+  o.read("source", form.source, maxText);
   form.ofAttempts = o.at("about").word<bool>({{"attempt", true}, {"simulator", false}});
   const JsonObject scale = o.at("scale").object(scaleRule);
   std::uint32_t least = 1, most = 5;
@@ -92,11 +92,11 @@ RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& 
   form.most = static_cast<int>(most);
   if (scale.has("words")) form.words = wordsAt(scale.at("words"), form);
   std::set<std::string> keys;
-  for (const JsonPlace& place : o.at("sections").list(1, mostSections)) {
+  for (const JsonPlace& place : o.at("sections").list(1, maxSections)) {
     const JsonObject part = place.object(sectionRule);
     FormSection section;
-    part.read("name", section.name, longestText);
-    for (const JsonPlace& item : part.at("items").list(1, mostItems)) {
+    part.read("name", section.name, maxText);
+    for (const JsonPlace& item : part.at("items").list(1, maxItems)) {
       section.items.push_back(itemAt(form, item));
       if (!keys.insert(section.items.back().key).second) item.fail("an item of this key stands above already");
     }

@@ -24,7 +24,7 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
   for (std::size_t i = 0; i < rows.position.size(); ++i) {
     const double time = counted ? static_cast<double>(i) : tracked.time[i];
     const double since = i == 0 ? 0.0 : counted ? 1.0 / tracked.rate : tracked.time[i] - tracked.time[i - 1];
-    if (i == 0 || since > longestBridge) {
+    if (i == 0 || since > maxBridge) {
       grid.begin(time, rows.position[i], rows.orientation[i]);
     } else {
       grid.extend(time, rows.position[i], rows.orientation[i]);

@@ -90,14 +90,14 @@ Measured measureHand(const Motion& motion, MotionMeasure measure) {
   if (motion.segments.empty()) return Measured::notAvailable("no measured motion of 0.1 s or longer");
   Measured measured = measure(motion);
   // Less than a tenth of a second is the grid's rounding at the ends.
-  if (measured.value && motion.unmeasured > longestBridge) {
+  if (measured.value && motion.unmeasured > maxBridge) {
     measured.note +=
         fmt::format("{}{:.3f} s without measurement", measured.note.empty() ? "" : "; ", motion.unmeasured);
   }
   return measured;
 }
 
-double largestSpeed(const Motion& motion) {
+double maxSpeed(const Motion& motion) {
   double largest = 0.0;
   for (const MotionSegment& segment : motion.segments) {
     for (const double v : segment.speed) largest = std::max(largest, v);

@@ -15,7 +15,7 @@
 namespace calot::analytics {
 
 /// Below this (m/s) nothing moved: slower than any tracker can tell from rest.
-inline constexpr double leastSpeed = 1e-4;
+inline constexpr double minSpeed = 1e-4;
 
 /// A figure, or why there is none.
 struct Measured {
@@ -52,7 +52,7 @@ CheckpointValue motionValue(const CheckpointDefinition& definition, std::string 
 Measured measureHand(const Motion& motion, MotionMeasure measure);
 
 /// Greatest speed (m/s).
-double largestSpeed(const Motion& motion);
+double maxSpeed(const Motion& motion);
 
 /// A checkpoint that gives `measure` of each hand. @pre the definition outlives it.
 std::unique_ptr<Checkpoint> perHand(const CheckpointDefinition& definition, MotionMeasure measure);

@@ -107,21 +107,21 @@ void MotionTrack::begin(const InstrumentSample& sample) {
 
 /// What the newest sample's pose vouches for beyond 0.1 s is rest, up to the end.
 void MotionTrack::closeRest(SampleGrid& grid) const {
-  if (!grid.runs().empty() && seconds(vouched_ - sample_) > longestBridge)
+  if (!grid.runs().empty() && seconds(vouched_ - sample_) > maxBridge)
     grid.extend(static_cast<double>(vouched_), position_, orientation_);
 }
 
 void MotionTrack::sampled(const InstrumentSample& sample) {
   const bool interrupted = tick_ - vouched_ > 1;
-  const bool rested = seconds(vouched_ - sample_) > longestBridge;
+  const bool rested = seconds(vouched_ - sample_) > maxBridge;
   if (interrupted) {
     const std::int64_t from = rested ? vouched_ : sample_;
-    if (seconds(tick_ - from) > longestBridge) {
+    if (seconds(tick_ - from) > maxBridge) {
       begin(sample);
       return;
     }
     closeRest(grid_);
-  } else if (seconds(tick_ - sample_) > longestBridge) {
+  } else if (seconds(tick_ - sample_) > maxBridge) {
     const std::int64_t until = std::max(tick_ - interval_, sample_ + 1);
     if (until < tick_) grid_.extend(static_cast<double>(until), position_, orientation_);
   } else {
@@ -143,7 +143,7 @@ void MotionTrack::add(const InstrumentSample& sample) {
   if (!sample.valid) return;
   ++validTicks_;
   const bool same = sample.instrument == instrument_;
-  const bool lost = same && seconds(tick_ - vouched_) > longestBridge;
+  const bool lost = same && seconds(tick_ - vouched_) > maxBridge;
   const bool moved = sample.position != position_ || sample.orientation.coeffs() != orientation_.coeffs();
   if (!same || lost) {
     begin(sample);

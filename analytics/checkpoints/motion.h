@@ -17,10 +17,10 @@ inline constexpr double motionCutoff = 6.0;
 inline constexpr double motionCutoffs[] = {3.0, 6.0, 10.0};
 /// A longer time without measurement (s) is not bridged: the motion falls into two segments. A pose that stands for
 /// longer while the source vouches for it is rest.
-inline constexpr double longestBridge = 0.1;
+inline constexpr double maxBridge = 0.1;
 /// Effective rate (Hz) below which third derivatives of a motion are not given. Half a hertz of tolerance: trackers of
 /// "30 Hz" deliver 29.97 and lose samples.
-inline constexpr double leastJerkRate = 29.5;
+inline constexpr double minJerkRate = 29.5;
 
 /// Text of resampling and filter, stored with every value that uses them.
 std::string motionFilterText(double cutoff = motionCutoff);

@@ -87,7 +87,7 @@ std::optional<double> speedCorrelation(const Motion& left, const Motion& right, 
     rr += dot(part.right, part.right, part.points, r, r);
     lr += dot(part.left, part.right, part.points, l, r);
   }
-  const double least = leastSpeed * leastSpeed * points;
+  const double least = minSpeed * minSpeed * points;
   if (!(ll > least) || !(rr > least)) return std::nullopt;
   return std::clamp(lr / (std::sqrt(ll) * std::sqrt(rr)), -1.0, 1.0);
 }

@@ -24,7 +24,7 @@ struct LaggedCorrelation {
   double correlation = 0.0;
   std::int64_t lag = 0;
 };
-/// At lag 0. @return nothing where there are fewer than 2 common points or a speed does not vary (by leastSpeed).
+/// At lag 0. @return nothing where there are fewer than 2 common points or a speed does not vary (by minSpeed).
 std::optional<double> speedCorrelation(const Motion& left, const Motion& right, std::int64_t lag = 0);
 /// The greatest within +-`farthest` points; the smallest lag of equals, the negative one first.
 std::optional<LaggedCorrelation> greatestSpeedCorrelation(const Motion& left, const Motion& right,

@@ -18,9 +18,9 @@ using nlohmann::json;
 
 constexpr std::string_view magic = "calot-key-file-1";
 constexpr std::size_t headBytes = magic.size() + 16 + crypto_pwhash_SALTBYTES + crypto_secretbox_NONCEBYTES;
-constexpr std::size_t mostBytes = std::size_t{16} << 20U;
+constexpr std::size_t maxBytes = std::size_t{16} << 20U;
 // Upper limits of a file's parameters; larger ones could only serve to hang the reader.
-constexpr std::uint64_t mostPasses = 16, mostMemory = std::uint64_t{1} << 30U;
+constexpr std::uint64_t mostPasses = 16, maxMemory = std::uint64_t{1} << 30U;
 
 const unsigned char* bytesOf(const std::string& text, std::size_t at = 0) {
   return reinterpret_cast<const unsigned char*>(text.data()) + at;
@@ -72,12 +72,12 @@ KeyFile::~KeyFile() {
 }
 
 void KeyFile::open() {
-  const std::string file = recorder::readSecret(path_, mostBytes);
+  const std::string file = recorder::readSecret(path_, maxBytes);
   const auto damaged = [&] { return Error(ErrorKind::damaged, Where{path_.string()}, "not a key file, or damaged"); };
   if (file.size() < headBytes + crypto_secretbox_MACBYTES || file.compare(0, magic.size(), magic) != 0) throw damaged();
   const std::uint64_t passes = numberAt(file, magic.size()), memory = numberAt(file, magic.size() + 8);
   if (passes < crypto_pwhash_OPSLIMIT_MIN || passes > mostPasses || memory < crypto_pwhash_MEMLIMIT_MIN ||
-      memory > mostMemory || memory % 1024 != 0) {  // Argon2 counts KiB: the rest would not be vouched for
+      memory > maxMemory || memory % 1024 != 0) {  // Argon2 counts KiB: the rest would not be vouched for
     throw damaged();
   }
   const std::size_t saltAt = magic.size() + 16, nonceAt = saltAt + crypto_pwhash_SALTBYTES;

@@ -14,7 +14,7 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t longestGroup = 20;  // in letters
+constexpr std::size_t maxGroup = 20;  // in letters
 constexpr double boxHalf = 26.0, pointRadius = 2.6;
 
 void drawGroup(Drawing& drawing, std::span<const double> values, double x, const PlotScale& scale, std::size_t g) {
@@ -62,7 +62,7 @@ std::optional<Drawing> drawBoxPlot(const BoxPlot& plot) {
   Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
   for (std::size_t g = 0; g < 2; ++g) {
     const double x = plotLeft + (plotRight - plotLeft) * (g == 0 ? 0.27 : 0.73);
-    drawing.text(Ink::group, x, plotBottom + 17.0, cutTo(plot.groups[g], longestGroup));
+    drawing.text(Ink::group, x, plotBottom + 17.0, cutTo(plot.groups[g], maxGroup));
     drawing.text(Ink::group, x, plotBottom + 32.0, fmt::format("n = {}", plot.values[g].size()));
     if (!plot.values[g].empty()) drawGroup(drawing, plot.values[g], x, *scale, g);
   }

@@ -12,7 +12,7 @@ namespace {
 
 using Scores = std::map<std::string, std::vector<double>>;  ///< by attempt or participant
 
-constexpr std::size_t leastSubscale = 3;
+constexpr std::size_t minSubscale = 3;
 
 const std::string& subjectOf(const Rating& r) { return r.attempt.empty() ? r.participant : r.attempt; }
 
@@ -99,7 +99,7 @@ void addAgreement(FormReport& report, const std::vector<FormItem>& items, const 
 
 void addConsistency(FormReport& report, const RatingForm& form, const std::vector<const Rating*>& taken) {
   for (const FormSection& section : form.sections) {
-    if (section.items.size() < leastSubscale) continue;
+    if (section.items.size() < minSubscale) continue;
     RatingTable table;
     table.raters = section.items.size();
     for (const Rating* r : taken) {

@@ -12,7 +12,7 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t mostForAllExchanges = 16;
+constexpr std::size_t maxForAllExchanges = 16;
 constexpr std::uint64_t randomExchanges = 9999;
 
 double variance(std::span<const double> values) {
@@ -64,7 +64,7 @@ void fallBack(PairedAreas& result, RankExchange& exchange, std::uint64_t seed) {
   const std::size_t n = exchange.people();
   std::uint64_t hits = 0;
   result.method = "permutation of ranks, ";
-  if (n <= mostForAllExchanges) {
+  if (n <= maxForAllExchanges) {
     const std::uint64_t all = std::uint64_t{1} << n;
     for (std::uint64_t set = 0; set < all; ++set) {
       if (std::abs(exchange.difference([&](std::size_t i) { return (set >> i & 1U) != 0; })) >= observed) ++hits;

@@ -58,7 +58,7 @@ Answer<PermutationTest> permutationTest(std::span<const double> x, std::span<con
   for (std::size_t i = 0; i < x.size(); ++i) observed += values[i];
   const std::size_t n = std::min(x.size(), y.size());
   Walk walk{values, std::abs(observed) - 1e-11 * scale};
-  if (choices(values.size(), n, options.mostAssignments) <= options.mostAssignments) {
+  if (choices(values.size(), n, options.maxAssignments) <= options.maxAssignments) {
     walk.from(0, n, 0.0);
     result.exact = true;
     result.assignments = walk.all;

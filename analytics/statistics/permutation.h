@@ -10,8 +10,8 @@
 namespace calot::analytics {
 
 struct PermutationOptions {
-  std::uint64_t mostAssignments = 200000;  ///< up to this number, all are enumerated (ten against ten: 184,756)
-  std::uint64_t draws = 99999;             ///< beyond: number of random ones
+  std::uint64_t maxAssignments = 200000;  ///< up to this number, all are enumerated (ten against ten: 184,756)
+  std::uint64_t draws = 99999;            ///< beyond: number of random ones
   std::uint64_t seed = 1;
 };
 

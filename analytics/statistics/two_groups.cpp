@@ -148,11 +148,11 @@ Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span
     std::iota(ranks.begin(), ranks.end(), 1.0);
     const std::size_t fewer = std::min(x.size(), y.size());
     const RankSumDistribution distribution(ranks, fewer);
-    const double smallestSum = static_cast<double>(fewer) * static_cast<double>(fewer + 1) / 2.0;
+    const double minSum = static_cast<double>(fewer) * static_cast<double>(fewer + 1) / 2.0;
     // Lowest u with P(U <= u) >= alpha / 2, as R's qwilcox; U and nx ny - U have the same distribution.
-    while (distribution.atMost(smallestSum + static_cast<double>(u)) < (1.0 - level) / 2.0) ++u;
+    while (distribution.atMost(minSum + static_cast<double>(u)) < (1.0 - level) / 2.0) ++u;
     if (u == 0) return Result::none("the groups are too small for an interval of this level");
-    result.attained = 1.0 - 2.0 * distribution.atMost(smallestSum + static_cast<double>(u) - 1.0);
+    result.attained = 1.0 - 2.0 * distribution.atMost(minSum + static_cast<double>(u) - 1.0);
     result.method = ties > 0.0 ? ShiftMethod::conservative : ShiftMethod::exact;
   } else {
     const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size());

@@ -15,9 +15,9 @@ using recorder::JsonObject;
 using recorder::JsonPlace;
 using recorder::ObjectRule;
 
-constexpr double mostSeconds = 36000.0;
+constexpr double maxSeconds = 36000.0;
 constexpr double any = 1e300;
-constexpr std::size_t mostBytes = 4U << 20U;
+constexpr std::size_t maxBytes = 4U << 20U;
 
 const ObjectRule rootRule{
     "", {{"simulation_version", true, 1, 4294967295.0}, {"reason"}, {"values_reason", false}, {"recordings"}}};
@@ -26,7 +26,7 @@ const ObjectRule recordingRule{"recording",
                                 {"scene"},
                                 {"performer"},
                                 {"seed", true, 0, 4294967295.0},
-                                {"seconds", true, 0, mostSeconds},
+                                {"seconds", true, 0, maxSeconds},
                                 {"checkpoints", false}}};
 const ObjectRule valueRule{
     "value", {{"name"}, {"subject", false}, {"version", true, 1, 4294967295.0}, {"value", true, -any, any}}};
@@ -60,7 +60,7 @@ GoldenEntry readEntry(const JsonPlace& place) {
 }  // namespace
 
 GoldenList readGoldenList(const std::filesystem::path& file) {
-  const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), mostBytes);
+  const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), maxBytes);
   const nlohmann::json json = recorder::parseStrictJson(bytes, file.string());
   const JsonObject root = JsonPlace(json, file.string()).object(rootRule);
   GoldenList list;

@@ -76,7 +76,7 @@ ordered_json describeDevice(recorder::Recording& recording) {
                                                       {"dropped", s.dropped},
                                                       {"missing", s.missing},
                                                       {"rate_hz", s.rate},
-                                                      {"longest_interval_s", s.longestInterval}};
+                                                      {"longest_interval_s", s.maxInterval}};
   }
   return out;
 }

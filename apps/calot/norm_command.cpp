@@ -30,7 +30,7 @@ using Access = analytics::CohortDatabase::Access;
 using Align = analytics::TextTable::Align;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t mostEvidence = std::size_t{1} << 30U;
+constexpr std::size_t maxEvidence = std::size_t{1} << 30U;
 
 struct NormOptions {
   std::string database, name, by, groupBy = "group", attemptRule, rule, seed = "1", statement, file;
@@ -40,7 +40,7 @@ struct NormOptions {
 };
 
 /// "all" or "at-least:K".
-std::uint32_t leastOf(const std::string& rule) {
+std::uint32_t minOf(const std::string& rule) {
   constexpr std::string_view prefix = "at-least:";
   if (rule == "all") return 0;
   std::string fault;
@@ -133,7 +133,7 @@ void print(const analytics::Norm& norm) {
 int create(NormOptions& o) {
   o.request.name = o.name;
   o.request.by = o.by;
-  o.request.leastPassed = leastOf(o.rule);
+  o.request.leastPassed = minOf(o.rule);
   o.request.seed = std::stoull(o.seed);
   o.request.who.grouping = o.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
   if (!o.attemptRule.empty()) o.request.who.attemptRule = analytics::AttemptRule::first;
@@ -176,7 +176,7 @@ int show(NormOptions& o) {
 int attach(NormOptions& o) {
   const std::filesystem::path file(o.file);
   const std::string name = file.filename().string();
-  const std::string hash = recorder::sha256Hex(recorder::readFileBytes(file, name, mostEvidence));
+  const std::string hash = recorder::sha256Hex(recorder::readFileBytes(file, name, maxEvidence));
   analytics::AssessmentDatabase database(o.database, Access::write);
   const analytics::Norm norm = database.norm(o.name, o.version);
   database.attachEvidence(norm, {o.statement, name, hash, o.by, ""});

@@ -82,7 +82,7 @@ int power(PowerOptions& o) {
   for (const std::size_t n : sizes) {
     planned.plan.nx = n;
     planned.plan.ny = std::clamp(static_cast<std::size_t>(std::lround(o.allocation * static_cast<double>(n))),
-                                 std::size_t{2}, mostPeople);
+                                 std::size_t{2}, maxPeople);
     const analytics::Answer<analytics::Power> answer = analytics::simulatePower(planned.plan);
     if (!answer) failPower(answer.reason());
     results.push_back({planned.plan.nx, planned.plan.ny, *answer});

@@ -14,7 +14,7 @@
 namespace calot::apps {
 namespace {
 
-constexpr std::size_t mostSizes = 100, mostCheckpoints = 200;
+constexpr std::size_t maxSizes = 100, maxCheckpoints = 200;
 
 std::vector<std::string> split(const std::string& text, char mark) {
   std::vector<std::string> parts{""};
@@ -95,9 +95,9 @@ std::vector<std::size_t> sizesOf(const std::string& text) {
   const auto number = [&](const std::string& word) {
     std::string fault;
     const long long n = recorder::readWholeNumber(word, fault);
-    if (!fault.empty() || n < 2 || n > static_cast<long long>(mostPeople))
+    if (!fault.empty() || n < 2 || n > static_cast<long long>(maxPeople))
       failPower(fmt::format("--n {}: FROM:TO:STEP, a list A,B,C or one number, from 2 to {}", recorder::shown(text),
-                            mostPeople));
+                            maxPeople));
     return static_cast<std::size_t>(n);
   };
   std::vector<std::size_t> sizes;
@@ -112,9 +112,8 @@ std::vector<std::size_t> sizesOf(const std::string& text) {
     const std::size_t from = number(parts[0]), to = number(parts[1]);
     for (std::size_t n = from; n <= to; n += static_cast<std::size_t>(by)) sizes.push_back(n);
   }
-  if (sizes.empty() || sizes.size() > mostSizes)
-    failPower(
-        fmt::format("--n {}: {} sizes; from 1 to {} are allowed", recorder::shown(text), sizes.size(), mostSizes));
+  if (sizes.empty() || sizes.size() > maxSizes)
+    failPower(fmt::format("--n {}: {} sizes; from 1 to {} are allowed", recorder::shown(text), sizes.size(), maxSizes));
   return sizes;
 }
 
@@ -125,8 +124,8 @@ PlannedStudy planOf(PowerOptions& o) {
   const int ways = (data ? 1 : 0) + (o.effects.empty() ? 0 : 1) + (o.checkpoints.empty() ? 0 : 1);
   if (ways != 1) failPower("say what the groups are like by one of --effect, --checkpoint, a cohort or --table");
   const bool lognormal = o.shape == "lognormal";
-  if (o.effects.size() + o.checkpoints.size() > mostCheckpoints)
-    failPower(fmt::format("more than {} checkpoints", mostCheckpoints));
+  if (o.effects.size() + o.checkpoints.size() > maxCheckpoints)
+    failPower(fmt::format("more than {} checkpoints", maxCheckpoints));
   if (data) {
     drawFrom(planned, o.source);
   } else {

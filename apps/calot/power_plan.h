@@ -13,7 +13,7 @@
 
 namespace calot::apps {
 
-inline constexpr std::size_t mostPeople = 500;  ///< in a group
+inline constexpr std::size_t maxPeople = 500;  ///< in a group
 
 /// What the command line says.
 struct PowerOptions {

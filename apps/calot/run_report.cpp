@@ -25,7 +25,7 @@ void printJson(const FinishedRun& run, double seconds) {
                              {"missed_tolerance", missesJson(r.misses)},
                              {"ticks", r.ticks},
                              {"missed_deadlines", r.missedDeadlines},
-                             {"largest_lateness_s", r.largestLateness},
+                             {"largest_lateness_s", r.maxLateness},
                              {"clock_stretched_s", r.stretched},
                              {"pauses", r.pauses},
                              {"paused_s", r.paused}};
@@ -49,7 +49,7 @@ void printText(const FinishedRun& run, double seconds) {
   if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, describe(r.misses));
   if (run.paced) {
     fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
-               run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.largestLateness, r.stretched);
+               run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.maxLateness, r.stretched);
   }
   if (run.live) {
     fmt::print(

@@ -77,7 +77,7 @@ AttemptTrack readTrack(recorder::Recording& recording,
   }
   const std::uint64_t steps = recording.stepCount();
   const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
-  const std::uint64_t stepsPerBin = std::max<std::uint64_t>(1, (steps + mostBins - 1) / mostBins);
+  const std::uint64_t stepsPerBin = std::max<std::uint64_t>(1, (steps + maxBins - 1) / maxBins);
   track.bin = static_cast<double>(stepsPerBin) * stepSeconds;
   const SubjectNames names{header.structures(), {}};
   recorder::RecordedJudge judge(header);

@@ -41,7 +41,7 @@ struct AttemptTrack {
   std::string none;  ///< why there are no phases, events and traces, or empty
 };
 
-inline constexpr std::uint64_t mostBins = 1500;  ///< of a trace: more than a screen has columns for it
+inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a screen has columns for it
 
 /// Reads the whole recording. @param progress steps done, of all; may throw to break off
 /// @throws Error (damaged)

@@ -17,7 +17,7 @@ namespace {
 // Okabe and Ito's blue and vermillion: told apart by people with any of the common colour-vision deficiencies.
 const QColor personColour(0x00, 0x72, 0xb2);
 const QColor performerColour(0xd5, 0x5e, 0x00);
-constexpr std::size_t mostPoints = 2000;  // of a group; redrawing more takes longer than a frame
+constexpr std::size_t maxPoints = 2000;  // of a group; redrawing more takes longer than a frame
 constexpr std::size_t fewestForBox = 5;
 
 QBoxPlotSeries* boxesOf(const Comparison& comparison) {
@@ -48,7 +48,7 @@ QScatterSeries* pointsOf(const Comparison& comparison, bool synthetic) {
   series->setBorderColor(Qt::white);
   for (std::size_t g = 0; g < comparison.group.size(); ++g) {
     const std::vector<ComparisonPoint>& points = comparison.group[g].point;
-    const std::size_t stride = 1 + points.size() / mostPoints;
+    const std::size_t stride = 1 + points.size() / maxPoints;
     for (std::size_t i = 0; i < points.size(); i += stride) {
       if (points[i].synthetic != synthetic) continue;
       // Neighbours in value stand at five different places beside the box, always the same ones.

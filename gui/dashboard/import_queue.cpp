@@ -13,8 +13,8 @@
 namespace calot::gui {
 namespace {
 
-constexpr qsizetype mostOutput = 64 * 1024 * 1024;  // bytes; the report of a recording is far smaller
-constexpr int patience = 3000;                      // ms for a killed process to be gone
+constexpr qsizetype maxOutput = 64 * 1024 * 1024;  // bytes; the report of a recording is far smaller
+constexpr int patience = 3000;                     // ms for a killed process to be gone
 
 QString storedText(const QString& how) {
   if (how == "added") return "new in the cohort";
@@ -137,7 +137,7 @@ void ImportQueue::startNext() {
 void ImportQueue::collect() {
   output_ += process_.readAllStandardOutput();
   errors_ += process_.readAllStandardError();
-  if (output_.size() + errors_.size() > mostOutput) process_.kill();
+  if (output_.size() + errors_.size() > maxOutput) process_.kill();
 }
 
 void ImportQueue::finishCurrent(ImportResult result) {

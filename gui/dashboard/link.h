@@ -33,8 +33,8 @@ class Link {
 /// Threads for what must not keep the interface waiting: reading recordings, ending players. Ends with the program.
 inline QThreadPool& taskPool() {
   static QThreadPool pool;
-  constexpr int mostTasks = 16;
-  pool.setMaxThreadCount(mostTasks);
+  constexpr int maxTasks = 16;
+  pool.setMaxThreadCount(maxTasks);
   return pool;
 }
 

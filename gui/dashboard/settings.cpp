@@ -10,7 +10,7 @@
 namespace calot::gui::settings {
 namespace {
 
-constexpr int mostFolders = 20;
+constexpr int maxFolders = 20;
 constexpr const char* foldersKey = "recordings/folders";
 constexpr const char* programKey = "import/program";
 constexpr const char* threadsKey = "import/threads";
@@ -28,7 +28,7 @@ std::vector<std::filesystem::path> recordingPlaces() {
   return places;
 }
 
-void setRecordingFolders(const QStringList& folders) { store().setValue(foldersKey, folders.mid(0, mostFolders)); }
+void setRecordingFolders(const QStringList& folders) { store().setValue(foldersKey, folders.mid(0, maxFolders)); }
 
 void rememberRecordingFolder(const QString& folder) {
   QStringList folders = recordingFolders();

@@ -22,15 +22,15 @@
 namespace calot::gui {
 namespace {
 
-constexpr qint64 mostWaiting = 120000;  // ms for a page to have read what it shows
-constexpr int settleTime = 1500;        // ms for pictures and animations to be on the screen
+constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
+constexpr int settleTime = 1500;       // ms for pictures and animations to be on the screen
 
 void waitFor(const std::function<bool()>& condition) {
   QElapsedTimer clock;
   clock.start();
   // What was wished for a moment ago may not have begun: the condition must hold for a while.
   qint64 since = -1;
-  while (clock.elapsed() < mostWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
+  while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
     QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
     if (!condition())
       since = -1;

@@ -12,7 +12,7 @@ namespace calot::gui {
 namespace {
 
 /// Above this, char looks the same; more at one vertex would only spread over all its triangles.
-constexpr float mostCharred = 1.6F;
+constexpr float maxCharred = 1.6F;
 
 // The endoscope's automatic exposure: the distance whose inverse square is the mean over what lies ahead and faces the
 // lens, weighted towards the middle of the picture.
@@ -99,7 +99,7 @@ void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, st
   begin();
   for (std::size_t v = 0; v < surface.position.size(); ++v)
     addVertex(point(surface.position[v]), direction(normal[v]), surface.rest[v], form.restNormal()[v],
-              surface.charred.empty() ? 0.0F : std::clamp(surface.charred[v], 0.0F, mostCharred),
+              surface.charred.empty() ? 0.0F : std::clamp(surface.charred[v], 0.0F, maxCharred),
               stained(surface.face.empty() ? 0.0F : surface.face[v], surface.position[v], open));
   DrawPart part;
   part.appearance = appearanceOf(surface.appearance);

@@ -22,9 +22,9 @@ struct RenderSettings {
   bool cavity = true;         ///< the abdominal wall behind everything; without it, alpha is 0 where nothing was drawn
 };
 
-inline constexpr int smallestSide = 16;                 ///< of a picture (pixels)
-inline constexpr int largestSide = 4096;                ///< of a picture (pixels)
-inline constexpr long long mostPixels = 3840LL * 2160;  ///< width times height
+inline constexpr int minSide = 16;                     ///< of a picture (pixels)
+inline constexpr int maxSide = 4096;                   ///< of a picture (pixels)
+inline constexpr long long maxPixels = 3840LL * 2160;  ///< width times height
 
 /// Draws scene views. Owns a thread with an OpenGL context of its own: a software context on the thread of a window
 /// system corrupts that window system's. One picture at a time; calls from several threads wait for each other. The

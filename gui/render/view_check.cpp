@@ -102,10 +102,9 @@ void checkView(const SceneView& view) {
 }
 
 void checkPictureSize(long long width, long long height) {
-  if (width < smallestSide || height < smallestSide || width > largestSide || height > largestSide ||
-      width * height > mostPixels)
+  if (width < minSide || height < minSide || width > maxSide || height > maxSide || width * height > maxPixels)
     throw Error(ErrorKind::invalid, fmt::format("picture size {}x{}: give {} to {} pixels a side and at most {} in all",
-                                                width, height, smallestSide, largestSide, mostPixels));
+                                                width, height, minSide, maxSide, maxPixels));
 }
 
 void checkSmoke(std::span<const Puff> smoke) {

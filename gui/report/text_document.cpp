@@ -23,7 +23,7 @@ constexpr double textPoints = 8.5, tablePoints = 7.5, headingPoints = 11.0, titl
 constexpr double figureMillimetres = 84.0;  // of a figure as wide as a box plot: two stand side by side
 constexpr double usualWidth = 320.0;        // in the drawing's units
 // In millimetres: between text and border; what a line needs beyond its letters; the narrowest column of words.
-constexpr double cellPadding = 0.6, aroundText = 1.0, leastWidth = 12.0;
+constexpr double cellPadding = 0.6, aroundText = 1.0, minWidth = 12.0;
 
 /// Margins, borders and columns are given for a screen of 96 dots an inch, from which Qt turns them into the device's.
 double length(double millimetres) { return millimetres * 96.0 / 25.4; }
@@ -156,11 +156,11 @@ struct ReportTextDocument::Writer {
       }
     }
     std::sort(words.begin(), words.end());
-    double widestWords = words.empty() ? 0.0 : words.back();
+    double maxWords = words.empty() ? 0.0 : words.back();
     for (std::size_t i = 0; i < words.size(); ++i) {
-      const double each = std::max(leastWidth, room / static_cast<double>(words.size() - i));
+      const double each = std::max(minWidth, room / static_cast<double>(words.size() - i));
       if (words[i] > each) {
-        widestWords = each;
+        maxWords = each;
         break;
       }
       room -= words[i];
@@ -168,7 +168,7 @@ struct ReportTextDocument::Writer {
     QVector<QTextLength> lengths;
     for (std::size_t c = 0; c < width.size(); ++c)
       lengths.push_back(
-          QTextLength(QTextLength::FixedLength, length(isWords(c) ? std::min(width[c], widestWords) : width[c])));
+          QTextLength(QTextLength::FixedLength, length(isWords(c) ? std::min(width[c], maxWords) : width[c])));
     return lengths;
   }
 

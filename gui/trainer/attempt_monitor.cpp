@@ -48,7 +48,7 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   double stretched = 0.0;
   for (const recorder::TickOutcome& tick : record.ticks) {
     if (tick.lateness > recorder::tickDeadline) ++missed;
-    if (tick.lateness > recorder::longestLag) stretched += static_cast<double>(tick.lateness - recorder::longestLag);
+    if (tick.lateness > recorder::maxLag) stretched += static_cast<double>(tick.lateness - recorder::maxLag);
   }
   const Judgement& judgement = judge_.observe(record.result);
   const bool added = list_.add(judgement.events);

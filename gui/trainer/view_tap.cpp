@@ -4,7 +4,7 @@
 namespace calot::gui {
 namespace {
 
-constexpr int mostUnderway = 2;
+constexpr int maxUnderway = 2;
 constexpr std::chrono::nanoseconds period(1'000'000'000 / 30);
 /// A window that is hidden shows nothing; it is tried again so often.
 constexpr std::chrono::milliseconds patience(500);
@@ -23,7 +23,7 @@ void ViewTap::give() { sink_(std::make_shared<const SceneView>(viewer_->view(ses
 void ViewTap::onStep(const recorder::StepRecord& /*record*/) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
-  if (underway_ >= mostUnderway && now < last_ + patience) return;
+  if (underway_ >= maxUnderway && now < last_ + patience) return;
   // Steps come every 10 ms, pictures every 33: the mean is kept, not the distance.
   next_ = now - next_ > period ? now + period : next_ + period;
   last_ = now;

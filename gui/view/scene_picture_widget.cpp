@@ -21,11 +21,11 @@ PictureLoop::Draw makeDraw() {
 
 /// The widget's size in pixels, within what a renderer takes.
 QSize pictureSize(const QSize& size, double ratio) {
-  double width = std::clamp(size.width() * ratio, double(smallestSide), double(largestSide));
-  double height = std::clamp(size.height() * ratio, double(smallestSide), double(largestSide));
-  const double shrink = std::min(1.0, std::sqrt(static_cast<double>(mostPixels) / (width * height)));
-  width = std::max(double(smallestSide), std::floor(width * shrink));
-  height = std::max(double(smallestSide), std::floor(height * shrink));
+  double width = std::clamp(size.width() * ratio, double(minSide), double(maxSide));
+  double height = std::clamp(size.height() * ratio, double(minSide), double(maxSide));
+  const double shrink = std::min(1.0, std::sqrt(static_cast<double>(maxPixels) / (width * height)));
+  width = std::max(double(minSide), std::floor(width * shrink));
+  height = std::max(double(minSide), std::floor(height * shrink));
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 

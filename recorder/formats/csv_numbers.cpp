@@ -12,9 +12,9 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::size_t mostRows = 1000000;
-constexpr std::size_t mostColumns = 10000;
-constexpr std::size_t mostNamesShown = 12;
+constexpr std::size_t maxRows = 1000000;
+constexpr std::size_t maxColumns = 10000;
+constexpr std::size_t maxNamesShown = 12;
 constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
 
 [[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& fault) {
@@ -50,12 +50,11 @@ std::vector<std::size_t> placesOf(const std::vector<std::string_view>& names, st
     const auto found = std::find_if(names.begin(), names.end(), same);
     if (found == names.end()) {
       std::string there;
-      for (std::size_t i = 0; i < std::min(names.size(), mostNamesShown); ++i)
+      for (std::size_t i = 0; i < std::min(names.size(), maxNamesShown); ++i)
         there += fmt::format("{}{}", i == 0 ? "" : ", ", shown(unquoted(names[i])));
-      fail(
-          file, 1,
-          fmt::format("no column \"{}\"; there are {}{}", shown(name), there,
-                      names.size() > mostNamesShown ? fmt::format(" and {} more", names.size() - mostNamesShown) : ""));
+      fail(file, 1,
+           fmt::format("no column \"{}\"; there are {}{}", shown(name), there,
+                       names.size() > maxNamesShown ? fmt::format(" and {} more", names.size() - maxNamesShown) : ""));
     }
     if (std::find_if(found + 1, names.end(), same) != names.end())
       fail(file, 1, fmt::format("column \"{}\" is there twice", shown(name)));
@@ -73,7 +72,7 @@ CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& f
   if (text.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
   std::vector<std::string_view> cells;
   split(takeLine(text), delimiter, cells);
-  if (cells.size() > mostColumns) fail(file, 1, fmt::format("more than {} columns", mostColumns));
+  if (cells.size() > maxColumns) fail(file, 1, fmt::format("more than {} columns", maxColumns));
   const std::size_t columns = cells.size();
   const std::vector<std::size_t> places = placesOf(cells, wanted, file);
 
@@ -90,7 +89,7 @@ CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& f
     }
     // Empty lines may end a file; between rows they could hide missing rows.
     if (blank != 0) fail(file, blank, "an empty line between rows");
-    if (numbers.line.size() == mostRows) fail(file, line, fmt::format("more than {} rows", mostRows));
+    if (numbers.line.size() == maxRows) fail(file, line, fmt::format("more than {} rows", maxRows));
     split(row, delimiter, cells);
     if (cells.size() != columns) {
       fail(file, line, fmt::format("{} cells; the {} columns of line 1 are wanted", cells.size(), columns));

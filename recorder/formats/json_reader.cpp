@@ -12,7 +12,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::size_t largestFile = std::size_t{4} << 20U;
+constexpr std::size_t maxFile = std::size_t{4} << 20U;
 constexpr int deepest = 32;
 
 // Quoted text from a file, cut and with control characters masked: a message stays one short line.
@@ -63,9 +63,9 @@ bool inside(double value, const KeyRule& rule) {
 
 nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::string& file) {
   if (bytes.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
-  if (bytes.size() > largestFile) {
+  if (bytes.size() > maxFile) {
     throw Error(ErrorKind::damaged, Where{file},
-                fmt::format("{} bytes; such a file has at most {}", bytes.size(), largestFile));
+                fmt::format("{} bytes; such a file has at most {}", bytes.size(), maxFile));
   }
   std::vector<std::set<std::string>> keys;
   std::string fault;

@@ -63,7 +63,7 @@ class JsonPlace {
   /// One of a few words, each with the value that it denotes.
   template <class T>
   [[nodiscard]] T word(std::initializer_list<std::pair<const char*, T>> words) const {
-    const std::string given = text(longestWord);
+    const std::string given = text(maxWord);
     std::string known;
     for (const auto& [name, meaning] : words) {
       if (given == name) return meaning;
@@ -73,7 +73,7 @@ class JsonPlace {
   }
 
  private:
-  static constexpr std::size_t longestWord = 200;
+  static constexpr std::size_t maxWord = 200;
   friend class JsonObject;
   const nlohmann::json* value_;
   std::string file_, pointer_;

@@ -13,8 +13,8 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::size_t mostElements = 32;
-constexpr std::size_t mostProperties = 128;
+constexpr std::size_t maxElements = 32;
+constexpr std::size_t maxProperties = 128;
 
 constexpr std::array<std::pair<std::string_view, PlyType>, 16> typeWords{{{"char", PlyType::int8},
                                                                           {"int8", PlyType::int8},
@@ -109,7 +109,7 @@ class HeaderReader {
     if (std::any_of(all.begin(), all.end(), [&](const PlyElement& e) { return e.name == element.name; })) {
       fail(fmt::format("a second element \"{}\"", element.name));
     }
-    if (all.size() >= mostElements) fail(fmt::format("more than {} elements", mostElements));
+    if (all.size() >= maxElements) fail(fmt::format("more than {} elements", maxElements));
     header_.elements.push_back(std::move(element));
   }
 
@@ -137,7 +137,7 @@ class HeaderReader {
     property.name = shown(words.next());
     if (property.name.empty()) fail("a property without a name");
     if (element.find(property.name) >= 0) fail(fmt::format("a second property \"{}\"", property.name));
-    if (element.properties.size() >= mostProperties) fail(fmt::format("more than {} properties", mostProperties));
+    if (element.properties.size() >= maxProperties) fail(fmt::format("more than {} properties", maxProperties));
     element.properties.push_back(std::move(property));
   }
 

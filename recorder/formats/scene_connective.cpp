@@ -11,13 +11,13 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr std::size_t mostTissues = 16;
+constexpr std::size_t maxTissues = 16;
 
 }  // namespace
 
 std::vector<ConnectiveDescription> readConnective(const JsonPlace& place, const std::vector<OrganDescription>& organs) {
   std::vector<ConnectiveDescription> tissues;
-  for (const JsonPlace& item : place.list(0, mostTissues)) {
+  for (const JsonPlace& item : place.list(0, maxTissues)) {
     const JsonObject object = item.object(sceneRule("connective"));
     ConnectiveDescription tissue;
     tissue.name = readName(object, "name");

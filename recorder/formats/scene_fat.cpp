@@ -18,7 +18,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::size_t mostFat = 4;
+constexpr std::size_t maxFat = 4;
 constexpr double fewestCells = 4.0;                          ///< along a side of the box
 constexpr double mostCells = 16e6;                           ///< of the box
 constexpr double sideCells = BrickLattice::maxNodes - 16.0;  ///< along a side, with room for a margin
@@ -96,7 +96,7 @@ std::vector<FatDescription> readFat(const JsonPlace& place, const std::vector<Or
                                     const std::vector<VesselDescription>& vessels, const FetchAsset& fetch,
                                     std::vector<std::string>& warnings) {
   std::vector<FatDescription> all;
-  for (const JsonPlace& item : place.list(0, mostFat)) {
+  for (const JsonPlace& item : place.list(0, maxFat)) {
     const JsonObject object = item.object(sceneRule("fat"));
     FatDescription fat;
     fat.name = readName(object, "name");

@@ -25,7 +25,7 @@ namespace calot::recorder {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t largestMesh = std::size_t{256} << 20U;
+constexpr std::size_t maxMesh = std::size_t{256} << 20U;
 
 // Camera frame C: x right, y down, z along the view.
 CameraSample readCamera(const JsonPlace& place, double& verticalFieldOfView) {
@@ -65,7 +65,7 @@ HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& work
   object.read("shaftRadius", hand.shaftRadius);
   object.read("couplingStiffness", hand.couplingStiffness);
   object.read("rollStiffness", hand.rollStiffness);
-  object.read("largestForce", hand.largestForce);
+  object.read("largestForce", hand.maxForce);
   object.read("slipForce", hand.slipForce);
   object.read("tearForce", hand.tearForce);
   object.read("clips", hand.clips);
@@ -94,8 +94,7 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   const nlohmann::json json = parseStrictJson(file.bytes, file.name);
   const JsonPlace root(json, file.name);
   const JsonObject object = root.object(sceneRule(""));
-  if (object.at("format").text(longestSceneName) != "calot-scene")
-    object.at("format").fail("\"calot-scene\" is wanted");
+  if (object.at("format").text(maxSceneName) != "calot-scene") object.at("format").fail("\"calot-scene\" is wanted");
   std::uint32_t formatVersion = 0;
   object.read("formatVersion", formatVersion);
 
@@ -161,7 +160,7 @@ LoadedScene loadScene(const fs::path& sceneFile) {
   std::vector<Asset> assets;
   assets.reserve(maxStructures + 1);  // references to the elements stay good
   assets.push_back({inScenes ? "scenes/" + base : base, {}});
-  assets[0].bytes = readFileBytes(sceneFile, assets[0].name, largestMesh);
+  assets[0].bytes = readFileBytes(sceneFile, assets[0].name, maxMesh);
 
   const FetchAsset fetch = [&](const std::string& name, const JsonPlace& place) -> const Asset& {
     const auto known = std::find_if(assets.begin() + 1, assets.end(), [&](const Asset& a) { return a.name == name; });
@@ -175,7 +174,7 @@ LoadedScene loadScene(const fs::path& sceneFile) {
     if (std::mismatch(home.begin(), home.end(), real.begin(), real.end()).first != home.end()) {
       place.fail("\"" + name + "\" leads out of the assets folder");
     }
-    assets.push_back({name, readFileBytes(path, name, largestMesh)});
+    assets.push_back({name, readFileBytes(path, name, maxMesh)});
     return assets.back();
   };
   LoadedScene loaded = parseScene(assets[0], fetch);

@@ -7,7 +7,7 @@ namespace calot::recorder {
 
 std::string readName(const JsonObject& object, const std::string& key) {
   std::string name;
-  object.read(key, name, longestSceneName);
+  object.read(key, name, maxSceneName);
   const bool plain = std::all_of(name.begin(), name.end(),
                                  [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; });
   if (!plain || name.front() == '-')

@@ -9,7 +9,7 @@
 
 namespace calot::recorder {
 
-inline constexpr std::size_t longestSceneName = 64;
+inline constexpr std::size_t maxSceneName = 64;
 
 /// A name that goes into field names, columns and file names: small letters, digits and hyphens.
 /// @throws Error damaged, naming the place.
@@ -21,7 +21,7 @@ std::string readAssetName(const JsonObject& object, const std::string& key);
 /// One of the words that are known. @throws Error damaged, listing them.
 template <class Value>
 Value readWord(const JsonObject& object, const std::string& key, const std::map<std::string, Value>& words) {
-  const std::string word = object.at(key).text(longestSceneName);
+  const std::string word = object.at(key).text(maxSceneName);
   if (const auto found = words.find(word); found != words.end()) return found->second;
   std::string known;
   for (const auto& entry : words) known += (known.empty() ? "" : ", ") + entry.first;

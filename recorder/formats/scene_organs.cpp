@@ -11,7 +11,7 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr std::size_t mostAnchors = 64;
+constexpr std::size_t maxAnchors = 64;
 
 AnchorDescription readAnchor(const JsonPlace& place) {
   const JsonObject object = place.object(sceneRule("anchor"));
@@ -41,7 +41,7 @@ OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
   object.read("friction", organ.friction);
   object.read("burnThrough", organ.burnThrough);
   organ.material = readMaterial(object.at("material"));
-  for (const JsonPlace& anchor : object.at("anchors").list(0, mostAnchors)) organ.anchors.push_back(readAnchor(anchor));
+  for (const JsonPlace& anchor : object.at("anchors").list(0, maxAnchors)) organ.anchors.push_back(readAnchor(anchor));
   organ.surface = closedSurface(readMesh(object.at("mesh"), fetch), "an organ");
   return organ;
 }
@@ -56,7 +56,7 @@ void checkOrgans(const JsonPlace& place, const std::vector<OrganDescription>& or
   for (std::size_t i = 0; i < organs.size(); ++i) {
     const JsonObject object = places[i].object(sceneRule("organ"));
     if (index(organs[i].name) != i) object.at("name").fail("another organ has this name");
-    const std::vector<JsonPlace> anchors = object.at("anchors").list(0, mostAnchors);
+    const std::vector<JsonPlace> anchors = object.at("anchors").list(0, maxAnchors);
     for (std::size_t a = 0; a < anchors.size(); ++a) {
       const std::string& near = organs[i].anchors[a].nearOrgan;
       if (near.empty()) continue;

@@ -11,8 +11,8 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr std::size_t mostVessels = 16;
-constexpr std::size_t mostRetractions = 8;
+constexpr std::size_t maxVessels = 16;
+constexpr std::size_t maxRetractions = 8;
 
 template <class Named>
 bool knows(const std::vector<Named>& all, const std::string& name) {
@@ -43,7 +43,7 @@ ProcedureDescription readProcedure(const JsonPlace& place, const SceneDescriptio
   }
   if (object.has("fat")) procedure.fat = readKnown(object, "fat", scene.fat, "fat");
   if (object.has("divide")) {
-    for (const JsonPlace& item : object.at("divide").list(0, mostVessels)) {
+    for (const JsonPlace& item : object.at("divide").list(0, maxVessels)) {
       const JsonObject one = item.object(sceneRule("divide"));
       DivideDescription divide;
       divide.vessel = readKnown(one, "vessel", scene.vessels, "vessel");
@@ -57,8 +57,8 @@ ProcedureDescription readProcedure(const JsonPlace& place, const SceneDescriptio
     }
   }
   if (object.has("spare")) {
-    for (const JsonPlace& item : object.at("spare").list(0, mostVessels)) {
-      const std::string name = item.text(longestSceneName);
+    for (const JsonPlace& item : object.at("spare").list(0, maxVessels)) {
+      const std::string name = item.text(maxSceneName);
       if (!knows(scene.vessels, name)) item.fail("the scene has no vessel of this name");
       const bool divided = std::any_of(procedure.divide.begin(), procedure.divide.end(),
                                        [&](const DivideDescription& d) { return d.vessel == name; });
@@ -72,7 +72,7 @@ ProcedureDescription readProcedure(const JsonPlace& place, const SceneDescriptio
 std::vector<RetractionDescription> readRetractions(const JsonPlace& place,
                                                    const std::vector<OrganDescription>& organs) {
   std::vector<RetractionDescription> all;
-  for (const JsonPlace& item : place.list(0, mostRetractions)) {
+  for (const JsonPlace& item : place.list(0, maxRetractions)) {
     const JsonObject object = item.object(sceneRule("retraction"));
     RetractionDescription retraction;
     retraction.organ = readKnown(object, "organ", organs, "organ");
@@ -93,8 +93,8 @@ ClipDescription readClip(const JsonPlace& place) {
   ClipDescription clip;
   object.read("width", clip.width);
   object.read("legs", clip.legs);
-  object.read("leastGap", clip.leastGap);
-  object.read("leastJunctionGap", clip.leastJunctionGap);
+  object.read("leastGap", clip.minGap);
+  object.read("leastJunctionGap", clip.minJunctionGap);
   return clip;
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 using Kind = VesselEndDescription::Kind;
 
-constexpr std::size_t mostPoints = 1000;
-constexpr double leastStep = 1e-4;     ///< between neighbouring points (m)
-constexpr double farthestEnd = 0.005;  ///< of an end from what it is grown to (m)
+constexpr std::size_t maxPoints = 1000;
+constexpr double minStep = 1e-4;  ///< between neighbouring points (m)
+constexpr double maxEnd = 0.005;  ///< of an end from what it is grown to (m)
 
 template <class Named>
 const Named* find(const std::vector<Named>& all, const std::string& name) {
@@ -30,10 +30,10 @@ const Named* find(const std::vector<Named>& all, const std::string& name) {
 std::vector<Vec3> readPath(const JsonPlace& place) {
   static const KeyRule bounds = sceneCoordinate();
   std::vector<Vec3> path;
-  for (const JsonPlace& item : place.list(2, mostPoints)) {
+  for (const JsonPlace& item : place.list(2, maxPoints)) {
     const Vec3 point = item.vector(bounds);
-    if (!path.empty() && !((point - path.back()).norm() >= leastStep)) {
-      item.fail(fmt::format("nearer than {} m to the point before", leastStep));
+    if (!path.empty() && !((point - path.back()).norm() >= minStep)) {
+      item.fail(fmt::format("nearer than {} m to the point before", minStep));
     }
     if (path.size() > 1 && !((point - path.back()).dot(path.back() - path[path.size() - 2]) > 0.0)) {
       item.fail("the path turns by 90 degrees or more at the point before");
@@ -86,8 +86,8 @@ VesselEndDescription readEnd(const JsonPlace& place, const Vec3& point, bool isS
     if (vessel == nullptr) object.at("to").fail("no earlier vessel of the scene has this name");
     distance = distanceTo(*vessel, point);
   }
-  if (!(distance <= farthestEnd)) {
-    object.at("to").fail(fmt::format("it lies {:.3g} m away; at most {} m is allowed", distance, farthestEnd));
+  if (!(distance <= maxEnd)) {
+    object.at("to").fail(fmt::format("it lies {:.3g} m away; at most {} m is allowed", distance, maxEnd));
   }
   return end;
 }

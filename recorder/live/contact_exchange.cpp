@@ -20,11 +20,11 @@ struct Vectors {
   }
   template <class T>
   void visit(std::vector<T>& values) {
-    if (count++ < mostVectors) use(values);
+    if (count++ < maxVectors) use(values);
   }
   template <class T>
   void visit(const std::vector<T>& values) {
-    if (count++ < mostVectors) use(values);
+    if (count++ < maxVectors) use(values);
   }
   template <class T>
   void visit(T& value) {

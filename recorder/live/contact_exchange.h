@@ -16,10 +16,10 @@ namespace calot::recorder {
 
 using ContactSets = std::array<ContactSet, handCount>;
 using HapticStates = std::array<HapticState, handCount>;
-/// Capacity for each vector among the fields of a contact set or haptic state; vectors beyond mostVectors are not
+/// Capacity for each vector among the fields of a contact set or haptic state; vectors beyond maxVectors are not
 /// tracked (they would grow in the haptic thread).
-inline constexpr std::size_t mostVectors = 64;
-using VectorSizes = std::array<std::size_t, mostVectors>;
+inline constexpr std::size_t maxVectors = 64;
+using VectorSizes = std::array<std::size_t, maxVectors>;
 
 /// Lock-free exchange of the newest contact sets of both hands. Sets are copied into slots whose memory is reused. When
 /// a set is larger than any before, the simulation side prepares haptic states of sufficient capacity (by running a

@@ -14,7 +14,7 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr std::size_t ticksOfLag = 100;  // longestLag
+constexpr std::size_t ticksOfLag = 100;  // maxLag
 
 /// Real-time priority if the system permits it, and precise wake-up times.
 bool becomePrompt() {
@@ -90,7 +90,7 @@ void HapticThread::ticks() {
     if ((t + 1) % ticksPerStep_ != 0) continue;
     report_.ticks = t + 1;
     report_.missedDeadlines = clock_.missed();
-    report_.largestLateness = seconds(clock_.largestLateness());
+    report_.maxLateness = seconds(clock_.maxLateness());
     report_.stretched = seconds(clock_.stretched());
     ::sem_post(&steps_);
   }

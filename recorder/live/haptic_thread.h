@@ -27,8 +27,8 @@ struct HapticReport {
   bool realTime = false;  ///< runs with real-time priority (SCHED_FIFO)
   std::uint64_t ticks = 0;
   std::uint64_t missedDeadlines = 0;
-  double largestLateness = 0.0;  ///< s
-  double stretched = 0.0;        ///< s
+  double maxLateness = 0.0;  ///< s
+  double stretched = 0.0;    ///< s
   SourcePauses pauses;
   CostHistogram cost;  ///< thread CPU time of a tick: both hands' samples taken and forces made
 };

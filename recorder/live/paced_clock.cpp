@@ -12,7 +12,7 @@ namespace calot::recorder {
 
 namespace {
 
-constexpr Nanoseconds lagAllowed = std::chrono::milliseconds(100);  // longestLag
+constexpr Nanoseconds lagAllowed = std::chrono::milliseconds(100);  // maxLag
 
 Nanoseconds read(clockid_t clock) {
   timespec t{};
@@ -54,7 +54,7 @@ float PacedClock::finish(std::uint64_t t, Nanoseconds ready) {
   largest_ = std::max(largest_, late);
   stretchedHere_ = Nanoseconds(0);
   // Only a tick before which the clock was stretched may say so.
-  const float lateness = waited ? lagSeconds(late) : std::min(lagSeconds(late), longestLag);
+  const float lateness = waited ? lagSeconds(late) : std::min(lagSeconds(late), maxLag);
   if (lateness > tickDeadline) ++missed_;
   return lateness;
 }

@@ -19,9 +19,9 @@ Nanoseconds threadCpuTime();
 /// The tick clock: tick t is due t ms after the start, later by every pause and every stretch.
 ///
 /// The lag of a run is how late its next tick is, and, where the simulation runs beside the ticks, for how many ticks
-/// its next step has been computable beyond that. Lag is made up by running faster; if it exceeds longestLag, the
+/// its next step has been computable beyond that. Lag is made up by running faster; if it exceeds maxLag, the
 /// excess stretches the clock: all later ticks are postponed by it. On a machine that is always too slow, time thus
-/// runs evenly slower, longestLag behind.
+/// runs evenly slower, maxLag behind.
 class PacedClock {
  public:
   static constexpr Nanoseconds tick = std::chrono::milliseconds(1);
@@ -31,7 +31,7 @@ class PacedClock {
 
   [[nodiscard]] Nanoseconds due(std::uint64_t t) const { return origin_ + static_cast<Nanoseconds::rep>(t) * tick; }
 
-  /// May tick t begin? Stretches the clock by the excess of the lag over longestLag. If false, the simulation alone is
+  /// May tick t begin? Stretches the clock by the excess of the lag over maxLag. If false, the simulation alone is
   /// that far behind: wait until due(t), which is then in the future, and call again.
   /// @param backlog ticks since the simulation's next step became computable; 0 or less: it is not waited for
   bool mayBegin(std::uint64_t t, Nanoseconds now, std::int64_t backlog);
@@ -43,9 +43,9 @@ class PacedClock {
   /// Postpones all ticks by the length of a pause.
   void pause(Nanoseconds length) { origin_ += length; }
 
-  [[nodiscard]] std::uint64_t missed() const { return missed_; }          ///< ticks that ended after their deadline
-  [[nodiscard]] Nanoseconds largestLateness() const { return largest_; }  ///< beyond due, of any tick
-  [[nodiscard]] Nanoseconds stretched() const { return stretched_; }      ///< in all
+  [[nodiscard]] std::uint64_t missed() const { return missed_; }      ///< ticks that ended after their deadline
+  [[nodiscard]] Nanoseconds maxLateness() const { return largest_; }  ///< beyond due, of any tick
+  [[nodiscard]] Nanoseconds stretched() const { return stretched_; }  ///< in all
 
  private:
   Nanoseconds origin_;

@@ -237,7 +237,7 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
 void checkHeader(const AttemptHeader& header) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorKind::invalid, "recording: " + what); };
   if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
-  if (header.ticksPerStep < 1 || header.ticksPerStep > largestTicksPerStep) refuse("ticks a step must lie in 1..1000");
+  if (header.ticksPerStep < 1 || header.ticksPerStep > maxTicksPerStep) refuse("ticks a step must lie in 1..1000");
   if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");
   if (header.structures().size() > maxStructures)
     refuse(fmt::format("more than {} structures (organs, vessels and bodies of fat)", maxStructures));

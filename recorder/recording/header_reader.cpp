@@ -14,8 +14,8 @@ namespace {
 using hdf5::damaged;
 using hdf5::Id;
 
-constexpr std::size_t longestAttribute = 32768;
-constexpr std::size_t longestName = 1024;
+constexpr std::size_t maxAttribute = 32768;
+constexpr std::size_t maxName = 1024;
 
 class HeaderReader {
  public:
@@ -27,7 +27,7 @@ class HeaderReader {
     const Id type = hdf5::type(H5Aget_type(a.get()));
     const std::size_t size = type.valid() ? H5Tget_size(type.get()) : 0;
     if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 ||
-        size > longestAttribute) {
+        size > maxAttribute) {
       throw damaged(path_, place + "@" + name, "is not a fixed-length string");
     }
     std::string value(size, '\0');
@@ -63,8 +63,7 @@ class HeaderReader {
     const Id d = vector(place, rows);
     const Id type = hdf5::type(H5Dget_type(d.get()));
     const std::size_t size = type.valid() ? H5Tget_size(type.get()) : 0;
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 ||
-        size > longestName) {
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 || size > maxName) {
       throw damaged(path_, place, "does not hold fixed-length strings");
     }
     if (rows < 1 || rows > most) throw damaged(path_, place, "has the wrong shape");
@@ -183,7 +182,7 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   visitAttributes(h, attributes);
   if (!isUuid(h.attempt)) throw damaged(path, "/@attempt_uuid", "is not a uuid");
   if (!h.parent.empty() && !isUuid(h.parent)) throw damaged(path, "/@parent_uuid", "is not a uuid");
-  if (h.ticksPerStep < 1 || h.ticksPerStep > largestTicksPerStep)
+  if (h.ticksPerStep < 1 || h.ticksPerStep > maxTicksPerStep)
     throw damaged(path, "/@ticks_per_step", "is not in 1..1000");
   if (!(h.tickSeconds > 0.0 && h.tickSeconds <= 1.0)) throw damaged(path, "/@tick_seconds", "is not in (0, 1] s");
 
@@ -197,8 +196,7 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
 
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
     if constexpr (Kind::hasStructures) {
-      if (Kind::results.since <= h.stepResultVersion)
-        Kind::namesOf(h) = reader.names(namesPath<Kind>(), maxStructures);
+      if (Kind::results.since <= h.stepResultVersion) Kind::namesOf(h) = reader.names(namesPath<Kind>(), maxStructures);
     }
   });
   if (h.structures().size() > maxStructures)

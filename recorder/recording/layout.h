@@ -20,7 +20,7 @@ namespace calot::recorder {
 
 inline constexpr std::uint32_t formatVersion = 1;
 inline constexpr const char* formatName = "calot-recording";
-inline constexpr std::uint32_t largestTicksPerStep = 1000;
+inline constexpr std::uint32_t maxTicksPerStep = 1000;
 inline constexpr std::uint64_t keyframeChunkWords = 8192;
 inline constexpr std::uint64_t rawChunkRows = 64;
 inline constexpr const char* rawCountsPath = "/device/counts";

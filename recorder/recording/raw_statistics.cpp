@@ -22,7 +22,7 @@ RawStatistics rawStatistics(Recording& recording, Hand hand) {
       ++s.valid;
       const double time = 1e-9 * static_cast<double>(raw.sample.hostTime);
       if (!first) first = time;
-      if (last) s.longestInterval = std::max(s.longestInterval, time - *last);
+      if (last) s.maxInterval = std::max(s.maxInterval, time - *last);
       last = time;
     }
   }

@@ -58,7 +58,7 @@ struct RecordingWriter::Impl {
   SpscQueue<Block*> full, empty;
   std::atomic<std::uint32_t> handedOver{0};
   std::atomic<std::uint64_t> flushes{0}, steps{0}, blocksGrown{0};
-  std::atomic<double> writerSeconds{0.0}, largestFlush{0.0};
+  std::atomic<double> writerSeconds{0.0}, maxFlush{0.0};
 
   // The writing thread's side; read by others after join.
   std::exception_ptr error;
@@ -115,7 +115,7 @@ struct RecordingWriter::Impl {
       failed.store(true, std::memory_order_release);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (seconds > largestFlush.load(std::memory_order_relaxed)) largestFlush.store(seconds, std::memory_order_relaxed);
+    if (seconds > maxFlush.load(std::memory_order_relaxed)) maxFlush.store(seconds, std::memory_order_relaxed);
     writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
   }
 
@@ -226,7 +226,7 @@ WriterStatistics RecordingWriter::statistics() const {
   s.steps = impl_->steps.load(std::memory_order_relaxed);
   s.blocksGrown = impl_->blocksGrown.load(std::memory_order_relaxed);
   s.writerSeconds = impl_->writerSeconds.load(std::memory_order_relaxed);
-  s.largestFlushSeconds = impl_->largestFlush.load(std::memory_order_relaxed);
+  s.maxFlushSeconds = impl_->maxFlush.load(std::memory_order_relaxed);
   return s;
 }
 

@@ -20,11 +20,11 @@ struct WriterOptions {
 
 /// Statistics of the writer; readable from any thread while it records.
 struct WriterStatistics {
-  std::uint64_t flushes = 0;         ///< rows of /status after the first
-  std::uint64_t steps = 0;           ///< steps on disk and covered by /status
-  std::uint64_t blocksGrown = 0;     ///< blocks allocated beyond the first ones: the disk was slower than the loop
-  double writerSeconds = 0.0;        ///< CPU time of the writing thread (s)
-  double largestFlushSeconds = 0.0;  ///< longest wall time of one flush (s)
+  std::uint64_t flushes = 0;      ///< rows of /status after the first
+  std::uint64_t steps = 0;        ///< steps on disk and covered by /status
+  std::uint64_t blocksGrown = 0;  ///< blocks allocated beyond the first ones: the disk was slower than the loop
+  double writerSeconds = 0.0;     ///< CPU time of the writing thread (s)
+  double maxFlushSeconds = 0.0;   ///< longest wall time of one flush (s)
 };
 
 /// Writes one attempt to one HDF5 file as schemas/recording.md says, on a thread of its own.

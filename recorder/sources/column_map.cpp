@@ -14,10 +14,10 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::size_t mostMapBytes = 1U << 20U;
-constexpr std::size_t mostMotionBytes = std::size_t{1} << 30U;
-constexpr std::size_t longestName = 200;
-constexpr double longestMotion = 1e6;  // s
+constexpr std::size_t maxMapBytes = 1U << 20U;
+constexpr std::size_t maxMotionBytes = std::size_t{1} << 30U;
+constexpr std::size_t maxName = 200;
+constexpr double maxMotion = 1e6;  // s
 constexpr double unitLength = 1e-2;
 constexpr double root = 0.70710678118654752440;  // of 1/2
 
@@ -37,7 +37,7 @@ const ObjectRule handRule{"hand", {{"position"}, {"quaternion", false}, {"matrix
 
 std::vector<std::string> namesOf(const JsonPlace& place, std::size_t count) {
   std::vector<std::string> names;
-  for (const JsonPlace& name : place.list(count, count)) names.push_back(name.text(longestName));
+  for (const JsonPlace& name : place.list(count, count)) names.push_back(name.text(maxName));
   return names;
 }
 
@@ -81,8 +81,8 @@ class RowReader {
 
   [[nodiscard]] Vec3 position(std::size_t first, std::size_t row, double metres) const {
     const Vec3 p(metres * at(first, row), metres * at(first + 1, row), metres * at(first + 2, row));
-    if (!(p.cwiseAbs().maxCoeff() <= farthestPosition)) {
-      fail(row, fmt::format("a position farther than {} m: the map's unit of length may be wrong", farthestPosition));
+    if (!(p.cwiseAbs().maxCoeff() <= maxPosition)) {
+      fail(row, fmt::format("a position farther than {} m: the map's unit of length may be wrong", maxPosition));
     }
     return p;
   }
@@ -117,7 +117,7 @@ const std::vector<ObjectRule>& columnMapRules() {
 
 ColumnMap readColumnMap(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseColumnMap(readFileBytes(file, name, mostMapBytes), name);
+  return parseColumnMap(readFileBytes(file, name, maxMapBytes), name);
 }
 
 ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& file) {
@@ -141,7 +141,7 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
   o.read("rate", map.rate);
   if (o.has("time")) {
     const JsonObject time = o.at("time").object(timeRule);
-    time.read("column", map.time, longestName);
+    time.read("column", map.time, maxName);
     map.seconds = time.at("unit").word<double>({{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}});
   }
   for (std::size_t h = 0; h < map.hand.size(); ++h) {
@@ -153,7 +153,7 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
 
 TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& map) {
   const std::string name = file.filename().string();
-  return parseCsvMotion(readFileBytes(file, name, mostMotionBytes), name, map);
+  return parseCsvMotion(readFileBytes(file, name, maxMotionBytes), name, map);
 }
 
 TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map) {
@@ -182,9 +182,9 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
     const double time =
         map.rate > 0.0 ? static_cast<double>(i) / map.rate : (reader.at(0, i) - reader.at(0, 0)) * map.seconds;
     if (i > 0 && !(time > motion.time.back())) reader.fail(i, "its time is not after the row before");
-    if (!(time <= longestMotion))
-      reader.fail(
-          i, fmt::format("more than {:g} s after the first row: the map's unit of time may be wrong", longestMotion));
+    if (!(time <= maxMotion))
+      reader.fail(i,
+                  fmt::format("more than {:g} s after the first row: the map's unit of time may be wrong", maxMotion));
     motion.time.push_back(time);
   }
   for (std::size_t h = 0; h < map.hand.size(); ++h) {

@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t columns = 76;
 constexpr std::size_t groupColumns = 19;
 constexpr std::array<std::size_t, handCount> slaveColumn{2 * groupColumns, 3 * groupColumns};
-constexpr std::size_t mostBytes = std::size_t{1} << 30U;
-constexpr std::size_t mostRows = 1000000;
+constexpr std::size_t maxBytes = std::size_t{1} << 30U;
+constexpr std::size_t maxRows = 1000000;
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -50,9 +50,9 @@ class LineReader {
   [[nodiscard]] KinematicsPose pose(const std::array<double, columns>& v, std::size_t first) const {
     KinematicsPose pose;
     pose.position = Vec3(v[first], v[first + 1], v[first + 2]);
-    if (!(pose.position.cwiseAbs().maxCoeff() <= farthestPosition)) {
+    if (!(pose.position.cwiseAbs().maxCoeff() <= maxPosition)) {
       fail(fmt::format("columns {} to {}: a position farther than {} m; positions are in metres", first + 1, first + 3,
-                       farthestPosition));
+                       maxPosition));
     }
     Mat3 rotation;
     for (int r = 0; r < 3; ++r) {
@@ -89,7 +89,7 @@ class LineReader {
 
 KinematicsMotion readKinematics(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseKinematics(readFileBytes(file, name, mostBytes), name);
+  return parseKinematics(readFileBytes(file, name, maxBytes), name);
 }
 
 KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::string& file) {
@@ -111,7 +111,7 @@ KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::st
     }
     // Empty lines may end a file; between rows they would hide rows that are missing.
     if (blank != 0) LineReader(file, blank).fail("an empty line between rows");
-    if (motion.rows.size() == mostRows) reader.fail(fmt::format("more than {} rows", mostRows));
+    if (motion.rows.size() == maxRows) reader.fail(fmt::format("more than {} rows", maxRows));
     reader.numbers(row, values);
     std::array<KinematicsPose, handCount> poses;
     for (std::size_t h = 0; h < handCount; ++h) poses[h] = reader.pose(values, slaveColumn[h]);

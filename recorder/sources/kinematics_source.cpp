@@ -19,14 +19,14 @@ constexpr double widestJaw = 1.2;  // rad
 
 // Half sides of the task region in the camera's frame (m): what the hands of one task fill around the gallbladder.
 const Vec3 taskRegion(0.030, 0.020, 0.030);
-constexpr double smallestScale = 0.1;
-constexpr double largestScale = 2.0;
-constexpr double lineOfSight = 1.0;     // m
-constexpr double touchShare = 0.95;     // this share of the rows is no deeper ...
-constexpr double touchDepth = 0.003;    // ... than this (m)
-constexpr double largestDepth = 0.012;  // and none is deeper than this (m)
-constexpr double longestSlide = 0.08;   // m, either way
-constexpr double slideStep = 0.001;     // m
+constexpr double minScale = 0.1;
+constexpr double maxScale = 2.0;
+constexpr double lineOfSight = 1.0;    // m
+constexpr double touchShare = 0.95;    // this share of the rows is no deeper ...
+constexpr double touchDepth = 0.003;   // ... than this (m)
+constexpr double maxDepth = 0.012;     // and none is deeper than this (m)
+constexpr double longestSlide = 0.08;  // m, either way
+constexpr double slideStep = 0.001;    // m
 constexpr std::size_t slideRows = 300;
 constexpr std::array<double, 3> shaftPoints{0.015, 0.030, 0.045};  // m from the tip
 
@@ -59,7 +59,7 @@ std::optional<double> slideToTouch(const std::vector<Vec3>& tips, const Vec3& po
     for (std::size_t p = 0; p < tips.size(); ++p)
       distance[p] = instrumentDistance(tips[p] + slide * view, port, surfaces);
     const double deepest = *std::min_element(distance.begin(), distance.end());
-    if (deepest <= -largestDepth || percentile(distance, 1.0 - touchShare) <= -touchDepth) return slide;
+    if (deepest <= -maxDepth || percentile(distance, 1.0 - touchShare) <= -touchDepth) return slide;
   }
   return std::nullopt;
 }
@@ -79,11 +79,11 @@ KinematicsMapping mapIntoScene(const KinematicsMotion& motion, const SceneDescri
     m.middle[axis] = 0.5 * (low + high);
     half[axis] = 0.5 * (high - low);
   }
-  double scale = largestScale;
+  double scale = maxScale;
   for (int axis = 0; axis < 3; ++axis) {
     if (half[axis] * scale > taskRegion[axis]) scale = taskRegion[axis] / half[axis];
   }
-  m.scale = std::max(scale, smallestScale);
+  m.scale = std::max(scale, minScale);
 
   m.axes = scene.camera.orientation;
   const Vec3 view = m.axes * Vec3::UnitZ();

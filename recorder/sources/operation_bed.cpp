@@ -28,7 +28,7 @@ constexpr std::uint32_t fineAfter = 1;  // sweeps that missed a strand: it is go
 constexpr std::ptrdiff_t few = 3;       // where no more than these are left around it
 constexpr double fewLeft = 0.5;         // of what may stay on a vessel that counts as bare: the lower third is free
 constexpr double lowerShare = 0.37;     // of the strands: the lower third of the bed, and a little more
-constexpr std::uint32_t mostStrokes = 400;
+constexpr std::uint32_t maxStrokes = 400;
 
 }  // namespace
 
@@ -232,7 +232,7 @@ void WorkingMind::burn(const Sight& sight, bool lowerThird) {
   if (mount(InstrumentKind::hook, 0.0)) return;
   runStroke(bestStroke(wanted));
   ++strokes_;
-  if (strokes_ > mostStrokes) {
+  if (strokes_ > maxStrokes) {
     failed_ = true;
     stage_ = Stage::done;
   }

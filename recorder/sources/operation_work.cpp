@@ -13,12 +13,12 @@ constexpr double clipDepth = 0.0043;    // the vessel comes to lie so far behind
 constexpr double bladeJaw = 0.95;       // rad
 constexpr double bladeDepth = 0.0078;   // m
 constexpr double bladeTrial = 0.0012;   // by how much depths of one try and the next differ (m)
-constexpr double clipHover = 0.014;         // m
+constexpr double clipHover = 0.014;     // m
 constexpr double clipSpacing = 0.0033;  // between clips on one side of the cut (m)
 constexpr double clipToCut = 0.0033;    // and from the nearest of them to the cut (m)
 constexpr double clipApart = 0.0024;    // a clip nearer than this to another one would be too near (m)
 constexpr double fromJunction = 0.004;  // and one nearer to where vessels meet, or to the specimen (m)
-constexpr std::uint32_t mostTries = 10;
+constexpr std::uint32_t maxTries = 10;
 
 /// Where a vessel is cut, as a share of its length.
 constexpr double cutAt = 0.52;
@@ -81,7 +81,7 @@ void WorkingMind::clip(const Sight& sight) {
   double place = placeForClip(sight, 1);
   clipped_ = place < 0.0 ? 0 : 1;
   if (place < 0.0) place = placeForClip(sight, 0);
-  if (place < 0.0 || tries_ >= mostTries) {
+  if (place < 0.0 || tries_ >= maxTries) {
     ++vessel_;
     tries_ = 0;
     badClips_ = {0, 0};
@@ -110,7 +110,7 @@ void WorkingMind::cut(const Sight& sight) {
     return;
   }
   const SeenVessel& vessel = sight.vessel[vessel_];
-  if (vessel.partings > 0 || tries_ >= mostTries) {
+  if (vessel.partings > 0 || tries_ >= maxTries) {
     failed_ = failed_ || vessel.partings == 0;
     ++vessel_;
     tries_ = 0;

@@ -71,7 +71,7 @@ void PerformerHand::begin(double time) {
     for (int a = 0; a < 3; ++a) next.to[a] += noise * random_.normal();
   }
   const bool still = length < 1e-9 && move.aiming == HandMove::Aim::none && move.jaw == stroke_.jawTo;
-  const double shortest = (move.steady ? steadyShare : 1.0) * motor.shortestStroke;
+  const double shortest = (move.steady ? steadyShare : 1.0) * motor.minStroke;
   next.duration = still ? 0.0 : std::max(length / move.speed, shortest);
   next.jawFrom = stroke_.jawTo;
   next.jawTo = move.jaw;

@@ -75,7 +75,7 @@ PerformerProfile loadPerformer(const fs::path& file) {
   const JsonObject motor = object.at("motor").object(ruleOf("motor"));
   motor.read("strokeSpeed", profile.motor.strokeSpeed);
   motor.read("contactSpeed", profile.motor.contactSpeed);
-  motor.read("shortestStroke", profile.motor.shortestStroke);
+  motor.read("shortestStroke", profile.motor.minStroke);
   motor.read("endpointNoise", profile.motor.endpointNoise);
   motor.read("tremorAmplitude", profile.motor.tremorAmplitude);
   motor.read("tremorLower", profile.motor.tremorLower);

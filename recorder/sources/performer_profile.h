@@ -20,7 +20,7 @@ struct PerformerProfile {
   struct Motor {
     double strokeSpeed = 0.0;      ///< mean speed of a free stroke (m/s)
     double contactSpeed = 0.0;     ///< mean speed of a stroke that presses or leaves tissue (m/s)
-    double shortestStroke = 0.0;   ///< s
+    double minStroke = 0.0;        ///< s
     double endpointNoise = 0.0;    ///< standard deviation of a stroke's end, per length of the stroke
     double tremorAmplitude = 0.0;  ///< root mean square at the tip, each axis (m)
     double tremorLower = 8.0;      ///< band (Hz)

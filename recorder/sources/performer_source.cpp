@@ -19,7 +19,7 @@ constexpr double bimanualLag = 0.3;        // the second hand starts this much l
 constexpr double tremorFadeIn = 0.5;       // unsteadiness grows from nothing: the tip starts at home (s)
 constexpr double wanderFrom = 0.1;         // Hz
 constexpr double wanderTo = 0.8;
-constexpr int mostDraws = 400;
+constexpr int maxDraws = 400;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void StrokePlan::strokeTo(const Vec3& goal, double speed, double jaw, double rol
   const double length = (goal - tip_).norm();
   const double noise = profile_.motor.endpointNoise * length;
   stroke.start = time_;
-  stroke.duration = std::max(length / speed, profile_.motor.shortestStroke);
+  stroke.duration = std::max(length / speed, profile_.motor.minStroke);
   stroke.from = tip_;
   stroke.to.x() = normal(goal.x(), noise);
   stroke.to.y() = normal(goal.y(), noise);
@@ -79,7 +79,7 @@ TouchTarget StrokePlan::draw(std::size_t preferredOrgan) {
     if (targets_[i].organ == preferredOrgan) preferred.push_back(i);
   }
   for (const std::vector<std::size_t>* choice : {&preferred, &all}) {
-    for (int n = 0; n < mostDraws && !choice->empty(); ++n) {
+    for (int n = 0; n < maxDraws && !choice->empty(); ++n) {
       const auto index = static_cast<std::size_t>(random_.uniform() * static_cast<double>(choice->size()));
       const TouchTarget& target = targets_[(*choice)[std::min(index, choice->size() - 1)]];
       if (isFree(surfaces_, scene_.hands[hand_].home, target.approach, travelClearance)) return target;

@@ -26,7 +26,7 @@ double rotationDefect(const Mat3& matrix);
 /// Tolerance for rotations in files of poses, whose numbers are rounded.
 inline constexpr double rotationTolerance = 1e-3;
 /// Greatest distance of positions in files of poses (m); larger values indicate a different unit.
-inline constexpr double farthestPosition = 5.0;
+inline constexpr double maxPosition = 5.0;
 
 /// Quaternion of a rotation matrix, from the largest of its four components (Shepperd 1978); normalised, w >= 0.
 /// @pre the matrix is a rotation within about 1e-3

@@ -315,7 +315,7 @@ bool fits(const FatModel& model, const FatState& state) {
       if (!(size > 0.99 && size < 1.01)) return false;
     }
   }
-  if (!std::isfinite(s.volume) || !std::isfinite(s.largestDisplacement)) return false;
+  if (!std::isfinite(s.volume) || !std::isfinite(s.maxDisplacement)) return false;
   CarvedField field(model.field());
   if (!field.restore(state.carved)) return false;
   for (std::size_t n = 0; n < field.values().size(); ++n) {

@@ -15,7 +15,7 @@
 namespace calot {
 namespace {
 
-int longestAxis(const Vec3& v) {
+int maxAxis(const Vec3& v) {
   int axis = 0;
   v.cwiseAbs().maxCoeff(&axis);
   return axis;
@@ -71,7 +71,7 @@ class Transform {
     const Vec3 reach = band_ * face.normal.cwiseAbs();
     box.lower -= reach;
     box.upper += reach;
-    ConvexScan scan(longestAxis(face.normal), lattice_.nodes());
+    ConvexScan scan(maxAxis(face.normal), lattice_.nodes());
     const double height = face.normal.dot(*p[0]);
     scan.add(face.normal, height - band_);
     scan.add(-face.normal, -height - band_);
@@ -131,7 +131,7 @@ class Transform {
       box.upper += reach;
       if (!(along.squaredNorm() > 0.0)) along = reach;
     }
-    ConvexScan scan(longestAxis(along), lattice_.nodes());
+    ConvexScan scan(maxAxis(along), lattice_.nodes());
     scan.add(t, a);
     scan.add(-t, b);
     for (const SurfaceFeatures::Side& side : features_.sides(edge)) {
@@ -161,7 +161,7 @@ class Transform {
     if (!coneBox(box, along)) return;
     box.lower += p;
     box.upper += p;
-    ConvexScan scan(longestAxis(along), lattice_.nodes());
+    ConvexScan scan(maxAxis(along), lattice_.nodes());
     for (const Vec3& d : direction_) scan.add(-d, p);
     const Vec3& normal = features_.vertexNormals()[slot(v)];
     scan.run(box, [&](const Index3& n) {

@@ -40,8 +40,8 @@ struct Capsule {
 /// Fixed capacity, no allocation: a value to be made anew whenever the jaw or the insertion changes.
 class InstrumentShape {
  public:
-  static constexpr std::size_t mostPieces = 15;  ///< of the shaft; the last takes the rest of it
-  static constexpr std::size_t capacity = mostPieces + 9;
+  static constexpr std::size_t maxPieces = 15;  ///< of the shaft; the last takes the rest of it
+  static constexpr std::size_t capacity = maxPieces + 9;
   static constexpr double pieceLength = 0.02;  ///< of the shaft (m)
   static constexpr double widestJaw = 2.5;     ///< rad
 

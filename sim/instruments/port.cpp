@@ -32,7 +32,7 @@ Pose throughPort(const Vec3& port, const Vec3& tip, const Quat& orientation, con
   const double length = reach.norm();
   const Vec3 axis = length > 1e-6 ? Vec3(reach / length) : previousAxis;
   Pose pose;
-  pose.position = length >= leastInsertion ? tip : Vec3(port + leastInsertion * axis);
+  pose.position = length >= minInsertion ? tip : Vec3(port + minInsertion * axis);
   pose.orientation = alongAxis(axis, orientation.toRotationMatrix().col(0));
   return pose;
 }

@@ -8,14 +8,14 @@
 namespace calot {
 
 /// The shaft reaches at least this far past the port (m).
-inline constexpr double leastInsertion = 0.01;
+inline constexpr double minInsertion = 0.01;
 
 /// Orientation with z along `axis` (unit) and x as near to `roll` (unit) as that allows; where they are parallel, a
 /// fixed perpendicular.
 Quat alongAxis(const Vec3& axis, const Vec3& roll);
 
 /// Pose in W of an instrument whose tip is meant to be at `tip` and whose hand is turned by `orientation`.
-/// A tip nearer to the port than leastInsertion is moved to that distance, along `previousAxis` where the direction is
+/// A tip nearer to the port than minInsertion is moved to that distance, along `previousAxis` where the direction is
 /// undefined. @param previousAxis unit, from port to tip
 Pose throughPort(const Vec3& port, const Vec3& tip, const Quat& orientation, const Vec3& previousAxis);
 
@@ -27,7 +27,7 @@ using ToolRow = Eigen::Matrix<double, 4, 1>;
 
 /// The row that gives the point's displacement along `direction`; its transpose takes a force along `direction` to the
 /// force on the tip (N) and the torque about the axis (N m) that do the same work.
-/// @param tool pose of frame I; @pre the tip is at least leastInsertion from the port
+/// @param tool pose of frame I; @pre the tip is at least minInsertion from the port
 ToolRow toolRow(const Vec3& port, const Pose& tool, const Vec3& point, const Vec3& direction);
 
 /// Angle about the axis of `to` by which the x axis of `from`, made perpendicular to it, meets that of `to` (rad).

@@ -44,9 +44,9 @@ void ShapeBuilder::addFork(double sleeve) {
 void ShapeBuilder::addShaft(double sleeve) {
   // The round end of the shaft's capsule stands no further out than where it meets the neck.
   double from = sleeve - 1.4 * millimetre();
-  for (std::size_t k = 0; k < InstrumentShape::mostPieces && from > -length_; ++k) {
+  for (std::size_t k = 0; k < InstrumentShape::maxPieces && from > -length_; ++k) {
     const double to =
-        k + 1 == InstrumentShape::mostPieces ? -length_ : std::max(from - InstrumentShape::pieceLength, -length_);
+        k + 1 == InstrumentShape::maxPieces ? -length_ : std::max(from - InstrumentShape::pieceLength, -length_);
     add(Vec3(0.0, 0.0, from), Vec3(0.0, 0.0, to), shaftRadius_, Capsule::Part::shaft);
     from = to;
   }

@@ -101,8 +101,8 @@ void Judge::judgeClip(const std::vector<Event>& events, std::size_t at) {
   const double junction = beside(events, at, EventKind::clipJunctionGap).value_or(far);
   const bool beyondEnd = beside(events, at, EventKind::clipEndGap).value_or(far) < 0.0;
   if (gap < 0.0) countError(clip, EventKind::clipOnClip, -gap);
-  const double nearClip = gap >= 0.0 && gap < clip_.leastGap ? gap : far;
-  const double nearJunction = junction < clip_.leastJunctionGap ? junction : far;
+  const double nearClip = gap >= 0.0 && gap < clip_.minGap ? gap : far;
+  const double nearJunction = junction < clip_.minJunctionGap ? junction : far;
   const double nearest = beyondEnd ? 0.0 : std::min(nearClip, nearJunction);
   if (nearest < far) countError(clip, EventKind::clipTooNear, nearest);
 }

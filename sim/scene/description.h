@@ -22,7 +22,7 @@ struct HandDescription {
   double shaftRadius = 0.0025;        ///< m
   double couplingStiffness = 1000.0;  ///< of the virtual coupling at the tip (N/m)
   double rollStiffness = 0.2;         ///< of the virtual coupling about the shaft (N m/rad)
-  double largestForce = 8.0;          ///< what the device, and so the virtual coupling, can do (N)
+  double maxForce = 8.0;              ///< what the device, and so the virtual coupling, can do (N)
   double slipForce = 4.0;             ///< pull at which closed jaws begin to lose tissue (N)
   std::uint32_t clips = 8;            ///< in its clip applier
   double tearForce = 6.0;             ///< pull at which tissue tears that is held faster (locked jaws) (N)
@@ -35,7 +35,7 @@ struct HandDescription {
     visit("shaftRadius", self.shaftRadius);
     visit("couplingStiffness", self.couplingStiffness);
     visit("rollStiffness", self.rollStiffness);
-    visit("largestForce", self.largestForce);
+    visit("largestForce", self.maxForce);
     visit("slipForce", self.slipForce);
     visit("clips", self.clips);
     visit("tearForce", self.tearForce);
@@ -44,17 +44,17 @@ struct HandDescription {
 
 /// Clips, and from how near on they are too near.
 struct ClipDescription {
-  double width = 0.0012;            ///< along the vessel (m)
-  double legs = 0.0085;             ///< from the crotch to the tips (m)
-  double leastGap = 0.001;          ///< between two clips (m)
-  double leastJunctionGap = 0.002;  ///< to a place where vessels meet (m)
+  double width = 0.0012;          ///< along the vessel (m)
+  double legs = 0.0085;           ///< from the crotch to the tips (m)
+  double minGap = 0.001;          ///< between two clips (m)
+  double minJunctionGap = 0.002;  ///< to a place where vessels meet (m)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("width", self.width);
     visit("legs", self.legs);
-    visit("leastGap", self.leastGap);
-    visit("leastJunctionGap", self.leastJunctionGap);
+    visit("leastGap", self.minGap);
+    visit("leastJunctionGap", self.minJunctionGap);
   }
 };
 

@@ -9,11 +9,11 @@ namespace {
 
 constexpr double positionCells = 1048576.0;  // 2^20 a metre
 constexpr double angleCells = 65536.0;       // 2^16
-constexpr double largestCell = 2147483647.0;
+constexpr double maxCell = 2147483647.0;
 
 // Half away from zero; the sum with zero turns -0 into 0, so that equal samples have equal bits.
 double toGrid(double value, double cells) {
-  const double scaled = std::clamp(value * cells, -largestCell, largestCell);
+  const double scaled = std::clamp(value * cells, -maxCell, maxCell);
   const double magnitude = std::floor(std::abs(scaled) + 0.5);
   return (scaled < 0.0 ? -magnitude : magnitude) / cells + 0.0;
 }

@@ -35,7 +35,7 @@ struct PieceVisitor {
 
 /// No number of a State (m, m/s, N, components of unit quaternions) comes near this one; from larger ones, which
 /// damaged bytes hold, a step would overflow.
-constexpr double largestNumber = 1e6;
+constexpr double maxNumber = 1e6;
 
 struct FiniteVisitor {
   bool finite = true;
@@ -43,7 +43,7 @@ struct FiniteVisitor {
   void operator()(const char* /*name*/, const T& value) {
     check(value);
   }
-  void check(double v) { finite = finite && std::abs(v) <= largestNumber; }
+  void check(double v) { finite = finite && std::abs(v) <= maxNumber; }
   template <class T>
   requires(std::is_integral_v<T> || std::is_enum_v<T>) void check(T /*value*/) {}
   void check(const Vec3& v) {

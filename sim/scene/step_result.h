@@ -51,7 +51,7 @@ enum class EventKind : std::uint16_t {
   tooFewClips = 33,      ///< judged: a side of a cut has fewer clips than it should; value: missing
   criticalError = 34,    ///< judged: a vessel to be spared was clipped or opened; value: kind of that event
   phaseBegin = 35,       ///< judged: subject: the Phase that begins; value: the one before
-  runaway = 36,          ///< something moves faster than fastestMotion, or is no number any more; value: speed (m/s)
+  runaway = 36,          ///< something moves faster than maxTissueSpeed, or is no number any more; value: speed (m/s)
   motionHeldBack = 37,   ///< tissue faster than it can move was held back; subject: structure; value: that speed (m/s)
   clipPlace = 38,        ///< beside clipSet: arc length of its middle from the vessel's start (m)
   clipGap = 39,          ///< beside clipSet, where the piece has another: distance of edges (m), below 0: overlap
@@ -118,15 +118,16 @@ struct HandResult {
           &HandResult::contactForce);
     visit(ResultField{"touching", "", "", 1, "bit s: a force acts between this instrument and structure s"},
           &HandResult::touching);
-    visit(
-        ResultField{"organ_force", "N", "", 1, "per structure (the organs first), sum of the magnitudes of normal forces"},
-        &HandResult::structureForce);
+    visit(ResultField{"organ_force", "N", "", 1,
+                      "per structure (the organs first), sum of the magnitudes of normal forces"},
+          &HandResult::structureForce);
     visit(ResultField{"contact_torque", "N m", "", 2, "torque of the organs about the shaft's axis"},
           &HandResult::contactTorque);
     visit(ResultField{"grasping", "", "", 2, "bit s: the jaws hold structure s"}, &HandResult::grasping);
     visit(ResultField{"grasp_force", "N", "", 2, "pull on what the jaws hold"}, &HandResult::graspForce);
-    visit(ResultField{"cautery", "", "", 3, "of the hook: 0 no current, 1 current without contact, 2 current on tissue"},
-          &HandResult::cautery);
+    visit(
+        ResultField{"cautery", "", "", 3, "of the hook: 0 no current, 1 current without contact, 2 current on tissue"},
+        &HandResult::cautery);
     visit(ResultField{"clips", "", "", 3, "left in the clip applier"}, &HandResult::clips);
   }
 };
@@ -141,7 +142,7 @@ struct ContactResult {
   double residual = 0.0;  ///< sim/contact/contact_solver.h
   double error = 0.0;
   double violation = 0.0;
-  double largestDepth = 0.0;
+  double maxDepth = 0.0;
   double pinchedDepth = 0.0;
   double tissueDepth = 0.0;
 
@@ -152,13 +153,14 @@ struct ContactResult {
     visit(ResultField{"residual", "m", "", 1, "natural residual of the last solution, largest block"},
           &ContactResult::residual);
     visit(ResultField{"largest_depth", "m", "", 1, "deepest point of an instrument inside an organ; 0 outside"},
-          &ContactResult::largestDepth);
+          &ContactResult::maxDepth);
     visit(ResultField{"blocks", "", "", 2, "contact points and grasped points"}, &ContactResult::blocks);
     visit(ResultField{"newton_steps", "", "", 2, "used where sweeps did not converge"}, &ContactResult::newtonSteps);
     visit(ResultField{"passes", "", "", 2, "how often the contact problem was posed"}, &ContactResult::passes);
     visit(ResultField{"error", "m", "", 2, "natural residual with the gaps that the forces really left"},
           &ContactResult::error);
-    visit(ResultField{"violation", "m", "", 2, "largest violation that the forces had to undo"}, &ContactResult::violation);
+    visit(ResultField{"violation", "m", "", 2, "largest violation that the forces had to undo"},
+          &ContactResult::violation);
     visit(ResultField{"pinched_depth", "m", "", 2,
                       "as largest_depth, where tissue presses from two sides and leaves no way out"},
           &ContactResult::pinchedDepth);
@@ -170,7 +172,7 @@ struct ContactResult {
 
 /// Tissue and vessels do not move faster than this (m/s): hands reach 2, a stump that springs back 10. A step that
 /// leaves them faster, or at places that are no numbers, has failed and says so: EventKind::runaway and miss::runaway.
-inline constexpr double fastestMotion = 30.0;
+inline constexpr double maxTissueSpeed = 30.0;
 
 /// Bits of StepResult::misses: a step that misses a tolerance says so.
 namespace miss {
@@ -190,7 +192,8 @@ struct StepResult : Tissues::Results {
   std::vector<Event> events;
 
   static constexpr std::array<ResultGroup, handCount> handGroup{
-      ResultGroup{"/observables/left", 1, "one instrument; all of left, then all of right"}, ResultGroup{"/observables/right", 1, ""}};
+      ResultGroup{"/observables/left", 1, "one instrument; all of left, then all of right"},
+      ResultGroup{"/observables/right", 1, ""}};
   static constexpr ResultGroup contactGroup{"/observables/contact", 1, "the contact problem"};
   static constexpr ResultField missesField{
       "misses", "", "", 1,
@@ -230,7 +233,8 @@ struct StepResult : Tissues::Results {
       });
     });
     single(contactGroup, self.contact);
-    if (brought == 1 && added == missesField.since) visit.one(ResultGroup{"/observables", 1, ""}, missesField, self.misses);
+    if (brought == 1 && added == missesField.since)
+      visit.one(ResultGroup{"/observables", 1, ""}, missesField, self.misses);
   }
 };
 

@@ -82,7 +82,7 @@ struct SolidState {
   std::vector<RotationGroup> rotation;  ///< co-rotation of each element; the next step starts from it
   std::uint32_t quietSteps = 0;         ///< consecutive steps without contact and below the sleeping speed
   double volume = 0.0;                  ///< deformed (m^3); stored because a sleeping organ does not recompute it
-  double largestDisplacement = 0.0;     ///< (m)
+  double maxDisplacement = 0.0;         ///< (m)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -91,7 +91,7 @@ struct SolidState {
     visit("rotation", self.rotation);
     visit("quietSteps", self.quietSteps);
     visit("volume", self.volume);
-    visit("largestDisplacement", self.largestDisplacement);
+    visit("largestDisplacement", self.maxDisplacement);
   }
 };
 

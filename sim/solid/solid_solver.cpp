@@ -14,7 +14,7 @@ constexpr std::size_t nodesPerTask = 128;
 /// Greatest speed of a cube's corner, and of any other node relative to the mean of its solid (m/s). No hand moves
 /// tissue as fast. It occurs at a corner that belongs only to a nearly empty cube, or in contact of crumpled tissue,
 /// whose compliance differs much from that of the reference configuration.
-constexpr double fastestNode = 5.0;
+constexpr double maxNodeSpeed = 5.0;
 /// With a lattice, the remaining error has no smooth part, which displaces most: ten times the tolerance gives the same
 /// error as sweeps alone (docs/simulation.md).
 constexpr double smoothErrorFactor = 10.0;
@@ -304,10 +304,10 @@ bool SolidSolver::advance(const SolidModel& model, SolidState& state, std::span<
     const auto node = static_cast<std::size_t>(free);
     Vec3 velocity = asked(free);
     const double speed = (velocity - mean).norm();
-    if (speed > fastestNode) {
+    if (speed > maxNodeSpeed) {
       const bool weighs = mass_.empty() || mass_[node] > weightless * model.mass()[node];
       if (weighs) heldBack_ = std::max(heldBack_, speed);
-      velocity = mean + fastestNode / speed * (velocity - mean);
+      velocity = mean + maxNodeSpeed / speed * (velocity - mean);
     }
     const Vec3 position = state.position[node] + step * velocity;
     if (!velocity.allFinite() || !position.allFinite()) {

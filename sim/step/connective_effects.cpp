@@ -37,7 +37,7 @@ std::array<std::uint32_t, handCount> ConnectiveEffects::run(const HookSweeps& sw
       }
     }
     strands_.clear();
-    out.largestPull = tearOverstretched(tie.tissue, tissue, a, b, strands_);
+    out.maxPull = tearOverstretched(tie.tissue, tissue, a, b, strands_);
     if (!strands_.empty()) {
       log.emit(EventKind::strandsTorn, StepLog::noHand, c, tie.tissue.strands()[strands_[0]].a.of(a),
                shareOf(tie.tissue, strands_));

@@ -22,8 +22,8 @@ void takeSample(const Model& model, std::size_t hand, const InstrumentSample& sa
 HapticModel hapticModel(const Model& model, std::size_t hand) {
   const HandDescription& description = model.scene().hands[hand];
   HapticModel haptics;
-  haptics.maxForce = description.largestForce;
-  haptics.maxStretch = description.largestForce / description.couplingStiffness;
+  haptics.maxForce = description.maxForce;
+  haptics.maxStretch = description.maxForce / description.couplingStiffness;
   haptics.ticksPerStep = model.scene().ticksPerStep;
   return haptics;
 }

@@ -51,7 +51,7 @@ double PenetrationResolver::findInside(Surfaces& surfaces, const State& state, s
 
 /// The shortest motion of the instrument that leaves every point in `inside_`: a small complementarity problem without
 /// tissue. Tip motion costs as its square; a roll as the motion of a point 5 mm from the axis.
-ToolRow PenetrationResolver::shortestWayOut() const {
+ToolRow PenetrationResolver::minWayOut() const {
   constexpr double arm2 = 0.005 * 0.005;
   const std::size_t n = inside_.size();
   const std::vector<double> none(n, 0.0);
@@ -75,7 +75,7 @@ ToolRow PenetrationResolver::shortestWayOut() const {
   return q;
 }
 
-/// Follows shortestWayOut() from a pose, pass by pass. Keeps the best pose met: folds and pinches may lead a pass
+/// Follows minWayOut() from a pose, pass by pass. Keeps the best pose met: folds and pinches may lead a pass
 /// astray.
 PenetrationResolver::Outcome PenetrationResolver::search(Surfaces& surfaces, const State& state, std::size_t hand,
                                                          Pose pose) {
@@ -93,7 +93,7 @@ PenetrationResolver::Outcome PenetrationResolver::search(Surfaces& surfaces, con
       }
     }
     if (depth <= toleratedDepth || pass >= maxPasses || gone >= maxDisplacement) return best;
-    const ToolRow q = shortestWayOut();
+    const ToolRow q = minWayOut();
     Vec3 way = q.head<3>();
     const double size = way.norm();
     const double limit = std::min(maxDisplacement - gone, 3.0 * depth);
@@ -117,7 +117,7 @@ void PenetrationResolver::run(Surfaces& surfaces, std::size_t hand, State& state
   }
   s.simulatedPosition = best.pose.position;
   s.simulatedOrientation = best.pose.orientation;
-  double& left = best.pinched ? contact.pinchedDepth : contact.largestDepth;
+  double& left = best.pinched ? contact.pinchedDepth : contact.maxDepth;
   left = std::max(left, best.depth);
 }
 

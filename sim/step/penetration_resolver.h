@@ -19,7 +19,7 @@ class PenetrationResolver {
  public:
   explicit PenetrationResolver(const Model& model) : model_(model) {}
 
-  /// Writes the hand's simulated pose; raises `contact.largestDepth` or `pinchedDepth` to what is left (m).
+  /// Writes the hand's simulated pose; raises `contact.maxDepth` or `pinchedDepth` to what is left (m).
   /// @pre surfaces are current
   void run(Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact);
 
@@ -38,7 +38,7 @@ class PenetrationResolver {
   };
 
   double findInside(Surfaces& surfaces, const State& state, std::size_t hand, const Pose& pose);
-  [[nodiscard]] ToolRow shortestWayOut() const;
+  [[nodiscard]] ToolRow minWayOut() const;
   Outcome search(Surfaces& surfaces, const State& state, std::size_t hand, Pose pose);
 
   const Model& model_;

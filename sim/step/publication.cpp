@@ -75,15 +75,15 @@ void Publication::publishOrgans(const ContactSystem& contact, Bodies& bodies, co
     SolidState& organ = state.organ[o];
     OrganResult& out = result.organ[o];
     const OrganModel& fixed = model_.organs()[o];
-    out.largestSpeed = 0.0;
+    out.maxSpeed = 0.0;
     if (activity.awake[o]) {
       const Extremes now = extremesOf(organ.position, organ.velocity, fixed.solid.rest());
-      out.largestSpeed = now.speed;
-      organ.largestDisplacement = now.displacement;
+      out.maxSpeed = now.speed;
+      organ.maxDisplacement = now.displacement;
       organ.volume = fixed.solid.volume(organ.position);
       countQuietSteps(model_, bodies, contact.blocks, o, now.speed, state);
     }
-    out.largestDisplacement = organ.largestDisplacement;
+    out.maxDisplacement = organ.maxDisplacement;
     out.volume = organ.volume;
     const CharState& charred = state.charred[o];
     out.charredArea = charred.area;
@@ -100,9 +100,9 @@ void Publication::publishVessel(const Bodies& bodies, bool awake, const State& s
   const BeamState& beams = state.vessel[tree];
   const BeamModel::Branch& fixed = vessels.beams.branches()[branch];
   out.asleep = !awake;
-  out.largestDisplacement = beams.largestDisplacement;
-  out.largestStrain = 0.0;
-  out.largestTension = 0.0;
+  out.maxDisplacement = beams.maxDisplacement;
+  out.maxStrain = 0.0;
+  out.maxTension = 0.0;
   out.clips = 0;
   out.partings = 0;
   double exposure = 0.0;
@@ -110,8 +110,8 @@ void Publication::publishVessel(const Bodies& bodies, bool awake, const State& s
     if (beams.parting[e] != Parting::none) ++out.partings;
     exposure = std::max(exposure, beams.exposure[e]);
     if (!awake) continue;
-    out.largestStrain = std::max(out.largestStrain, bodies.vessel(tree).strain()[e]);
-    out.largestTension = std::max(out.largestTension, bodies.vessel(tree).tension()[e]);
+    out.maxStrain = std::max(out.maxStrain, bodies.vessel(tree).strain()[e]);
+    out.maxTension = std::max(out.maxTension, bodies.vessel(tree).tension()[e]);
   }
   out.charred = exposure / model_.scene().vessels[vessels.vessel[branch]].burnThrough;
   for (const std::uint32_t clipped : beams.clipBranch) out.clips += clipped == branch ? 1 : 0;
@@ -129,7 +129,7 @@ void Publication::publishVessels(const ContactSystem& contact, Surfaces& surface
       for (std::size_t n = 0; n < beams.position.size(); ++n) {
         displacement = std::max(displacement, (beams.position[n] - tree.beams.rest()[n]).squaredNorm());
       }
-      beams.largestDisplacement = std::sqrt(displacement);
+      beams.maxDisplacement = std::sqrt(displacement);
       countQuietSteps(model_, bodies, contact.blocks, b, report.maxSpeed, state);
       if (report.torn >= 0) {
         const auto torn = static_cast<std::size_t>(report.torn);
@@ -156,14 +156,14 @@ void Publication::publishFat(const ContactSystem& contact, Bodies& bodies, const
     FatResult& out = result.fat[f];
     const FatBody& fat = bodies.fat(f).fat();
     out.asleep = !activity.awake[b];
-    out.largestSpeed = 0.0;
+    out.maxSpeed = 0.0;
     if (activity.awake[b]) {
       const Extremes now = extremesOf(solid.position, solid.velocity, fat.model().solid().rest());
-      out.largestSpeed = now.speed;
-      solid.largestDisplacement = now.displacement;
+      out.maxSpeed = now.speed;
+      solid.maxDisplacement = now.displacement;
       if (!activity.carved[f]) countQuietSteps(model_, bodies, contact.blocks, b, now.speed, state);
     }
-    out.largestDisplacement = solid.largestDisplacement;
+    out.maxDisplacement = solid.maxDisplacement;
     out.volume = fat.volume().total();
     const bool clears = model_.scene().fat[f].triangleDepth > 0.0;
     out.toClear = clears ? fat.volume().inRegion(FatTissue::regionToClear) : 0.0;
@@ -218,7 +218,7 @@ void Publication::reportRunaway(const Bodies& bodies, const Activity& activity, 
       largest = speed;
       where = n;
     }
-    if (largest <= fastestMotion) continue;
+    if (largest <= maxTissueSpeed) continue;
     log.miss(miss::runaway);
     log.emit(EventKind::runaway, StepLog::noHand, bodies.firstStructure(b), bodies[b].position(state)[where], largest);
   }

@@ -117,7 +117,7 @@ double TissueContacts::run(Surfaces& surfaces, const State& state, const std::ve
   for (std::size_t i = 0; i < model_.tissuePairs().size(); ++i) {
     const TissuePair& pair = model_.tissuePairs()[i];
     if (!awake[pair.a] && !awake[pair.b]) continue;
-    if (pair.a == pair.b && state.organ[pair.a].largestDisplacement < foldDisplacement) continue;
+    if (pair.a == pair.b && state.organ[pair.a].maxDisplacement < foldDisplacement) continue;
     depth = std::max(depth, addPair(surfaces, state, i, blocks));
   }
   keepDeepest(first, blocks);

@@ -243,7 +243,7 @@ BeamReport BeamSolver::advance(const BeamModel& model, BeamState& state) {
     displacement = std::max(displacement, (state.position[n] - model.rest()[n]).squaredNorm());
   }
   report.maxSpeed = std::sqrt(speed);
-  state.largestDisplacement = std::sqrt(displacement);
+  state.maxDisplacement = std::sqrt(displacement);
 
   const std::size_t elements = model.elements().size();
   tension_.resize(elements);

@@ -35,7 +35,7 @@ struct BeamState {
   std::vector<double> clipClosure;   ///< 0 open to 1 closed
   std::vector<double> clipEnclosed;  ///< share of the flattened section between its legs, 1: all of it
   std::uint32_t quietSteps = 0;      ///< consecutive steps without contact and below the sleeping speed
-  double largestDisplacement =
+  double maxDisplacement =
       0.0;  ///< from the reference configuration (m); stored because sleeping vessels do not recompute it
 
   [[nodiscard]] std::size_t clips() const { return clipPlace.size(); }
@@ -60,7 +60,7 @@ struct BeamState {
     visit("clipClosure", self.clipClosure);
     visit("clipEnclosed", self.clipEnclosed);
     visit("quietSteps", self.quietSteps);
-    visit("largestDisplacement", self.largestDisplacement);
+    visit("largestDisplacement", self.maxDisplacement);
   }
 };
 

@@ -32,8 +32,7 @@ double relativeResidual(const StepResult& result) {
 }
 
 /// Presses, drags and lifts one instrument; in chosen steps the contact force is computed once more.
-void compare(double friction, InstrumentKind instrument, double& worst, double& largestError, int& compared,
-             int& slid) {
+void compare(double friction, InstrumentKind instrument, double& worst, double& maxError, int& compared, int& slid) {
   SceneDescription scene = tight(test::blockScene(300, 10));
   scene.organs[0].friction = friction;
   scene.hands[0].instrument = instrument;
@@ -52,7 +51,7 @@ void compare(double friction, InstrumentKind instrument, double& worst, double& 
     EXPECT_LE(relativeResidual(result), 1e-6) << "step " << i;
     const double error = result.contact.error / std::max(result.contact.violation, 1e-4);
     EXPECT_LE(error, 1e-6) << "step " << i << " after " << result.contact.passes << " passes";
-    largestError = std::max(largestError, error);
+    maxError = std::max(maxError, error);
     if (i % 4 != 3 || result.hand[0].contactForce.norm() < 0.05) continue;
     const Pose reference = rig.stepper.contactSet(0).reference;
     const Pose real{rig.state.hand[0].realPosition, rig.state.hand[0].realOrientation};
@@ -102,27 +101,27 @@ void compare(double friction, InstrumentKind instrument, double& worst, double& 
 
 TEST(DenseReference, ForcesWithoutFriction) {
   double worst = 0.0;
-  double largestError = 0.0;
+  double maxError = 0.0;
   int compared = 0;
   int slid = 0;
   for (const InstrumentKind kind : {InstrumentKind::grasper, InstrumentKind::hook}) {
-    compare(0.0, kind, worst, largestError, compared, slid);
+    compare(0.0, kind, worst, maxError, compared, slid);
   }
   std::printf("%d steps without friction: forces within %.1e %% of the dense reference, relative residual %.1e\n",
-              compared, 100.0 * worst, largestError);
+              compared, 100.0 * worst, maxError);
   EXPECT_GE(compared, 16);
 }
 
 TEST(DenseReference, ForcesWithFriction) {
   double worst = 0.0;
-  double largestError = 0.0;
+  double maxError = 0.0;
   int compared = 0;
   int slid = 0;
-  for (const double mu : {0.1, 0.4}) compare(mu, InstrumentKind::grasper, worst, largestError, compared, slid);
+  for (const double mu : {0.1, 0.4}) compare(mu, InstrumentKind::grasper, worst, maxError, compared, slid);
   std::printf(
       "%d steps with friction (%d pulled sideways): forces within %.1e %% of the dense reference, "
       "relative residual %.1e\n",
-      compared, slid, 100.0 * worst, largestError);
+      compared, slid, 100.0 * worst, maxError);
   EXPECT_GE(compared, 16);
   EXPECT_GE(slid, 4);
 }

@@ -40,9 +40,9 @@ class HapticForces : public testing::Test {
       loop.step(sample, [&] { felt.take(loop.haptic[0], loop.force[0]); });
       EXPECT_TRUE(test::allFinite(loop.rig.state));
     }
-    EXPECT_LE(felt.largestForce, model_->scene().hands[0].largestForce * (1.0 + 1e-12));
+    EXPECT_LE(felt.maxForce, model_->scene().hands[0].maxForce * (1.0 + 1e-12));
     std::printf("%s: largest jump %.4f N, largest force %.3f N, work on the operator %+.4f mJ of %.4f mJ exchanged\n",
-                what, felt.largestJump, felt.largestForce, 1e3 * felt.work, 1e3 * felt.exchanged);
+                what, felt.maxJump, felt.maxForce, 1e3 * felt.work, 1e3 * felt.exchanged);
     return felt;
   }
   template <class Path>
@@ -64,8 +64,8 @@ TEST_F(HapticForces, ASlowPressAndReleaseHasNoJumps) {
   for (const Vec3& above : {Vec3(-0.010, 0.001, 0.017), Vec3(-0.0012, 0.0041, 0.017)}) {
     const test::Felt felt = run(
         0.8, [&](double t) { return pressAndRelease(t, above, 0.005, 0.02); }, "press and release at 20 mm/s");
-    EXPECT_LT(felt.largestJump, 0.05);
-    EXPECT_GT(felt.largestForce, 0.1);
+    EXPECT_LT(felt.maxJump, 0.05);
+    EXPECT_GT(felt.maxForce, 0.1);
   }
 }
 
@@ -78,8 +78,8 @@ TEST_F(HapticForces, SlidingOverAnEdgeHasNoJumps) {
         return Vec3(-0.010 - 0.02 * std::max(0.0, t - 0.3), 0.0013, 0.018 - 0.006 * down);
       },
       "sliding over an edge at 20 mm/s");
-  EXPECT_LT(felt.largestJump, 0.05);
-  EXPECT_GT(felt.largestForce, 0.1);
+  EXPECT_LT(felt.maxJump, 0.05);
+  EXPECT_GT(felt.maxForce, 0.1);
 }
 
 TEST_F(HapticForces, PullingHeldTissueHasNoJumps) {
@@ -91,8 +91,8 @@ TEST_F(HapticForces, PullingHeldTissueHasNoJumps) {
         return Vec3(-0.009, 0.0013, 0.030 - 0.0135 * down + pull);
       },
       [](double t) { return t < 0.4 ? 0.6 : std::max(0.0, 0.6 - 2.0 * (t - 0.4)); }, "pulling held tissue at 20 mm/s");
-  EXPECT_LT(felt.largestJump, 0.05);
-  EXPECT_GT(felt.largestForce, 0.05);
+  EXPECT_LT(felt.maxJump, 0.05);
+  EXPECT_GT(felt.maxForce, 0.05);
 }
 
 /// Held tissue is let go: what the jaws had sunk into, and the pull, go within ticks, not at once.
@@ -110,8 +110,8 @@ TEST_F(HapticForces, LettingGoHasNoJumps) {
           return t < 0.4 ? 0.6 : std::max(0.0, 0.6 - 2.0 * (t - 0.4));
         },
         "letting go of held tissue");
-    EXPECT_LT(felt.largestJump, 0.01 + 0.12 * felt.largestForce);  // a tenth of what is left each tick
-    EXPECT_GT(felt.largestForce, 0.02);
+    EXPECT_LT(felt.maxJump, 0.01 + 0.12 * felt.maxForce);  // a tenth of what is left each tick
+    EXPECT_GT(felt.maxForce, 0.02);
   }
 }
 

@@ -96,7 +96,7 @@ void transform(benchmark::State& bench) {
   const OpenvdbField peer = openvdbField(mesh, nodes.origin(), nodes.cell(), band, distance, &context);
   bench.counters["openvdb_us"] = 1e6 * peer.seconds;
   bench.counters["openvdb_voxels"] = static_cast<double>(peer.activeVoxels);
-  bench.counters["openvdb_error_cells"] = peer.largestError;
+  bench.counters["openvdb_error_cells"] = peer.maxError;
   bench.counters["vs_openvdb"] = peer.seconds / seconds;
   figures().add("cpt.20k_128.vs_openvdb", peer.seconds / seconds);
 #endif

@@ -48,7 +48,7 @@ void contactStep(benchmark::State& bench, bool prepared) {
   double depth = 0.0;
   double pinched = 0.0;
   for (const StepCost& c : costs) {
-    depth = std::max(depth, c.contact.largestDepth);
+    depth = std::max(depth, c.contact.maxDepth);
     pinched = std::max(pinched, c.contact.pinchedDepth);
   }
   auto& counters = bench.counters;

@@ -40,7 +40,7 @@ OpenvdbField openvdbField(const TriangleMesh& mesh, const Vec3& origin, double c
     const openvdb::Coord at = voxel.getCoord();
     const double truth = distance(context, Index3(at.x(), at.y(), at.z())) / cell;
     if (std::abs(truth) > band - 1.0) continue;
-    field.largestError = std::max(field.largestError, std::abs(static_cast<double>(*voxel) - truth));
+    field.maxError = std::max(field.maxError, std::abs(static_cast<double>(*voxel) - truth));
   }
   return field;
 }

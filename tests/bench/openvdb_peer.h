@@ -10,7 +10,7 @@ namespace calot::bench {
 struct OpenvdbField {
   double seconds = 0.0;        ///< CPU time of the thread
   long long activeVoxels = 0;  ///< in the band
-  double largestError = 0.0;   ///< against `value`, in cells
+  double maxError = 0.0;       ///< against `value`, in cells
 };
 
 /// @param cell m @param band cells, inside and outside

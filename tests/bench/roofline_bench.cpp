@@ -46,7 +46,7 @@ CALOT_LANE_KERNEL void multiplyAndAdd(float* out, std::size_t rounds) {
 
 /// Least time of a call, of so many tries of at least 20 ms (s).
 template <class Call>
-double leastTime(const Call& call) {
+double minTime(const Call& call) {
   double least = 1e300;
   std::size_t calls = 1;
   for (int tried = 0; tried < 5;) {
@@ -76,13 +76,13 @@ Limits limitsAt(double bytes) {
   std::vector<float> b(count, 2.0F);
   std::vector<float> c(count, 3.0F);
   const auto size = static_cast<double>(count * sizeof(float));
-  limits.copy = 2.0 * size / leastTime([&] { copy(a.data(), c.data(), count); });
-  limits.triad = 3.0 * size / leastTime([&] { triad(a.data(), b.data(), 0.5F, c.data(), count); });
+  limits.copy = 2.0 * size / minTime([&] { copy(a.data(), c.data(), count); });
+  limits.triad = 3.0 * size / minTime([&] { triad(a.data(), b.data(), 0.5F, c.data(), count); });
   benchmark::DoNotOptimize(c.data());
   std::array<float, 10 * laneCount> chain{};
   constexpr std::size_t rounds = 10000;
   limits.operations =
-      static_cast<double>(2 * chain.size() * rounds) / leastTime([&] { multiplyAndAdd(chain.data(), rounds); });
+      static_cast<double>(2 * chain.size() * rounds) / minTime([&] { multiplyAndAdd(chain.data(), rounds); });
   benchmark::DoNotOptimize(chain.data());
   return limits;
 }
@@ -168,14 +168,14 @@ void roofline(benchmark::State& bench, const BoxSize& size) {
   for (auto _ : bench) {
     // No tolerance: as many iterations as asked for, and one more sweep and update to begin with.
     constexpr std::uint32_t iterations = 20;
-    const double iteration = leastTime([&] { cg.solve(matrix, values, b, x, {0.0, iterations}); }) / (iterations + 0.5);
+    const double iteration = minTime([&] { cg.solve(matrix, values, b, x, {0.0, iterations}); }) / (iterations + 0.5);
     put(bench, name, "iteration", iterationOf(matrix), iteration);
-    const double elements = leastTime([&] {
+    const double elements = minTime([&] {
       model.elements().evaluate(state.position, state.velocity, body.step, model.material().lame, 2, state.rotation,
                                 result, executor);
     });
     put(bench, name, "elements", elementPassOf(model), elements);
-    bench.counters["assembly_ns_a_tetrahedron"] = 1e9 * leastTime(assemble) / size.tetrahedra;
+    bench.counters["assembly_ns_a_tetrahedron"] = 1e9 * minTime(assemble) / size.tetrahedra;
     bench.counters["elements_ns_a_tetrahedron"] = 1e9 * elements / size.tetrahedra;
     bench.counters["iteration_ns_a_tetrahedron"] = 1e9 * iteration / size.tetrahedra;
     bench.SetIterationTime(iteration);

@@ -36,14 +36,14 @@ TEST(AnyStep, PressedAndLetGo) {
       ASSERT_EQ(result.misses & miss::runaway, 0U);
       EXPECT_EQ((result.misses & miss::contact) != 0, result.contact.residual > scene.solver.contactTolerance);
       force = std::max(force, result.hand[0].contactForce.norm());
-      depth = std::max(depth, result.contact.largestDepth);
+      depth = std::max(depth, result.contact.maxDepth);
       missed += result.misses != 0 ? 1 : 0;
     }
     std::printf("steps of %u ms: at most %.3f N, %.3f mm deep, %d of %d missed a tolerance; %.2e mm from rest\n", ticks,
-                force, 1e3 * depth, missed, steps, 1e3 * loop.rig.state.organ[0].largestDisplacement);
+                force, 1e3 * depth, missed, steps, 1e3 * loop.rig.state.organ[0].maxDisplacement);
     EXPECT_GT(force, 0.05);
     EXPECT_LT(depth, 2e-4);
-    EXPECT_LT(loop.rig.state.organ[0].largestDisplacement, 1e-4);
+    EXPECT_LT(loop.rig.state.organ[0].maxDisplacement, 1e-4);
   }
 }
 

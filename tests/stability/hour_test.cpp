@@ -57,7 +57,7 @@ void pressAgainAndAgain(double seconds) {
     }
     (round < 10 ? early : late) = std::max(round < 10 ? early : late, largest);
     left = std::max(left, test::energy(solid, loop.rig.state.organ[0]));
-    away = std::max(away, loop.rig.state.organ[0].largestDisplacement);
+    away = std::max(away, loop.rig.state.organ[0].maxDisplacement);
   }
   std::printf(
       "%.0f s in %d rounds: energy at most %.2e J in the first ten, %.2e J later; %.1e J and %.1e mm left after a "

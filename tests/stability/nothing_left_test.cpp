@@ -86,8 +86,8 @@ TEST(NothingLeft, StepsGoOnWithoutFat) {
   EXPECT_TRUE(touchedBlock);
   for (int i = 0; i < 400; ++i) stepAt(scene.hands[0].home, false);
   const StepResult& last = stepAt(scene.hands[0].home, false);
-  EXPECT_LT(last.organ[0].largestDisplacement, 1e-4);
-  EXPECT_LT(last.fat[0].largestSpeed, 1e-3);
+  EXPECT_LT(last.organ[0].maxDisplacement, 1e-4);
+  EXPECT_LT(last.fat[0].maxSpeed, 1e-3);
   // What is saved of it is restored and goes on alike.
   test::Rig other(*model);
   ASSERT_TRUE(restoreState(*model, saveState(rig.state), other.state));

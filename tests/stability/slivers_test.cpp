@@ -27,8 +27,8 @@ double volumeOf(const test::KuhnBox& box, const Index4& t) {
 /// left.
 struct SliverBox {
   test::KuhnBox box = test::kuhnBox(6, 4, 4, Vec3::Zero(), cell* Vec3(6.0, 4.0, 4.0));
-  int slivers = 0;          ///< with less than a hundredth of the others' volume
-  double leastAngle = 0.0;  ///< between two faces (degrees)
+  int slivers = 0;        ///< with less than a hundredth of the others' volume
+  double minAngle = 0.0;  ///< between two faces (degrees)
 
   explicit SliverBox(std::uint64_t seed) {
     Random random(seed);
@@ -53,7 +53,7 @@ struct SliverBox {
       if (good) ++made;
     }
     for (const Index4& t : box.tetrahedron) slivers += volumeOf(box, t) < 1e-3 * cell * cell * cell ? 1 : 0;
-    leastAngle = dihedralRange({box.node, box.tetrahedron}).min * 180.0 / std::numbers::pi;
+    minAngle = dihedralRange({box.node, box.tetrahedron}).min * 180.0 / std::numbers::pi;
   }
   [[nodiscard]] SolidModel model(const std::vector<bool>& fixed) const {
     return {box.node, box.tetrahedron, fixed, {lameConstants(5e3, 0.45), 1060.0, 1.0, 0.02}};
@@ -88,7 +88,7 @@ TEST(Slivers, PassThePatchTest) {
     moved = std::max(moved, exact.norm());
   }
   std::printf("%d slivers, least angle %.3f degrees: off by %.1e of the largest displacement\n", mesh.slivers,
-              mesh.leastAngle, worst / moved);
+              mesh.minAngle, worst / moved);
   EXPECT_LT(worst, 2e-3 * moved);
 }
 
@@ -122,10 +122,10 @@ TEST(Slivers, ShakenAndThrownComeBack) {
     ASSERT_TRUE(solver.advance(model, state, {}, settings.step)) << "step " << i;
   }
   std::printf("%d slivers: %d of 600 steps missed the tolerance, at most %u iterations; %.4f cells from rest\n",
-              mesh.slivers, missed, most, test::largestDisplacement(model, state) / cell);
+              mesh.slivers, missed, most, test::maxDisplacement(model, state) / cell);
   ASSERT_TRUE(test::isFinite(state));
   EXPECT_EQ(test::invertedElements(model, state), 0);
-  EXPECT_LT(test::largestDisplacement(model, state), 0.01 * cell);
+  EXPECT_LT(test::maxDisplacement(model, state), 0.01 * cell);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ Course press(const Model& model, test::Loop& loop, double top) {
     run.contactMisses += (result.misses & miss::contact) != 0 ? 1 : 0;
     run.speedMisses += (result.misses & miss::speed) != 0 ? 1 : 0;
     run.lastSpeed = 0.0;
-    for (const OrganResult& organ : result.organ) run.lastSpeed = std::max(run.lastSpeed, organ.largestSpeed);
+    for (const OrganResult& organ : result.organ) run.lastSpeed = std::max(run.lastSpeed, organ.maxSpeed);
     if (i > 100) run.deepest = std::max(run.deepest, result.contact.tissueDepth);
     run.touched += loop.rig.state.tissue.key.empty() ? 0.0 : 1.0 / steps;
     if (testing::Test::HasFailure()) break;
@@ -111,7 +111,7 @@ TEST(StiffnessContrast, GrownTogether) {
     const Course course = press(*model, loop, test::blockTop + 0.013);
     print(softBelow ? "stiff plate grown to soft block" : "soft plate grown to stiff block", course);
     EXPECT_LT(course.lastSpeed, 0.02);
-    for (const SolidState& organ : loop.rig.state.organ) EXPECT_LT(organ.largestDisplacement, 1e-3);
+    for (const SolidState& organ : loop.rig.state.organ) EXPECT_LT(organ.maxDisplacement, 1e-3);
   }
 }
 

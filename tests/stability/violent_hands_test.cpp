@@ -125,7 +125,7 @@ Record shake(const Model& model, std::uint64_t seed, int steps, int measureEvery
     record.residual.push_back(result.contact.residual / std::max(result.contact.violation, 1e-4));
     record.error.push_back(result.contact.error / std::max(result.contact.violation, 1e-4));
     record.misses += result.misses != 0 ? 1 : 0;
-    record.told = std::max(record.told, result.contact.largestDepth);
+    record.told = std::max(record.told, result.contact.maxDepth);
     for (std::size_t h = 0; h < handCount; ++h) {
       record.strongest = std::max(record.strongest, result.hand[h].contactForce.norm());
       record.touches += result.hand[h].touching != 0 ? 1 : 0;
@@ -138,7 +138,7 @@ Record shake(const Model& model, std::uint64_t seed, int steps, int measureEvery
       if (depth > std::max(kept, 2e-4)) {
         std::printf("  seed %llu step %d hand %zu instrument %d: %.3f mm deep, told %.3f, pinched %.3f\n",
                     static_cast<unsigned long long>(seed), step, h, static_cast<int>(loop.rig.state.hand[h].instrument),
-                    1e3 * depth, 1e3 * result.contact.largestDepth, 1e3 * result.contact.pinchedDepth);
+                    1e3 * depth, 1e3 * result.contact.maxDepth, 1e3 * result.contact.pinchedDepth);
       }
       kept = std::max(kept, depth);
     }
@@ -150,7 +150,7 @@ Record shake(const Model& model, std::uint64_t seed, int steps, int measureEvery
     return tick;
   };
   for (int i = 0; i < 300; ++i) loop.step(home, [] {});
-  EXPECT_LT(loop.rig.state.organ[0].largestDisplacement, 1e-3);
+  EXPECT_LT(loop.rig.state.organ[0].maxDisplacement, 1e-3);
   return record;
 }
 
@@ -164,7 +164,7 @@ void expectWithinBounds(const Model& model, const Record& record) {
       record.touches, record.holds);
   EXPECT_LE(record.deepest, 2e-4);
   EXPECT_LE(percentile99(record.residual), 1e-4);
-  EXPECT_LE(record.strongestTick, model.scene().hands[0].largestForce * (1.0 + 1e-12));
+  EXPECT_LE(record.strongestTick, model.scene().hands[0].maxForce * (1.0 + 1e-12));
   EXPECT_GT(record.touches, static_cast<int>(record.residual.size()) / 4) << "the run must press";
   EXPECT_GT(record.holds, 0) << "and hold";
 }

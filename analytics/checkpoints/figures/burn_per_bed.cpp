@@ -9,7 +9,7 @@ namespace calot::analytics {
 namespace {
 
 /// Share of the bed that is work enough for a ratio.
-constexpr double leastWork = 0.01;
+constexpr double minWork = 0.01;
 
 const CheckpointDefinition& burnPerBedDefinition() {
   static const CheckpointDefinition d{
@@ -51,7 +51,7 @@ class BurnPerBed final : public Checkpoint {
     };
     if (!notApplicable_.empty()) return {missing(notApplicable_)};
     const double freed = bed_.any() ? 1.0 - bed_.attached() : 0.0;
-    if (freed < leastWork) return {missing("less than 1 % of the bed came free")};
+    if (freed < minWork) return {missing("less than 1 % of the bed came free")};
     return {makeValue(burnPerBedDefinition(), "", end.origin, charred_ / freed)};
   }
 

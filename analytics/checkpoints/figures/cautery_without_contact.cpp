@@ -33,7 +33,7 @@ const CheckpointDefinition& cauteryWithoutContactDefinition() {
 }
 
 /// Shorter stretches do not count (s).
-constexpr double leastStretch = 0.1;
+constexpr double minStretch = 0.1;
 
 /// One hook's current in the air.
 class CurrentInTheAir {
@@ -63,7 +63,7 @@ class CurrentInTheAir {
   }
   /// As many steps, if they are enough. Half a tick of room: lengths are products of rounded numbers.
   [[nodiscard]] std::uint64_t counts(std::uint64_t steps) const {
-    return secondsOf(steps) + 0.5 * tickSeconds_ >= leastStretch ? steps : 0;
+    return secondsOf(steps) + 0.5 * tickSeconds_ >= minStretch ? steps : 0;
   }
 
   double tickSeconds_;

@@ -10,7 +10,7 @@
 namespace calot::analytics {
 namespace {
 
-constexpr double leastPath = 1e-3;  ///< m
+constexpr double minPath = 1e-3;  ///< m
 
 const CheckpointDefinition& handRatioDefinition() {
   static const CheckpointDefinition d = [] {
@@ -28,7 +28,7 @@ const CheckpointDefinition& handRatioDefinition() {
 
 Measured handRatioOf(const Motion& left, const Motion& right, const AttemptContext& context) {
   const double l = pathLength(left), r = pathLength(right);
-  if (!(l + r >= leastPath)) return Measured::notApplicable("neither hand moved: both paths together are below 1 mm");
+  if (!(l + r >= minPath)) return Measured::notApplicable("neither hand moved: both paths together are below 1 mm");
   return Measured::of(r / (l + r), fmt::format("handedness {}", context.handedness));
 }
 

@@ -14,7 +14,7 @@ namespace calot::analytics {
 namespace {
 
 /// Shorter segments (s) say nothing of a band that begins near 0 Hz.
-constexpr double leastSegment = 1.0;
+constexpr double minSegment = 1.0;
 
 const CheckpointDefinition& sparcDefinition() {
   static const CheckpointDefinition d = motionDefinition(
@@ -45,11 +45,11 @@ const CheckpointDefinition& movementDefinition() {
 using OfSpeed = std::optional<double> (*)(std::span<const double>, double);
 
 Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
-  if (largestSpeed(motion) < leastSpeed) return Measured::notApplicable("the hand did not move: no speed of 0.1 mm/s");
+  if (maxSpeed(motion) < minSpeed) return Measured::notApplicable("the hand did not move: no speed of 0.1 mm/s");
   double sum = 0.0, points = 0.0;
   std::size_t segments = 0;
   for (const MotionSegment& segment : motion.segments) {
-    if (segment.speed.size() < pointsOf(leastSegment)) continue;
+    if (segment.speed.size() < pointsOf(minSegment)) continue;
     const std::optional<double> value = figure(segment.speed, motionRate);
     if (!value) continue;
     sum += *value * static_cast<double>(segment.speed.size());
@@ -61,7 +61,7 @@ Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
 }
 
 std::string tooSlow(const Motion& motion, double wanted) {
-  if (motion.rate >= wanted || (motion.rate == 0.0 && largestSpeed(motion) < leastSpeed)) return {};
+  if (motion.rate >= wanted || (motion.rate == 0.0 && maxSpeed(motion) < minSpeed)) return {};
   return fmt::format("effective rate {:.1f} Hz; {:g} Hz is wanted", motion.rate,
                      wanted < 30.0 && wanted > 29.0 ? 30.0 : wanted);
 }
@@ -74,7 +74,7 @@ Measured sparc(const Motion& motion) {
 }
 
 Measured jerk(const Motion& motion) {
-  if (std::string why = tooSlow(motion, leastJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
+  if (std::string why = tooSlow(motion, minJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
   return ofLongSegments(motion, logDimensionlessJerk);
 }
 
@@ -90,7 +90,7 @@ Stretch widened(const std::vector<double>& speed, Stretch movement) {
 }
 
 Measured jerkOfMovements(const Motion& motion) {
-  if (std::string why = tooSlow(motion, leastJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
+  if (std::string why = tooSlow(motion, minJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
   double sum = 0.0;
   std::size_t movements = 0;
   for (const MotionSegment& segment : motion.segments) {

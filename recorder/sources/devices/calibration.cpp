@@ -16,7 +16,7 @@ namespace calot::recorder {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::size_t mostBytes = 1U << 20U;
+constexpr std::size_t maxBytes = 1U << 20U;
 constexpr double large = 1e6;
 
 const ObjectRule rootRule{"",
@@ -234,7 +234,7 @@ Calibration parseCalibration(std::span<const std::byte> bytes, const std::string
 
 Calibration readCalibration(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseCalibration(readFileBytes(file, name, mostBytes), name);
+  return parseCalibration(readFileBytes(file, name, maxBytes), name);
 }
 
 void checkCalibration(const Calibration& c, const DeviceInfo& device, Mode mode, const std::string& now,

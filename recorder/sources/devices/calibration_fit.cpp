@@ -18,7 +18,7 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 constexpr std::size_t fewestPoses = 10;
-constexpr double leastTurn = 0.01;
+constexpr double minTurn = 0.01;
 constexpr std::size_t fewestRest = 20;
 constexpr std::array<const char*, 3> strokeNames{"stroke right", "stroke down", "stroke away"};
 
@@ -130,7 +130,7 @@ std::optional<PivotFit> fitPivot(std::span<const DeviceSample> samples) {
     right.tail<3>() += t / n;
   }
   const Eigen::SelfAdjointEigenSolver<Mat6> values(normal, Eigen::EigenvaluesOnly);
-  if (!(values.eigenvalues()[0] >= leastTurn)) return std::nullopt;
+  if (!(values.eigenvalues()[0] >= minTurn)) return std::nullopt;
   const Vec6 solution = normal.ldlt().solve(right);
   PivotFit fit;
   fit.tipOffset = solution.head<3>();

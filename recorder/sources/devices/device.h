@@ -41,8 +41,8 @@ struct DeviceCapabilities {
   int sensedRotations = 3;
   bool sensesGripper = false;
   int actuated = 0;               ///< degrees of freedom with a motor; 0: it shows no force
-  double largestForce = 0.0;      ///< N, each hand
-  double largestTorque = 0.0;     ///< N m
+  double maxForce = 0.0;          ///< N, each hand
+  double maxTorque = 0.0;         ///< N m
   std::array<Vec3, 2> workspace;  ///< lower and upper corner in D (m); both zero: without bounds
   double rate = 0.0;              ///< nominal, samples a second and hand; 0: the sender decides
   bool realTime = true;           ///< false: its clock is the tick clock, so that a run is the same every time

@@ -14,8 +14,8 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::size_t mostBytes = std::size_t{1} << 28U;
-constexpr std::size_t mostSamples = 1000000;
+constexpr std::size_t maxBytes = std::size_t{1} << 28U;
+constexpr std::size_t maxSamples = 1000000;
 constexpr double longest = 36000.0;     // s
 constexpr double farthest = 10.0;       // m
 constexpr double unitTolerance = 1e-3;  // of a quaternion's norm
@@ -71,9 +71,9 @@ DeviceScript parseJson(std::span<const std::byte> bytes, const std::string& file
   DeviceScript script;
   root.read("name", script.name, 64);
   root.read("rate", script.rate);
-  root.read("largestForce", script.largestForce);
+  root.read("largestForce", script.maxForce);
   std::array<std::uint64_t, handCount> sequence{};
-  for (const JsonPlace& place : root.at("samples").list(1, mostSamples)) {
+  for (const JsonPlace& place : root.at("samples").list(1, maxSamples)) {
     script.samples.push_back(sampleAt(place, sequence));
     if (script.samples.size() > 1 &&
         script.samples.back().hostTime < script.samples[script.samples.size() - 2].hostTime)
@@ -129,7 +129,7 @@ DeviceScript fromMotion(const KinematicsMotion& motion) {
 
 DeviceScript readDeviceScript(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseDeviceScript(readFileBytes(file, name, mostBytes), name);
+  return parseDeviceScript(readFileBytes(file, name, maxBytes), name);
 }
 
 DeviceScript parseDeviceScript(std::span<const std::byte> bytes, const std::string& file) {
@@ -147,7 +147,7 @@ DeviceScript parseDeviceScript(std::span<const std::byte> bytes, const std::stri
 std::string deviceScriptText(const DeviceScript& script) {
   nlohmann::ordered_json out{{"format", "calot-device-script"}, {"formatVersion", 1}, {"name", script.name}};
   out["rate"] = script.rate;
-  out["largestForce"] = script.largestForce;
+  out["largestForce"] = script.maxForce;
   for (const DeviceScript::Phase& p : script.phases) {
     out["phases"].push_back({{"name", p.name}, {"from", seconds(p.from)}, {"to", seconds(p.to)}});
   }

@@ -27,7 +27,7 @@ struct DeviceScript {
   std::string file, sha256;           ///< base name, and of its bytes
   bool motionFile = false;            ///< read from the kinematics text format
   double rate = 0.0;                  ///< nominal (1/s); 0: unknown
-  double largestForce = 0.0;          ///< N; above 0 the scripted device has motors
+  double maxForce = 0.0;              ///< N; above 0 the scripted device has motors
   std::vector<DeviceSample> samples;  ///< hostTime from 0, not falling
   std::vector<Unplugging> unpluggings;
   std::vector<Phase> phases;

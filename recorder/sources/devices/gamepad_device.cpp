@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t period = 4'000'000;                       // ns from sample to sample
 constexpr std::int64_t between = 500'000'000;                    // ns from one search for a lost gamepad to the next
-constexpr double largestStep = 0.05;                             // s; after a longer gap the pointer does not leap
+constexpr double maxStep = 0.05;                                 // s; after a longer gap the pointer does not leap
 constexpr double speed = 0.06, rollSpeed = 1.5, jawSpeed = 1.2;  // m/s, rad/s, rad/s
 constexpr double largestJaw = 1.2;                               // rad
 constexpr double deadZone = 0.12;
@@ -190,7 +190,7 @@ void GamepadDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
     out.events.push_back({DeviceEvent::Kind::disconnected, now, info_.identity + ": unplugged"});
     return;
   }
-  put(now, std::min(largestStep, 1e-9 * static_cast<double>(now - last_)), out);
+  put(now, std::min(maxStep, 1e-9 * static_cast<double>(now - last_)), out);
   last_ = now;
 }
 

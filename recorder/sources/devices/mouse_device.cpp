@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t period = 4'000'000;          // ns from sample to sample
 constexpr std::int64_t restingPeriod = 20'000'000;  // ns, of the hand that holds
-constexpr double largestStep = 0.05;                // s; after a longer gap the keys do not leap
+constexpr double maxStep = 0.05;                    // s; after a longer gap the keys do not leap
 constexpr double pixel = 0.00015;                   // m
 constexpr double notch = 0.003;                     // m
 constexpr double keySpeed = 0.03;                   // m/s
@@ -108,7 +108,7 @@ void MouseDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
   Pointer& resting = pointer_[static_cast<std::size_t>(other)];
   resting.right = resting.down = resting.in = 0.0;
   advance(pointer_[static_cast<std::size_t>(wish.hand)], wish,
-          std::min(largestStep, 1e-9 * static_cast<double>(now - last_)));
+          std::min(maxStep, 1e-9 * static_cast<double>(now - last_)));
   std::uint8_t momentary = 0;
   const auto bit = [&](MouseControl control, std::uint8_t mask) {
     if (wish.holds(control)) momentary = static_cast<std::uint8_t>(momentary | mask);

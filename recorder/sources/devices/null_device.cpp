@@ -7,7 +7,7 @@
 namespace calot::recorder {
 namespace {
 constexpr std::int64_t period = 1'000'000;  // ns
-constexpr std::int64_t mostAtOnce = 1000;   // samples; a poll after a long pause does not make up for all of it
+constexpr std::int64_t maxAtOnce = 1000;    // samples; a poll after a long pause does not make up for all of it
 }  // namespace
 
 NullDevice::NullDevice(DeviceClock clock) : clock_(std::move(clock)), next_(clock_()) {
@@ -25,7 +25,7 @@ void NullDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
   if (!open_) return;
   const std::int64_t now = clock_();
   if (sequence_ == 0) out.events.push_back({DeviceEvent::Kind::connected, now, "null: there"});
-  next_ = std::max(next_, now - mostAtOnce * period);
+  next_ = std::max(next_, now - maxAtOnce * period);
   for (; next_ <= now; next_ += period, ++sequence_) {
     for (const Hand hand : {Hand::left, Hand::right}) {
       DeviceSample sample;

@@ -18,8 +18,8 @@ using openigtlink::Item;
 
 constexpr std::int64_t between = 500'000'000;  // ns from one attempt to connect to the next
 constexpr std::chrono::milliseconds patience{300};
-constexpr std::size_t mostFaults = 16;  // kinds of fault told a connection
-constexpr double largestGripper = 3.2;  // rad
+constexpr std::size_t maxFaults = 16;  // kinds of fault told a connection
+constexpr double maxGripper = 3.2;     // rad
 constexpr int statusOk = 1;
 
 // HOST, HOST:PORT, [IPv6]:PORT or nothing.
@@ -56,9 +56,9 @@ void checkTools(const std::array<std::string, handCount>& tools) {
   if (tools[0] == tools[1])
     throw Error(ErrorKind::invalid, "OpenIGTLink: both hands have the same tool", {Remedy::nameTools});
   for (const std::string& tool : tools) {
-    if (tool.size() > openigtlink::longestName)
+    if (tool.size() > openigtlink::maxName)
       throw Error(ErrorKind::invalid,
-                  fmt::format("OpenIGTLink: a tool's name has at most {} characters", openigtlink::longestName),
+                  fmt::format("OpenIGTLink: a tool's name has at most {} characters", openigtlink::maxName),
                   {Remedy::nameTools});
   }
 }
@@ -107,7 +107,7 @@ void OpenIgtLinkDevice::lose(const std::string& why, DeviceInput& out) {
 }
 
 void OpenIgtLinkDevice::tellOnce(const std::string& fault, DeviceInput& out) {
-  if (told_.size() >= mostFaults || !told_.insert(fault).second) return;
+  if (told_.size() >= maxFaults || !told_.insert(fault).second) return;
   out.events.push_back({DeviceEvent::Kind::malformed, clock_(), "openigtlink: " + fault});
 }
 
@@ -116,7 +116,7 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
   if (item.kind == Item::Kind::status) {
     if (item.code != statusOk) {
       const std::string text = fmt::format("the server says: status {} {}", item.code, item.text);
-      if (told_.size() < mostFaults && told_.insert(text).second)
+      if (told_.size() < maxFaults && told_.insert(text).second)
         out.events.push_back({DeviceEvent::Kind::status, clock_(), "openigtlink: " + text});
     }
     return;
@@ -126,7 +126,7 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
     if (tool.empty()) continue;
     if (item.kind == Item::Kind::number) {
       if (item.name != tool + "Jaw") continue;
-      if (std::isfinite(item.value) && std::abs(item.value) <= largestGripper)
+      if (std::isfinite(item.value) && std::abs(item.value) <= maxGripper)
         gripper_[h] = std::max(0.0, item.value);
       else
         tellOnce(fmt::format("{}: an opening that is no angle", item.name), out);

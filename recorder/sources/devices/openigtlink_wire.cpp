@@ -19,8 +19,8 @@ namespace calot::recorder::openigtlink {
 namespace {
 
 constexpr std::size_t headerBytes = IGTL_HEADER_SIZE;
-constexpr std::uint64_t largestRead = 65536;                    // body of a type that is read
-constexpr std::uint64_t largestBody = std::uint64_t{1} << 32U;  // of any type: an image of 4 GB
+constexpr std::uint64_t maxRead = 65536;                    // body of a type that is read
+constexpr std::uint64_t maxBody = std::uint64_t{1} << 32U;  // of any type: an image of 4 GB
 constexpr double metresPerMillimetre = 1e-3;
 constexpr double farthest = 10.0;        // m
 constexpr double orthonormality = 1e-3;  // as kinematics files
@@ -183,8 +183,8 @@ bool Decoder::take(std::span<const std::byte> bytes, const Tell& tell) {
     item.name = textOf(header.device_name, sizeof header.device_name);
     item.time = nanoseconds(header.timestamp);
     const std::uint64_t size = header.body_size;
-    if (header.version < 1 || header.version > 3 || type.empty() || size > largestBody ||
-        (isRead(type) && size > largestRead)) {
+    if (header.version < 1 || header.version > 3 || type.empty() || size > maxBody ||
+        (isRead(type) && size > maxRead)) {
       item.text = "what came is no OpenIGTLink header";
       tell(item);
       sound = false;

@@ -16,7 +16,7 @@
 namespace calot::recorder::openigtlink {
 
 inline constexpr int defaultPort = 18944;
-inline constexpr std::size_t longestName = 20;  ///< bytes of a tool's name
+inline constexpr std::size_t maxName = 20;  ///< bytes of a tool's name
 
 /// One thing that a message said.
 struct Item {

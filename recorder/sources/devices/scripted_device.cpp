@@ -9,7 +9,7 @@ namespace calot::recorder {
 ScriptedDevice::ScriptedDevice(DeviceScript script, DeviceClock clock)
     : script_(std::move(script)),
       clock_(std::move(clock)),
-      gate_{WrenchGate(script_.largestForce, 0.0), WrenchGate(script_.largestForce, 0.0)},
+      gate_{WrenchGate(script_.maxForce, 0.0), WrenchGate(script_.maxForce, 0.0)},
       origin_(clock_()) {
   std::sort(script_.unpluggings.begin(), script_.unpluggings.end(),
             [](const auto& a, const auto& b) { return a.at < b.at; });
@@ -23,8 +23,8 @@ ScriptedDevice::ScriptedDevice(DeviceScript script, DeviceClock clock)
   for (const DeviceSample& s : script_.samples) hand[static_cast<std::size_t>(s.hand)] = true;
   info_.capabilities.hands = static_cast<int>(hand[0]) + static_cast<int>(hand[1]);
   info_.capabilities.sensesGripper = true;
-  info_.capabilities.actuated = script_.largestForce > 0.0 ? 3 : 0;
-  info_.capabilities.largestForce = script_.largestForce;
+  info_.capabilities.actuated = script_.maxForce > 0.0 ? 3 : 0;
+  info_.capabilities.maxForce = script_.maxForce;
   info_.capabilities.rate = script_.rate;
   info_.capabilities.realTime = false;
 }

@@ -21,7 +21,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::chrono::milliseconds longestSend{1000};
+constexpr std::chrono::milliseconds maxSend{1000};
 
 bool waitFor(int descriptor, short what, std::chrono::nanoseconds wait) {
   pollfd p{descriptor, what, 0};
@@ -100,7 +100,7 @@ bool TcpStream::send(std::span<const std::byte> bytes) {
     if (n > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(n));
     } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
-      if (!waitFor(descriptor_, POLLOUT, longestSend)) close();
+      if (!waitFor(descriptor_, POLLOUT, maxSend)) close();
     } else if (n < 0 && errno == EINTR) {
       continue;
     } else {

@@ -11,8 +11,8 @@ class WrenchGate {
  public:
   static constexpr std::int64_t watchdog = 50'000'000;  ///< ns without a command after which the wrench is zero
 
-  /// @param largestForce N; @param largestTorque N m; both at least 0.
-  WrenchGate(double largestForce, double largestTorque) : force_(largestForce), torque_(largestTorque) {}
+  /// @param maxForce N; @param maxTorque N m; both at least 0.
+  WrenchGate(double maxForce, double maxTorque) : force_(maxForce), torque_(maxTorque) {}
 
   /// Force and torque are shortened to their largest length, keeping their direction; what is not finite becomes zero.
   void command(const Wrench& wrench, std::int64_t now);

@@ -60,7 +60,7 @@ struct ConnectiveResult {
   double attached = 0.0;
   double burned = 0.0;
   double torn = 0.0;
-  double largestPull = 0.0;
+  double maxPull = 0.0;
   std::uint32_t hookTouches = 0;
   double lowerAttached = 0.0;
   double middleAttached = 0.0;
@@ -74,7 +74,7 @@ struct ConnectiveResult {
     visit(ResultField{"torn", "1", "", 2, "share that is torn and hangs on the organs as residue"},
           &ConnectiveResult::torn);
     visit(ResultField{"largest_pull", "Pa", "", 2, "on any attached strand, per area of bed"},
-          &ConnectiveResult::largestPull);
+          &ConnectiveResult::maxPull);
     visit(ResultField{"hook_touches", "", "", 2, "strands that the energised hook touched in this step"},
           &ConnectiveResult::hookTouches);
     visit(ResultField{"lower_attached", "1", "", 4,

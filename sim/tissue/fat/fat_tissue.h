@@ -69,8 +69,8 @@ struct FatResult {
   double toClear = 0.0;
   double carved = 0.0;
   double islands = 0.0;
-  double largestDisplacement = 0.0;
-  double largestSpeed = 0.0;
+  double maxDisplacement = 0.0;
+  double maxSpeed = 0.0;
   double residual = 0.0;
   std::uint32_t iterations = 0;
   bool asleep = false;
@@ -84,8 +84,8 @@ struct FatResult {
     visit(ResultField{"carved", "m^3", "", 3, "that the hook took in this step"}, &FatResult::carved);
     visit(ResultField{"islands", "m^3", "", 3, "that came loose by that and left"}, &FatResult::islands);
     visit(ResultField{"largest_displacement", "m", "", 3, "over its nodes, from the reference configuration"},
-          &FatResult::largestDisplacement);
-    visit(ResultField{"largest_speed", "m/s", "", 3, "over its nodes"}, &FatResult::largestSpeed);
+          &FatResult::maxDisplacement);
+    visit(ResultField{"largest_speed", "m/s", "", 3, "over its nodes"}, &FatResult::maxSpeed);
     visit(ResultField{"residual", "1", "", 3, "relative residual of the linear solve; 0 asleep"}, &FatResult::residual);
     visit(ResultField{"iterations", "", "", 3, "of the linear solve; 0 asleep"}, &FatResult::iterations);
     visit(ResultField{"asleep", "", "", 3, "1: untouched and idle, not solved in this step"}, &FatResult::asleep);

@@ -98,8 +98,8 @@ struct CharState {
 /// One organ at the end of a step.
 struct OrganResult {
   double volume = 0.0;
-  double largestDisplacement = 0.0;
-  double largestSpeed = 0.0;
+  double maxDisplacement = 0.0;
+  double maxSpeed = 0.0;
   double residual = 0.0;
   std::uint32_t iterations = 0;
   bool asleep = false;
@@ -110,8 +110,8 @@ struct OrganResult {
   static void fields(Visit&& visit) {
     visit(ResultField{"volume", "m^3", "", 1, "of the deformed tetrahedra"}, &OrganResult::volume);
     visit(ResultField{"largest_displacement", "m", "", 1, "over its nodes, from the reference configuration"},
-          &OrganResult::largestDisplacement);
-    visit(ResultField{"largest_speed", "m/s", "", 1, "over its nodes"}, &OrganResult::largestSpeed);
+          &OrganResult::maxDisplacement);
+    visit(ResultField{"largest_speed", "m/s", "", 1, "over its nodes"}, &OrganResult::maxSpeed);
     visit(ResultField{"residual", "1", "", 1, "relative residual of the linear solve; 0 asleep"},
           &OrganResult::residual);
     visit(ResultField{"iterations", "", "", 1, "of the linear solve; 0 asleep"}, &OrganResult::iterations);

@@ -83,9 +83,9 @@ inline constexpr TubeSurface::Settings tubeSettings{8, 1};
 
 /// One vessel at the end of a step.
 struct VesselResult {
-  double largestStrain = 0.0;
-  double largestTension = 0.0;
-  double largestDisplacement = 0.0;
+  double maxStrain = 0.0;
+  double maxTension = 0.0;
+  double maxDisplacement = 0.0;
   std::uint32_t clips = 0;
   std::uint32_t partings = 0;
   double charred = 0.0;
@@ -96,12 +96,12 @@ struct VesselResult {
   static void fields(Visit&& visit) {
     visit(ResultField{"largest_strain", "1", "", 3,
                       "stretch (length / reference length - 1) of any whole element; 0 asleep"},
-          &VesselResult::largestStrain);
+          &VesselResult::maxStrain);
     visit(ResultField{"largest_tension", "N", "", 3, "tension in any whole element; 0 asleep"},
-          &VesselResult::largestTension);
+          &VesselResult::maxTension);
     visit(ResultField{"largest_displacement", "m", "", 3,
                       "of any node of the vessels that it grows together with, from the reference configuration"},
-          &VesselResult::largestDisplacement);
+          &VesselResult::maxDisplacement);
     visit(ResultField{"clips", "", "", 3, "clips on it"}, &VesselResult::clips);
     visit(ResultField{"partings", "", "", 3, "places where it is cut, burned or torn through"},
           &VesselResult::partings);

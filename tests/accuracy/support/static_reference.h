@@ -56,8 +56,8 @@ inline StaticAnswer equilibrium(const StaticBody& body, RotationRule rule) {
   answer.position = body.rest;
   std::vector<Eigen::Triplet<double>> entry;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> factor;
-  double largestLoad = 0.0;
-  for (const Vec3& f : body.load) largestLoad = std::max(largestLoad, f.norm());
+  double maxLoad = 0.0;
+  for (const Vec3& f : body.load) maxLoad = std::max(maxLoad, f.norm());
   for (answer.iterations = 0; answer.iterations < 200; ++answer.iterations) {
     entry.clear();
     Eigen::VectorXd left = Eigen::VectorXd::Zero(3 * count);
@@ -96,7 +96,7 @@ inline StaticAnswer equilibrium(const StaticBody& body, RotationRule rule) {
     for (std::size_t n = 0; n < nodes; ++n) {
       if (unknown[n] >= 0) answer.position[n] += move.segment<3>(unknown[n]);
     }
-    answer.residual = left.lpNorm<Eigen::Infinity>() / largestLoad;
+    answer.residual = left.lpNorm<Eigen::Infinity>() / maxLoad;
     if (move.lpNorm<Eigen::Infinity>() < 1e-12) break;
   }
   return answer;

@@ -115,7 +115,7 @@ TEST(PermutationTest, allAssignments) {
 
 TEST(PermutationTest, randomAssignmentsAgreeAndNameTheirSeed) {
   PermutationOptions options;
-  options.mostAssignments = 1000;
+  options.maxAssignments = 1000;
   options.seed = 77;
   const auto p = permutationTest(sleep1, sleep2, options);
   EXPECT_FALSE(p->exact);

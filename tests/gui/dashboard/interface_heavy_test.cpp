@@ -30,9 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 using Access = analytics::CohortDatabase::Access;
 
-constexpr double longestStart = 1000.0;  // ms, of 10,000 attempts
-constexpr double longestGap = 100.0;     // ms between two turns of the interface
-constexpr double longestSeek = 300.0;    // ms till a picture of about that moment
+constexpr double maxStart = 1000.0;  // ms, of 10,000 attempts
+constexpr double maxGap = 100.0;     // ms between two turns of the interface
+constexpr double maxSeek = 300.0;    // ms till a picture of about that moment
 
 /// Of this thread: what a turn costs, whatever else the machine is at.
 double cpuMilliseconds() {
@@ -71,7 +71,7 @@ TEST_F(InterfaceHeavy, TenThousandAttemptsAreOnTheScreenWithinASecond) {
   window.setDocument(std::make_shared<const CohortDocument>(path));
   window.show();
   QTest::qWait(1);
-  judge("start", static_cast<double>(clock.elapsed()), longestStart);
+  judge("start", static_cast<double>(clock.elapsed()), maxStart);
   clock.restart();
   window.reload();
   QElapsedTimer turn;
@@ -84,7 +84,7 @@ TEST_F(InterfaceHeavy, TenThousandAttemptsAreOnTheScreenWithinASecond) {
     gap = std::max(gap, static_cast<double>(turn.nsecsElapsed()) * 1e-6);
     turn.restart();
   }
-  judge("largest gap while 10,000 attempts are read again", gap, longestGap);
+  judge("largest gap while 10,000 attempts are read again", gap, maxGap);
 }
 
 TEST_F(InterfaceHeavy, NothingBlocksWhileAReplayAndAnImportRun) {
@@ -121,7 +121,7 @@ TEST_F(InterfaceHeavy, NothingBlocksWhileAReplayAndAnImportRun) {
   AttemptPage& page = *window.findChild<AttemptPage*>();
   ASSERT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, 300000));
   std::cout << "most work in a turn while an attempt is opened: " << work << " ms\n";
-  judge("largest gap while an attempt is opened", gap, longestGap);
+  judge("largest gap while an attempt is opened", gap, maxGap);
   gap = work = 0.0;
   window.importRecordings({folder_.path()});
   page.replay().setSpeed(16.0);
@@ -133,7 +133,7 @@ TEST_F(InterfaceHeavy, NothingBlocksWhileAReplayAndAnImportRun) {
     if (page.replay().isOpen() && !page.replay().position().playing) page.replay().play();
   }
   std::cout << "most work in a turn while a replay and an import run: " << work << " ms\n";
-  judge("largest gap while a replay and an import run", gap, longestGap);
+  judge("largest gap while a replay and an import run", gap, maxGap);
 }
 
 TEST_F(InterfaceHeavy, AnyMomentOfALongRecordingIsShownAtOnce) {
@@ -173,7 +173,7 @@ TEST_F(InterfaceHeavy, AnyMomentOfALongRecordingIsShownAtOnce) {
     slowestExact = std::max(slowestExact, static_cast<double>(clock.nsecsElapsed()) * 1e-6);
   }
   std::cout << "exact moment after at most " << slowestExact << " ms\n";
-  judge("first picture after a seek", slowest, longestSeek);
+  judge("first picture after a seek", slowest, maxSeek);
 }
 
 }  // namespace

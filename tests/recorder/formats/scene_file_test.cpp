@@ -92,7 +92,7 @@ TEST(SceneFile, everyValueArrives) {
   EXPECT_EQ(s.hands[1].instrument, InstrumentKind::hook);
   EXPECT_EQ(s.hands[1].shaftRadius, 0.002);
   EXPECT_EQ(s.hands[1].couplingStiffness, 500.0);
-  EXPECT_EQ(s.hands[1].largestForce, 3.0);
+  EXPECT_EQ(s.hands[1].maxForce, 3.0);
   ASSERT_EQ(s.organs.size(), 2U);
   EXPECT_EQ(s.organs[0].tetrahedra, 100U);
   EXPECT_EQ(s.organs[0].material.youngModulus, 5000.0);
@@ -352,7 +352,7 @@ TEST(SceneFile, defaultsAreTheSchemas) {
   EXPECT_EQ(s.timeLimit, root.at("timeLimit").at("default").get<double>());
   EXPECT_EQ(s.hands[1].shaftRadius, of("hand", "shaftRadius").get<double>());
   EXPECT_EQ(s.hands[1].couplingStiffness, of("hand", "couplingStiffness").get<double>());
-  EXPECT_EQ(s.hands[1].largestForce, of("hand", "largestForce").get<double>());
+  EXPECT_EQ(s.hands[1].maxForce, of("hand", "largestForce").get<double>());
   EXPECT_EQ(s.organs[0].material.massDamping, of("material", "massDamping").get<double>());
   EXPECT_EQ(s.organs[0].material.stiffnessDamping, of("material", "stiffnessDamping").get<double>());
   EXPECT_EQ(s.solver.tolerance, of("solver", "tolerance").get<double>());

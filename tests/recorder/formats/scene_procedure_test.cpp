@@ -54,8 +54,8 @@ TEST(SceneProcedure, EveryValueArrives) {
   EXPECT_EQ(scene.retraction[0].damping, 4.0);
   EXPECT_EQ(scene.clip.width, 0.001);
   EXPECT_EQ(scene.clip.legs, 0.009);
-  EXPECT_EQ(scene.clip.leastGap, 0.002);
-  EXPECT_EQ(scene.clip.leastJunctionGap, 0.003);
+  EXPECT_EQ(scene.clip.minGap, 0.002);
+  EXPECT_EQ(scene.clip.minJunctionGap, 0.003);
   EXPECT_EQ(scene.cautery.power, 40.0);
   EXPECT_EQ(scene.cautery.reach, 0.0002);
   EXPECT_EQ(scene.cautery.carve, 0.001);
@@ -102,8 +102,8 @@ TEST(SceneProcedure, DefaultsAreTheSchemas) {
   EXPECT_EQ(RetractionDescription().damping, number("retraction", "damping"));
   EXPECT_EQ(ClipDescription().width, number("clip", "width"));
   EXPECT_EQ(ClipDescription().legs, number("clip", "legs"));
-  EXPECT_EQ(ClipDescription().leastGap, number("clip", "leastGap"));
-  EXPECT_EQ(ClipDescription().leastJunctionGap, number("clip", "leastJunctionGap"));
+  EXPECT_EQ(ClipDescription().minGap, number("clip", "leastGap"));
+  EXPECT_EQ(ClipDescription().minJunctionGap, number("clip", "leastJunctionGap"));
   EXPECT_EQ(CauteryDescription().power, number("cautery", "power"));
   EXPECT_EQ(CauteryDescription().reach, number("cautery", "reach"));
   EXPECT_EQ(CauteryDescription().carve, number("cautery", "carve"));

@@ -33,7 +33,7 @@ TEST(PacedClock, ALateTickIsCountedAndCaughtUpWith) {
   EXPECT_FLOAT_EQ(clock.finish(2, clock.due(2) + milliseconds(99)), 0.099F);
   EXPECT_EQ(clock.due(3), start + milliseconds(3)) << "less than the longest lag moves nothing";
   EXPECT_EQ(clock.stretched(), Nanoseconds(0));
-  EXPECT_EQ(clock.largestLateness(), milliseconds(99));
+  EXPECT_EQ(clock.maxLateness(), milliseconds(99));
 }
 
 TEST(PacedClock, WhatExceedsTheLongestLagStretchesIt) {
@@ -61,11 +61,11 @@ TEST(PacedClock, TheSimulationsBacklogIsLagToo) {
 TEST(PacedClock, ATickThatWasInterruptedDoesNotSayThatTheClockWasStretched) {
   PacedClock clock(start);
   EXPECT_TRUE(clock.mayBegin(0, start, 0));
-  EXPECT_EQ(clock.finish(0, start + milliseconds(250)), longestLag);
-  EXPECT_EQ(clock.largestLateness(), milliseconds(250));
+  EXPECT_EQ(clock.finish(0, start + milliseconds(250)), maxLag);
+  EXPECT_EQ(clock.maxLateness(), milliseconds(250));
   // The next one does.
   EXPECT_TRUE(clock.mayBegin(1, start + milliseconds(250), 0));
-  EXPECT_GT(clock.finish(1, start + milliseconds(250)), longestLag);
+  EXPECT_GT(clock.finish(1, start + milliseconds(250)), maxLag);
 }
 
 TEST(PacedClock, APauseIsNeitherLateNorStretched) {

@@ -195,7 +195,7 @@ TEST(RawSamples, Statistics) {
   EXPECT_EQ(left.samples, 95U);
   EXPECT_EQ(left.missing, 5U);
   EXPECT_NEAR(left.rate, 94 / 0.99, 1e-9);
-  EXPECT_NEAR(left.longestInterval, 0.06, 1e-9);
+  EXPECT_NEAR(left.maxInterval, 0.06, 1e-9);
   EXPECT_EQ(right.samples, 100U);
   EXPECT_EQ(right.missing, 0U);
   EXPECT_NEAR(right.rate, 100.0, 1e-9);

@@ -24,8 +24,8 @@ TEST(Size, TenMinutesAgainstRepacked) {
   const auto recorded = std::filesystem::file_size(folder / "r.h5");
   // Time of the writing thread per recorded second; the loop's thread only copies.
   std::printf("recorded: %.1f kB/s, writer %.2f ms CPU a recorded second, longest flush %.1f ms, blocks grown %llu\n",
-              static_cast<double>(recorded) / 600e3, statistics.writerSeconds / 0.6,
-              statistics.largestFlushSeconds * 1e3, static_cast<unsigned long long>(statistics.blocksGrown));
+              static_cast<double>(recorded) / 600e3, statistics.writerSeconds / 0.6, statistics.maxFlushSeconds * 1e3,
+              static_cast<unsigned long long>(statistics.blocksGrown));
   {
     Recording r(folder / "r.h5");
     EXPECT_EQ(r.stepCount(), steps);

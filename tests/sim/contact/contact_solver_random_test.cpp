@@ -99,7 +99,7 @@ TEST(ContactSolverRandom, ThirtyFrictionalContacts) {
   SCOPED_TRACE("seed 25");
   Random random(25);
   ContactSolver solver;
-  std::uint32_t mostSweeps = 0;
+  std::uint32_t maxSweeps = 0;
   for (int trial = 0; trial < 30; ++trial) {
     constexpr int contacts = 30;
     std::vector<Eigen::Vector2d> place(contacts);
@@ -122,14 +122,14 @@ TEST(ContactSolverRandom, ThirtyFrictionalContacts) {
     const ContactReport report = solver.solve(problem.view(), lambda, gap, 1e-9, 200);
     EXPECT_TRUE(report.converged) << "trial " << trial << " residual " << report.residual;
     EXPECT_LT(test::brokenLaws(problem, lambda), 1e-8);
-    mostSweeps = std::max(mostSweeps, report.sweeps);
+    maxSweeps = std::max(maxSweeps, report.sweeps);
     // The answer as warm start is recognised: no sweep, not a bit changed.
     std::vector<double> again = lambda;
     const ContactReport warm = solver.solve(problem.view(), again, gap, 1e-9, 200);
     EXPECT_TRUE(warm.converged);
     EXPECT_EQ(warm.sweeps + warm.newtonSteps, 0U);
   }
-  std::printf("30 frictional contacts: at most %u sweeps\n", mostSweeps);
+  std::printf("30 frictional contacts: at most %u sweeps\n", maxSweeps);
 }
 
 /// Columns are added in vectors of whatever width the machine has: element by element these are the bits of the plain

@@ -17,7 +17,7 @@ Vec3 randomPoint(Random& random) {
 /// Least squared distance from p to the triangle by a search that shares nothing with the code: the distance is convex
 /// over the triangle, so a grid that shrinks around its best point finds the least.
 template <class Distance>
-double leastOverTriangle(const Distance& distance) {
+double minOverTriangle(const Distance& distance) {
   double best = 1e300;
   double u0 = 0.0, v0 = 0.0, width = 1.0;
   double cu = 0.5, cv = 0.5;
@@ -54,7 +54,7 @@ TEST(ClosestOnTriangle, AgreesWithASearchAndIsConsistent) {
     const Vec3 p = 2.0 * randomPoint(random);
     const PointTriangle r = closestOnTriangle(p, a, b, c);
     const double searched =
-        leastOverTriangle([&](double u, double v) { return (p - (a + u * (b - a) + v * (c - a))).squaredNorm(); });
+        minOverTriangle([&](double u, double v) { return (p - (a + u * (b - a) + v * (c - a))).squaredNorm(); });
     EXPECT_NEAR(std::sqrt(r.squaredDistance), std::sqrt(searched), 1e-6) << "trial " << trial;
     EXPECT_LE(r.squaredDistance, searched + 1e-14);
     EXPECT_GE(r.barycentric.minCoeff(), 0.0);

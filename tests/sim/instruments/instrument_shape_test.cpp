@@ -57,7 +57,7 @@ TEST(InstrumentShape, ReachesFromTheTipToThePort) {
       EXPECT_EQ(back, -length);
     }
   }
-  // The whole shaft of a long one is there, in at most mostPieces.
+  // The whole shaft of a long one is there, in at most maxPieces.
   const InstrumentShape far = instrumentShape(InstrumentKind::grasper, 0.3, radius, 0.6);
   EXPECT_LT(test::distanceTo(far, Vec3(0.0, 0.0, -0.59)), -0.99 * radius);
   // One that has hardly entered is its jaws and neck.

@@ -24,7 +24,7 @@ TEST(Port, TheShaftPassesThroughThePortAndKeepsItsRoll) {
   for (int trial = 0; trial < 500; ++trial) {
     const Vec3 port = 0.1 * randomVector(random);
     const Vec3 tip = port + 0.1 * randomVector(random);
-    if ((tip - port).norm() < leastInsertion) continue;
+    if ((tip - port).norm() < minInsertion) continue;
     const Quat hand = randomTurn(random);
     const Pose pose = throughPort(port, tip, hand, Vec3::UnitZ());
     EXPECT_EQ(pose.position, tip) << "a reachable tip is not moved";
@@ -56,12 +56,12 @@ TEST(Port, ATipAtThePortIsHeldInside) {
   const Vec3 port(0.02, -0.01, 0.1);
   const Vec3 previous = Vec3(1.0, -2.0, -2.0) / 3.0;
   const Pose at = throughPort(port, port, Quat::Identity(), previous);
-  EXPECT_LT((at.position - (port + leastInsertion * previous)).norm(), 1e-15) << "along the previous direction";
+  EXPECT_LT((at.position - (port + minInsertion * previous)).norm(), 1e-15) << "along the previous direction";
   EXPECT_LT((at.orientation * Vec3::UnitZ() - previous).norm(), 1e-12);
   const Vec3 near = port + 0.004 * Vec3::UnitY();
   const Pose pushed = throughPort(port, near, Quat::Identity(), previous);
-  EXPECT_LT((pushed.position - (port + leastInsertion * Vec3::UnitY())).norm(), 1e-15) << "along its own direction";
-  const Vec3 enough = port + leastInsertion * Vec3::UnitY();
+  EXPECT_LT((pushed.position - (port + minInsertion * Vec3::UnitY())).norm(), 1e-15) << "along its own direction";
+  const Vec3 enough = port + minInsertion * Vec3::UnitY();
   EXPECT_LT((throughPort(port, enough, Quat::Identity(), previous).position - enough).norm(), 1e-15);
 }
 

@@ -21,8 +21,8 @@ SceneDescription sceneOfAll() {
   scene.connective.emplace_back().name = "bed";
   scene.fat.emplace_back().name = "fat";
   scene.procedure = {"gallbladder", "bed", "fat", {{"duct", 2, 1, true}, {"artery", 2, 1, false}}, {"spared"}};
-  scene.clip.leastGap = 0.001;
-  scene.clip.leastJunctionGap = 0.002;
+  scene.clip.minGap = 0.001;
+  scene.clip.minJunctionGap = 0.002;
   return scene;
 }
 

@@ -155,7 +155,7 @@ TEST(Retraction, PullsWhatLiesInItsSphereAndThenSleeps) {
   double largest = 0.0;
   for (int i = 0; i < 600; ++i) {
     const StepResult& result = rig.step(home);
-    largest = std::max(largest, result.organ[0].largestDisplacement);
+    largest = std::max(largest, result.organ[0].maxDisplacement);
     EXPECT_EQ(result.misses, 0U);
   }
   EXPECT_GT(largest, 0.001);

@@ -147,7 +147,7 @@ TEST_F(ConnectiveScene, PulledHardItTearsOff) {
   EXPECT_NEAR(torn, 1.0, 1e-9);
   EXPECT_EQ(freed, 1);
   // The block is left alone and goes back to its shape.
-  EXPECT_LT(step(rig, scene(), surgery).organ[0].largestDisplacement, 2e-4);
+  EXPECT_LT(step(rig, scene(), surgery).organ[0].maxDisplacement, 2e-4);
 }
 
 /// The hook burns with its pedal pressed only; burned strands do not come back.

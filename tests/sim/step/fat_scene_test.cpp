@@ -106,7 +106,7 @@ TEST_F(FatScene, RestIsRestAndSleeps) {
     EXPECT_TRUE(result.fat[0].asleep);
     EXPECT_NEAR(result.fat[0].volume, 0.024 * 0.020 * 0.0098, 0.02 * 0.024 * 0.020 * 0.0098);
     EXPECT_NEAR(result.fat[0].toClear, 0.5 * result.fat[0].volume, 0.05 * result.fat[0].volume);
-    EXPECT_EQ(result.fat[0].largestDisplacement, 0.0);
+    EXPECT_EQ(result.fat[0].maxDisplacement, 0.0);
   }
   EXPECT_EQ(model_->structures()[fatStructure].kind, tissueId<FatTissue>);
 }
@@ -117,15 +117,15 @@ TEST_F(FatScene, GivesWayAndComesBack) {
   const StepResult& pressed = go({Vec3(0.0, 0.005, fatTop - 0.003), 0.0, InstrumentKind::grasper, 0}, 60);
   EXPECT_EQ(pressed.hand[0].touching, 1U << fatStructure);
   EXPECT_GT(pressed.hand[0].structureForce[fatStructure], 0.002);
-  EXPECT_GT(pressed.fat[0].largestDisplacement, 0.0005);
-  EXPECT_GT(pressed.organ[0].largestDisplacement, 1e-6);
-  EXPECT_LT(pressed.contact.largestDepth, 2e-4);
+  EXPECT_GT(pressed.fat[0].maxDisplacement, 0.0005);
+  EXPECT_GT(pressed.organ[0].maxDisplacement, 1e-6);
+  EXPECT_LT(pressed.contact.maxDepth, 2e-4);
   EXPECT_EQ(pressed.misses, 0U);
   go({Vec3(0.0, 0.005, 0.06), 0.0, InstrumentKind::grasper, 0}, 60);
   for (int i = 0; i < 500; ++i) step(act_);
   const StepResult& after = step(act_);
   EXPECT_TRUE(after.fat[0].asleep);
-  EXPECT_LT(after.fat[0].largestDisplacement, 1e-4);
+  EXPECT_LT(after.fat[0].maxDisplacement, 1e-4);
   EXPECT_EQ(carved_, 0.0);
 }
 
@@ -171,7 +171,7 @@ TEST_F(FatScene, HeldFatFollowsAndIsLetGoWhereItIsBurned) {
   const StepResult& lifted = go({Vec3(0.0, 0.005, fatTop + 0.004), 0.0, InstrumentKind::grasper, button::lock}, 60);
   EXPECT_EQ(lifted.hand[0].grasping, 1U << fatStructure);
   EXPECT_GT(lifted.hand[0].graspForce, 0.001);
-  EXPECT_GT(lifted.fat[0].largestDisplacement, 0.002);
+  EXPECT_GT(lifted.fat[0].maxDisplacement, 0.002);
 }
 
 /// Two steppers over one State, one of them restored in mid-stroke, give the same bits.

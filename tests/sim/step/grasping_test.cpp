@@ -94,7 +94,7 @@ TEST_F(Grasping, HeldTissueFollowsAndPullsBack) {
   EXPECT_EQ(count(EventKind::graspEnd), 1);
   EXPECT_EQ(count(EventKind::tissueTear), 0);
   EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
-  EXPECT_LT(rig_->state.organ[0].largestDisplacement, 2e-4);
+  EXPECT_LT(rig_->state.organ[0].maxDisplacement, 2e-4);
 }
 
 TEST_F(Grasping, SlipsOverTheStatedForce) {

@@ -193,7 +193,7 @@ TEST_F(StepperTest, AnOrganWakesBeforeItIsTouchedAndSleepsWhenLeft) {
   EXPECT_EQ(ended, 1);
   ASSERT_TRUE(asleep);
   for (const Vec3& v : rig.state.organ[0].velocity) ASSERT_TRUE(v.isZero(0.0));
-  EXPECT_LT(rig.state.organ[0].largestDisplacement, 1e-4) << "back in its shape";
+  EXPECT_LT(rig.state.organ[0].maxDisplacement, 1e-4) << "back in its shape";
 }
 
 TEST_F(StepperTest, WithoutSleepingEveryOrganIsSolved) {
@@ -205,7 +205,7 @@ TEST_F(StepperTest, WithoutSleepingEveryOrganIsSolved) {
   for (int i = 0; i < 3; ++i) {
     const StepResult& result = rig.step(Vec3(0.0, 0.0, 0.03));
     for (const OrganResult& organ : result.organ) EXPECT_FALSE(organ.asleep);
-    EXPECT_LT(result.organ[0].largestDisplacement, 1e-9) << "at rest nothing moves without gravity";
+    EXPECT_LT(result.organ[0].maxDisplacement, 1e-9) << "at rest nothing moves without gravity";
   }
 }
 

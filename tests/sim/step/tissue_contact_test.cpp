@@ -183,15 +183,15 @@ TEST(TissueContact, WhatIsInsideOutTurnsBack) {
     for (int step = 0; step < 400; ++step) {
       const StepResult& result = rig.step(scene.hands[0].home);
       ASSERT_TRUE(test::allFinite(rig.state)) << "step " << step;
-      if (step > 50) fastest = std::max(fastest, result.organ[1].largestSpeed);
+      if (step > 50) fastest = std::max(fastest, result.organ[1].maxSpeed);
       rows = std::max(rows, result.contact.rows);
     }
     std::printf("bag, seed %d: inside out %zu of %zu, then %zu; displaced by %.2f mm; %.2f m/s, %u rows at most\n",
                 static_cast<int>(seed), before, solid.tetrahedra().size(), insideOut(solid, rig.state.organ[1]),
-                1e3 * rig.state.organ[1].largestDisplacement, fastest, rows);
+                1e3 * rig.state.organ[1].maxDisplacement, fastest, rows);
     EXPECT_GT(before, solid.tetrahedra().size() / 10);
     EXPECT_EQ(insideOut(solid, rig.state.organ[1]), 0U);
-    EXPECT_LT(rig.state.organ[1].largestDisplacement, 2e-3);
+    EXPECT_LT(rig.state.organ[1].maxDisplacement, 2e-3);
   }
 }
 
@@ -203,7 +203,7 @@ TEST(TissueContact, WhatOverlapsAtRestStaysAtRest) {
   ASSERT_TRUE(model);
   test::Rig rig(*model);
   for (int i = 0; i < 60; ++i) rig.step(scene.hands[0].home);
-  for (std::size_t o = 0; o < 2; ++o) EXPECT_LT(rig.state.organ[o].largestDisplacement, 2e-5) << o;
+  for (std::size_t o = 0; o < 2; ++o) EXPECT_LT(rig.state.organ[o].maxDisplacement, 2e-5) << o;
 }
 
 }  // namespace

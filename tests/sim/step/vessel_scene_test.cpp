@@ -138,7 +138,7 @@ TEST_F(VesselScene, RestIsRestAndSleeps) {
   for (int i = 0; i < 60; ++i) {
     const StepResult& result = step({});
     EXPECT_TRUE(result.vessel[0].asleep);
-    EXPECT_EQ(result.vessel[0].largestDisplacement, 0.0);
+    EXPECT_EQ(result.vessel[0].maxDisplacement, 0.0);
   }
 }
 
@@ -151,15 +151,15 @@ TEST_F(VesselScene, GivesWayAndComesBack) {
   EXPECT_NE(pressed.hand[0].touching & (1U << duct), 0U);
   EXPECT_EQ(pressed.hand[0].touching & (1U << branch), 0U);
   EXPECT_GT(pressed.hand[0].structureForce[duct], 0.005);
-  EXPECT_GT(pressed.vessel[0].largestDisplacement, 0.001);
-  EXPECT_GT(pressed.vessel[0].largestStrain, 0.0);
-  EXPECT_LT(pressed.contact.largestDepth, 2e-4);
+  EXPECT_GT(pressed.vessel[0].maxDisplacement, 0.001);
+  EXPECT_GT(pressed.vessel[0].maxStrain, 0.0);
+  EXPECT_LT(pressed.contact.maxDepth, 2e-4);
   EXPECT_EQ(pressed.misses, 0U);
-  EXPECT_GT(pressed.organ[0].largestDisplacement, 1e-6);
+  EXPECT_GT(pressed.organ[0].maxDisplacement, 1e-6);
   go({Vec3(-0.01, 0.0, 0.06), 0.0, InstrumentKind::grasper, 0}, 60);
   for (int i = 0; i < 600; ++i) step(act_);
   EXPECT_TRUE(step(act_).vessel[0].asleep);
-  EXPECT_LT(vessels().largestDisplacement, 2e-4);
+  EXPECT_LT(vessels().maxDisplacement, 2e-4);
   EXPECT_EQ(count(EventKind::contactBegin), count(EventKind::contactEnd));
 }
 
@@ -172,9 +172,9 @@ TEST_F(VesselScene, HeldAndLiftedUntilItTears) {
   ASSERT_EQ(lifted.hand[0].grasping, 1U << duct);
   for (int i = 0; i < 200; ++i) step(act_);
   const StepResult& still = step(act_);
-  EXPECT_GT(still.vessel[0].largestTension, 0.02);
-  EXPECT_GT(still.hand[0].graspForce, 0.5 * still.vessel[0].largestTension);
-  EXPECT_LT(still.hand[0].graspForce, 3.0 * still.vessel[0].largestTension);
+  EXPECT_GT(still.vessel[0].maxTension, 0.02);
+  EXPECT_GT(still.hand[0].graspForce, 0.5 * still.vessel[0].maxTension);
+  EXPECT_LT(still.hand[0].graspForce, 3.0 * still.vessel[0].maxTension);
   for (int i = 0; i < 4; ++i) {
     go({act_.tip + Vec3(0.0, 0.0, 0.015), 0.05, InstrumentKind::grasper, button::lock}, 100);
     if (count(EventKind::vesselTorn) > 0) break;
@@ -212,7 +212,7 @@ TEST_F(VesselScene, JawsAboutAClipDoNotPushTheDuct) {
     ASSERT_EQ(count(EventKind::clipSet), before + 1) << below;
     const StepResult& closed = step(act_);
     EXPECT_LT(hardest_, 0.1) << below << " m between the jaws";
-    EXPECT_LT(closed.vessel[0].largestStrain, 0.05) << below;
+    EXPECT_LT(closed.vessel[0].maxStrain, 0.05) << below;
     go({Vec3(x, 0.0, height - below), 0.9, InstrumentKind::clipApplier, 0}, 20);
     EXPECT_LT(hardest_, 0.1) << below << " m, as they open";
     x += 0.005;

@@ -36,7 +36,7 @@ inline int invertedElements(const SolidModel& model, const SolidState& state) {
   return inverted;
 }
 
-inline double largestDisplacement(const SolidModel& model, const SolidState& state) {
+inline double maxDisplacement(const SolidModel& model, const SolidState& state) {
   double largest = 0.0;
   for (std::size_t n = 0; n < model.nodes(); ++n)
     largest = std::max(largest, (state.position[n] - model.rest()[n]).norm());

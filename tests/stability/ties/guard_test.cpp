@@ -41,9 +41,9 @@ TEST(Guard, TellsOfWhatIsTooFast) {
   const std::unique_ptr<const Model> model = test::buildModel(ballScene());
   ASSERT_TRUE(model);
   double value = 0.0;
-  EXPECT_EQ(toldOf(*model, 0.95 * fastestMotion, value), 0U);
-  EXPECT_EQ(toldOf(*model, 1.05 * fastestMotion, value), 1U);
-  EXPECT_NEAR(value, 1.05 * fastestMotion, 0.01 * fastestMotion);
+  EXPECT_EQ(toldOf(*model, 0.95 * maxTissueSpeed, value), 0U);
+  EXPECT_EQ(toldOf(*model, 1.05 * maxTissueSpeed, value), 1U);
+  EXPECT_NEAR(value, 1.05 * maxTissueSpeed, 0.01 * maxTissueSpeed);
 }
 
 /// One node that is far faster than the rest of its organ is held back, and that is told; the organ as a whole may

@@ -223,7 +223,7 @@ TEST(DeviceSource, SaysWhatItIs) {
 
 TEST(DeviceSource, ForcesReachTheMotorsInTheDevicesFrame) {
   DeviceScript script = movingScript(100, 1, {Hand::right});
-  script.largestForce = 4.0;
+  script.maxForce = 4.0;
   const SceneDescription scene = emptyScene();
   Rig rig(script, scene);
   TickSamples tick;

@@ -47,7 +47,7 @@ TEST(WrenchGate, LetsGoWhenNobodyRenewsTheCommand) {
 TEST(WrenchGate, ScriptedMotorsShowNothingWhileUnplugged) {
   std::int64_t now = 0;
   DeviceScript script = devicetest::movingScript(100, 1, {Hand::right});
-  script.largestForce = 5.0;
+  script.maxForce = 5.0;
   script.unpluggings.push_back({10'000'000, 5'000'000});
   ScriptedDevice device(script, [&] { return now; });
   DeviceInput input;

@@ -56,23 +56,23 @@ class Loop {
 /// What one hand feels over a run: the largest change between ticks, the largest force, and the work that the device
 /// did on the operator. A force is held from its tick to the next.
 struct Felt {
-  double largestJump = 0.0;   ///< N
-  double largestForce = 0.0;  ///< N
-  double work = 0.0;          ///< of the device on the operator (J); a passive device's is not positive on closed paths
-  double exchanged = 0.0;     ///< sum of the absolute parts (J)
+  double maxJump = 0.0;    ///< N
+  double maxForce = 0.0;   ///< N
+  double work = 0.0;       ///< of the device on the operator (J); a passive device's is not positive on closed paths
+  double exchanged = 0.0;  ///< sum of the absolute parts (J)
   bool first = true;
   Vec3 lastForce = Vec3::Zero();
   Vec3 lastTip = Vec3::Zero();
 
   void take(const HapticState& state, const HapticForce& force) {
     if (!first) {
-      largestJump = std::max(largestJump, (force.force - lastForce).norm());
+      maxJump = std::max(maxJump, (force.force - lastForce).norm());
       const double part = lastForce.dot(state.tip - lastTip);
       work += part;
       exchanged += std::abs(part);
     }
     first = false;
-    largestForce = std::max(largestForce, force.force.norm());
+    maxForce = std::max(maxForce, force.force.norm());
     lastForce = force.force;
     lastTip = state.tip;
   }

@@ -206,10 +206,10 @@ inline bool allFinite(const StepResult& result) {
     check.look(hand.structureForce);
   }
   for (const OrganResult& organ : result.organ) {
-    for (const double v : {organ.volume, organ.largestDisplacement, organ.largestSpeed, organ.residual}) check.look(v);
+    for (const double v : {organ.volume, organ.maxDisplacement, organ.maxSpeed, organ.residual}) check.look(v);
   }
   check.look(result.contact.residual);
-  check.look(result.contact.largestDepth);
+  check.look(result.contact.maxDepth);
   return check.finite;
 }
 
