@@ -10,7 +10,7 @@
 #include "analytics/assessment/moments.h"
 #include "analytics/assessment/norm.h"
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/learning_curve.h"
 
 namespace calot::analytics {
@@ -19,7 +19,7 @@ namespace calot::analytics {
 /// them worse and t equal, beside what n people can tell: from 100 / (n + 1) to 100 n / (n + 1). No answer beyond the
 /// best or the worst of them, and where there are fewer than leastForPercentile.
 inline constexpr std::size_t leastForPercentile = 5;
-Answer<double> percentile(const std::vector<double>& members, double value, Direction direction);
+Expected<double> percentile(const std::vector<double>& members, double value, Direction direction);
 
 /// One of the participant's attempts in the history of a figure.
 struct HistoryPoint {
@@ -35,11 +35,11 @@ struct GradedFigure {
   std::string missing;          ///< why it is not judged, or empty
   std::optional<bool> passed;
   bool open = false;  ///< the value lies within the interval of the cut: another norm might judge otherwise
-  Answer<double> rank = Answer<double>::none("not judged");                   ///< percentile()
-  std::uint64_t competent = 0;                                                ///< members that rank is among
-  FigureMoments moments;                                                      ///< of a weak figure
-  std::vector<HistoryPoint> history;                                          ///< by start, this attempt the last
-  Answer<LearningCurve> curve = Answer<LearningCurve>::none("not computed");  ///< a - b / x, display unit
+  Expected<double> rank = Expected<double>::none("not judged");                   ///< percentile()
+  std::uint64_t competent = 0;                                                    ///< members that rank is among
+  FigureMoments moments;                                                          ///< of a weak figure
+  std::vector<HistoryPoint> history;                                              ///< by start, this attempt the last
+  Expected<LearningCurve> curve = Expected<LearningCurve>::none("not computed");  ///< a - b / x, display unit
 
   [[nodiscard]] bool weak() const { return passed.has_value() && !*passed; }
 };

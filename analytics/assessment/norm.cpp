@@ -61,7 +61,7 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const std::string&
   }
   mark.logScale = definition.unit == "s" && positive;
   const ContrastingGroupsOptions options{mark.logScale, 0.95, 9999, norm.seed};
-  const Answer<ContrastingGroups> cut = contrastingGroups(
+  const Expected<ContrastingGroups> cut = contrastingGroups(
       competent, others, definition.direction == Direction::lower ? Better::lower : Better::higher, options);
   if (!cut) {
     mark.reason = cut.reason();

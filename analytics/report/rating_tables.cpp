@@ -14,12 +14,12 @@ using Align = TextTable::Align;
 
 std::string number(const std::optional<double>& value) { return value ? significant(*value, 3) : "-"; }
 
-std::string withInterval(double value, const Answer<Interval>& interval) {
+std::string withInterval(double value, const Expected<Interval>& interval) {
   if (!interval) return fmt::format("{:.3f}", value);
   return fmt::format("{:.3f} [{:.3f}, {:.3f}]", value, interval->lower, interval->upper);
 }
 
-std::string iccText(const Answer<IntraclassCorrelation>& icc) {
+std::string iccText(const Expected<IntraclassCorrelation>& icc) {
   return icc ? withInterval(icc->value, icc->interval) : "- (" + icc.reason() + ")";
 }
 

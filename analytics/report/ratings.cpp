@@ -16,7 +16,7 @@ constexpr std::size_t minSubscale = 3;
 
 const std::string& subjectOf(const Rating& r) { return r.attempt.empty() ? r.participant : r.attempt; }
 
-std::optional<double> taken(const Answer<double>& answer) {
+std::optional<double> taken(const Expected<double>& answer) {
   return answer ? std::optional<double>(*answer) : std::nullopt;
 }
 

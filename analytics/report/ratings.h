@@ -12,8 +12,8 @@
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_table.h"
-#include "analytics/statistics/answer.h"
 #include "analytics/statistics/cronbach_alpha.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/intraclass_correlation.h"
 
 namespace calot::analytics {
@@ -36,14 +36,14 @@ struct ItemReport {
 struct Agreement {
   std::string figure;  ///< an item's key, or "mean of all items"
   std::uint64_t attempts = 0, raters = 0;
-  Answer<IntraclassCorrelation> single = Answer<IntraclassCorrelation>::none("not computed");   ///< ICC(2,1)
-  Answer<IntraclassCorrelation> average = Answer<IntraclassCorrelation>::none("not computed");  ///< ICC(2,k)
+  Expected<IntraclassCorrelation> single = Expected<IntraclassCorrelation>::none("not computed");   ///< ICC(2,1)
+  Expected<IntraclassCorrelation> average = Expected<IntraclassCorrelation>::none("not computed");  ///< ICC(2,k)
 };
 
 struct SectionConsistency {
   std::string section;
   std::uint64_t n = 0;  ///< complete forms
-  Answer<CronbachAlpha> alpha = Answer<CronbachAlpha>::none("not computed");
+  Expected<CronbachAlpha> alpha = Expected<CronbachAlpha>::none("not computed");
 };
 
 struct FormReport {

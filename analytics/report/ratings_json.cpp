@@ -8,13 +8,13 @@ using Json = nlohmann::ordered_json;
 
 Json orNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-Json intervalJson(const Answer<Interval>& i) {
+Json intervalJson(const Expected<Interval>& i) {
   if (!i) return {{"value", nullptr}, {"reason", i.reason()}};
   return {{"lower", i->lower}, {"upper", i->upper}, {"level", i->level}, {"method", i->method}};
 }
 
 template <class T>
-Json estimateJson(const Answer<T>& answer) {
+Json estimateJson(const Expected<T>& answer) {
   if (!answer) return {{"value", nullptr}, {"reason", answer.reason()}};
   return {{"value", answer->value}, {"interval", intervalJson(answer->interval)}};
 }

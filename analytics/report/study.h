@@ -15,8 +15,8 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/ratings.h"
-#include "analytics/statistics/answer.h"
 #include "analytics/statistics/covariance_analysis.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/hedges.h"
 #include "analytics/statistics/repeated_attempts.h"
 #include "analytics/statistics/spearman.h"
@@ -109,7 +109,7 @@ struct GroupSummary {
 struct BaselineAdjustment {
   std::array<std::uint64_t, 2> n{};
   std::array<std::uint64_t, 2> withoutBaseline{};  ///< have the outcome and not the baseline
-  Answer<CovarianceAnalysis> analysis = Answer<CovarianceAnalysis>::none("not computed");
+  Expected<CovarianceAnalysis> analysis = Expected<CovarianceAnalysis>::none("not computed");
   std::optional<double> holm;  ///< p adjusted over the analyses of the family
 };
 
@@ -124,7 +124,7 @@ struct StudyRow {
   std::array<GroupSummary, 2> group;
   std::array<std::vector<std::string>, 2> participants;  ///< whose, ascending; "attempt UUID" for a performer's run
   std::array<std::vector<double>, 2> values;             ///< as many, in the display unit
-  Answer<MannWhitney> test = Answer<MannWhitney>::none("not computed");
+  Expected<MannWhitney> test = Expected<MannWhitney>::none("not computed");
   std::optional<double> holm;                  ///< p adjusted over the family; none outside of it or without a test
   Role role = Role::undeclared;                ///< by the protocol, where there is one
   std::optional<double> benjaminiHochberg;     ///< with a protocol: p adjusted over the rows that are not primary
@@ -132,14 +132,15 @@ struct StudyRow {
   std::optional<bool> supported;         ///< a hypothesis of the protocol: adjusted p at most the level, as expected
   std::optional<Hypothesis> hypothesis;  ///< from the direction and the group that is expected to do better
   std::optional<bool> asHypothesised;    ///< A of the hypothesis above one half; none at one half, or without one
-  Answer<Superiority> effect = Answer<Superiority>::none("not computed");  ///< of the first group's values being larger
+  Expected<Superiority> effect =
+      Expected<Superiority>::none("not computed");  ///< of the first group's values being larger
   /// The same with its interval, in the direction of the hypothesis where there is one.
-  Answer<SuperiorityEstimate> area = Answer<SuperiorityEstimate>::none("not computed");
-  Answer<double> shift = Answer<double>::none("not computed");
-  Answer<ShiftInterval> shiftInterval = Answer<ShiftInterval>::none("not computed");
-  Answer<HedgesG> hedges = Answer<HedgesG>::none("not computed");
+  Expected<SuperiorityEstimate> area = Expected<SuperiorityEstimate>::none("not computed");
+  Expected<double> shift = Expected<double>::none("not computed");
+  Expected<ShiftInterval> shiftInterval = Expected<ShiftInterval>::none("not computed");
+  Expected<HedgesG> hedges = Expected<HedgesG>::none("not computed");
   /// Over the participants of both groups; with `attempt-duration`, by the same rule.
-  Answer<Spearman> withDuration = Answer<Spearman>::none("not computed");
+  Expected<Spearman> withDuration = Expected<Spearman>::none("not computed");
   std::uint64_t withDurationPairs = 0;                     ///< participants in it
   std::optional<BaselineAdjustment> adjusted;              ///< of a table with a baseline
   std::vector<std::string> coverageWarnings;               ///< intervals whose published coverage is low at these sizes

@@ -26,7 +26,7 @@ Json groupJson(const std::string& name, const GroupSummary& s) {
 }
 
 template <class T, class Write>
-Json answerJson(const Answer<T>& answer, Write write) {
+Json answerJson(const Expected<T>& answer, Write write) {
   if (!answer) return {{"value", nullptr}, {"reason", answer.reason()}};
   return write(*answer);
 }

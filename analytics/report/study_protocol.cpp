@@ -72,7 +72,7 @@ void listDeviations(StudyProtocol& report, const std::vector<const AttemptRow*>&
 
 /// Puts the adjusted p of `p` into the rows by `put`.
 template <class Put>
-void spread(const Answer<std::vector<double>>& adjusted, const std::vector<StudyRow*>& rows, Put put) {
+void spread(const Expected<std::vector<double>>& adjusted, const std::vector<StudyRow*>& rows, Put put) {
   for (std::size_t i = 0; adjusted && i < rows.size(); ++i) put(*rows[i], (*adjusted)[i]);
 }
 

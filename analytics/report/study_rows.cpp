@@ -42,7 +42,9 @@ void dropRounding(std::array<std::vector<double>, 2>& values) {
 
 void summarise(GroupSummary& s, const std::vector<double>& values) {
   s.n = values.size();
-  const auto take = [](const Answer<double>& answer) { return answer ? std::optional<double>(*answer) : std::nullopt; };
+  const auto take = [](const Expected<double>& answer) {
+    return answer ? std::optional<double>(*answer) : std::nullopt;
+  };
   s.mean = take(mean(values));
   s.standardDeviation = take(standardDeviation(values));
   s.median = take(median(values));
@@ -70,8 +72,8 @@ void countMissing(GroupSummary& s, const std::vector<std::string>& present,
   }
 }
 
-Answer<Spearman> correlation(StudyRow& row, const std::array<std::map<std::string, double>, 2>& duration) {
-  if (row.checkpoint == "attempt-duration") return Answer<Spearman>::none("it is the duration");
+Expected<Spearman> correlation(StudyRow& row, const std::array<std::map<std::string, double>, 2>& duration) {
+  if (row.checkpoint == "attempt-duration") return Expected<Spearman>::none("it is the duration");
   std::vector<double> values, seconds;
   for (std::size_t g = 0; g < 2; ++g) {
     for (std::size_t i = 0; i < row.values[g].size(); ++i) {
@@ -81,7 +83,7 @@ Answer<Spearman> correlation(StudyRow& row, const std::array<std::map<std::strin
       seconds.push_back(at->second);
     }
   }
-  if (seconds.empty()) return Answer<Spearman>::none("no durations");
+  if (seconds.empty()) return Expected<Spearman>::none("no durations");
   row.withDurationPairs = values.size();
   return spearman(values, seconds);
 }
@@ -124,7 +126,7 @@ std::size_t adjust(std::vector<StudyRow*>& family, Get get, Put put) {
     p.push_back(*one);
     whose.push_back(row);
   }
-  const Answer<std::vector<double>> adjusted = holm(p);
+  const Expected<std::vector<double>> adjusted = holm(p);
   for (std::size_t i = 0; adjusted && i < p.size(); ++i) put(*whose[i], (*adjusted)[i]);
   return p.size();
 }

@@ -14,7 +14,7 @@ namespace calot::analytics {
 namespace {
 
 using Groups = std::vector<std::vector<double>>;
-using OfGroups = std::function<Answer<double>(const Groups&)>;
+using OfGroups = std::function<Expected<double>(const Groups&)>;
 
 /// Order statistic (B + 1) p, linear in between; `extreme` is set where that is outside of them.
 double tail(const std::vector<double>& sorted, double p, bool& extreme) {
@@ -27,18 +27,18 @@ double tail(const std::vector<double>& sorted, double p, bool& extreme) {
 }
 
 /// BCa's acceleration.
-Answer<double> acceleration(const Groups& groups, const OfGroups& statistic) {
+Expected<double> acceleration(const Groups& groups, const OfGroups& statistic) {
   double cubes = 0.0, squares = 0.0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::size_t count = groups[g].size();
-    if (count < 2) return Answer<double>::none("BCa needs two values in each group");
+    if (count < 2) return Expected<double>::none("BCa needs two values in each group");
     std::vector<double> without(count);
     double sum = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       Groups rest = groups;
       rest[g].erase(rest[g].begin() + static_cast<std::ptrdiff_t>(i));
-      const Answer<double> value = statistic(rest);
-      if (!value) return Answer<double>::none("BCa: with a value left out, " + value.reason());
+      const Expected<double> value = statistic(rest);
+      if (!value) return Expected<double>::none("BCa: with a value left out, " + value.reason());
       without[i] = *value;
       sum += *value;
     }
@@ -49,14 +49,14 @@ Answer<double> acceleration(const Groups& groups, const OfGroups& statistic) {
       cubes += influence * influence * influence;
     }
   }
-  if (!(squares > 0.0)) return Answer<double>::none("BCa: no single value has any influence");
+  if (!(squares > 0.0)) return Expected<double>::none("BCa: no single value has any influence");
   return cubes / (6.0 * squares * std::sqrt(squares));
 }
 
-Answer<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, const BootstrapOptions& options) {
-  using Result = Answer<Bootstrap>;
+Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, const BootstrapOptions& options) {
+  using Result = Expected<Bootstrap>;
   assert(options.resamples >= 99 && options.level > 0.0 && options.level < 1.0);
-  const Answer<double> estimate = statistic(groups);
+  const Expected<double> estimate = statistic(groups);
   if (!estimate) return Result::none(estimate.reason());
   Bootstrap result;
   result.estimate = *estimate;
@@ -71,7 +71,7 @@ Answer<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, c
     for (std::size_t g = 0; g < groups.size(); ++g) {
       for (double& v : drawn[g]) v = groups[g][static_cast<std::size_t>(random.below(groups[g].size()))];
     }
-    if (const Answer<double> value = statistic(drawn)) {
+    if (const Expected<double> value = statistic(drawn)) {
       values.push_back(*value);
     } else {
       ++result.without;
@@ -91,7 +91,7 @@ Answer<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, c
     const double share = (static_cast<double>(first - values.begin()) + 0.5 * static_cast<double>(last - first)) /
                          static_cast<double>(values.size());
     if (!(share > 0.0 && share < 1.0)) return Result::none("BCa: all resamples are on one side of the estimate");
-    const Answer<double> a = acceleration(groups, statistic);
+    const Expected<double> a = acceleration(groups, statistic);
     if (!a) return Result::none(a.reason());
     result.bias = normalQuantile(share);
     result.acceleration = *a;
@@ -114,16 +114,16 @@ Answer<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, c
 
 }  // namespace
 
-Answer<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic, const BootstrapOptions& options) {
-  if (x.empty()) return Answer<Bootstrap>::none("no values");
-  if (!allFinite(x)) return Answer<Bootstrap>::none("a value is not finite");
+Expected<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic, const BootstrapOptions& options) {
+  if (x.empty()) return Expected<Bootstrap>::none("no values");
+  if (!allFinite(x)) return Expected<Bootstrap>::none("a value is not finite");
   return bootstrapOf(
       {{x.begin(), x.end()}}, [&](const Groups& g) { return statistic(g[0]); }, options);
 }
 
-Answer<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
-                            const BootstrapOptions& options) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<Bootstrap>::none(reason);
+Expected<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
+                              const BootstrapOptions& options) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<Bootstrap>::none(reason);
   return bootstrapOf(
       {{x.begin(), x.end()}, {y.begin(), y.end()}}, [&](const Groups& g) { return statistic(g[0], g[1]); }, options);
 }

@@ -8,13 +8,13 @@
 #include <functional>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
 
-using Statistic = std::function<Answer<double>(std::span<const double>)>;
-using TwoGroupStatistic = std::function<Answer<double>(std::span<const double> x, std::span<const double> y)>;
+using Statistic = std::function<Expected<double>(std::span<const double>)>;
+using TwoGroupStatistic = std::function<Expected<double>(std::span<const double> x, std::span<const double> y)>;
 
 enum class BootstrapMethod : std::uint8_t {
   percentile,  ///< quantiles of the statistic over the resamples
@@ -47,9 +47,9 @@ inline constexpr double mostResamplesWithout = 0.05;
 /// group: a = sum(l^3 / n^3) / (6 (sum l^2 / n^2)^(3/2)), which for one group is Efron's. No answer when the statistic
 /// has none (its reason), for more than mostResamplesWithout, when all resamples agree, and for BCa where all lie on
 /// one side of the estimate or a value left out leaves no answer. @pre resamples >= 99, 0 < level < 1.
-Answer<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic,
-                            const BootstrapOptions& options = {});
-Answer<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
-                            const BootstrapOptions& options = {});
+Expected<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic,
+                              const BootstrapOptions& options = {});
+Expected<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
+                              const BootstrapOptions& options = {});
 
 }  // namespace calot::analytics

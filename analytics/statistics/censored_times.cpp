@@ -30,8 +30,8 @@ std::vector<double> ranked(std::span<const CensoredTime> group, double behind) {
 
 }  // namespace
 
-Answer<LogRank> logRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y) {
-  using Result = Answer<LogRank>;
+Expected<LogRank> logRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y) {
+  using Result = Expected<LogRank>;
   if (const std::string reason = objection(x, y); !reason.empty()) return Result::none(reason);
   struct Entry {
     double time;
@@ -73,18 +73,18 @@ Answer<LogRank> logRank(std::span<const CensoredTime> x, std::span<const Censore
   return result;
 }
 
-Answer<WorstRank> worstRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y, Hypothesis hypothesis,
-                            double level) {
-  using Result = Answer<WorstRank>;
+Expected<WorstRank> worstRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y, Hypothesis hypothesis,
+                              double level) {
+  using Result = Expected<WorstRank>;
   if (const std::string reason = objection(x, y); !reason.empty()) return Result::none(reason);
   double longest = 0.0;
   for (const auto group : {x, y}) {
     for (const CensoredTime& t : group) longest = std::max(longest, t.time);
   }
   const std::vector<double> a = ranked(x, 2.0 * longest), b = ranked(y, 2.0 * longest);
-  const Answer<MannWhitney> test = mannWhitney(a, b);
+  const Expected<MannWhitney> test = mannWhitney(a, b);
   if (!test) return Result::none(test.reason());
-  const Answer<SuperiorityEstimate> effect = estimateSuperiority(a, b, hypothesis, AreaMethod::score, level);
+  const Expected<SuperiorityEstimate> effect = estimateSuperiority(a, b, hypothesis, AreaMethod::score, level);
   if (!effect) return Result::none(effect.reason());
   return WorstRank{*test, *effect};
 }

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/superiority_interval.h"
 
 namespace calot::analytics {
@@ -28,7 +28,7 @@ struct LogRank {
 /// time counts as still followed. Right where giving up says nothing about how long it would have taken (a time limit,
 /// a technical failure); not for those who gave up because they were slow. No answer for an empty group, a time that is
 /// not positive, nobody finished, or when nobody of the other group was left whenever someone finished.
-Answer<LogRank> logRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y);
+Expected<LogRank> logRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y);
 
 struct WorstRank {
   MannWhitney test;
@@ -38,7 +38,7 @@ struct WorstRank {
 /// Rank sum test with every unfinished attempt ranked behind every finished one, all tied (Lachin 1999, Control. Clin.
 /// Trials 20:408). Right where not to finish is the worst result. Hypothesis is about the times: firstSmaller says that
 /// x is the faster group. No answer for an empty group, a time that is not positive, or when all are tied.
-Answer<WorstRank> worstRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y, Hypothesis hypothesis,
-                            double level = 0.95);
+Expected<WorstRank> worstRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y, Hypothesis hypothesis,
+                              double level = 0.95);
 
 }  // namespace calot::analytics

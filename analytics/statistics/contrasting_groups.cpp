@@ -16,19 +16,19 @@ namespace {
 
 NormalCurve curveOf(std::span<const double> values) { return {*mean(values), *standardDeviation(values)}; }
 
-Answer<double> cutOf(std::span<const double> experts, std::span<const double> novices, Better better) {
-  if (experts.size() < 2 || novices.size() < 2) return Answer<double>::none("a group of one value has no spread");
+Expected<double> cutOf(std::span<const double> experts, std::span<const double> novices, Better better) {
+  if (experts.size() < 2 || novices.size() < 2) return Expected<double>::none("a group of one value has no spread");
   const NormalCurve e = curveOf(experts), n = curveOf(novices);
-  if (!(e.deviation > 0.0) || !(n.deviation > 0.0)) return Answer<double>::none("a group has no spread");
+  if (!(e.deviation > 0.0) || !(n.deviation > 0.0)) return Expected<double>::none("a group has no spread");
   if (better == Better::higher ? !(e.mean > n.mean) : !(e.mean < n.mean))
-    return Answer<double>::none("the experts' mean is not the better one");
+    return Expected<double>::none("the experts' mean is not the better one");
   return crossing(e, n);
 }
 
 }  // namespace
 
-Answer<double> crossing(const NormalCurve& first, const NormalCurve& second) {
-  using Result = Answer<double>;
+Expected<double> crossing(const NormalCurve& first, const NormalCurve& second) {
+  using Result = Expected<double>;
   if (!(first.deviation > 0.0) || !(second.deviation > 0.0)) return Result::none("a curve has no width");
   if (!std::isfinite(first.mean) || !std::isfinite(second.mean)) return Result::none("a mean is not finite");
   const NormalCurve& low = first.mean < second.mean ? first : second;
@@ -44,9 +44,9 @@ Answer<double> crossing(const NormalCurve& first, const NormalCurve& second) {
   return rootBetween(ratio, low.mean, high.mean);
 }
 
-Answer<ContrastingGroups> contrastingGroups(std::span<const double> experts, std::span<const double> novices,
-                                            Better better, const ContrastingGroupsOptions& options) {
-  using Result = Answer<ContrastingGroups>;
+Expected<ContrastingGroups> contrastingGroups(std::span<const double> experts, std::span<const double> novices,
+                                              Better better, const ContrastingGroupsOptions& options) {
+  using Result = Expected<ContrastingGroups>;
   if (experts.empty()) return Result::none("there are no experts");
   if (novices.empty()) return Result::none("there are no novices");
   if (!allFinite(experts) || !allFinite(novices)) return Result::none("a value is not finite");
@@ -59,7 +59,7 @@ Answer<ContrastingGroups> contrastingGroups(std::span<const double> experts, std
       }
     }
   }
-  const Answer<double> cut = cutOf(e, n, better);
+  const Expected<double> cut = cutOf(e, n, better);
   if (!cut) return Result::none(cut.reason());
   const auto back = [&](double v) { return options.logScale ? std::exp(v) : v; };
   ContrastingGroups result;
@@ -89,7 +89,7 @@ Answer<ContrastingGroups> contrastingGroups(std::span<const double> experts, std
     result.interval = Interval{back(b->interval.lower), back(b->interval.upper), options.level, b->interval.method};
     result.resamplesWithoutCut = b->without;
   } else {
-    result.interval = Answer<Interval>::none(b.reason());
+    result.interval = Expected<Interval>::none(b.reason());
   }
   return result;
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
@@ -22,7 +22,7 @@ struct NormalCurve {
 ///   ln(s2 / s1) + (x - m2)^2 / (2 s2^2) - (x - m1)^2 / (2 s1^2) = 0.
 /// Between the means the left side is monotone, so there is one root or none: no answer where one curve lies above the
 /// other all the way, for equal means, or for a deviation that is not positive.
-Answer<double> crossing(const NormalCurve& first, const NormalCurve& second);
+Expected<double> crossing(const NormalCurve& first, const NormalCurve& second);
 
 struct ContrastingGroupsOptions {
   bool logScale = false;  ///< curves of the logarithms (times); the cut is transformed back
@@ -42,7 +42,7 @@ struct ContrastingGroups {
   Misjudged falsePositives;  ///< novices who pass
   Misjudged falseNegatives;  ///< experts who fail
   /// Percentile bootstrap with groups resampled separately; wide for ten values per group.
-  Answer<Interval> interval = Answer<Interval>::none("not computed");
+  Expected<Interval> interval = Expected<Interval>::none("not computed");
   std::size_t resamplesWithoutCut = 0;  ///< when there is an interval
   std::uint64_t seed = 0;
 };
@@ -50,7 +50,7 @@ struct ContrastingGroups {
 /// The cut where the normal curves of the two groups cross between their means. No answer for fewer than two values in
 /// a group, a group without spread, curves that do not cross there, experts whose mean is not the better one, or values
 /// that are not positive on the log scale. @pre as bootstrap().
-Answer<ContrastingGroups> contrastingGroups(std::span<const double> experts, std::span<const double> novices,
-                                            Better better, const ContrastingGroupsOptions& options = {});
+Expected<ContrastingGroups> contrastingGroups(std::span<const double> experts, std::span<const double> novices,
+                                              Better better, const ContrastingGroupsOptions& options = {});
 
 }  // namespace calot::analytics

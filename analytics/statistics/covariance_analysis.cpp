@@ -22,22 +22,22 @@ bool withoutScatter(const LeastSquares& fit, std::span<const double> outcome) {
 
 constexpr const char* noScatter = "the outcomes have no scatter about the lines";
 
-Answer<double> slopesAgree(const Columns& columns, std::span<const double> outcome) {
+Expected<double> slopesAgree(const Columns& columns, std::span<const double> outcome) {
   Columns more = columns;
   more.push_back(columns[2]);
   for (std::size_t i = 0; i < outcome.size(); ++i) more.back()[i] *= columns[1][i];
-  const Answer<LeastSquares> fit = leastSquares(more, outcome);
-  if (!fit) return Answer<double>::none(fit.reason());
-  const Answer<std::vector<double>> errors = hc3Errors(*fit, more);
-  if (!errors) return Answer<double>::none(errors.reason());
-  if (withoutScatter(*fit, outcome) || !((*errors)[3] > 0.0)) return Answer<double>::none(noScatter);
+  const Expected<LeastSquares> fit = leastSquares(more, outcome);
+  if (!fit) return Expected<double>::none(fit.reason());
+  const Expected<std::vector<double>> errors = hc3Errors(*fit, more);
+  if (!errors) return Expected<double>::none(errors.reason());
+  if (withoutScatter(*fit, outcome) || !((*errors)[3] > 0.0)) return Expected<double>::none(noScatter);
   return studentTwoSided(fit->coefficients[3] / (*errors)[3], fit->df);
 }
 
 }  // namespace
 
-Answer<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const BaselineGroup& y, double level) {
-  using Result = Answer<CovarianceAnalysis>;
+Expected<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const BaselineGroup& y, double level) {
+  using Result = Expected<CovarianceAnalysis>;
   if (x.baseline.size() != x.outcome.size() || y.baseline.size() != y.outcome.size())
     return Result::none("baseline and outcome are not of the same people");
   if (const std::string reason = twoGroupObjection(x.outcome, y.outcome); !reason.empty()) return Result::none(reason);
@@ -49,13 +49,13 @@ Answer<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const Base
   // Centring the baseline changes nothing but improves the conditioning.
   const double centre = *mean(columns[2]);
   for (double& v : columns[2]) v -= centre;
-  const Answer<LeastSquares> fit = leastSquares(columns, outcome);
+  const Expected<LeastSquares> fit = leastSquares(columns, outcome);
   if (!fit) {
     return Result::none(fit.reason() == "the columns depend on each other"
                             ? "the baseline is constant, or the group determines it"
                             : fit.reason());
   }
-  const Answer<std::vector<double>> errors = hc3Errors(*fit, columns);
+  const Expected<std::vector<double>> errors = hc3Errors(*fit, columns);
   if (!errors) return Result::none(errors.reason());
   CovarianceAnalysis result;
   result.difference = fit->coefficients[1];

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
@@ -21,13 +21,13 @@ struct CovarianceAnalysis {
   double slope = 0.0;  ///< c
   /// p of one slope for both groups (coefficient of [x] baseline, HC3). Small: the difference depends on the baseline,
   /// and one number does not describe it.
-  Answer<double> sameSlope = Answer<double>::none("not computed");
+  Expected<double> sameSlope = Expected<double>::none("not computed");
 };
 
 /// Analysis of covariance of an outcome on its baseline (Vickers and Altman 2001, BMJ 323:1123) by least squares
 /// with HC3 errors. No answer for an empty group, lengths that differ, fewer than four people, a baseline that is
 /// constant or that the group determines, one person who alone determines a coefficient (a group of one), or
 /// outcomes without any scatter.
-Answer<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const BaselineGroup& y, double level = 0.95);
+Expected<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const BaselineGroup& y, double level = 0.95);
 
 }  // namespace calot::analytics

@@ -7,8 +7,8 @@
 
 namespace calot::analytics {
 
-Answer<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level) {
-  using Result = Answer<CronbachAlpha>;
+Expected<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level) {
+  using Result = Expected<CronbachAlpha>;
   assert(level > 0.0 && level < 1.0);
   if (items.raters < 3) return Result::none("fewer than three items");
   if (const std::string reason = objection(items); !reason.empty()) return Result::none(reason);
@@ -18,7 +18,7 @@ Answer<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level) {
   const double error = s.residual / s.subjects;  // 1 - alpha
   result.value = 1.0 - error;
   if (!(error > 0.0)) {
-    result.interval = Answer<Interval>::none("the items agree perfectly");
+    result.interval = Expected<Interval>::none("the items agree perfectly");
     return result;
   }
   const double df1 = static_cast<double>(items.subjects) - 1.0, df2 = df1 * (static_cast<double>(items.raters) - 1.0);

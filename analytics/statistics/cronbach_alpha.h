@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 #include "analytics/statistics/rating_table.h"
 
@@ -9,7 +9,7 @@ namespace calot::analytics {
 
 struct CronbachAlpha {
   double value = 0.0;
-  Answer<Interval> interval = Answer<Interval>::none("not computed");
+  Expected<Interval> interval = Expected<Interval>::none("not computed");
 };
 
 /// Internal consistency of a scale of k items (columns): k / (k - 1) (1 - sum of the items' variances / variance of the
@@ -17,6 +17,6 @@ struct CronbachAlpha {
 /// with n - 1 and (n - 1)(k - 1) degrees of freedom (Feldt 1965, Psychometrika 30:357). One subscale at a time: the
 /// caller's duty. No answer for fewer than three items, as objection(table), and when the sums of all subjects are
 /// equal; no interval where the items agree perfectly.
-Answer<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level = 0.95);
+Expected<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level = 0.95);
 
 }  // namespace calot::analytics

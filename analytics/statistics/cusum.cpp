@@ -13,8 +13,8 @@ constexpr double reached = 1.0 - 1e-12;
 
 }  // namespace
 
-Answer<CusumDesign> CusumDesign::logLikelihood(const CusumGoal& g) {
-  using Result = Answer<CusumDesign>;
+Expected<CusumDesign> CusumDesign::logLikelihood(const CusumGoal& g) {
+  using Result = Expected<CusumDesign>;
   const auto share = [](double v) { return v > 0.0 && v < 1.0; };
   if (!share(g.acceptable) || !share(g.unacceptable)) return Result::none("a failure rate is not between 0 and 1");
   if (!(g.acceptable < g.unacceptable))
@@ -25,8 +25,8 @@ Answer<CusumDesign> CusumDesign::logLikelihood(const CusumGoal& g) {
                      std::log((1.0 - g.beta) / g.alpha), std::log(g.beta / (1.0 - g.alpha)));
 }
 
-Answer<CusumDesign> CusumDesign::scaled(const CusumGoal& goal) {
-  const Answer<CusumDesign> d = logLikelihood(goal);
+Expected<CusumDesign> CusumDesign::scaled(const CusumGoal& goal) {
+  const Expected<CusumDesign> d = logLikelihood(goal);
   if (!d) return d;
   const double unit = d->failure_ - d->success_;  // ln of the odds ratio
   return CusumDesign(d->failure_ / unit, d->success_ / unit, d->upper_ / unit, d->lower_ / unit);

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -25,10 +25,10 @@ class CusumDesign {
  public:
   /// Steps ln(p1 / p0) and ln((1 - p1) / (1 - p0)); limits ln((1 - beta) / alpha) above and ln(beta / (1 - alpha))
   /// below (Wald 1947, the sequential probability ratio test).
-  static Answer<CusumDesign> logLikelihood(const CusumGoal& goal);
+  static Expected<CusumDesign> logLikelihood(const CusumGoal& goal);
   /// The same divided by ln(p1 (1 - p0) / (p0 (1 - p1))), so that a failure and a success are one apart: steps 1 - s
   /// and -s (Williams, Parry and Schlup 1992, BMJ 304:1359).
-  static Answer<CusumDesign> scaled(const CusumGoal& goal);
+  static Expected<CusumDesign> scaled(const CusumGoal& goal);
 
   [[nodiscard]] double failureStep() const { return failure_; }  ///< > 0
   [[nodiscard]] double successStep() const { return success_; }  ///< < 0

@@ -85,8 +85,8 @@ void fallBack(PairedAreas& result, RankExchange& exchange, std::uint64_t seed) {
 
 }  // namespace
 
-Answer<DeLong> deLong(std::span<const double> x, std::span<const double> y) {
-  using Result = Answer<DeLong>;
+Expected<DeLong> deLong(std::span<const double> x, std::span<const double> y) {
+  using Result = Expected<DeLong>;
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
   if (x.size() < 2 || y.size() < 2) return Result::none("a group of one value has no variance");
   const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size());
@@ -107,11 +107,11 @@ Answer<DeLong> deLong(std::span<const double> x, std::span<const double> y) {
   return d;
 }
 
-Answer<PairedAreas> compareAreas(const PairedFigures& f, double level, std::uint64_t seed) {
-  using Result = Answer<PairedAreas>;
+Expected<PairedAreas> compareAreas(const PairedFigures& f, double level, std::uint64_t seed) {
+  using Result = Expected<PairedAreas>;
   if (f.firstX.size() != f.secondX.size() || f.firstY.size() != f.secondY.size())
     return Result::none("the two figures are not of the same people");
-  const Answer<DeLong> first = deLong(f.firstX, f.firstY), second = deLong(f.secondX, f.secondY);
+  const Expected<DeLong> first = deLong(f.firstX, f.firstY), second = deLong(f.secondX, f.secondY);
   if (!first) return Result::none(first.reason());
   if (!second) return Result::none(second.reason());
   RankExchange exchange(f);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
@@ -21,7 +21,7 @@ struct DeLong {
   std::vector<double> ofX, ofY;  ///< V and W
 };
 /// No answer for fewer than two values in a group.
-Answer<DeLong> deLong(std::span<const double> x, std::span<const double> y);
+Expected<DeLong> deLong(std::span<const double> x, std::span<const double> y);
 
 /// Two figures of the same people, of whom some are expected to be higher (x) and some lower (y): value i of both
 /// figures is the same person's.
@@ -45,6 +45,6 @@ struct PairedAreas {
 /// that of the permutation test that exchanges the ranks of a person's two figures (Bandos, Rockette and Gur 2005,
 /// Stat. Med. 24:2873), over all exchanges up to 16 people, else over 9,999 random ones. No answer for groups below
 /// two, lengths that differ, or figures that rank everybody alike.
-Answer<PairedAreas> compareAreas(const PairedFigures& figures, double level = 0.95, std::uint64_t seed = 1);
+Expected<PairedAreas> compareAreas(const PairedFigures& figures, double level = 0.95, std::uint64_t seed = 1);
 
 }  // namespace calot::analytics

@@ -16,9 +16,9 @@ constexpr const char* notFinite = "a value is not finite";
 
 }  // namespace
 
-Answer<double> mean(std::span<const double> values) {
-  if (values.empty()) return Answer<double>::none(noValues);
-  if (!allFinite(values)) return Answer<double>::none(notFinite);
+Expected<double> mean(std::span<const double> values) {
+  if (values.empty()) return Expected<double>::none(noValues);
+  if (!allFinite(values)) return Expected<double>::none(notFinite);
   double sum = 0.0;
   for (const double v : values) sum += v;
   const double n = static_cast<double>(values.size());
@@ -29,9 +29,9 @@ Answer<double> mean(std::span<const double> values) {
   return first + rest / n;
 }
 
-Answer<double> standardDeviation(std::span<const double> values) {
-  if (values.size() < 2) return Answer<double>::none(values.empty() ? noValues : "one value has no spread");
-  const Answer<double> centre = mean(values);
+Expected<double> standardDeviation(std::span<const double> values) {
+  if (values.size() < 2) return Expected<double>::none(values.empty() ? noValues : "one value has no spread");
+  const Expected<double> centre = mean(values);
   if (!centre) return centre;
   double sum = 0.0;
   for (const double v : values) sum += (v - *centre) * (v - *centre);
@@ -46,14 +46,14 @@ double quantileOfSorted(std::span<const double> sorted, double p) {
   return sorted[below] + (h - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-Answer<double> quantile(std::span<const double> values, double p) {
-  if (values.empty()) return Answer<double>::none(noValues);
-  if (!allFinite(values)) return Answer<double>::none(notFinite);
+Expected<double> quantile(std::span<const double> values, double p) {
+  if (values.empty()) return Expected<double>::none(noValues);
+  if (!allFinite(values)) return Expected<double>::none(notFinite);
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   return quantileOfSorted(sorted, p);
 }
 
-Answer<double> median(std::span<const double> values) { return quantile(values, 0.5); }
+Expected<double> median(std::span<const double> values) { return quantile(values, 0.5); }
 
 }  // namespace calot::analytics

@@ -9,8 +9,8 @@
 
 namespace calot::analytics {
 
-Answer<HedgesG> hedgesG(std::span<const double> x, std::span<const double> y, double level) {
-  using Result = Answer<HedgesG>;
+Expected<HedgesG> hedgesG(std::span<const double> x, std::span<const double> y, double level) {
+  using Result = Expected<HedgesG>;
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
   if (x.size() < 2 || y.size() < 2) return Result::none("a group of one value has no spread");
   const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size()), m = nx + ny - 2.0;
@@ -27,7 +27,7 @@ Answer<HedgesG> hedgesG(std::span<const double> x, std::span<const double> y, do
   if (std::isfinite(lower) && std::isfinite(upper)) {
     result.interval = Interval{result.j * lower / scale, result.j * upper / scale, level, "J times non-central t"};
   } else {
-    result.interval = Answer<Interval>::none("the effect is too large for the non-central t distribution");
+    result.interval = Expected<Interval>::none("the effect is too large for the non-central t distribution");
   }
   return result;
 }

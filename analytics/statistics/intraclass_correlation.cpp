@@ -57,8 +57,8 @@ const char* nameOf(IccForm form) {
   return "";
 }
 
-Answer<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level) {
-  using Result = Answer<IntraclassCorrelation>;
+Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level) {
+  using Result = Expected<IntraclassCorrelation>;
   assert(level > 0.0 && level < 1.0);
   if (const std::string reason = objection(table); !reason.empty()) return Result::none(reason);
   const Design d{meanSquares(table), static_cast<double>(table.subjects), static_cast<double>(table.raters)};
@@ -74,7 +74,7 @@ Answer<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, Ic
   result.value = (s - error) / denominator;
   if (!(error > 0.0)) {
     result.interval =
-        Answer<Interval>::none(one ? "the raters agree perfectly" : "the raters agree perfectly but for leniency");
+        Expected<Interval>::none(one ? "the raters agree perfectly" : "the raters agree perfectly but for leniency");
     return result;
   }
   const double p = 0.5 + level / 2.0;
@@ -90,7 +90,8 @@ Answer<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, Ic
     for (double* end : {&interval.lower, &interval.upper}) *end = k * *end / (1.0 + (k - 1.0) * *end);
   }
   const bool sound = std::isfinite(interval.lower) && std::isfinite(interval.upper) && interval.lower <= interval.upper;
-  result.interval = sound ? Answer<Interval>(interval) : Answer<Interval>::none("the approximate interval breaks down");
+  result.interval =
+      sound ? Expected<Interval>(interval) : Expected<Interval>::none("the approximate interval breaks down");
   return result;
 }
 

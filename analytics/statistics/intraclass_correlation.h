@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 #include "analytics/statistics/rating_table.h"
 
@@ -19,7 +19,7 @@ const char* nameOf(IccForm form);
 
 struct IntraclassCorrelation {
   double value = 0.0;  ///< may be negative
-  Answer<Interval> interval = Answer<Interval>::none("not computed");
+  Expected<Interval> interval = Expected<Interval>::none("not computed");
 };
 
 /// With mean squares S (subjects), R (raters), E (residual), W (within), n subjects and k raters:
@@ -29,6 +29,6 @@ struct IntraclassCorrelation {
 /// Intervals from the F distribution, for ICC(2,.) with Satterthwaite's degrees of freedom (Shrout and Fleiss; McGraw
 /// and Wong 1996, Psychol. Methods 1:30); those of the average forms are the single ones' by Spearman and Brown. No
 /// answer as objection(table), and where the denominator is not positive. No interval where the raters agree perfectly.
-Answer<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level = 0.95);
+Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level = 0.95);
 
 }  // namespace calot::analytics

@@ -16,8 +16,8 @@ struct MeanRanks {
   double n = 0.0, tieTerm = 0.0;
 };
 
-Answer<MeanRanks> meanRanks(std::span<const std::vector<double>> groups) {
-  using Result = Answer<MeanRanks>;
+Expected<MeanRanks> meanRanks(std::span<const std::vector<double>> groups) {
+  using Result = Expected<MeanRanks>;
   if (groups.size() < 2) return Result::none("fewer than two groups");
   std::vector<double> all;
   for (const std::vector<double>& group : groups) {
@@ -42,9 +42,9 @@ Answer<MeanRanks> meanRanks(std::span<const std::vector<double>> groups) {
 
 }  // namespace
 
-Answer<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups) {
-  const Answer<MeanRanks> m = meanRanks(groups);
-  if (!m) return Answer<KruskalWallis>::none(m.reason());
+Expected<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups) {
+  const Expected<MeanRanks> m = meanRanks(groups);
+  if (!m) return Expected<KruskalWallis>::none(m.reason());
   const double n = m->n;
   KruskalWallis result;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -57,9 +57,9 @@ Answer<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups)
   return result;
 }
 
-Answer<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups) {
-  using Result = Answer<std::vector<DunnPair>>;
-  const Answer<MeanRanks> m = meanRanks(groups);
+Expected<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups) {
+  using Result = Expected<std::vector<DunnPair>>;
+  const Expected<MeanRanks> m = meanRanks(groups);
   if (!m) return Result::none(m.reason());
   const double n = m->n, variance = n * (n + 1.0) / 12.0 - m->tieTerm / (12.0 * (n - 1.0));
   std::vector<DunnPair> pairs;
@@ -73,7 +73,7 @@ Answer<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups) 
       pairs.push_back(pair);
     }
   }
-  const Answer<std::vector<double>> adjusted = holm(p);
+  const Expected<std::vector<double>> adjusted = holm(p);
   for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].adjusted = (*adjusted)[i];
   return pairs;
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -19,7 +19,7 @@ struct KruskalWallis {
 /// Kruskal and Wallis (1952, J. Am. Stat. Assoc. 47:583), with mean ranks r_g of N pooled values and t values per tie:
 ///   H = 12 / (N (N + 1)) sum n_g (r_g - (N + 1) / 2)^2 / (1 - sum(t^3 - t) / (N^3 - N)).
 /// No answer for fewer than two groups, an empty one, or when all values are equal.
-Answer<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups);
+Expected<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups);
 
 /// Two of the groups, by their places in the input.
 struct DunnPair {
@@ -32,6 +32,6 @@ struct DunnPair {
 /// Dunn's comparisons of all pairs on the ranks of the whole (Dunn 1964, Technometrics 6:241):
 ///   z = (r_a - r_b) / sqrt((N (N + 1) / 12 - sum(t^3 - t) / (12 (N - 1))) (1 / n_a + 1 / n_b)).
 /// Pairs in the order (0,1), (0,2), ..., (1,2), ... Same preconditions as kruskalWallis().
-Answer<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups);
+Expected<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups);
 
 }  // namespace calot::analytics

@@ -44,13 +44,13 @@ struct Minimum {
   LeastSquares linear;
 };
 
-Answer<Minimum> minimise(const Abscissa& a, std::span<const double> y) {
-  using Result = Answer<Minimum>;
+Expected<Minimum> minimise(const Abscissa& a, std::span<const double> y) {
+  using Result = Expected<Minimum>;
   // From a curve that is straight to 1 % over all x to one that is within e^-20 of its end at the second x.
   constexpr int cells = 200;
   const double low = std::log(0.01 / a.reach), high = std::log(20.0 / a.nearest);
   const auto sumOfSquares = [&](double logC) {
-    const Answer<LeastSquares> fit = leastSquares(basis(a, std::exp(logC)), y);
+    const Expected<LeastSquares> fit = leastSquares(basis(a, std::exp(logC)), y);
     return fit ? fit->residualSumOfSquares : HUGE_VAL;
   };
   const auto place = [&](int i) { return low + (high - low) * i / cells; };
@@ -67,7 +67,7 @@ Answer<Minimum> minimise(const Abscissa& a, std::span<const double> y) {
   if (best == cells) return Result::none("does not converge: all change is over after the first attempt");
   const double logC = boost::math::tools::brent_find_minima(sumOfSquares, place(best - 1), place(best + 1), 50).first;
   const double c = std::exp(logC);
-  const Answer<LeastSquares> linear = leastSquares(basis(a, c), y);
+  const Expected<LeastSquares> linear = leastSquares(basis(a, c), y);
   if (!linear) return Result::none("does not converge: " + linear.reason());
   return Minimum{c, *linear};
 }
@@ -78,8 +78,8 @@ double LearningCurve::at(double x) const {
   return plateau - gap * (shape == CurveShape::exponential ? std::exp(-rate * x) : std::pow(x, -rate));
 }
 
-Answer<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double> x, std::span<const double> y) {
-  using Result = Answer<LearningCurve>;
+Expected<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double> x, std::span<const double> y) {
+  using Result = Expected<LearningCurve>;
   if (x.size() != y.size()) return Result::none("attempts and values have different lengths");
   if (!allFinite(x) || !allFinite(y)) return Result::none("a value is not finite");
   if (!std::all_of(x.begin(), x.end(), [](double v) { return v > 0.0; }))
@@ -94,7 +94,7 @@ Answer<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double>
   if (shape == CurveShape::inverse) {
     Columns columns(2, std::vector<double>(x.size(), 1.0));
     for (std::size_t i = 0; i < x.size(); ++i) columns[1][i] = -1.0 / x[i];
-    const Answer<LeastSquares> fit = leastSquares(columns, y);
+    const Expected<LeastSquares> fit = leastSquares(columns, y);
     if (!fit) return Result::none(fit.reason());
     const std::vector<double> errors = fit->standardErrors();
     curve.plateau = fit->coefficients[0];
@@ -106,13 +106,13 @@ Answer<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double>
     return curve;
   }
   const Abscissa a = abscissa(shape, x);
-  const Answer<Minimum> minimum = minimise(a, y);
+  const Expected<Minimum> minimum = minimise(a, y);
   if (!minimum) return Result::none(minimum.reason());
   double c = minimum->c;
   LeastSquares linear = minimum->linear;
   // In the parameters of the whole curve, whose gap is b = b' exp(c first). Gauss-Newton in all three at once: what
   // Brent's method leaves in c, half of the digits, is gone after two steps.
-  Answer<LeastSquares> step = Answer<LeastSquares>::none("");
+  Expected<LeastSquares> step = Expected<LeastSquares>::none("");
   for (int i = 0; i < 4; ++i) {
     Columns jacobian(3, std::vector<double>(y.size(), 1.0));
     const double b = linear.coefficients[1] * std::exp(c * a.first);
@@ -125,7 +125,7 @@ Answer<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double>
     if (!step) return Result::none("does not converge: the curve's parameters can't be told apart");
     const double next = c + step->coefficients[2];
     if (i == 3 || !(next > 0.0)) break;
-    const Answer<LeastSquares> moved = leastSquares(basis(a, next), y);
+    const Expected<LeastSquares> moved = leastSquares(basis(a, next), y);
     if (!moved || !(moved->residualSumOfSquares <= linear.residualSumOfSquares * (1.0 + 1e-12))) break;
     c = next;
     linear = *moved;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -36,6 +36,6 @@ struct LearningCurve {
 /// parameters or no more values than parameters, values all equal, and where the sum of squares falls to the end of the
 /// grid: no plateau in sight (c to 0: a straight line, or for the power a logarithm) or all change over after the first
 /// attempt (c to infinity).
-Answer<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double> x, std::span<const double> y);
+Expected<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double> x, std::span<const double> y);
 
 }  // namespace calot::analytics

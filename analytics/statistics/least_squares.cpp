@@ -16,8 +16,8 @@ std::vector<double> LeastSquares::standardErrors() const {
   return errors;
 }
 
-Answer<LeastSquares> leastSquares(const std::vector<std::vector<double>>& columns, std::span<const double> y) {
-  using Result = Answer<LeastSquares>;
+Expected<LeastSquares> leastSquares(const std::vector<std::vector<double>>& columns, std::span<const double> y) {
+  using Result = Expected<LeastSquares>;
   using Eigen::Index;
   if (columns.empty()) return Result::none("no columns");
   for (const std::vector<double>& column : columns) {
@@ -62,12 +62,12 @@ Answer<LeastSquares> leastSquares(const std::vector<std::vector<double>>& column
   return fit;
 }
 
-Answer<std::vector<double>> hc3Errors(const LeastSquares& fit, const std::vector<std::vector<double>>& columns) {
+Expected<std::vector<double>> hc3Errors(const LeastSquares& fit, const std::vector<std::vector<double>>& columns) {
   const std::size_t p = columns.size();
   std::vector<double> sum(p, 0.0);
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
     const double slack = 1.0 - fit.leverages[i];
-    if (slack < 1e-10) return Answer<std::vector<double>>::none("one value alone determines a coefficient");
+    if (slack < 1e-10) return Expected<std::vector<double>>::none("one value alone determines a coefficient");
     const double weighted = fit.residuals[i] / slack;
     for (std::size_t j = 0; j < p; ++j) {
       double influence = 0.0;

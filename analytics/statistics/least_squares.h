@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -26,11 +26,11 @@ struct LeastSquares {
 
 /// @param columns of X, each as long as y. No answer for lengths that differ, values not finite, no more values than
 /// columns, or columns that depend on each other linearly.
-Answer<LeastSquares> leastSquares(const std::vector<std::vector<double>>& columns, std::span<const double> y);
+Expected<LeastSquares> leastSquares(const std::vector<std::vector<double>>& columns, std::span<const double> y);
 
 /// Errors that hold where the residuals' variances differ: roots of the diagonal of (X'X)^-1 X' diag(e^2 / (1 - h)^2) X
 /// (X'X)^-1, HC3 (MacKinnon and White 1985, J. Econometrics 29:305). No answer where a value has leverage 1: it alone
 /// determines a coefficient.
-Answer<std::vector<double>> hc3Errors(const LeastSquares& fit, const std::vector<std::vector<double>>& columns);
+Expected<std::vector<double>> hc3Errors(const LeastSquares& fit, const std::vector<std::vector<double>>& columns);
 
 }  // namespace calot::analytics

@@ -24,8 +24,8 @@ std::vector<std::size_t> ascending(std::span<const double> p) {
 
 }  // namespace
 
-Answer<std::vector<double>> holm(std::span<const double> p) {
-  using Result = Answer<std::vector<double>>;
+Expected<std::vector<double>> holm(std::span<const double> p) {
+  using Result = Expected<std::vector<double>>;
   if (const std::string reason = objection(p); !reason.empty()) return Result::none(reason);
   const std::vector<std::size_t> order = ascending(p);
   std::vector<double> adjusted(p.size());
@@ -37,8 +37,8 @@ Answer<std::vector<double>> holm(std::span<const double> p) {
   return adjusted;
 }
 
-Answer<std::vector<double>> benjaminiHochberg(std::span<const double> p) {
-  using Result = Answer<std::vector<double>>;
+Expected<std::vector<double>> benjaminiHochberg(std::span<const double> p) {
+  using Result = Expected<std::vector<double>>;
   if (const std::string reason = objection(p); !reason.empty()) return Result::none(reason);
   const std::vector<std::size_t> order = ascending(p);
   std::vector<double> adjusted(p.size());

@@ -41,9 +41,9 @@ struct Walk {
 
 }  // namespace
 
-Answer<PermutationTest> permutationTest(std::span<const double> x, std::span<const double> y,
-                                        const PermutationOptions& options) {
-  using Result = Answer<PermutationTest>;
+Expected<PermutationTest> permutationTest(std::span<const double> x, std::span<const double> y,
+                                          const PermutationOptions& options) {
+  using Result = Expected<PermutationTest>;
   assert(options.draws > 0);
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
   std::vector<double> values = pooled(x, y);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -28,7 +28,7 @@ struct PermutationTest {
 /// (1 + draws), which keeps the level (Phipson and Smyth 2010, Stat. Appl. Genet. Mol. Biol. 9:39). Sums that differ by
 /// less than 1e-11 of the sum of all |values - mean| count as equal, so that rounding decides nothing. No answer for an
 /// empty group or when all values are equal. @pre draws > 0.
-Answer<PermutationTest> permutationTest(std::span<const double> x, std::span<const double> y,
-                                        const PermutationOptions& options = {});
+Expected<PermutationTest> permutationTest(std::span<const double> x, std::span<const double> y,
+                                          const PermutationOptions& options = {});
 
 }  // namespace calot::analytics

@@ -50,7 +50,7 @@ std::string objection(const PowerPlan& plan) {
 /// mannWhitney(), which without ties depends on sizes and U alone: counted once for every U.
 class RankTests {
  public:
-  Answer<double> p(const std::vector<double>& x, const std::vector<double>& y) {
+  Expected<double> p(const std::vector<double>& x, const std::vector<double>& y) {
     const bool ties = x.empty() || y.empty() || tieTerm(pooled(x, y)) > 0.0;
     if (!ties) {
       const double u = std::round(superiority(x, y)->a * static_cast<double>(x.size() * y.size()));
@@ -58,8 +58,8 @@ class RankTests {
       if (added) known->second = mannWhitney(x, y)->p;
       return known->second;
     }
-    const Answer<MannWhitney> test = mannWhitney(x, y);
-    return test ? Answer<double>(test->p) : Answer<double>::none(test.reason());
+    const Expected<MannWhitney> test = mannWhitney(x, y);
+    return test ? Expected<double>(test->p) : Expected<double>::none(test.reason());
   }
 
  private:
@@ -118,8 +118,8 @@ std::vector<PlannedCheckpoint> shifts(const std::vector<double>& effects) {
   return checkpoints;
 }
 
-Answer<Power> simulatePower(const PowerPlan& plan) {
-  if (const std::string reason = objection(plan); !reason.empty()) return Answer<Power>::none(reason);
+Expected<Power> simulatePower(const PowerPlan& plan) {
+  if (const std::string reason = objection(plan); !reason.empty()) return Expected<Power>::none(reason);
   RandomStream random(plan.seed);
   RankTests test;
   const std::size_t checkpoints = plan.population ? plan.population->people[0][0].size() : plan.checkpoints.size();
@@ -135,7 +135,7 @@ Answer<Power> simulatePower(const PowerPlan& plan) {
     const auto y = draw(plan.ny, false);
     std::vector<double> p(checkpoints, 1.0);
     for (std::size_t c = 0; c < checkpoints; ++c) {
-      if (const Answer<double> answer = test.p(x[c], y[c])) {
+      if (const Expected<double> answer = test.p(x[c], y[c])) {
         p[c] = *answer;
       } else {
         ++power.untestable;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "analytics/statistics/answer.h"
 #include "analytics/statistics/contrasting_groups.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
@@ -67,6 +67,6 @@ struct Power {
 /// Simulates the study: draws it, takes mannWhitney() as it is, exact or not, adjusts the p values of all
 /// checkpoints together and compares them with the level. No answer for an empty group, no checkpoint, or parameters
 /// out of their range.
-Answer<Power> simulatePower(const PowerPlan& plan);
+Expected<Power> simulatePower(const PowerPlan& plan);
 
 }  // namespace calot::analytics

@@ -43,7 +43,7 @@ std::string gather(std::span<const ModelAttempt> attempts, Participants& partici
 
 /// The model after the transformation for one ratio of the variances.
 struct Profile {
-  Answer<LeastSquares> fit = Answer<LeastSquares>::none("");
+  Expected<LeastSquares> fit = Expected<LeastSquares>::none("");
   double deviance = HUGE_VAL;  ///< -2 restricted log-likelihood without constants
   double slope = 0.0;          ///< of the deviance over the ratio
 };
@@ -94,8 +94,8 @@ Profile profile(const Participants& participants, const std::vector<std::size_t>
 
 }  // namespace
 
-Answer<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level) {
-  using Result = Answer<RandomIntercept>;
+Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level) {
+  using Result = Expected<RandomIntercept>;
   Participants participants;
   if (const std::string reason = gather(attempts, participants); !reason.empty()) return Result::none(reason);
   std::set<std::size_t> siteSet;

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
@@ -34,6 +34,6 @@ struct RandomIntercept {
 /// answer for an empty group, a participant in two groups or sites, values not finite, no participant with two attempts
 /// (take the first or the mean), attempts of each participant all equal, fewer participants than the model needs, or a
 /// likelihood without a clear maximum.
-Answer<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level = 0.95);
+Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level = 0.95);
 
 }  // namespace calot::analytics

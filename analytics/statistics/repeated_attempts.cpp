@@ -10,8 +10,8 @@
 
 namespace calot::analytics {
 
-Answer<std::vector<ParticipantValue>> onePerParticipant(std::span<const RepeatedValue> values, AttemptRule rule) {
-  using Result = Answer<std::vector<ParticipantValue>>;
+Expected<std::vector<ParticipantValue>> onePerParticipant(std::span<const RepeatedValue> values, AttemptRule rule) {
+  using Result = Expected<std::vector<ParticipantValue>>;
   if (values.empty()) return Result::none("no values");
   std::map<std::size_t, std::vector<RepeatedValue>> attempts;
   std::set<std::pair<std::size_t, double>> orders;

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -28,6 +28,6 @@ struct ParticipantValue {
 
 /// One value per participant, by ascending participant. No answer for no values, one that is not finite, or, for
 /// `first`, two attempts of a participant with one order.
-Answer<std::vector<ParticipantValue>> onePerParticipant(std::span<const RepeatedValue> values, AttemptRule rule);
+Expected<std::vector<ParticipantValue>> onePerParticipant(std::span<const RepeatedValue> values, AttemptRule rule);
 
 }  // namespace calot::analytics

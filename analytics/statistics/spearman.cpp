@@ -54,8 +54,8 @@ double logTieFactorials(std::vector<long> values) {
 
 }  // namespace
 
-Answer<Spearman> spearman(std::span<const double> x, std::span<const double> y) {
-  using Result = Answer<Spearman>;
+Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y) {
+  using Result = Expected<Spearman>;
   if (x.size() != y.size()) return Result::none("the two variables have different lengths");
   if (x.size() < 3) return Result::none("fewer than three pairs");
   if (!allFinite(x) || !allFinite(y)) return Result::none("a value is not finite");

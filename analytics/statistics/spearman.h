@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -22,6 +22,6 @@ inline constexpr std::size_t exactSpearmanLimit = 9;
 /// which |rho| is at least as large, ties included. Beyond exactSpearmanLimit pairs t = rho sqrt((n - 2) / (1 - rho^2))
 /// with n - 2 degrees of freedom (Kendall and Stuart), and for |rho| = 1, where t is infinite, the bound 2 prod(t!) /
 /// n! over the ties. No answer for lengths that differ, fewer than three pairs, or a variable with all values equal.
-Answer<Spearman> spearman(std::span<const double> x, std::span<const double> y);
+Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y);
 
 }  // namespace calot::analytics

@@ -9,8 +9,8 @@
 
 namespace calot::analytics {
 
-Answer<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata) {
-  using Result = Answer<StratifiedRankSum>;
+Expected<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata) {
+  using Result = Expected<StratifiedRankSum>;
   StratifiedRankSum result;
   double sum = 0.0, variance = 0.0, wins = 0.0, weights = 0.0;
   for (const Stratum& s : strata) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -25,6 +25,6 @@ struct StratifiedRankSum {
 /// Van Elteren's test (1960, Bull. Int. Stat. Inst. 37:351): rank sums within strata, weighted by 1 / (N + 1),
 /// mid-ranks with the variance corrected for ties; no continuity correction. No answer when no stratum compares, or
 /// for values not finite.
-Answer<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata);
+Expected<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata);
 
 }  // namespace calot::analytics

@@ -30,19 +30,19 @@ Interval scoreInterval(double a, double nx, double ny, double z, double level) {
 
 }  // namespace
 
-Answer<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
-                                                Hypothesis hypothesis, AreaMethod method, double level) {
-  using Result = Answer<SuperiorityEstimate>;
+Expected<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
+                                                  Hypothesis hypothesis, AreaMethod method, double level) {
+  using Result = Expected<SuperiorityEstimate>;
   assert(level > 0.0 && level < 1.0);
   if (hypothesis == Hypothesis::firstSmaller) std::swap(x, y);
-  const Answer<Superiority> value = superiority(x, y);
+  const Expected<Superiority> value = superiority(x, y);
   if (!value) return Result::none(hypothesis == Hypothesis::firstSmaller ? twoGroupObjection(y, x) : value.reason());
   const double n = static_cast<double>(x.size() + y.size());
   if (tieTerm(pooled(x, y)) == n * n * n - n) return Result::none("all values are equal");
   SuperiorityEstimate result;
   result.value = *value;
   const double a = value->a, z = normalQuantile(0.5 + level / 2.0);
-  const Answer<DeLong> d = deLong(x, y);
+  const Expected<DeLong> d = deLong(x, y);
   const bool usable = d && d->variance > 0.0;
   if (method == AreaMethod::score || !usable) {
     result.a = scoreInterval(a, static_cast<double>(x.size()), static_cast<double>(y.size()), z, level);

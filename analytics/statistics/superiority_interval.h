@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 #include "analytics/statistics/two_groups.h"
 
@@ -30,8 +30,8 @@ struct SuperiorityEstimate {
 /// A of the hypothesis: P(X > Y) + P(X = Y) / 2 for firstLarger, P(X < Y) + P(X = Y) / 2 for firstSmaller. Where
 /// DeLong's variance vanishes or does not exist the score interval takes its place and says so. No answer for an empty
 /// group or when all values are equal. @pre 0 < level < 1.
-Answer<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
-                                                Hypothesis hypothesis, AreaMethod method = AreaMethod::score,
-                                                double level = 0.95);
+Expected<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
+                                                  Hypothesis hypothesis, AreaMethod method = AreaMethod::score,
+                                                  double level = 0.95);
 
 }  // namespace calot::analytics

@@ -82,11 +82,11 @@ class Differences {
 
 }  // namespace
 
-Answer<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y, RankTest method) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<MannWhitney>::none(reason);
+Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y, RankTest method) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<MannWhitney>::none(reason);
   const Ranked r = ranked(x, y);
   const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size()), n = nx + ny;
-  if (r.tieTerm == n * n * n - n) return Answer<MannWhitney>::none("all values are equal");
+  if (r.tieTerm == n * n * n - n) return Expected<MannWhitney>::none("all values are equal");
   MannWhitney result;
   result.u = r.u;
   result.ties = r.tieTerm > 0.0;
@@ -105,15 +105,15 @@ Answer<MannWhitney> mannWhitney(std::span<const double> x, std::span<const doubl
   return result;
 }
 
-Answer<Superiority> superiority(std::span<const double> x, std::span<const double> y) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<Superiority>::none(reason);
+Expected<Superiority> superiority(std::span<const double> x, std::span<const double> y) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<Superiority>::none(reason);
   const double pairs = static_cast<double>(x.size()) * static_cast<double>(y.size());
   const double u = ranked(x, y).u;
   return Superiority{u / pairs, (2.0 * u - pairs) / pairs};
 }
 
-Answer<double> hodgesLehmann(std::span<const double> x, std::span<const double> y) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Answer<double>::none(reason);
+Expected<double> hodgesLehmann(std::span<const double> x, std::span<const double> y) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<double>::none(reason);
   const Differences differences(x, y);
   const double upper = differences.at(differences.size() / 2);
   if (differences.size() % 2 == 1) return upper;
@@ -133,8 +133,8 @@ const char* nameOf(ShiftMethod method) {
   return "";
 }
 
-Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y, double level) {
-  using Result = Answer<ShiftInterval>;
+Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y, double level) {
+  using Result = Expected<ShiftInterval>;
   assert(level > 0.0 && level < 1.0);
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
   const double n = static_cast<double>(x.size() + y.size()), ties = tieTerm(pooled(x, y));

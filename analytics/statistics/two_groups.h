@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -26,18 +26,18 @@ struct MannWhitney {
 /// pooled mid-ranks (with no ties this is the classical exact test). Asymptotic: normal with the variance corrected for
 /// ties and a continuity correction of 1/2. `automatic`: exact up to exactRankTestLimit values. No answer for an empty
 /// group, values that are not finite, or when all values are tied.
-Answer<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y,
-                                RankTest method = RankTest::automatic);
+Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y,
+                                  RankTest method = RankTest::automatic);
 
 /// Probability of superiority and its linear image; one statistic under two names.
 struct Superiority {
   double a = 0.5;      ///< Vargha and Delaney's A = U / (nx ny): P(X > Y) + P(X = Y) / 2, the area under the ROC curve
   double delta = 0.0;  ///< Cliff's delta = 2 A - 1 = P(X > Y) - P(X < Y)
 };
-Answer<Superiority> superiority(std::span<const double> x, std::span<const double> y);
+Expected<Superiority> superiority(std::span<const double> x, std::span<const double> y);
 
 /// Hodges-Lehmann estimate of the shift: median of all x_i - y_j (positive: x is larger). O(nx ny) memory.
-Answer<double> hodgesLehmann(std::span<const double> x, std::span<const double> y);
+Expected<double> hodgesLehmann(std::span<const double> x, std::span<const double> y);
 
 enum class ShiftMethod {
   exact,         ///< without ties
@@ -58,6 +58,7 @@ struct ShiftInterval {
 /// Distribution-free interval of that shift: order statistics of the differences at the quantiles of the distribution
 /// of U (Hollander and Wolfe 1999, 4.3); with ties, Noether (1967, J. Am. Stat. Assoc. 62:184). No answer where all
 /// values are equal or the groups are too small for the level. @pre 0 < level < 1.
-Answer<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y, double level = 0.95);
+Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y,
+                                              double level = 0.95);
 
 }  // namespace calot::analytics

@@ -9,8 +9,8 @@
 
 namespace calot::analytics {
 
-Answer<Welch> welch(std::span<const double> x, std::span<const double> y, double level) {
-  using Result = Answer<Welch>;
+Expected<Welch> welch(std::span<const double> x, std::span<const double> y, double level) {
+  using Result = Expected<Welch>;
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
   if (x.size() < 2 || y.size() < 2) return Result::none("a group of one value has no spread");
   const double sx = *standardDeviation(x), sy = *standardDeviation(y);

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "analytics/statistics/answer.h"
+#include "analytics/statistics/expected.h"
 #include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
@@ -20,6 +20,6 @@ struct Welch {
 /// = sy^2 / ny:
 ///   t = (mx - my) / sqrt(a + b),   df = (a + b)^2 / (a^2 / (nx - 1) + b^2 / (ny - 1)).
 /// No answer for fewer than two values in a group, or when neither group has any spread. @pre 0 < level < 1.
-Answer<Welch> welch(std::span<const double> x, std::span<const double> y, double level = 0.95);
+Expected<Welch> welch(std::span<const double> x, std::span<const double> y, double level = 0.95);
 
 }  // namespace calot::analytics

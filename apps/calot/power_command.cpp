@@ -83,7 +83,7 @@ int power(PowerOptions& o) {
     planned.plan.nx = n;
     planned.plan.ny = std::clamp(static_cast<std::size_t>(std::lround(o.allocation * static_cast<double>(n))),
                                  std::size_t{2}, maxPeople);
-    const analytics::Answer<analytics::Power> answer = analytics::simulatePower(planned.plan);
+    const analytics::Expected<analytics::Power> answer = analytics::simulatePower(planned.plan);
     if (!answer) failPower(answer.reason());
     results.push_back({planned.plan.nx, planned.plan.ny, *answer});
     const bool reached = answer->allEffects.interval.lower >= o.target;

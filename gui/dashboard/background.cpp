@@ -46,7 +46,7 @@ void Background::loop() {
       job = std::exchange(next_, {});
       mine = newest_;
     }
-    Answer answer = job();
+    Completion answer = job();
     QMetaObject::invokeMethod(
         this,
         [this, mine, answer = std::move(answer)] {

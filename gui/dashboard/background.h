@@ -14,8 +14,8 @@ namespace calot::gui {
 class Background : public QObject {
   Q_OBJECT
  public:
-  using Answer = std::function<void()>;  ///< called on the object's thread
-  using Job = std::function<Answer()>;   ///< called on the background's thread; must not throw
+  using Completion = std::function<void()>;  ///< called on the object's thread
+  using Job = std::function<Completion()>;   ///< called on the background's thread; must not throw
 
   explicit Background(QObject* parent = nullptr);
   /// Waits for the job that is being done; its answer is dropped.

@@ -70,7 +70,7 @@ void ComparePage::readValues() {
   read_ = true;
   ready_ = false;
   caption_->setText("Reading the values …");
-  background_.run([this, path = document_->path()]() -> Background::Answer {
+  background_.run([this, path = document_->path()]() -> Background::Completion {
     const auto values = std::make_shared<std::vector<analytics::AttemptValue>>();
     QString fault;
     try {

@@ -222,7 +222,7 @@ bool DashboardWindow::createDatabase(const QString& path) {
 
 void DashboardWindow::reload() {
   if (!document_) return;
-  loader_.run([this, path = document_->path()]() -> Background::Answer {
+  loader_.run([this, path = document_->path()]() -> Background::Completion {
     try {
       auto document = std::make_shared<const CohortDocument>(path);
       return [this, document] { setDocument(document); };

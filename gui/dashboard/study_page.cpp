@@ -194,7 +194,7 @@ void StudyPage::make() {
   request.attemptRule = static_cast<analytics::AttemptRule>(rule_->currentData().toInt());
   request.first = first_->currentText().toStdString();
   request.second = second_->currentText().toStdString();
-  background_.run([this, request, database = document_->path()]() -> Background::Answer {
+  background_.run([this, request, database = document_->path()]() -> Background::Completion {
     auto answer = std::make_shared<StudyAnswer>(studyOf(database, request));
     return [this, answer] { take(std::move(*answer)); };
   });

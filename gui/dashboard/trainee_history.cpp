@@ -92,7 +92,7 @@ TraineeHistory historyOf(const std::vector<analytics::AttemptRow>& attempts,
     x.push_back(static_cast<double>(i + 1));
     y.push_back(*entry.value);
   }
-  history.curve = trainee.synthetic ? analytics::Answer<analytics::LearningCurve>::none("a performer does not learn")
+  history.curve = trainee.synthetic ? analytics::Expected<analytics::LearningCurve>::none("a performer does not learn")
                                     : analytics::fitLearningCurve(analytics::CurveShape::inverse, x, y);
   std::uint32_t version = 0;
   for (const analytics::Norm& norm : norms) {

@@ -118,7 +118,7 @@ void TraineePage::readValues() {
     std::vector<analytics::AttemptValue> values;
     QString fault;
   };
-  background_.run([this, path = document_->path()]() -> Background::Answer {
+  background_.run([this, path = document_->path()]() -> Background::Completion {
     const auto read = std::make_shared<Read>();
     try {
       read->values = CohortDocument(path).allValues();

@@ -19,7 +19,7 @@ using Values = std::vector<double>;
 
 const Values skewed{1.2, 0.3, 4.5, 2.2, 9.8, 0.7, 3.1, 1.9, 0.4, 6.0};
 
-Answer<double> meanDifference(std::span<const double> x, std::span<const double> y) { return *mean(x) - *mean(y); }
+Expected<double> meanDifference(std::span<const double> x, std::span<const double> y) { return *mean(x) - *mean(y); }
 
 TEST(RandomStream, bitsAreFixed) {
   // The C++ standard: the 10,000th draw of a default mt19937_64, seed 5489, is 9981545732273789042.
@@ -134,14 +134,14 @@ TEST(Bootstrap, degenerate) {
   // The deviation of two values vanishes in half of the resamples, which here counts as no answer.
   const auto inverse = [](std::span<const double> v) {
     const auto s = standardDeviation(v);
-    return s && *s > 0.0 ? Answer<double>(1.0 / *s) : Answer<double>::none("no spread");
+    return s && *s > 0.0 ? Expected<double>(1.0 / *s) : Expected<double>::none("no spread");
   };
   EXPECT_NE(bootstrap(Values{1, 2}, inverse).reason().find("resamples have no answer (no spread)"), std::string::npos);
   // A statistic that is 99 in the order of the sample and in hardly any resample: all lie on one side, and BCa can't
   // correct.
   const Values ordered{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   const auto odd = [&](std::span<const double> v) {
-    return Answer<double>(std::equal(v.begin(), v.end(), ordered.begin(), ordered.end()) ? 99.0 : *mean(v));
+    return Expected<double>(std::equal(v.begin(), v.end(), ordered.begin(), ordered.end()) ? 99.0 : *mean(v));
   };
   EXPECT_EQ(bootstrap(ordered, odd).reason(), "BCa: all resamples are on one side of the estimate");
   // A value left out leaves one, which has no deviation.

@@ -58,7 +58,7 @@ Draw rounded(double shift) {
 }
 
 template <class T>
-std::optional<Ends> endsOf(const Answer<T>& answer) {
+std::optional<Ends> endsOf(const Expected<T>& answer) {
   if (!answer) return std::nullopt;
   return Ends{answer->lower, answer->upper};
 }
@@ -79,7 +79,7 @@ BootstrapOptions resampling(BootstrapMethod method, std::uint64_t seed) {
   return options;
 }
 
-std::optional<Ends> ofBootstrap(const Answer<Bootstrap>& b) {
+std::optional<Ends> ofBootstrap(const Expected<Bootstrap>& b) {
   if (!b) return std::nullopt;
   return Ends{b->interval.lower, b->interval.upper};
 }
@@ -175,7 +175,7 @@ std::vector<Case> cases() {
        [](const Values& x, const Values& y, std::uint64_t seed) {
          return ofBootstrap(bootstrap(
              x, y,
-             [](std::span<const double> a, std::span<const double> b) { return Answer<double>(*mean(a) - *mean(b)); },
+             [](std::span<const double> a, std::span<const double> b) { return Expected<double>(*mean(a) - *mean(b)); },
              resampling(BootstrapMethod::bca, seed)));
        }});
   list.push_back({"difference of means, Welch", "exponential, shift 1", 1.0, exponential(1.0), exponential(0.0),

@@ -11,7 +11,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-void expectAll(const Answer<Values>& answer, const Values& expected, double tolerance) {
+void expectAll(const Expected<Values>& answer, const Values& expected, double tolerance) {
   ASSERT_TRUE(answer) << answer.reason();
   ASSERT_EQ(answer->size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR((*answer)[i], expected[i], tolerance) << i;

@@ -34,7 +34,7 @@ class NeverNan : public testing::Test {
  protected:
   /// An answer whose numbers are finite, or a reason.
   template <class T, class Numbers>
-  void check(const char* what, const Answer<T>& answer, const Numbers& numbers) {
+  void check(const char* what, const Expected<T>& answer, const Numbers& numbers) {
     if (!answer) {
       EXPECT_FALSE(answer.reason().empty()) << what << where_;
       ++reasons_;
@@ -43,7 +43,7 @@ class NeverNan : public testing::Test {
     ++answers_;
     for (const double v : numbers(*answer)) EXPECT_TRUE(std::isfinite(v)) << what << where_;
   }
-  void checkInterval(const char* what, const Answer<Interval>& interval) {
+  void checkInterval(const char* what, const Expected<Interval>& interval) {
     check(what, interval, [](const Interval& i) { return Values{i.lower, i.upper}; });
     if (interval) {
       EXPECT_LE(interval->lower, interval->upper) << what << where_;
@@ -84,14 +84,15 @@ class NeverNan : public testing::Test {
     if (cut) checkInterval("the cut's interval", cut->interval);
     BootstrapOptions resampling;
     resampling.resamples = 99;
-    check("bootstrap",
-          bootstrap(
-              x, y,
-              [](std::span<const double> a, std::span<const double> b) { return Answer<double>(*mean(a) - *mean(b)); },
-              resampling),
-          [](const Bootstrap& b) {
-            return Values{b.interval.lower, b.interval.upper, b.bias, b.acceleration};
-          });
+    check(
+        "bootstrap",
+        bootstrap(
+            x, y,
+            [](std::span<const double> a, std::span<const double> b) { return Expected<double>(*mean(a) - *mean(b)); },
+            resampling),
+        [](const Bootstrap& b) {
+          return Values{b.interval.lower, b.interval.upper, b.bias, b.acceleration};
+        });
   }
 
   void series(const Values& x, const Values& y) {

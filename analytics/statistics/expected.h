@@ -11,13 +11,13 @@ namespace calot::analytics {
 /// A result, or the reason why there is none. Degenerate input (an empty group, all values tied, n = 1) gives a
 /// printable reason, not an error and never a NaN.
 template <class T>
-class Answer {
+class Expected {
  public:
-  Answer(T value) : value_(std::move(value)) {}  // NOLINT: implicit on purpose, a result is an answer
-  static Answer none(const std::string& reason) {
-    Answer answer;
-    answer.reason_ = reason;
-    return answer;
+  Expected(T value) : value_(std::move(value)) {}  // NOLINT: implicit on purpose, a result converts
+  static Expected none(const std::string& reason) {
+    Expected result;
+    result.reason_ = reason;
+    return result;
   }
 
   explicit operator bool() const { return value_.has_value(); }
@@ -34,7 +34,7 @@ class Answer {
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
-  Answer() = default;
+  Expected() = default;
   std::optional<T> value_;
   std::string reason_;
 };
