@@ -11,7 +11,7 @@ import tempfile
 import cpp_text
 
 # Room -> rooms whose headers it may include, besides its own. A room is a folder; its longest matching name counts.
-SIM = ("sim/math", "sim/geometry", "sim/solid", "sim/vessel", "sim/connective", "sim/carving", "sim/contact", "sim/fat", "sim/haptics", "sim/instruments", "sim/scene", "sim/step")
+SIM = ("sim/math", "sim/geometry", "sim/solid", "sim/vessel", "sim/connective", "sim/carving", "sim/contact", "sim/fat", "sim/haptics", "sim/instruments", "sim/scene", "sim/tissue", "sim/judgement", "sim/step")
 MAY_SEE = {
     "sim/math": (),
     "sim/geometry": ("sim/math",),
@@ -19,7 +19,9 @@ MAY_SEE = {
     "sim/solid": ("sim/math", "sim/geometry"),
     "sim/connective": ("sim/math", "sim/geometry", "sim/solid"),
     # These are one library; what the step is made of may not reach up to recorder or beyond.
-    "sim/haptics": SIM, "sim/instruments": SIM, "sim/scene": SIM, "sim/step": SIM,
+    "sim/haptics": SIM, "sim/instruments": SIM, "sim/scene": SIM, "sim/tissue": SIM, "sim/step": SIM,
+    # Judgement sees results and descriptions, never State: nothing below it may know it.
+    "sim/judgement": ("sim/math", "sim/scene", "sim/tissue"),
     "sim/carving": ("sim/math", "sim/geometry"),  # these are libraries of their own below the core
     "sim/contact": ("sim/math", "sim/geometry"),
     "sim/fat": ("sim/math", "sim/geometry", "sim/solid", "sim/carving", "sim/contact"),
