@@ -55,6 +55,9 @@ MAY_SEE = {
 # What lies at the top of recorder/ and belongs to all of its folders.
 CONTRACTS = ("recorder/device_sample.h", "recorder/errors.h", "recorder/identity.h", "recorder/observer.h", "recorder/ring.h")
 
+# Headers of a module that another one, which may see the module, may not: what is judged is StepResult.
+NEVER = {"sim/judgement": ("sim/scene/state.h", "sim/scene/model.h", "sim/scene/scene_view.h", "sim/scene/scene_viewer.h")}
+
 # The core sees these and nothing else from outside.
 SIM_FOREIGN = set("""algorithm array bit bitset cassert cmath compare concepts cstddef cstdint cstring deque functional
 initializer_list iterator limits map memory numbers numeric optional queue set span stdexcept string string_view tuple
@@ -109,6 +112,8 @@ def faults_of(path, text):
                 yield number, f'"{name}": name the header from the repository\'s root'
             elif target != room and not any(below(target, place) for place in allowed):
                 yield number, f'"{name}": {room} may not see {target}'
+            elif name in NEVER.get(room, ()):
+                yield number, f'"{name}": {room} sees results alone'
         elif below(room, "sim"):
             bullets = room == "sim/bullet" and name.startswith(BULLET)
             if name not in SIM_FOREIGN and not name.startswith(SIM_FOREIGN_FOLDERS) and not bullets:
@@ -147,7 +152,7 @@ def self_test():
     )
     bad = (
         ("sim/math/a.h", '#include "sim/geometry/mesh.h"'), ("sim/geometry/a.h", '#include "sim/solid/body.h"'),
-        ("sim/scene/a.cpp", '#include "recorder/errors.h"'), ("sim/scene/a.cpp", "#include <fstream>"),
+        ("sim/scene/a.cpp", '#include "recorder/errors.h"'), ("sim/judgement/a.cpp", '#include "sim/scene/state.h"'), ("sim/scene/a.cpp", "#include <fstream>"),
         ("sim/solid/a.cpp", "#include <chrono>"), ("sim/solid/a.cpp", "#include <thread>"),
         ("sim/solid/a.cpp", "#include <unordered_map>"), ("sim/solid/a.cpp", "#include <fmt/format.h>"),
         ("sim/contact/a.cpp", "#include <BulletCollision/BroadphaseCollision/btDbvt.h>"), ("sim/bullet/a.cpp", "#include <thread>"),
