@@ -10,7 +10,7 @@
 namespace calot::analytics {
 namespace {
 
-CheckpointDefinition member(const char* name, const char* title, const char* formula) {
+CheckpointDefinition speedFigure(const char* name, const char* title, const char* formula) {
   CheckpointDefinition d = motionDefinition(name, title, "m/s", Direction::none, formula);
   d.displayUnit = "mm/s";
   d.displayFactor = 1000.0;
@@ -18,16 +18,17 @@ CheckpointDefinition member(const char* name, const char* title, const char* for
 }
 
 const CheckpointDefinition& meanDefinition() {
-  static const CheckpointDefinition d = member("speed-mean", "Mean speed of the instrument's tip",
-                                               "mean of v(k) over all points; v(k) = |p(k+1) - p(k-1)| * 50 Hz of the "
-                                               "filtered tip, one-sided at the ends of a segment");
+  static const CheckpointDefinition d =
+      speedFigure("speed-mean", "Mean speed of the instrument's tip",
+                  "mean of v(k) over all points; v(k) = |p(k+1) - p(k-1)| * 50 Hz of the "
+                  "filtered tip, one-sided at the ends of a segment");
   return d;
 }
 
 const CheckpointDefinition& percentileDefinition() {
   static const CheckpointDefinition d =
-      member("speed-p95", "95th percentile of the tip's speed",
-             "quantile of type 7 at 0.95 of v(k) over all points, v as in speed-mean");
+      speedFigure("speed-p95", "95th percentile of the tip's speed",
+                  "quantile of type 7 at 0.95 of v(k) over all points, v as in speed-mean");
   return d;
 }
 
