@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analytics/checkpoints/phases.h"
+#include "sim/instruments/instruments.h"
 
 namespace calot::analytics {
 namespace {
@@ -42,7 +43,7 @@ class CurrentInTheAir {
       : tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {}
 
   void add(const HandResult& result) {
-    hook_ = hook_ || result.instrument == InstrumentKind::hook;
+    hook_ = hook_ || instrumentOf(result.instrument).action == InstrumentAction::burn;
     if (result.cautery == Cautery::withoutContact) {
       ++stretch_;
     } else {

@@ -264,10 +264,10 @@ TEST(WorkingVolume, isThatOfTheEllipsoid) {
 }
 
 TEST(Phases, cutTheMotionAndAddUp) {
-  CheckpointCollector collector(header(), sceneWithProcedure());
+  CheckpointCollector collector(header(), support::sceneWithProcedure());
   // Identification 0 to 4 s, clipping to 6 s, identification again to 7 s, dissection to 10 s; 10 mm/s throughout, and
   // a second of rest in dissection. No cutting.
-  feedPhases(
+  support::feedPhases(
       collector, 1000,
       [](std::uint64_t tick, TickSamples& s, TickOutcome&) {
         const double t = 0.001 * static_cast<double>(tick);
