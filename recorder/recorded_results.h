@@ -29,9 +29,9 @@ class RecordedResults {
   const StepResult& of(const RecordedStep& step);
 
  private:
-  bool judged_ = false;              ///< version 3, with a procedure
+  bool judged_ = false;               ///< version 3, with a procedure
   std::vector<std::size_t> divided_;  ///< vessels, in the procedure's order
-  std::vector<double> toClear_;      ///< of the first step, per body of fat (m^3)
+  std::vector<double> toClear_;       ///< of the first step, per body of fat (m^3)
   bool clearedFromStart_ = false;
   StepResult translated_;
 };

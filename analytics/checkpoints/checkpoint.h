@@ -121,7 +121,8 @@ struct AttemptEnd {
 class Checkpoint {
  public:
   virtual ~Checkpoint() = default;
-  /// Called once per step, in order, with what was judged of it. Motion and haptic forces are collected once for all: AttemptEnd has them.
+  /// Called once per step, in order, with what was judged of it. Motion and haptic forces are collected once for all:
+  /// AttemptEnd has them.
   virtual void onStep(const recorder::StepRecord& record, const Judgement& judgement);
   /// The figures so far: one per subject, in the order of hands or organs. May be called more than once.
   [[nodiscard]] virtual std::vector<CheckpointValue> values(const AttemptEnd& end) const = 0;

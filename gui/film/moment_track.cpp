@@ -72,8 +72,7 @@ void MomentTrack::add(const recorder::RecordedStep& step) {
     else
       passed_[h].push_back({time, hand.tipSimulated});
   }
-  if (collector_)
-    collector_->onStep({step.step, step.samples, step.ticks, result, step.digest, step.lateness, {}, {}});
+  if (collector_) collector_->onStep({step.step, step.samples, step.ticks, result, step.digest, step.lateness, {}, {}});
 }
 
 void MomentTrack::refreshCheckpoints(double time) {

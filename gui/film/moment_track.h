@@ -63,7 +63,7 @@ class MomentTrack {
   double stepSeconds_ = 0.01;
   SubjectNames names_;
   std::unique_ptr<analytics::CheckpointCollector> collector_;  ///< none: no checkpoints are asked for
-  std::uint64_t next_ = 0;  ///< step to read
+  std::uint64_t next_ = 0;                                     ///< step to read
   std::optional<recorder::RecordedResults> results_;
   std::optional<Judge> judge_;
   struct Told {

@@ -14,8 +14,8 @@ namespace calot {
 
 /// One structure's outer surface, in W. Built only when an observer asks for it.
 struct SurfaceView {
-  std::string organ;             ///< name in the scene: "liver", "cystic_duct"
-  std::string appearance;        ///< "liver", "gallbladder", "duct", "artery", ...: which look the renderer gives it
+  std::string organ;       ///< name in the scene: "liver", "cystic_duct"
+  std::string appearance;  ///< "liver", "gallbladder", "duct", "artery", ...: which look the renderer gives it
   StructureRole role = StructureRole::other;
   std::vector<Vec3> position;    ///< deformed vertices (m)
   std::vector<Vec3> rest;        ///< the same vertices at rest, for textures that stick to the tissue

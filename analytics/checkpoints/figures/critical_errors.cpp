@@ -33,7 +33,9 @@ class CriticalErrors final : public Checkpoint {
   explicit CriticalErrors(const AttemptContext& context)
       : notApplicable_(context.procedure ? whyTooOld(context, 3) : "the scene has no procedure") {}
 
-  void onStep(const recorder::StepRecord& /*record*/, const Judgement& judgement) override { errors_ = judgement.criticalErrors; }
+  void onStep(const recorder::StepRecord& /*record*/, const Judgement& judgement) override {
+    errors_ = judgement.criticalErrors;
+  }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty()) {

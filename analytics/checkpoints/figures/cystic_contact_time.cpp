@@ -54,7 +54,9 @@ class CysticContactTime final : public Checkpoint {
   explicit CysticContactTime(const AttemptContext& context)
       : contact_(context, isCystic), notApplicable_(whyNoCystic(context, contact_)) {}
 
-  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override { contact_.add(record.result); }
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
+    contact_.add(record.result);
+  }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (!notApplicable_.empty())

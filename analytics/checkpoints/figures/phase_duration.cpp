@@ -36,8 +36,7 @@ class PhaseDuration final : public Checkpoint {
       : notApplicable_(whyNoPhases(context)), tickSeconds_(context.tickSeconds), ticksPerStep_(context.ticksPerStep) {}
 
   void onStep(const recorder::StepRecord& /*record*/, const Judgement& judgement) override {
-    for (std::size_t i = 0; i < windowPhases.size(); ++i)
-      steps_[i] += judgement.phase == windowPhases[i] ? 1 : 0;
+    for (std::size_t i = 0; i < windowPhases.size(); ++i) steps_[i] += judgement.phase == windowPhases[i] ? 1 : 0;
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {

@@ -58,7 +58,9 @@ class SparedContactTime final : public Checkpoint {
                        : !contact_.anyVessel() ? "the scene's procedure names no vessel to be spared"
                                                : whyTooOld(context, 3)) {}
 
-  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override { contact_.add(record.result); }
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
+    contact_.add(record.result);
+  }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     const CheckpointDefinition& d = sum_ ? sumDefinition() : unionDefinition();

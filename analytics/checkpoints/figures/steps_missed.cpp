@@ -31,7 +31,9 @@ const CheckpointDefinition& stepsMissedDefinition() {
 
 class StepsMissed final : public Checkpoint {
  public:
-  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override { misses_.add(record.result.misses); }
+  void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
+    misses_.add(record.result.misses);
+  }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
     if (misses_.steps == 0) {
