@@ -17,7 +17,7 @@ namespace {
 
 /// A sphere with radii drawn at random: convex and concave edges, saddles, needles.
 TriangleMesh roughSphere(Random& random, int rounds, double roughness) {
-  TriangleMesh mesh = test::sphereSurface(Vec3::Zero(), 1.0, rounds);
+  TriangleMesh mesh = test::refinedSphere(Vec3::Zero(), 1.0, rounds);
   for (Vec3& p : mesh.vertex) p *= random.uniform(1.0 - roughness, 1.0);
   return mesh;
 }
@@ -97,7 +97,7 @@ TEST(ClosestPointTransform, HoldsOnNodesOfTheLatticeAndFlatSides) {
 
 TEST(ClosestPointTransform, TakesTheUnionOfOverlappingParts) {
   const TriangleMesh mesh = test::together(test::boxSurface({-0.61, -0.6, -0.6}, {0.2, 0.63, 0.6}),
-                                           test::turned(test::turned(test::sphereSurface({0.4, 0.1, 0.0}, 0.7, 3))));
+                                           test::turned(test::turned(test::refinedSphere({0.4, 0.1, 0.0}, 0.7, 3))));
   const BrickLattice lattice = BrickLattice::around(bounds(mesh), 0.1, 3);
   const DistanceTransform field = closestPointTransform(mesh, lattice, 3.0);
   ASSERT_EQ(field.error, "");
@@ -109,7 +109,7 @@ TEST(ClosestPointTransform, TakesTheUnionOfOverlappingParts) {
 
 TEST(ClosestPointTransform, KeepsACavity) {
   const TriangleMesh mesh = test::together(test::boxSurface({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}),
-                                           test::turned(test::sphereSurface(Vec3::Zero(), 0.6, 2)));
+                                           test::turned(test::refinedSphere(Vec3::Zero(), 0.6, 2)));
   const BrickLattice lattice = BrickLattice::around(bounds(mesh), 0.093, 3);
   const DistanceTransform field = closestPointTransform(mesh, lattice, 3.0);
   ASSERT_EQ(field.error, "");
@@ -118,7 +118,7 @@ TEST(ClosestPointTransform, KeepsACavity) {
 }
 
 TEST(ClosestPointTransform, RefusesWithAReason) {
-  TriangleMesh mesh = test::sphereSurface(Vec3::Zero(), 1.0, 2);
+  TriangleMesh mesh = test::refinedSphere(Vec3::Zero(), 1.0, 2);
   const BrickLattice lattice = BrickLattice::around(bounds(mesh), 0.1, 3);
   TriangleMesh open = mesh;
   open.triangle.pop_back();

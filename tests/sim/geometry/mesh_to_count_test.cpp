@@ -94,7 +94,7 @@ TEST(StuffToCount, LiverFromElsewhere) {
 
 TEST(StuffToCount, ThinPartsAndLostComponentsAreReported) {
   // A ball with a plate of a twentieth of a cell: the plate cannot be followed.
-  const TriangleMesh ball = test::sphereSurface(Vec3::Zero(), 0.03, 4);
+  const TriangleMesh ball = test::refinedSphere(Vec3::Zero(), 0.03, 4);
   const TriangleMesh plate = test::boxSurface({0.05, -0.02, -0.0001}, {0.09, 0.02, 0.0001});
   const StuffedMesh stuffed = stuffToCount(test::together(ball, plate), 400);
   ASSERT_TRUE(stuffed.ok()) << stuffed.error;
@@ -105,7 +105,7 @@ TEST(StuffToCount, ThinPartsAndLostComponentsAreReported) {
 
 TEST(StuffToCount, TwoBodiesStayTwo) {
   const TriangleMesh both =
-      test::together(test::sphereSurface({-0.04, 0.0, 0.0}, 0.03, 3), test::sphereSurface({0.04, 0.0, 0.0}, 0.03, 3));
+      test::together(test::refinedSphere({-0.04, 0.0, 0.0}, 0.03, 3), test::refinedSphere({0.04, 0.0, 0.0}, 0.03, 3));
   const StuffedMesh stuffed = stuffToCount(both, 600);
   ASSERT_TRUE(stuffed.ok()) << stuffed.error;
   int count = 0;

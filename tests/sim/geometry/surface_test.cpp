@@ -12,7 +12,7 @@ namespace calot {
 namespace {
 
 using test::boxSurface;
-using test::sphereSurface;
+using test::refinedSphere;
 using test::together;
 using test::turned;
 
@@ -77,7 +77,7 @@ TEST(SurfaceReport, ACavityIsNoFaultAndAnOutwardShellInsideIs) {
 
 TEST(RepairSurface, MakesTriangleSoupWhole) {
   // Every triangle with corners of its own, a third of them turned, duplicates among them.
-  const TriangleMesh box = sphereSurface(one, 2.0, 2);
+  const TriangleMesh box = refinedSphere(one, 2.0, 2);
   Random random(5);
   TriangleMesh soup;
   for (int t = 0; t < box.triangles(); ++t) {
@@ -110,7 +110,7 @@ TEST(RepairSurface, InventsNothing) {
 }
 
 TEST(SurfaceDistance, ClosestAgreesWithTestingEveryTriangle) {
-  const TriangleMesh sphere = sphereSurface({0.1, -0.2, 0.3}, 0.8, 3);
+  const TriangleMesh sphere = refinedSphere({0.1, -0.2, 0.3}, 0.8, 3);
   const SurfaceDistance distance(sphere);
   Random random(11);
   for (int trial = 0; trial < 500; ++trial) {
@@ -163,7 +163,7 @@ TEST(SurfaceDistance, WindingHoldsWhereNormalsLie) {
   EXPECT_GT(winding.signedDistance({0.5, 0.5, 0.0}), 0.0);
   EXPECT_NEAR(winding.windingNumber({0.0, 0.0, 0.0}), 2.0, 0.05);
 
-  TriangleMesh open = sphereSurface(Vec3::Zero(), 1.0, 3);
+  TriangleMesh open = refinedSphere(Vec3::Zero(), 1.0, 3);
   open.triangle.erase(open.triangle.begin() + 17);
   EXPECT_EQ(SurfaceDistance(open).rule(), InsideRule::winding);
   EXPECT_LT(SurfaceDistance(open).signedDistance({0.1, 0.2, 0.3}), 0.0);
@@ -171,7 +171,7 @@ TEST(SurfaceDistance, WindingHoldsWhereNormalsLie) {
 }
 
 TEST(SurfaceDistance, WindingNumberOfClustersStaysNearTheExactOne) {
-  const SurfaceDistance sphere(sphereSurface(Vec3::Zero(), 1.0, 4), InsideRule::winding);
+  const SurfaceDistance sphere(refinedSphere(Vec3::Zero(), 1.0, 4), InsideRule::winding);
   Random random(21);
   double worst = 0.0;
   for (int trial = 0; trial < 2000; ++trial) {

@@ -25,7 +25,7 @@ inline TriangleMesh boxSurface(const Vec3& lower, const Vec3& upper) {
 }
 
 /// Octahedron refined `rounds` times, vertices on the sphere: 8 * 4^rounds outward triangles.
-inline TriangleMesh sphereSurface(const Vec3& centre, double radius, int rounds) {
+inline TriangleMesh refinedSphere(const Vec3& centre, double radius, int rounds) {
   std::vector<std::array<Vec3, 3>> faces;
   for (int i = 0; i < 8; ++i) {
     const Vec3 x = Vec3::UnitX() * ((i & 1) != 0 ? -1.0 : 1.0);
