@@ -20,7 +20,10 @@ namespace {
 class Comparer final : public Observer {
  public:
   Comparer(Recording& recording, const Model& model)
-      : recording_(recording), model_(model), compareResult_(recording.header()), lean_(isLean(recording.header())) {}
+      : recording_(recording),
+        model_(model),
+        compareResult_(recording.header()),
+        minimal_(isMinimal(recording.header())) {}
 
   void onStep(const StepRecord& record) override {
     if (first_) {
@@ -28,15 +31,15 @@ class Comparer final : public Observer {
       return;
     }
     const RecordedStep& recorded = recording_.step(record.step);
-    if (lean_ && forceDigest(record.ticks) != recorded.forces)
+    if (minimal_ && forceDigest(record.ticks) != recorded.forces)
       first_ = Divergence{record.step, {}, "force", "digest of the step's forces", ""};
-    for (std::size_t i = 0; !lean_ && i < record.ticks.size() && !first_; ++i) {
+    for (std::size_t i = 0; !minimal_ && i < record.ticks.size() && !first_; ++i) {
       first_ = compareTick(record.step, record.step * record.ticks.size() + i, recorded.ticks[i], record.ticks[i]);
     }
     if (!first_) first_ = compareDigest(record.step, recording_.header().layout, recorded.digest, record.digest);
     if (!first_) first_ = compareResult_(recorded.result, record.result);
     if (first_) {
-      resolved_ = lean_ || !first_->detail.empty();
+      resolved_ = minimal_ || !first_->detail.empty();
       if (!resolved_) resolveAtKeyframe(record);
       return;
     }
@@ -77,7 +80,7 @@ class Comparer final : public Observer {
   Recording& recording_;
   const Model& model_;
   ResultComparison compareResult_;
-  bool lean_;  ///< no forces, no keyframes
+  bool minimal_;  ///< no forces, no keyframes
   std::optional<Divergence> first_;
   bool resolved_ = false;
 };

@@ -41,7 +41,7 @@ void refuseLean(const recorder::Recording& recording) {
 
 }  // namespace
 
-bool hasResults(const recorder::Recording& recording) { return !recorder::isLean(recording.header()); }
+bool hasResults(const recorder::Recording& recording) { return !recorder::isMinimal(recording.header()); }
 
 MomentTrack::MomentTrack(const std::filesystem::path& recording, bool checkpoints) : recording_(recording) {
   refuseLean(recording_);

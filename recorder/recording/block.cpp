@@ -191,7 +191,7 @@ void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* 
     visitTick(record.samples[t], record.ticks[t], visit);
   }
   AppendVisitor visit{layout, block, layout.tickColumns};
-  const std::uint64_t forces = layout.lean ? forceDigest(record.ticks) : 0;
+  const std::uint64_t forces = layout.minimal ? forceDigest(record.ticks) : 0;
   assert(!layout.procedure);  // only versions of old had it
   const RecordedProcedure none;
   visitStep(record.digest, forces, record.lateness, record.result, none, visit);

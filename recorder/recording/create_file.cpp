@@ -179,7 +179,7 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
   for (const char* name : {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps"}) {
     builder.group(name);
   }
-  if (!layout.lean) observables(builder, header, layout);
+  if (!layout.minimal) observables(builder, header, layout);
   if (layout.deviceSamples) {
     for (const char* name : {"/device", "/device/left", "/device/right"}) builder.group(name);
   }

@@ -213,7 +213,7 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
     }
   }
   h.deviceSamples = reader.there("/device");
-  if (isLean(h)) return h;
+  if (isMinimal(h)) return h;
   const Id observables = hdf5::group(H5Gopen2(file.get(), "/observables", H5P_DEFAULT));
   if (!observables.valid()) throw damaged(path, "/observables", "is missing");
   std::uint32_t version = 0;

@@ -150,7 +150,7 @@ std::uint64_t forceDigest(std::span<const TickOutcome> ticks) {
 
 Layout::Layout(const AttemptHeader& header)
     : deviceSamples(header.deviceSamples),
-      lean(isLean(header)),
+      minimal(isMinimal(header)),
       ticksPerStep(header.ticksPerStep),
       components(header.layout.components.size()),
       fields(header.layout.fields.size()),
@@ -197,7 +197,7 @@ Layout::Layout(const AttemptHeader& header)
   events = irregular("/events", Element::event, Stream::events, 32, false);
   keyframeIndex = irregular("/keyframes/index", Element::keyframe, Stream::keyframes, 16, false);
   keyframeWords = irregular("/keyframes/bytes", Element::u8, Stream::keyframeWords, keyframeChunkWords, true);
-  if (lean) columns[keyframeIndex].width = columns[keyframeWords].width = 0;
+  if (minimal) columns[keyframeIndex].width = columns[keyframeWords].width = 0;
   for (std::size_t h = 0; h < raw.size(); ++h) {
     static constexpr std::array<const char*, handCount> path{"/device/left/samples", "/device/right/samples"};
     static constexpr std::array<Stream, handCount> stream{Stream::rawLeft, Stream::rawRight};

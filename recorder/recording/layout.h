@@ -58,7 +58,7 @@ inline constexpr std::size_t rawSampleBytes = 99;
 inline constexpr std::size_t rawCountsBytes = 32;
 
 /// A golden recording: a digest in the place of forces; no observables, keyframes, fields' digests.
-inline bool isLean(const AttemptHeader& header) { return header.purpose == "golden"; }
+inline bool isMinimal(const AttemptHeader& header) { return header.purpose == "golden"; }
 
 struct Layout {
   /// In the order of the chain: ticks, steps, events, keyframe index, keyframe bytes. Then raw samples, left and right.
@@ -68,7 +68,7 @@ struct Layout {
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
   std::array<std::size_t, handCount> raw{};
   bool deviceSamples = false;  ///< there is a /device
-  bool lean = false;           ///< isLean()
+  bool minimal = false;        ///< isMinimal()
   std::uint32_t ticksPerStep = 10;
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;
@@ -124,7 +124,7 @@ void visitTick(Samples& s, Outcome& o, Visitor& visit) {
     visit(folder[h], "buttons", "", s.hand[h].buttons);
     visit(folder[h], "valid", "", s.hand[h].valid);
     visit(folder[h], "contact_set", "", o.hand[h].contactSet);
-    if (visit.layout.lean) continue;
+    if (visit.layout.minimal) continue;
     visit(folder[h], "force", "N", o.hand[h].force);
     visit(folder[h], "torque", "N m", o.hand[h].torque);
   }
@@ -161,7 +161,7 @@ struct ResultColumns {
 /// Lists what a StepResult stores, but for its events.
 template <class Result, class Visitor>
 void visitResult(Result& r, Visitor& visit) {
-  if (visit.layout.lean) return;
+  if (visit.layout.minimal) return;
   ResultColumns<Visitor> columns{visit};
   StepResult::fields(r, visit.layout.resultVersion, columns);
 }
@@ -187,7 +187,7 @@ std::uint64_t forceDigest(std::span<const TickOutcome> ticks);
 template <class Digest, class Forces, class Lateness, class Result, class Procedure, class Visitor>
 void visitStep(Digest& digest, Forces& forces, Lateness& lateness, Result& r, Procedure& procedure, Visitor& visit) {
   visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
-  if (visit.layout.lean) {
+  if (visit.layout.minimal) {
     visit("/steps", "force_digest", "", forces);
   } else {
     visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);

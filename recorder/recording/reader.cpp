@@ -67,7 +67,7 @@ struct Recording::Impl {
 
   void readKeyframeIndex() {
     const StatusRow& last = status.back();
-    if (layout->lean && (last.keyframes | last.keyframeWords) != 0)
+    if (layout->minimal && (last.keyframes | last.keyframeWords) != 0)
       throw hdf5::damaged(path, "/status", "counts keyframes, and a golden recording has none");
     std::vector<std::byte> bytes;
     columns->readRows(layout->keyframeIndex, 0, last.keyframes, bytes);

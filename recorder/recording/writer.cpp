@@ -195,7 +195,7 @@ void RecordingWriter::onStep(const StepRecord& record) {
   Impl& impl = *impl_;
   assert(!impl.ended && record.step == impl.nextStep);
   ++impl.nextStep;
-  if (record.keyframe && !impl.layout.lean && impl.keyframeDue(record.result)) {
+  if (record.keyframe && !impl.layout.minimal && impl.keyframeDue(record.result)) {
     const Keyframe keyframe = record.keyframe();
     appendStep(impl.layout, record, &keyframe, impl.keyframeWords, *impl.filling);
   } else {

@@ -46,7 +46,7 @@ class Body {
   /// Velocities that the step ends with, as far as they are known. @pre solveUnconstrained() of this step
   [[nodiscard]] virtual std::span<const Vec3> freeVelocity() const = 0;
   /// Adds the answer to impulses on the nodes (N s). @pre solveUnconstrained() of this step
-  virtual SolveReport push(std::span<const Vec3> impulse) = 0;
+  virtual SolveReport applyImpulses(std::span<const Vec3> impulse) = 0;
   /// Works out what block() needs for these nodes. @pre solveUnconstrained() of this step
   virtual void precomputeCompliance(std::span<const int> nodes) = 0;
   /// Works out ahead, besides, what the first step would have to.

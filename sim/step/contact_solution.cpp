@@ -32,7 +32,7 @@ void ContactSolution::applyContactImpulses(Bodies& bodies, const Activity& activ
       if (c.organ() == b) c.passOn(bodies.all(), nodal_);
     }
     if (nodal_.empty()) continue;
-    const SolveReport report = bodies[b].push(nodal_);
+    const SolveReport report = bodies[b].applyImpulses(nodal_);
     for (TieCoupling& c : bodies.couplings()) {
       if (c.organ() == b) c.pull(bodies.all());
     }

@@ -62,7 +62,9 @@ SolveReport FatMotion::solveUnconstrained(State& state, const Vec3& gravity, std
                                     {load_, fat_.fill(), loads.joints});
 }
 
-SolveReport FatMotion::push(std::span<const Vec3> impulse) { return solver_.applyImpulses(impulse, responses_); }
+SolveReport FatMotion::applyImpulses(std::span<const Vec3> impulse) {
+  return solver_.applyImpulses(impulse, responses_);
+}
 
 Mat3 FatMotion::rotation(const State& state, int node) const { return fat_.rotation(state.fat[index_], node); }
 

@@ -29,7 +29,7 @@ class FatMotion final : public Body {
   SolveReport solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
                                  std::span<const TieLoad> ties, const Surroundings& loads) override;
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
-  SolveReport push(std::span<const Vec3> impulse) override;
+  SolveReport applyImpulses(std::span<const Vec3> impulse) override;
   void precomputeCompliance(std::span<const int> nodes) override { rest_.precomputeCompliance(nodes); }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return rest_.block(a, b); }

@@ -38,7 +38,9 @@ SolveReport OrganBody::solveUnconstrained(State& state, const Vec3& gravity, std
                                     {load_, {}, loads.joints});
 }
 
-SolveReport OrganBody::push(std::span<const Vec3> impulse) { return solver_.applyImpulses(impulse, responses_); }
+SolveReport OrganBody::applyImpulses(std::span<const Vec3> impulse) {
+  return solver_.applyImpulses(impulse, responses_);
+}
 
 Mat3 OrganBody::rotation(const State& state, int node) const {
   return nodeRotation(solid_, state.organ[organ_], node).toRotationMatrix();

@@ -21,7 +21,7 @@ class OrganBody final : public Body {
   SolveReport solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
                                  std::span<const TieLoad> ties, const Surroundings& loads) override;
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
-  SolveReport push(std::span<const Vec3> impulse) override;
+  SolveReport applyImpulses(std::span<const Vec3> impulse) override;
   void precomputeCompliance(std::span<const int> nodes) override { rest_.precomputeCompliance(nodes); }
   void precompute() override { solver_.precompute(solid_, settings_, executor_); }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;

@@ -111,7 +111,7 @@ void TieCoupling::pull(std::span<const std::unique_ptr<Body>> body) {
     for (; i < tie_.size() && vesselOf(i) == vessel; ++i) {
       impulse_[static_cast<std::size_t>(nodeOf(i))] += step_ * vesselSeen_[i];
     }
-    body[vessel]->push(impulse_);
+    body[vessel]->applyImpulses(impulse_);
   }
   for (i = 0; i < tie_.size(); ++i) {
     vesselSeen_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];

@@ -27,7 +27,7 @@ SolveReport VesselBody::solveUnconstrained(State& state, const Vec3& gravity, st
   return report;
 }
 
-SolveReport VesselBody::push(std::span<const Vec3> impulse) {
+SolveReport VesselBody::applyImpulses(std::span<const Vec3> impulse) {
   solver_.applyImpulses(beams_, impulse);
   SolveReport report;
   report.converged = true;
