@@ -21,7 +21,7 @@ void VesselContact::add(const StepResult& result) {
   bool any = false;
   for (const HandResult& hand : result.hand) {
     for (std::size_t v = 0; v < bit_.size(); ++v) {
-      if ((hand.touching & bit_[v]) == 0) continue;
+      if ((hand.contacts() & bit_[v]) == 0) continue;
       ++steps_[v];
       any = true;
     }

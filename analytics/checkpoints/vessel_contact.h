@@ -10,7 +10,7 @@
 
 namespace calot::analytics {
 
-/// Steps at whose end instruments touch some of a scene's vessels.
+/// Steps at whose end instruments touch or hold some of a scene's vessels.
 class VesselContact {
  public:
   /// @param chosen which vessels
@@ -30,7 +30,7 @@ class VesselContact {
 
   double tickSeconds_;
   std::uint64_t ticksPerStep_;
-  std::vector<std::uint32_t> bit_;    ///< of `touching`, one a vessel
+  std::vector<std::uint32_t> bit_;    ///< of HandResult::contacts(), one a vessel
   std::vector<std::string> names_;    ///< as many
   std::vector<std::uint64_t> steps_;  ///< as many; over both hands
   std::uint64_t united_ = 0;

@@ -11,7 +11,7 @@ namespace {
 
 using Subject = EventWords::Subject;
 
-constexpr std::array<EventWords, 20> told{{
+constexpr std::array<EventWords, 22> told{{
     {EventKind::instrumentExchange, Subject::none, "instrument exchanged", false},
     {EventKind::graspSlip, Subject::structure, "slipped in the jaws", true},
     {EventKind::tissueTear, Subject::structure, "torn out of the jaws", true},
@@ -27,6 +27,8 @@ constexpr std::array<EventWords, 20> told{{
     {EventKind::cutOpen, Subject::structure, "left open", true},
     {EventKind::cutThroughClip, Subject::structure, "cut through a clip", true},
     {EventKind::vesselBurned, Subject::structure, "burned through", true},
+    {EventKind::wallInjured, Subject::structure, "wall injured by heat", true},
+    {EventKind::vesselSealed, Subject::structure, "sealed", false},
     {EventKind::organPerforated, Subject::structure, "perforated", true},
     {EventKind::tooFewClips, Subject::structure, "cut with too few clips", true},
     {EventKind::criticalError, Subject::structure, "harmed though it must be spared", true},

@@ -103,9 +103,13 @@ CauteryDescription readCautery(const JsonPlace& place) {
   CauteryDescription cautery;
   object.read("power", cautery.power);
   object.read("reach", cautery.reach);
-  object.read("carve", cautery.carve);
   object.read("spot", cautery.spot);
   object.read("charTime", cautery.charTime);
+  object.read("recession", cautery.recession);
+  object.read("coagulationPace", cautery.coagulationPace);
+  object.read("cutChar", cautery.cutChar);
+  object.read("sealRadius", cautery.sealRadius);
+  object.read("injury", cautery.injury);
   return cautery;
 }
 

@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/geometry/dwell.h"
+
 namespace calot {
 
 void UndeformedTissue::fillLanes(std::size_t /*box*/, const Index3& first, int count, NodeLanes& out) const {
@@ -44,8 +46,23 @@ NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds) {
   return box;
 }
 
+namespace {
+
+/// What a node's field can rise to in this step.
+double risen(std::span<const SweptCapsule> tool, const NodeLanes& lanes, int lane, double value, double rise) {
+  const MovingPoint node{{lanes.before[0][lane], lanes.before[1][lane], lanes.before[2][lane]},
+                         {lanes.now[0][lane], lanes.now[1][lane], lanes.now[2][lane]}};
+  StepIntervals above;
+  for (const SweptCapsule& c : tool) {
+    if (c.radius > value) above.add(near({{c.p0, c.p1}, {c.q0, c.q1}, c.radius}, node, -value));
+  }
+  return value + rise * above.length();
+}
+
+}  // namespace
+
 void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<const NodeBox> boxes,
-           const TissueMotion& motion, double depth) {
+           const TissueMotion& motion, double depth, double rise) {
   const BrickLattice& lattice = field.lattice();
   const double band = field.band();
   NodeLanes lanes;
@@ -72,6 +89,11 @@ void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<con
           if (!toolPotential(tool, lanes, depth, potential)) continue;
           // Deeper nodes stay unchanged even if another lane is not.
           for (double& p : potential) p = p >= -depth ? p : -1e300;
+          if (rise < std::numeric_limits<double>::infinity()) {
+            for (int i = 0; i < count; ++i) {
+              if (potential[i] > value[i]) potential[i] = std::min(potential[i], risen(tool, lanes, i, value[i], rise));
+            }
+          }
           field.raiseRow(node, {potential, slot(count)});
         }
       }

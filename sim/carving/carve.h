@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "sim/carving/carved_field.h"
@@ -48,12 +49,15 @@ inline constexpr double carveDepth = 2.0;
 [[nodiscard]] NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds);
 
 /// phi = max(phi, the potential of the tool's swept capsules) at all nodes of the boxes where that potential is at
-/// least -depth (toolPotential()). Nodes are independent: neither the order of boxes nor the distribution of nodes
+/// least -depth (toolPotential()); by no more than `rise` times the share of the step during which that potential, of
+/// the tool as it moves, is above phi (sim/geometry/dwell.h): the surface recedes at rise / step at most, however the
+/// time is divided into steps. Nodes are independent: neither the order of boxes nor the distribution of nodes
 /// among them matters. Call between CarvedField::begin() and commit(). Allocates nothing.
 /// @param tool capsules in W
 /// @param boxes within the lattice; a node in two of them is carved by both
 /// @param depth m; more than a cell, at most the field's band; carveDepth cells are sufficient
+/// @param rise m; infinite: at once
 void carve(CarvedField& field, std::span<const SweptCapsule> tool, std::span<const NodeBox> boxes,
-           const TissueMotion& motion, double depth);
+           const TissueMotion& motion, double depth, double rise = std::numeric_limits<double>::infinity());
 
 }  // namespace calot

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/geometry/closest_point.h"
-
 namespace calot {
 
 namespace {
@@ -22,21 +20,6 @@ Stretch stretchOf(const Strand& strand, const Vec3& a, const Vec3& b) {
   const double length = way.norm();
   if (length < minLength) return {strand.restDirection, length};
   return {way / length, length};
-}
-
-/// Does a segment come within `limit` of the quadrilateral that the part's axis sweeps?
-bool within(const Vec3& p, const Vec3& q, const HookSweep& part, double limit) {
-  Box reach;
-  for (const Vec3& x : part.before) reach.include(x);
-  for (const Vec3& x : part.now) reach.include(x);
-  reach.grow(limit);
-  Box box;
-  box.include(p);
-  box.include(q);
-  if (!box.overlaps(reach)) return false;
-  const double first = closestSegmentTriangle(p, q, part.before[0], part.before[1], part.now[1]).squaredDistance;
-  const double second = closestSegmentTriangle(p, q, part.before[0], part.now[1], part.now[0]).squaredDistance;
-  return std::min(first, second) <= limit * limit;
 }
 
 }  // namespace
@@ -106,31 +89,49 @@ double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state,
   return largest;
 }
 
-std::size_t burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
-                        std::span<const Vec3> positionB, std::span<const HookSweep> hook, double step,
-                        std::vector<std::uint32_t>& burned) {
-  const ConnectiveMaterial& m = tissue.material();
-  std::size_t touched = 0;
+void touchStrands(const ConnectiveTissue& tissue, const ConnectiveState& state, const OrganMotion& a,
+                  const OrganMotion& b, std::span<const MovingCapsule> hook, double reach, double step,
+                  std::vector<StrandTouch>& touches) {
+  const auto motion = [step](const MaterialPoint& point, const OrganMotion& organ) {
+    const Vec3 now = point.of(organ.position);
+    return MovingPoint{now - step * point.of(organ.velocity), now};
+  };
   for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
     if (state.condition[s] == StrandCondition::burned) continue;
     const Strand& strand = tissue.strands()[s];
-    const Vec3 a = strand.a.of(positionA);
-    const Vec3 b = strand.b.of(positionB);
-    const bool attached = state.condition[s] == StrandCondition::attached;
-    const bool touches = std::any_of(hook.begin(), hook.end(), [&](const HookSweep& part) {
-      if (attached) return within(a, b, part, part.radius);
-      const double stump = part.radius + std::max(0.5 * strand.restLength, part.radius);
-      return within(a, a, part, stump) || within(b, b, part, stump);
-    });
-    if (!touches) continue;
-    ++touched;
-    state.alpha[s] -= step / m.fadeTime * (1.0 - m.goneBelow);
+    const std::array<MovingPoint, 2> end{motion(strand.a, a), motion(strand.b, b)};
+    Box box;
+    for (const MovingPoint& p : end) {
+      box.include(p.before);
+      box.include(p.now);
+    }
+    StepIntervals touched;
+    for (const MovingCapsule& part : hook) {
+      const bool attached = state.condition[s] == StrandCondition::attached;
+      const double far = attached ? reach : reach + std::max(0.5 * strand.restLength, part.radius);
+      if (!box.overlaps(boundsOf(part, far))) continue;
+      if (attached) {
+        touched.add(near(part, end, far));
+      } else {
+        touched.add(near(part, end[0], far));
+        touched.add(near(part, end[1], far));
+      }
+    }
+    if (!touched.empty()) touches.push_back({static_cast<std::uint32_t>(s), touched.length()});
+  }
+}
+
+void burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const StrandTouch> touches,
+                 double seconds, std::vector<std::uint32_t>& burned) {
+  const ConnectiveMaterial& m = tissue.material();
+  for (const StrandTouch& touch : touches) {
+    const std::size_t s = touch.strand;
+    state.alpha[s] -= touch.share * seconds / m.fadeTime * (1.0 - m.goneBelow);
     if (state.alpha[s] > m.goneBelow) continue;
     state.alpha[s] = 0.0;
     state.condition[s] = StrandCondition::burned;
-    burned.push_back(static_cast<std::uint32_t>(s));
+    burned.push_back(touch.strand);
   }
-  return touched;
 }
 
 ConnectiveShares sharesOf(const ConnectiveTissue& tissue, const ConnectiveState& state) {

@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/geometry/dwell.h"
 #include "sim/solid/solid.h"
 
 namespace calot {
@@ -99,19 +100,24 @@ double strandTension(const ConnectiveTissue& tissue, const ConnectiveState& stat
 double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
                          std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn);
 
-/// A part of the energised hook: a capsule that moves during a step.
-struct HookSweep {
-  std::array<Vec3, 2> before{Vec3::Zero(), Vec3::Zero()};  ///< ends of its axis at the step's beginning (m)
-  std::array<Vec3, 2> now{Vec3::Zero(), Vec3::Zero()};     ///< and at the end of the step
-  double radius = 0.0;                                     ///< m
+/// A strand that a hook touched.
+struct StrandTouch {
+  std::uint32_t strand = 0;
+  double share = 0.0;  ///< of the step
 };
 
-/// Fades strands that any part of the hook touches during a step: attached ones along their length, torn ones at their
-/// stumps (half of the rest length, at least `radius`). Appends indices of strands that this burned through, ascending.
-/// @return number of strands touched
-std::size_t burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
-                        std::span<const Vec3> positionB, std::span<const HookSweep> hook, double step,
-                        std::vector<std::uint32_t>& burned);
+/// Appends the strands that come within `reach` of any part of the hook during a step, ascending, with the exact share
+/// of the step that they do: attached ones along their length, torn ones at their stumps (half of the rest length, at
+/// least the part's radius). @param a, b motions of the organs at the step's end @param step h (s)
+void touchStrands(const ConnectiveTissue& tissue, const ConnectiveState& state, const OrganMotion& a,
+                  const OrganMotion& b, std::span<const MovingCapsule> hook, double reach, double step,
+                  std::vector<StrandTouch>& touches);
+
+/// Fades strands: one that was touched for ConnectiveMaterial::fadeTime in all is burned through.
+/// @param seconds of current at full power that a whole step of touch is worth (s)
+/// Appends indices of strands that this burned through, ascending.
+void burnStrands(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const StrandTouch> touches,
+                 double seconds, std::vector<std::uint32_t>& burned);
 
 /// Shares of the bed's area.
 struct ConnectiveShares {

@@ -87,7 +87,7 @@ void FatBody::beginStep(const FatState& state) {
   before_.assign(state.solid.position.begin(), state.solid.position.end());
 }
 
-FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
+FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool, double rise) {
   const FloatingPointScope scope;
   assert(before_.size() == state.solid.position.size());
   const double cell = model_.lattice().cell();
@@ -97,7 +97,7 @@ FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool) {
   const double volumeBefore = volume_.total();
   motion_.choose(tool, state.solid.position, before_, fill_, depth);
   field_.begin();
-  carve(field_, tool, motion_.boxes(), motion_, depth);
+  carve(field_, tool, motion_.boxes(), motion_, depth, rise);
   if (field_.changed().empty()) return out;
   const std::int64_t loose = islands_.remove(field_);
   field_.commit(state.carved);

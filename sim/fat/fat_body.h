@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,9 @@ class FatBody {
   void beginStep(const FatState& state);
   /// Removes what the tool's capsules sweep over between the step's beginning and end, and islands. Nodes of the solid
   /// that belong only to empty cubes are stopped. @pre beginStep() of this step
-  FatStroke stroke(FatState& state, std::span<const SweptCapsule> tool);
+  /// @param rise by which the surface can recede in this step (m), as for carve()
+  FatStroke stroke(FatState& state, std::span<const SweptCapsule> tool,
+                   double rise = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] const FatModel& model() const { return model_; }
   /// Remaining share of each cube, for SolidSolver and SolidModel::volume().

@@ -13,6 +13,7 @@ constinit const InstrumentDefinition instrument::clipApplier{
     .word = "clip applier",
     .action = InstrumentAction::clip,
     .jawLength = 16.0 * mm,
+    .jawWidth = 3.5 * mm,
     .shape =
         [](ShapeBuilder& shape) {
           const double m = shape.millimetre();

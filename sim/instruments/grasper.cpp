@@ -13,6 +13,7 @@ constinit const InstrumentDefinition instrument::grasper{
     .word = "grasper",
     .action = InstrumentAction::grasp,
     .jawLength = 17.0 * mm,
+    .jawWidth = 3.9 * mm,
     .teethLength = 0.8 * (17.0 * mm),
     .shape =
         [](ShapeBuilder& shape) {

@@ -40,6 +40,7 @@ struct InstrumentDefinition {
   InstrumentAction action = InstrumentAction::none;
   JawAngles jaw = {};
   double jawLength = 0.0;    ///< from hinge to tips (m); 0: no jaws
+  double jawWidth = 0.0;     ///< along the hinge's line (m)
   double teethLength = 0.0;  ///< of action `grasp`: toothed part of the jaws, from their tips (m)
   double bladeLength = 0.0;  ///< of action `cut`: what cuts of the blades, from their tips (m); not scaled
   /// Adds the capsules that make the shape, in an order that does not depend on jaw angle and insertion. Null for

@@ -15,6 +15,7 @@ constinit const InstrumentDefinition instrument::scissors{
     // Blades must open about a vessel before they cut. Assumed.
     .jaw = {.opened = 0.7},
     .jawLength = 15.0 * mm,
+    .jawWidth = 6.0 * mm,  // the blades are curved to one side
     .bladeLength = 12.0 * mm,
     .shape =
         [](ShapeBuilder& shape) {

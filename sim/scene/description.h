@@ -58,21 +58,30 @@ struct ClipDescription {
   }
 };
 
-/// What the energised hook does to what it touches.
+/// What the energised hook does to what it touches. Times are those at full power: where more than `spot` is touched,
+/// the power is shared, and each place gets spot / (all that is touched) of it.
 struct CauteryDescription {
-  double power = 30.0;    ///< W, all of it taken to go into the tissue touched
-  double reach = 0.0003;  ///< farther than this from the hook's metal nothing is touched (m)
-  double carve = 0.0008;  ///< fat goes that is no farther from the hook's metal (m)
-  double spot = 2e-6;     ///< area that one touch covers (m^2)
-  double charTime = 0.3;  ///< cautery at one spot from which on it counts as charred (s)
+  double power = 30.0;             ///< W, all of it taken to go into the tissue touched
+  double reach = 0.0003;           ///< farther than this from the hook's metal nothing is touched, of any tissue (m)
+  double spot = 8e-6;              ///< area that can be touched with the full power on all of it (m^2)
+  double charTime = 0.3;           ///< coagulation of a place from which on it counts as charred (s)
+  double recession = 0.015;        ///< speed at which fat recedes from the hook that cuts (m/s)
+  double coagulationPace = 0.667;  ///< at which the coagulating current divides tissue, of that of the cutting one
+  double cutChar = 0.2;            ///< char by the cutting current, of that by the coagulating one in the same time
+  double sealRadius = 0.001;       ///< largest outer radius of an artery that coagulation seals (m)
+  double injury = 0.3;             ///< a vessel's wall counts as injured by heat from this share of its burnThrough on
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("power", self.power);
     visit("reach", self.reach);
-    visit("carve", self.carve);
     visit("spot", self.spot);
     visit("charTime", self.charTime);
+    visit("recession", self.recession);
+    visit("coagulationPace", self.coagulationPace);
+    visit("cutChar", self.cutChar);
+    visit("sealRadius", self.sealRadius);
+    visit("injury", self.injury);
   }
 };
 

@@ -59,6 +59,8 @@ enum class EventKind : std::uint16_t {
   clipEndGap = 41,       ///< beside clipSet: to the nearest end of the piece (m), below 0: beyond it
   clipsTowardsStart = 42,  ///< beside vesselCut: clips that close the piece on the start's side
   clipsTowardsEnd = 43,    ///< the same on the end's side
+  wallInjured = 44,        ///< cautery injured a vessel's wall, once a vessel; subject: structure; value: as vesselCut
+  vesselSealed = 45,  ///< beside vesselBurned: coagulation closed the artery; subject: structure; value: as vesselCut
 };
 
 /// Subject of smoke from connective tissue 0.
@@ -103,6 +105,14 @@ struct HandResult {
   double graspForce = 0.0;
   Cautery cautery = Cautery::off;
   std::uint32_t clips = 0;
+  double gripForce = 0.0;
+
+  /// Bit s: a force acts between this instrument and structure s, or its jaws hold s.
+  [[nodiscard]] std::uint32_t contacts() const { return touching | grasping; }
+  /// All that it exerts on a structure (N): normal forces, and the pull on what its jaws hold.
+  [[nodiscard]] double forceOn(std::size_t structure) const {
+    return structureForce[structure] + ((grasping >> structure & 1U) != 0 ? graspForce : 0.0);
+  }
 
   template <class Visit>
   static void fields(Visit&& visit) {
@@ -129,6 +139,9 @@ struct HandResult {
         ResultField{"cautery", "", "", 3, "of the hook: 0 no current, 1 current without contact, 2 current on tissue"},
         &HandResult::cautery);
     visit(ResultField{"clips", "", "", 3, "left in the clip applier"}, &HandResult::clips);
+    visit(ResultField{"grip_force", "N", "", 5,
+                      "with which the jaws hold what they grasp: the pull at which it begins to slip; 0: nothing held"},
+          &HandResult::gripForce);
   }
 };
 

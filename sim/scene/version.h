@@ -7,9 +7,9 @@ namespace calot {
 
 /// Changes whenever any golden digest changes on purpose; says why in CHANGELOG.md. A recording of another simulation
 /// version cannot be decided by this build (exit code 5).
-inline constexpr std::uint32_t simulationVersion = 13;
+inline constexpr std::uint32_t simulationVersion = 14;
 
 /// Version of StepResult, and so of /observables.
-inline constexpr std::uint32_t stepResultVersion = 4;
+inline constexpr std::uint32_t stepResultVersion = 5;
 
 }  // namespace calot

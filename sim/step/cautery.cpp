@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"  // first
+
 #include "sim/step/cautery.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/vessel/centre_line.h"
 
@@ -12,6 +15,25 @@ namespace {
 /// Energy of one touch after which its smoke is reported (J). Larger: fewer, later events. Assumed: half a second of 30
 /// W.
 constexpr double smokePortion = 15.0;
+
+/// What lies nearer to a parting than this is burned with it and is not parted once more (m). Larger: a second burn
+/// close by is lost; smaller: one burn leaves crumbs. Assumed: a little more than the wire's reach.
+constexpr double stumpsEnd = 0.002;
+
+bool isStumpsEnd(const BeamModel::Branch& branch, const BeamState& vessels, double arcLength) {
+  for (std::size_t i = 0; i < branch.elements(); ++i) {
+    const std::size_t e = branch.firstElement + i;
+    if (vessels.parting[e] == Parting::none) continue;
+    const double parted = branch.arcLength[i] + vessels.partedAt[e] * (branch.arcLength[i + 1] - branch.arcLength[i]);
+    if (std::abs(arcLength - parted) < stumpsEnd) return true;
+  }
+  return false;
+}
+
+bool isInjured(const BeamModel::Branch& branch, const BeamState& vessels, double exposure) {
+  const double* const first = vessels.exposure.data() + branch.firstStation;
+  return std::any_of(first, first + branch.stations, [exposure](double e) { return e >= exposure; });
+}
 
 }  // namespace
 
@@ -28,53 +50,90 @@ void CauteryEffects::emitSmoke(std::size_t hand, std::uint32_t source, double en
   if (h.burnedEnergy >= smokePortion) emit();
 }
 
-void CauteryEffects::burnVessel(std::size_t hand, std::size_t structure, const SurfaceContact& contact, double time,
-                                Tissue& tissue) const {
-  const StructureModel& s = model_.structures()[structure];
-  const VesselTree& tree = model_.vesselTrees()[s.index];
-  BeamState& vessels = tissue.state.vessel[s.index];
-  double distance = 0.0;
-  const BeamPoint where = closestPoint(tree.beams, vessels, s.branch, contact.onAxis, distance);
-  if (vessels.parting[where.element] != Parting::none) return;
-  vessels.exposure[where.element] += time;
-  tissue.activity.disturb(tissue.bodies, tissue.state, s.body);
-  if (vessels.exposure[where.element] >= model_.scene().vessels[tree.vessel[s.branch]].burnThrough) {
-    partVessel(model_, structure, where, EventKind::vesselBurned, hand, tissue.bodies, tissue.surfaces, tissue.state,
-               tissue.activity, tissue.log);
+/// What smoke is reported of, of all that is touched: connective tissue, fat, then structures in their order.
+std::uint32_t CauteryEffects::firstTouched(const HookTouches& touches, const Tissue& tissue) const {
+  for (std::size_t c = 0; c < touches.strand.size(); ++c) {
+    if (!touches.strand[c].empty()) return static_cast<std::uint32_t>(smokeOfConnective + c);
   }
+  for (std::size_t f = 0; f < touches.fat.size(); ++f) {
+    if (touches.fat[f] > 0.0) return static_cast<std::uint32_t>(tissue.bodies.structureOfFat(f));
+  }
+  if (!touches.cell.empty()) return touches.cell.front().structure;
+  return touches.station.empty() ? noStructure : touches.station.front().structure;
 }
 
-void CauteryEffects::charOrgan(std::size_t structure, const SurfaceContact& contact, double time,
-                               Tissue& tissue) const {
-  const std::size_t o = model_.structures()[structure].index;
-  const CauteryDescription& cautery = model_.scene().cautery;
-  CharState& organ = tissue.state.charred[o];
-  const std::vector<double>& area = model_.organs()[o].vertexArea;
-  tissue.activity.charred[o] = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto vertex = static_cast<std::size_t>(contact.node[k]);
-    if (!(area[vertex] > 0.0)) continue;
-    const double before = organ.exposure[vertex];
-    const double now = before + contact.weight[static_cast<int>(k)] * time * cautery.spot / area[vertex];
-    organ.exposure[vertex] = static_cast<float>(now);
-    organ.area += area[vertex] * (std::min(now / cautery.charTime, 1.0) - std::min(before / cautery.charTime, 1.0));
+void CauteryEffects::charOrgans(const HookTouches& touches, const Dose& dose, Tissue& tissue) const {
+  const double charTime = model_.scene().cautery.charTime;
+  for (const HookTouches::Cell& touch : touches.cell) {
+    const std::size_t o = model_.structures()[touch.structure].index;
+    const OrganModel& organ = model_.organs()[o];
+    CharState& burns = tissue.state.charred[o];
+    tissue.activity.charred[o] = true;
+    const std::size_t cells = std::size_t{organ.division[touch.triangle]} * organ.division[touch.triangle];
+    const auto known = std::find(burns.triangle.begin(), burns.triangle.end(), touch.triangle);
+    const auto k = static_cast<std::size_t>(known - burns.triangle.begin());
+    if (known == burns.triangle.end()) {
+      burns.triangle.push_back(touch.triangle);
+      burns.firstCell.push_back(static_cast<std::uint32_t>(burns.exposure.size()));
+      burns.exposure.resize(burns.exposure.size() + cells, 0.0F);
+      burns.charring.resize(burns.exposure.size(), 0.0F);
+    }
+    const std::size_t cell = burns.firstCell[k] + touch.cell;
+    const double before = burns.charring[cell];
+    const double charring = before + touch.share * dose.charring;
+    burns.charring[cell] = static_cast<float>(charring);
+    burns.area += organ.triangleArea[touch.triangle] / static_cast<double>(cells) *
+                  (std::min(charring / charTime, 1.0) - std::min(before / charTime, 1.0));
+    const double exposure = burns.exposure[cell] + touch.share * dose.wall;
+    burns.exposure[cell] = static_cast<float>(exposure);
+    burns.maxExposure = std::max(burns.maxExposure, exposure);
     const double through = model_.scene().organs[o].burnThrough;
-    if (through > 0.0 && now >= through) {
-      perforateOrgan(model_, o, tissue.surfaces.points(structure)[vertex], now, tissue.state, tissue.activity,
-                     tissue.log);
+    if (through > 0.0 && exposure >= through) {
+      const int corner = organ.surface.triangles()[touch.triangle][0];
+      perforateOrgan(model_, o, tissue.surfaces.points(touch.structure)[static_cast<std::size_t>(corner)], exposure,
+                     tissue.state, tissue.activity, tissue.log);
     }
   }
 }
 
-/// Takes off the fat that the hook sweeps over. @return whether it touched any
-bool CauteryEffects::carve(const std::vector<HookSweep>& sweeps, std::size_t hand, std::size_t fat, Tissue& tissue) {
-  blades_.clear();
-  const double more = model_.scene().cautery.carve;
-  for (const HookSweep& sweep : sweeps) {
-    blades_.push_back({sweep.before[0], sweep.before[1], sweep.now[0], sweep.now[1], sweep.radius + more});
+void CauteryEffects::burnVessels(const HookTouches& touches, const Dose& dose, std::size_t hand, Tissue& tissue) const {
+  for (const HookTouches::Station& touch : touches.station) {
+    const StructureModel& s = model_.structures()[touch.structure];
+    const VesselTree& tree = model_.vesselTrees()[s.index];
+    const BeamModel::Branch& branch = tree.beams.branches()[s.branch];
+    BeamState& vessels = tissue.state.vessel[s.index];
+    const BeamPoint where = pointAt(tree.beams, s.branch, branch.arcLengthOf(touch.station));
+    if (vessels.parting[where.element] != Parting::none) continue;
+    double& exposure = vessels.exposure[branch.firstStation + touch.station];
+    double& charring = vessels.charring[branch.firstStation + touch.station];
+    const double through = model_.scene().vessels[tree.vessel[s.branch]].burnThrough;
+    const double injured = model_.scene().cautery.injury * through;
+    const bool isNew =
+        exposure < injured && exposure + touch.share * dose.wall >= injured && !isInjured(branch, vessels, injured);
+    exposure += touch.share * dose.wall;
+    charring += touch.share * dose.charring;
+    tissue.activity.disturb(tissue.bodies, tissue.state, s.body);
+    if (isNew) {
+      tissue.log.emit(EventKind::wallInjured, hand, touch.structure, centreLine(tree.beams, vessels, where).position,
+                      where.arcLength);
+    }
+    if (exposure >= through && !isStumpsEnd(branch, vessels, where.arcLength)) {
+      partVessel(model_, touch.structure, where, EventKind::vesselBurned, hand, tissue.bodies, tissue.surfaces,
+                 tissue.state, tissue.activity, tissue.log);
+    }
   }
-  const FatStroke done = tissue.bodies.fat(fat).stroke(tissue.state, blades_);
-  if (!done.changed) return false;
+}
+
+/// Takes off the fat that the hook sweeps over.
+void CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::size_t hand, std::size_t fat,
+                           Tissue& tissue) {
+  blades_.clear();
+  const CauteryDescription& cautery = model_.scene().cautery;
+  for (const MovingCapsule& part : sweep.electrode) {
+    blades_.push_back({part.before[0], part.before[1], part.now[0], part.now[1], part.radius + cautery.reach});
+  }
+  const FatStroke done = tissue.bodies.fat(fat).stroke(tissue.state, blades_, cautery.recession * dose.wall);
+  if (!done.changed) return;
   const std::size_t structure = tissue.bodies.structureOfFat(fat);
   tissue.activity.carved[fat] = true;
   tissue.surfaces.markStale(structure);
@@ -82,55 +141,32 @@ bool CauteryEffects::carve(const std::vector<HookSweep>& sweeps, std::size_t han
   tissue.result.fat[fat].carved += done.removed;
   tissue.result.fat[fat].islands += done.islands;
   if (done.islands > 0.0) tissue.log.emit(EventKind::fatCameLoose, hand, structure, done.where, done.islands);
-  return done.nodes > 0;
 }
 
-void CauteryEffects::burnHand(const std::vector<HookSweep>& sweeps, std::uint32_t connective, std::size_t hand,
-                              Tissue& tissue) {
+void CauteryEffects::burnHand(const HookSweep& sweep, const HookTouches& touches, std::size_t hand, Tissue& tissue) {
   HandResult& out = tissue.result.hand[hand];
   out.cautery = Cautery::off;
-  if (sweeps.empty()) {
+  if (!sweep.energised()) {
     emitSmoke(hand, noStructure, 0.0, tissue);
     return;
   }
-  const double reach = model_.scene().cautery.reach;
-  std::uint32_t source = connective == noStructure ? noStructure : smokeOfConnective + connective;
-  for (std::size_t f = 0; f < tissue.bodies.fatCount(); ++f) {
-    if (carve(sweeps, hand, f, tissue) && source == noStructure) {
-      source = static_cast<std::uint32_t>(tissue.bodies.structureOfFat(f));
-    }
-  }
-  for (std::size_t s = 0; s < tissue.surfaces.size(); ++s) {
-    // By parting a vessel or carving fat its skin has changed; what else this hook touches of it, it touches in the
-    // next step.
-    if (!tissue.surfaces.isCurrent(s)) continue;
-    found_.clear();
-    for (std::size_t k = 0; k < sweeps.size(); ++k) {
-      const HookSweep& sweep = sweeps[k];
-      const std::span<const std::uint32_t> near =
-          tissue.surfaces.patchesNear(s, sweep.now[0], sweep.now[1], capsuleSearch(sweep.radius, reach));
-      capsuleContacts(tissue.surfaces.mesh(s), tissue.surfaces.points(s), near, sweep.now[0], sweep.now[1],
-                      sweep.radius, reach, static_cast<std::uint32_t>(k), found_);
-    }
-    if (found_.empty()) continue;
-    if (source == noStructure) source = static_cast<std::uint32_t>(s);
-    const double share = 1.0 / static_cast<double>(found_.size());
-    for (const SurfaceContact& contact : found_) {
-      const TissueId kind = model_.structures()[s].kind;
-      const double time = share * tissue.bodies.step();
-      if (kind == tissueId<VesselTissue>) burnVessel(hand, s, contact, time, tissue);
-      if (kind == tissueId<OrganTissue>) charOrgan(s, contact, time, tissue);
-    }
+  const std::uint32_t source = firstTouched(touches, tissue);
+  const double full = tissue.bodies.step() * touches.intensity(model_.scene().cautery.spot);
+  const Dose dose{full * sweep.pace, full * sweep.charring};
+  charOrgans(touches, dose, tissue);
+  burnVessels(touches, dose, hand, tissue);
+  for (std::size_t f = 0; f < touches.fat.size(); ++f) {
+    if (touches.fat[f] > 0.0) carve(sweep, dose, hand, f, tissue);
   }
   out.cautery = source == noStructure ? Cautery::withoutContact : Cautery::onTissue;
   emitSmoke(hand, source, source == noStructure ? 0.0 : model_.scene().cautery.power * tissue.bodies.step(), tissue);
 }
 
-void CauteryEffects::run(const HookSweeps& sweeps, const std::array<std::uint32_t, handCount>& burned, Bodies& bodies,
+void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches, handCount>& touches, Bodies& bodies,
                          Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log) {
   for (FatResult& fat : result.fat) fat.carved = fat.islands = 0.0;
   Tissue tissue{bodies, surfaces, state, activity, result, log};
-  for (std::size_t h = 0; h < handCount; ++h) burnHand(sweeps[h], burned[h], h, tissue);
+  for (std::size_t h = 0; h < handCount; ++h) burnHand(sweeps[h], touches[h], h, tissue);
 }
 
 }  // namespace calot

@@ -15,9 +15,8 @@ double shareOf(const ConnectiveTissue& tissue, std::span<const std::uint32_t> st
 
 }  // namespace
 
-std::array<std::uint32_t, handCount> ConnectiveEffects::run(const HookSweeps& sweeps, Bodies& bodies, State& state,
-                                                            Activity& activity, StepResult& result, StepLog& log) {
-  std::array<std::uint32_t, handCount> burned{noStructure, noStructure};
+void ConnectiveEffects::run(const HookSweeps& sweeps, const std::array<HookTouches, handCount>& touches, Bodies& bodies,
+                            State& state, Activity& activity, StepResult& result, StepLog& log) {
   for (std::size_t c = 0; c < model_.connective().size(); ++c) {
     const ConnectiveModel& tie = model_.connective()[c];
     ConnectiveState& tissue = state.connective[c];
@@ -27,11 +26,11 @@ std::array<std::uint32_t, handCount> ConnectiveEffects::run(const HookSweeps& sw
     const bool held = holdsAnything(tissue);
     out.hookTouches = 0;
     for (std::size_t h = 0; h < handCount; ++h) {
-      if (sweeps[h].empty()) continue;
+      if (touches[h].strand[c].empty()) continue;
       strands_.clear();
-      const std::size_t touches = burnStrands(tie.tissue, tissue, a, b, sweeps[h], bodies.step(), strands_);
-      out.hookTouches += static_cast<std::uint32_t>(touches);
-      if (touches > 0 && burned[h] == noStructure) burned[h] = static_cast<std::uint32_t>(c);
+      const double seconds = bodies.step() * sweeps[h].pace * touches[h].intensity(model_.scene().cautery.spot);
+      burnStrands(tie.tissue, tissue, touches[h].strand[c], seconds, strands_);
+      out.hookTouches += static_cast<std::uint32_t>(touches[h].strand[c].size());
       if (!strands_.empty()) {
         log.emit(EventKind::strandsBurned, h, c, state.hand[h].simulatedPosition, shareOf(tie.tissue, strands_));
       }
@@ -55,7 +54,6 @@ std::array<std::uint32_t, handCount> ConnectiveEffects::run(const HookSweeps& sw
     activity.disturb(bodies, state, tie.a);
     activity.disturb(bodies, state, tie.b);
   }
-  return burned;
 }
 
 }  // namespace calot

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "sim/step/bodies.h"
-#include "sim/step/hook_motion.h"
+#include "sim/step/hook_touches.h"
+#include "sim/step/step_log.h"
 
 namespace calot {
 
@@ -14,10 +15,9 @@ class ConnectiveEffects {
  public:
   explicit ConnectiveEffects(const Model& model) : model_(model) {}
 
-  /// @return per hand, the tissue that its hook burns; noStructure for none.
   /// @pre organs and instruments are where the step leads them
-  std::array<std::uint32_t, handCount> run(const HookSweeps& sweeps, Bodies& bodies, State& state, Activity& activity,
-                                           StepResult& result, StepLog& log);
+  void run(const HookSweeps& sweeps, const std::array<HookTouches, handCount>& touches, Bodies& bodies, State& state,
+           Activity& activity, StepResult& result, StepLog& log);
 
  private:
   const Model& model_;

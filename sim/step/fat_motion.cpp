@@ -44,8 +44,8 @@ void FatMotion::beginStep(const State& state) {
   fat_.beginStep(state.fat[index_]);
 }
 
-FatStroke FatMotion::stroke(State& state, std::span<const SweptCapsule> tool) {
-  const FatStroke done = fat_.stroke(state.fat[index_], tool);
+FatStroke FatMotion::stroke(State& state, std::span<const SweptCapsule> tool, double rise) {
+  const FatStroke done = fat_.stroke(state.fat[index_], tool, rise);
   changed_ = changed_ || done.changed;
   return done;
 }

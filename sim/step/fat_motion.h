@@ -19,7 +19,7 @@ class FatMotion final : public Body {
   void invalidate() { stale_ = true; }
   /// Takes up a replaced State; remembers where the tissue is for the strokes of this step.
   void beginStep(const State& state);
-  FatStroke stroke(State& state, std::span<const SweptCapsule> tool);
+  FatStroke stroke(State& state, std::span<const SweptCapsule> tool, double rise);
   [[nodiscard]] const FatBody& fat() const { return fat_; }
 
   [[nodiscard]] std::size_t nodes() const override { return fat_.model().solid().nodes(); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sim/geometry/closest_point.h"
+#include "sim/instruments/jaw_space.h"
 #include "sim/step/tissue_damage.h"
 
 namespace calot {
@@ -12,8 +13,12 @@ namespace {
 
 /// The ratchet holds this much harder than a hand that just closes. Larger: tissue tears before it slips. Assumed.
 constexpr double ratchetGrip = 2.0;
-constexpr double weakestGrip = 0.2;     ///< share of the slip force that barely closed jaws hold. Assumed
-constexpr double searchRadius = 0.004;  ///< of a point to grasp, about each station along the jaws (m)
+constexpr double weakestGrip = 0.2;  ///< share of the slip force that barely closed jaws hold. Assumed
+/// Of a point to grasp, about each station along the jaws (m): reaches all that lies between them.
+constexpr double searchRadius = 0.004;
+/// Skin that jaws press on rises between them; that of a mesh does not, and is taken when it is no farther before the
+/// tips (m). Larger: tissue is taken without being touched; smaller: jaws close on nothing. Assumed.
+constexpr double foldRise = 0.001;
 constexpr double minSpacing = 0.0015;   ///< between grasped points (m): nearer ones repeat each other's rows
 constexpr double lostDistance = 0.005;  ///< a point that slipped so far out of the jaws is released (m)
 /// Stations along the line between the jaws, from the tip backwards (shares of its length).
@@ -28,6 +33,18 @@ Vec3 skinPoint(const std::vector<Vec3>& skin, const std::array<std::uint32_t, 3>
   Vec3 p = Vec3::Zero();
   for (std::size_t c = 0; c < 3; ++c) p += weight[static_cast<int>(c)] * skin[node[c]];
   return p;
+}
+
+/// The point of a polygon that is nearest to p. @param[in,out] least squared distance that it has to beat (m^2)
+Vec3 nearestIn(const SmallPolygon& polygon, const Vec3& p, double& least) {
+  Vec3 nearest = Vec3::Zero();
+  for (std::size_t k = 2; k < polygon.count; ++k) {
+    const PointTriangle found = closestOnTriangle(p, polygon.corner[0], polygon.corner[k - 1], polygon.corner[k]);
+    if (!(found.squaredDistance < least)) continue;
+    least = found.squaredDistance;
+    nearest = found.point;
+  }
+  return nearest;
 }
 
 /// Keeps the first `count` grasped points.
@@ -97,11 +114,15 @@ void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, Step
   if (h.realJaw > instrument.jaw.closed || !h.jawsOpened) return;
   h.jawsOpened = false;
   const Pose tool = simulatedPose(h);
-  const auto [from, to] = graspLine(instrument, model_.scene().hands[hand].shaftRadius);
+  const Quat toJaws = tool.orientation.conjugate();
+  const double shaftRadius = model_.scene().hands[hand].shaftRadius;
+  const auto [from, to] = graspLine(instrument, shaftRadius);
+  const JawSpace space = jawSpace(instrument, shaftRadius, to[2] - from[2], foldRise);
   std::size_t structure = ContactBlock::none;
   std::vector<Vec3> held;
   for (const double station : stations) {
     const Vec3 target = tool.position + tool.orientation * Vec3(from + station * (to - from));
+    const Vec3 inJaws = from + station * (to - from);
     double nearest = searchRadius * searchRadius;
     std::size_t nearestStructure = ContactBlock::none;
     Index3 triangle = Index3::Zero();
@@ -113,12 +134,14 @@ void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, Step
         for (std::size_t t = surface.patches()[p].first; t < surface.patches()[p].last; ++t) {
           const Index3& corner = surface.triangles()[t];
           const auto at = [&](int k) -> const Vec3& { return surfaces.points(s)[static_cast<std::size_t>(corner[k])]; };
-          const PointTriangle found = closestOnTriangle(target, at(0), at(1), at(2));
-          if (!(found.squaredDistance < nearest)) continue;
-          nearest = found.squaredDistance;
+          if (!(closestOnTriangle(target, at(0), at(1), at(2)).squaredDistance < nearest)) continue;
+          const auto local = [&](int k) { return Vec3(toJaws * (at(k) - tool.position)); };
+          const double least = nearest;
+          const Vec3 point = nearestIn(between(space, local(0), local(1), local(2)), inJaws, nearest);
+          if (!(nearest < least)) continue;
           nearestStructure = s;
           triangle = corner;
-          best = found;
+          best = closestOnTriangle(tool.position + tool.orientation * point, at(0), at(1), at(2));
         }
       }
     }
@@ -204,7 +227,9 @@ void Grasping::settle(Surfaces& surfaces, State& state, Activity& activity, Step
     HandResult& out = result.hand[hand];
     out.grasping = h.grasped == noStructure ? 0 : 1U << h.grasped;
     out.graspForce = 0.0;
+    out.gripForce = 0.0;
     if (h.grasped == noStructure) continue;
+    out.gripForce = model_.scene().hands[hand].slipForce * gripOf(h);
     Vec3 pull = Vec3::Zero();
     for (const Vec3& f : h.graspForce) pull += f;
     out.graspForce = pull.norm();

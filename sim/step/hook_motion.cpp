@@ -7,10 +7,15 @@ namespace calot {
 
 void sweepHooks(const Model& model, const InstrumentTravels& travels, const State& state, HookSweeps& sweeps) {
   for (std::size_t hand = 0; hand < handCount; ++hand) {
-    sweeps[hand].clear();
+    HookSweep& sweep = sweeps[hand];
+    sweep.electrode.clear();
     const HandState& h = state.hand[hand];
     const bool energised = (h.buttons & (button::cutPedal | button::coagulatePedal)) != 0;
     if (instrumentOf(h.instrument).action != InstrumentAction::burn || !energised) continue;
+    const CauteryDescription& cautery = model.scene().cautery;
+    const bool cuts = (h.buttons & button::cutPedal) != 0;
+    sweep.pace = cuts ? 1.0 : cautery.coagulationPace;
+    sweep.charring = cuts ? cautery.cutChar : 1.0;
     const HandDescription& description = model.scene().hands[hand];
     const Pose now = simulatedPose(h);
     const InstrumentShape hook =
@@ -20,7 +25,8 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
     for (std::size_t k = 0; k < after.capsules().size(); ++k) {
       const Capsule& from = before.capsules()[k];
       const Capsule& to = after.capsules()[k];
-      if (to.part == Capsule::Part::electrode) sweeps[hand].push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
+      if (to.part != Capsule::Part::electrode) continue;
+      sweep.electrode.push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
     }
   }
 }

@@ -12,8 +12,17 @@
 
 namespace calot {
 
-/// Per hand: the hook's capsules at the step's beginning and end; none where it carries no current.
-using HookSweeps = std::array<std::vector<HookSweep>, handCount>;
+/// An energised hook's way through a step.
+struct HookSweep {
+  std::vector<MovingCapsule> electrode;  ///< what carries current; empty: no current
+  double pace = 1.0;                     ///< at which it divides tissue, of that of the cutting current
+  double charring = 1.0;                 ///< char in the same time, of that by the coagulating current
+
+  [[nodiscard]] bool energised() const { return !electrode.empty(); }
+};
+
+/// Per hand. With both pedals pressed the current is the cutting one.
+using HookSweeps = std::array<HookSweep, handCount>;
 
 void sweepHooks(const Model& model, const InstrumentTravels& travels, const State& state, HookSweeps& sweeps);
 

@@ -87,10 +87,7 @@ void Publication::publishOrgans(const ContactSystem& contact, Bodies& bodies, co
     out.volume = organ.volume;
     const CharState& charred = state.charred[o];
     out.charredArea = charred.area;
-    out.wallExposure = 0.0;
-    if (charred.area > 0.0) {
-      out.wallExposure = double{*std::max_element(charred.exposure.begin(), charred.exposure.end())};
-    }
+    out.wallExposure = charred.maxExposure;
   }
 }
 
@@ -108,12 +105,19 @@ void Publication::publishVessel(const Bodies& bodies, bool awake, const State& s
   double exposure = 0.0;
   for (std::size_t e = fixed.firstElement; e < fixed.firstElement + fixed.elements(); ++e) {
     if (beams.parting[e] != Parting::none) ++out.partings;
-    exposure = std::max(exposure, beams.exposure[e]);
     if (!awake) continue;
     out.maxStrain = std::max(out.maxStrain, bodies.vessel(tree).strain()[e]);
     out.maxTension = std::max(out.maxTension, bodies.vessel(tree).tension()[e]);
   }
-  out.charred = exposure / model_.scene().vessels[vessels.vessel[branch]].burnThrough;
+  const double through = model_.scene().vessels[vessels.vessel[branch]].burnThrough;
+  const double injured = model_.scene().cautery.injury * through;
+  std::size_t stations = 0;
+  for (std::size_t s = fixed.firstStation; s < fixed.firstStation + fixed.stations; ++s) {
+    exposure = std::max(exposure, beams.exposure[s]);
+    if (beams.exposure[s] >= injured) ++stations;
+  }
+  out.charred = exposure / through;
+  out.injured = static_cast<double>(stations) * fixed.spacing();
   for (const std::uint32_t clipped : beams.clipBranch) out.clips += clipped == branch ? 1 : 0;
 }
 

@@ -13,6 +13,20 @@ namespace {
 /// EventKind::cutOpen's value: which sides are open.
 double openSides(const CutSides& cut) { return (cut.opensBefore ? 1.0 : 0.0) + (cut.opensAfter ? 2.0 : 0.0); }
 
+/// Share of what parted the wall that has to be coagulation for the artery to be closed. Assumed.
+constexpr double sealingShare = 0.5;
+
+/// Coagulation closes a small artery that it divides; it never closes a duct reliably.
+bool isSealed(const Model& model, std::size_t structure, const BeamState& vessels, const BeamPoint& where) {
+  const StructureModel& s = model.structures()[structure];
+  const VesselTree& tree = model.vesselTrees()[s.index];
+  const BeamModel::Branch& branch = tree.beams.branches()[s.branch];
+  if (carriesBile(s.role) || branch.section.outerRadius > model.scene().cautery.sealRadius) return false;
+  const auto station = std::min(static_cast<std::size_t>(where.arcLength / branch.spacing()), branch.stations - 1);
+  const double through = model.scene().vessels[tree.vessel[s.branch]].burnThrough;
+  return vessels.charring[branch.firstStation + station] >= sealingShare * through;
+}
+
 }  // namespace
 
 void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, double exposure, State& state,
@@ -34,7 +48,11 @@ void partVessel(const Model& model, std::size_t structure, const BeamPoint& wher
   activity.disturb(bodies, state, s.body);
   surfaces.markBodyStale(s.body);
   log.emit(kind, hand, structure, place, where.arcLength);
-  if (openSides(cut) > 0.0) log.emit(EventKind::cutOpen, hand, structure, place, openSides(cut));
+  if (kind == EventKind::vesselBurned && isSealed(model, structure, vessels, where)) {
+    log.emit(EventKind::vesselSealed, hand, structure, place, where.arcLength);
+  } else if (openSides(cut) > 0.0) {
+    log.emit(EventKind::cutOpen, hand, structure, place, openSides(cut));
+  }
   if (kind == EventKind::vesselCut) {
     log.emit(EventKind::clipsTowardsStart, hand, structure, place, static_cast<double>(cut.before));
     log.emit(EventKind::clipsTowardsEnd, hand, structure, place, static_cast<double>(cut.after));

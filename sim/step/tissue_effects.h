@@ -15,23 +15,27 @@ namespace calot {
 /// cautery.
 class TissueEffects {
  public:
-  explicit TissueEffects(const Model& model) : model_(model), connective_(model), tools_(model), cautery_(model) {}
+  explicit TissueEffects(const Model& model)
+      : model_(model), search_(model), connective_(model), tools_(model), cautery_(model) {}
 
   /// @pre surfaces are current
   void run(const InstrumentTravels& travels, Surfaces& surfaces, Bodies& bodies, State& state, Activity& activity,
            StepResult& result, StepLog& log) {
     sweepHooks(model_, travels, state, sweeps_);
-    const auto burned = connective_.run(sweeps_, bodies, state, activity, result, log);
+    for (std::size_t h = 0; h < handCount; ++h) search_.run(sweeps_[h], bodies, surfaces, state, touches_[h]);
+    connective_.run(sweeps_, touches_, bodies, state, activity, result, log);
     tools_.run(bodies, surfaces, state, activity, log);
-    cautery_.run(sweeps_, burned, bodies, surfaces, state, activity, result, log);
+    cautery_.run(sweeps_, touches_, bodies, surfaces, state, activity, result, log);
   }
 
  private:
   const Model& model_;
+  HookTouchSearch search_;
   ConnectiveEffects connective_;
   VesselTools tools_;
   CauteryEffects cautery_;
   HookSweeps sweeps_;
+  std::array<HookTouches, handCount> touches_;
 };
 
 }  // namespace calot

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/geometry/closest_point.h"
+#include "sim/instruments/jaw_space.h"
 #include "sim/math/elementary.h"
 #include "sim/vessel/centre_line.h"
 #include "sim/vessel/clips.h"
@@ -15,19 +16,18 @@ namespace calot {
 
 namespace {
 
-/// Between jaws beside a vessel that they still close on (m). Larger: clips jump onto vessels; smaller: hands need more
-/// skill than in life. Assumed.
-constexpr double jawRoom = 0.002;
 constexpr double gripRoom = 0.0005;  ///< between blades and vessel where they count as touching (m). Assumed
 
 }  // namespace
 
-/// The vessel that runs nearest to the line between the jaws, if any does so within reach.
+/// Of the vessels whose centre line runs between the jaws, that which is nearest to the line in their middle.
 /// @param length of that line, from the tips backwards (m)
 VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t hand, double length) const {
   Crossing best;
   const Pose tool = simulatedPose(state.hand[hand]);
   const Vec3 along = tool.orientation * Vec3::UnitZ();
+  const Quat toJaws = tool.orientation.conjugate();
+  const InstrumentDefinition& instrument = instrumentOf(state.hand[hand].instrument);
   double least = 1e300;
   for (std::size_t s = model_.organs().size(); s < model_.structures().size(); ++s) {
     const StructureModel& structure = model_.structures()[s];
@@ -39,21 +39,37 @@ VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t
     const double beyond = pinchedSection(branch.section, 1.0).wide;
     const Vec3 crotch = tool.position - (length + beyond) * along;
     const Vec3 tips = tool.position + beyond * along;
+    const JawSpace space = jawSpace(instrument, model_.scene().hands[hand].shaftRadius, length + beyond, beyond);
     for (std::size_t e = branch.firstElement; e < branch.firstElement + branch.elements(); ++e) {
       if (now.parting[e] != Parting::none) continue;
       const BeamElement& element = beams.elements()[e];
-      const SegmentSegment close = closestSegments(crotch, tips, now.position[static_cast<std::size_t>(element.a)],
-                                                   now.position[static_cast<std::size_t>(element.b)]);
-      const double reach = branch.section.outerRadius + jawRoom;
-      if (!(close.squaredDistance < least) || close.squaredDistance > reach * reach) continue;
-      least = close.squaredDistance;
+      const Vec3& a = now.position[static_cast<std::size_t>(element.a)];
+      const Vec3& b = now.position[static_cast<std::size_t>(element.b)];
+      const SegmentSegment close = closestSegments(crotch, tips, a, b);
+      const double far = instrument.jawLength;
+      if (!(close.squaredDistance < least) || close.squaredDistance > far * far) continue;
+      // The part of the element between the jaws, nearest to their middle.
+      const Vec3 from = toJaws * (a - tool.position);
+      const Vec3 to = toJaws * (b - tool.position);
+      const SmallPolygon part = between(space, from, to, to);
+      if (part.count == 0) continue;
+      const auto shareAt = [&](const Vec3& p) { return closestOnSegment(p, from, to); };
+      double first = 1.0;
+      double last = 0.0;
+      for (std::size_t k = 0; k < part.count; ++k) {
+        first = std::min(first, shareAt(part.corner[k]));
+        last = std::max(last, shareAt(part.corner[k]));
+      }
+      const SegmentSegment inside = closestSegments(crotch, tips, a + first * (b - a), a + last * (b - a));
+      if (!(inside.squaredDistance < least)) continue;
+      least = inside.squaredDistance;
       best.structure = s;
       best.place.branch = structure.branch;
       best.place.element = e;
-      best.place.share = close.t;
+      best.place.share = first + inside.t * (last - first);
       const std::size_t i = e - branch.firstElement;
-      best.place.arcLength = branch.arcLength[i] + close.t * (branch.arcLength[i + 1] - branch.arcLength[i]);
-      best.depth = close.s * (length + 2.0 * beyond) - beyond;
+      best.place.arcLength = branch.arcLength[i] + best.place.share * (branch.arcLength[i + 1] - branch.arcLength[i]);
+      best.depth = inside.s * (length + 2.0 * beyond) - beyond;
     }
   }
   if (best.structure == ContactBlock::none) return best;

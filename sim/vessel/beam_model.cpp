@@ -179,6 +179,8 @@ BeamModel::BeamModel(const std::vector<BeamBranch>& branches) {
       }
       element_.push_back(e);
     }
+    branch.firstStation = branch_.empty() ? 0 : stations();
+    branch.stations = static_cast<std::size_t>(std::ceil(branch.length() / maxSpacing));
     branch_.push_back(branch);
   }
 }

@@ -78,12 +78,20 @@ class BeamModel {
     std::vector<int> node;          ///< from start to end; the first may belong to another branch
     std::vector<double> arcLength;  ///< arc length of each node at rest (m)
     std::size_t firstElement = 0;
+    std::size_t firstStation = 0;
+    std::size_t stations = 0;  ///< places at which cautery of the wall is kept, the same for any number of elements
     int join = -1;
     Quat startFrame =
         Quat::Identity();  ///< the branch's first frame in that of its first node (a rotation where it joins)
 
     [[nodiscard]] std::size_t elements() const { return node.size() - 1; }
     [[nodiscard]] double length() const { return arcLength.back(); }
+    /// Between stations, which lie in the middles of equal parts (m).
+    [[nodiscard]] double spacing() const { return length() / static_cast<double>(stations); }
+    /// @param station of this branch, from 0
+    [[nodiscard]] double arcLengthOf(std::size_t station) const {
+      return (static_cast<double>(station) + 0.5) * spacing();
+    }
   };
 
   /// @pre faultOf(branches) is empty
@@ -98,6 +106,11 @@ class BeamModel {
   [[nodiscard]] const std::vector<Quat>& restOrientation() const { return restOrientation_; }
   [[nodiscard]] const std::vector<BeamElement>& elements() const { return element_; }
   [[nodiscard]] const std::vector<Branch>& branches() const { return branch_; }
+  /// Of all branches.
+  [[nodiscard]] std::size_t stations() const { return branch_.back().firstStation + branch_.back().stations; }
+  /// Distance between stations is at most this (m). Larger: the dose of a vessel's wall blurs; smaller: more State.
+  /// Assumed: a sixth of what the hook's wire touches of a wall.
+  static constexpr double maxSpacing = 0.00025;
   /// Neighbour towards the start, a smaller index; -1 for a node where a tree starts.
   [[nodiscard]] std::span<const int> parents() const { return parent_; }
   /// Element between a node and its parent; -1 where there is none.

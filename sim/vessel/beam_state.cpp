@@ -27,7 +27,8 @@ BeamState restState(const BeamModel& model) {
   state.parting.assign(elements, Parting::none);
   state.partedAt.assign(elements, 0.0);
   state.peakStrain.assign(elements, 0.0);
-  state.exposure.assign(elements, 0.0);
+  state.exposure.assign(model.stations(), 0.0);
+  state.charring.assign(model.stations(), 0.0);
   state.sleeve.assign(elements, 0.0);
   state.sleeveStretch.assign(elements, Vec3::Zero());
   state.sleeveBend.assign(elements, Vec3::Zero());
@@ -41,7 +42,8 @@ bool fits(const BeamModel& model, const BeamState& state) {
   const std::size_t clips = state.clips();
   if (state.position.size() != nodes || state.orientation.size() != nodes || state.velocity.size() != nodes ||
       state.angularVelocity.size() != nodes || state.parting.size() != elements || state.partedAt.size() != elements ||
-      state.peakStrain.size() != elements || state.exposure.size() != elements || state.sleeve.size() != elements ||
+      state.peakStrain.size() != elements || state.exposure.size() != model.stations() ||
+      state.charring.size() != model.stations() || state.sleeve.size() != elements ||
       state.sleeveStretch.size() != elements || state.sleeveBend.size() != elements ||
       state.clipBranch.size() != clips || state.clipWidth.size() != clips || state.clipRoll.size() != clips ||
       state.clipClosure.size() != clips || state.clipEnclosed.size() != clips) {
@@ -61,6 +63,9 @@ bool fits(const BeamModel& model, const BeamState& state) {
     if (!within(state.sleeve[e], 0.0, 1e6) || !state.sleeveStretch[e].allFinite() || !state.sleeveBend[e].allFinite()) {
       return false;
     }
+  }
+  for (std::size_t s = 0; s < model.stations(); ++s) {
+    if (!within(state.exposure[s], 0.0, 1e9) || !within(state.charring[s], 0.0, 1e9)) return false;
   }
   for (std::size_t c = 0; c < clips; ++c) {
     if (state.clipBranch[c] >= model.branches().size() ||

@@ -22,7 +22,8 @@ struct BeamState {
   std::vector<Parting> parting;       ///< per element
   std::vector<double> partedAt;       ///< per element: parting position as a share of its length from its first node
   std::vector<double> peakStrain;     ///< per element: largest stretch so far
-  std::vector<double> exposure;       ///< per element: cautery so far (s)
+  std::vector<double> exposure;       ///< per station: cautery of the wall so far (s)
+  std::vector<double> charring;       ///< per station: coagulation so far (s)
   /// Per element: stiffness added by clips, in multiples of its own; 0 without clips.
   std::vector<double> sleeve;
   std::vector<Vec3> sleeveStretch;  ///< R_m^T d / L at which the sleeves are free of force
@@ -50,6 +51,7 @@ struct BeamState {
     visit("partedAt", self.partedAt);
     visit("peakStrain", self.peakStrain);
     visit("exposure", self.exposure);
+    visit("charring", self.charring);
     visit("sleeve", self.sleeve);
     visit("sleeveStretch", self.sleeveStretch);
     visit("sleeveBend", self.sleeveBend);

@@ -21,8 +21,9 @@ const CheckpointDefinition& contactUnionDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
-      .definition = "C_union(o) = step length * #{steps at whose end any instrument exerts a force on organ o}",
+      .version = 2,
+      .definition =
+          "C_union(o) = step length * #{steps at whose end any instrument exerts a force on organ o or holds it}",
       .paperReading = "",
   };
   return d;
@@ -42,8 +43,10 @@ const CheckpointDefinition& contactSumDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
-      .definition = "C_sum(o) = step length * sum over instruments #{steps at whose end it exerts a force on organ o}",
+      .version = 2,
+      .definition =
+          "C_sum(o) = step length * sum over instruments #{steps at whose end it exerts a force on organ o or holds "
+          "it}",
       .paperReading = "",
   };
   return d;
@@ -61,7 +64,7 @@ class ContactTime final : public Checkpoint {
   void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
     for (std::size_t o = 0; o < steps_.size(); ++o) {
       std::uint64_t touching = 0;
-      for (const HandResult& hand : record.result.hand) touching += hand.touching >> o & 1U;
+      for (const HandResult& hand : record.result.hand) touching += hand.contacts() >> o & 1U;
       steps_[o] += sum_ ? touching : std::min<std::uint64_t>(touching, 1);
     }
   }

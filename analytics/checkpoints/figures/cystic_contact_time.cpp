@@ -24,10 +24,11 @@ const CheckpointDefinition& cysticContactTimeDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = 2,
       .definition =
-          "C = step length * sum over instruments and cystic vessels #{steps at whose end a force acts between "
-          "the two}; cystic: of role cystic-duct or cystic-artery",
+          "C = step length * sum over instruments and cystic vessels #{steps at whose end the one exerts a force on "
+          "the "
+          "other or holds it}; cystic: of role cystic-duct or cystic-artery",
       .paperReading =
           "Time colliding cystic ducts (s), in its text \"collision time with the cystic duct and artery\": "
           "both vessels; 41.57 s in a task of 38.86 s can only be a sum over vessels or instruments, and "

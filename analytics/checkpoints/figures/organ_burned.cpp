@@ -23,7 +23,7 @@ const CheckpointDefinition& organBurnedDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = 2,
       .definition = "B(o) = area of the organ's skin that is charred / area of all its skin, both at rest",
       .paperReading =
           "Amount of liver burned, amount of gallbladder burned (%): by area of the surface, not by volume; "

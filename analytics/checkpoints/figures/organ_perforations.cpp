@@ -19,7 +19,7 @@ const CheckpointDefinition& organPerforationsDefinition() {
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = 2,
       .definition = "P(o) = #{events organPerforated of organ o}; at most one an organ",
       .paperReading = "",
   };

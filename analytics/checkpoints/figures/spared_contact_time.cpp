@@ -23,7 +23,7 @@ CheckpointDefinition sparedFigure(const char* name, const char* title, const cha
       .filter = "none",
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
-      .version = 1,
+      .version = 2,
       .definition = formula,
       .paperReading = "",
   };
@@ -33,17 +33,18 @@ const CheckpointDefinition& unionDefinition() {
   static const CheckpointDefinition d = sparedFigure(
       "spared-contact-time-union", "Time touching a vessel that is to be spared (any instrument)",
       "union over instruments and over the vessels: two at once count once",
-      "step length * #{steps at whose end a force acts between any instrument and any vessel that the scene's "
+      "step length * #{steps at whose end any instrument exerts a force on, or holds, any vessel that the scene's "
       "procedure tells to spare}");
   return d;
 }
 
 const CheckpointDefinition& sumDefinition() {
-  static const CheckpointDefinition d = sparedFigure(
-      "spared-contact-time-sum", "Time touching vessels that are to be spared (summed over instruments)",
-      "sum over instruments and over the vessels: two at once count twice",
-      "step length * sum over instruments and vessels that the scene's procedure tells to spare #{steps at whose end a "
-      "force acts between the two}");
+  static const CheckpointDefinition d =
+      sparedFigure("spared-contact-time-sum", "Time touching vessels that are to be spared (summed over instruments)",
+                   "sum over instruments and over the vessels: two at once count twice",
+                   "step length * sum over instruments and vessels that the scene's procedure tells to spare #{steps "
+                   "at whose end the "
+                   "one exerts a force on the other or holds it}");
   return d;
 }
 

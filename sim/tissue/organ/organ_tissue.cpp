@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/geometry/surface_distance.h"
+#include "sim/geometry/triangle_cells.h"
 #include "sim/scene/model.h"
 #include "sim/scene/state.h"
 
@@ -49,16 +50,37 @@ std::vector<bool> anchoredNodes(const OrganDescription& organ, const std::vector
   return fixed;
 }
 
-std::vector<double> vertexAreas(const SurfaceDescription& surface) {
-  std::vector<double> area(surface.vertex.size(), 0.0);
+/// Sides of the cells by which char is kept (m): a third of the width that the hook's wire touches of a flat skin.
+/// Larger: the edge of what is charred becomes ragged; smaller: more State. Assumed.
+constexpr double longestCell = 0.0005;
+constexpr std::uint32_t mostDivision = 255;
+
+/// Areas of a surface's triangles (m^2) and into how many cells their sides are divided.
+void measureTriangles(const SurfaceDescription& surface, std::vector<double>& area,
+                      std::vector<std::uint8_t>& division) {
   for (const Index3& t : surface.triangle) {
     const Vec3& a = surface.vertex[static_cast<std::size_t>(t[0])];
     const Vec3& b = surface.vertex[static_cast<std::size_t>(t[1])];
     const Vec3& c = surface.vertex[static_cast<std::size_t>(t[2])];
-    const double third = (b - a).cross(c - a).norm() / 6.0;
-    for (int k = 0; k < 3; ++k) area[static_cast<std::size_t>(t[k])] += third;
+    area.push_back(0.5 * (b - a).cross(c - a).norm());
+    division.push_back(static_cast<std::uint8_t>(cellsAlongSide(a, b, c, longestCell, mostDivision)));
   }
-  return area;
+}
+
+/// Is this a state of burns of the organ's skin? Checks external data.
+bool fitsBurns(const OrganModel& organ, const CharState& burns) {
+  if (burns.firstCell.size() != burns.triangle.size() || burns.charring.size() != burns.exposure.size()) return false;
+  std::vector<bool> seen(organ.division.size(), false);
+  std::size_t cells = 0;
+  for (std::size_t k = 0; k < burns.triangle.size(); ++k) {
+    const std::size_t t = burns.triangle[k];
+    if (t >= seen.size() || seen[t] || burns.firstCell[k] != cells) return false;
+    seen[t] = true;
+    cells += std::size_t{organ.division[t]} * organ.division[t];
+  }
+  const auto isTime = [](float seconds) { return seconds >= 0.0F && seconds < 1e9F; };
+  return burns.exposure.size() == cells && std::all_of(burns.charring.begin(), burns.charring.end(), isTime) &&
+         std::all_of(burns.exposure.begin(), burns.exposure.end(), isTime);
 }
 
 }  // namespace
@@ -76,8 +98,16 @@ std::string OrganTissue::build(const SceneDescription& scene, Model& model) {
     const std::vector<bool> fixed = anchoredNodes(organ, nodes, surfaces);
     SolidModel solid(std::move(nodes), std::move(stuffed.mesh.tetrahedron), fixed, solidMaterial(organ.material));
     if (solid.freeNodes().empty()) return "organ '" + organ.name + "': its anchors hold every node";
-    organs.push_back({organ.name, organ.appearance, std::move(solid), organ.surface.vertex, std::move(embedding),
-                      std::move(contact), vertexAreas(organ.surface), stuffed.cellSize});
+    organs.push_back({organ.name,
+                      organ.appearance,
+                      std::move(solid),
+                      organ.surface.vertex,
+                      std::move(embedding),
+                      std::move(contact),
+                      {},
+                      {},
+                      stuffed.cellSize});
+    measureTriangles(organ.surface, organs.back().triangleArea, organs.back().division);
   }
   for (std::size_t a = 0; a < organs.size(); ++a) {
     for (std::size_t b = 0; b < organs.size(); ++b) {
@@ -109,7 +139,7 @@ void OrganTissue::start(const Model& model, States& states) {
   for (const OrganModel& organ : model.organs()) {
     states.organ.push_back(restState(organ.solid));
     if (!model.scene().gravity.isZero(0.0)) states.organ.back().quietSteps = 0;
-    states.charred.emplace_back().exposure.assign(organ.skin.size(), 0.0F);
+    states.charred.emplace_back();
   }
 }
 
@@ -119,7 +149,7 @@ bool OrganTissue::fits(const Model& model, const States& states) {
     const SolidState& organ = states.organ[o];
     if (organ.position.size() != solid.nodes() || organ.velocity.size() != solid.nodes()) return false;
     if (organ.rotation.size() != solid.groups()) return false;
-    if (states.charred[o].exposure.size() != model.organs()[o].skin.size()) return false;
+    if (!fitsBurns(model.organs()[o], states.charred[o])) return false;
   }
   return true;
 }

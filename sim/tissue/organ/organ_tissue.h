@@ -66,11 +66,12 @@ struct OrganModel {
   std::string name;
   std::string appearance;
   SolidModel solid;
-  std::vector<Vec3> skin;          ///< vertices of the organ's surface at rest (m), carried by the solid:
-  Embedding embedding;             ///< contact and pictures see the fine surface, mechanics the tetrahedra
-  ContactSurface surface;          ///< triangles over the skin's vertices
-  std::vector<double> vertexArea;  ///< a third of the triangles around each vertex, at rest (m^2)
-  double cellSize = 0.0;           ///< of the tetrahedral lattice (m)
+  std::vector<Vec3> skin;              ///< vertices of the organ's surface at rest (m), carried by the solid:
+  Embedding embedding;                 ///< contact and pictures see the fine surface, mechanics the tetrahedra
+  ContactSurface surface;              ///< triangles over the skin's vertices
+  std::vector<double> triangleArea;    ///< at rest (m^2)
+  std::vector<std::uint8_t> division;  ///< of each triangle's sides, for CharState (sim/geometry/triangle_cells.h)
+  double cellSize = 0.0;               ///< of the tetrahedral lattice (m)
 };
 
 /// Two organs that may touch each other, or one that may touch itself: vertices of `a` against triangles of `b`.
@@ -81,16 +82,24 @@ struct TissuePair {
   std::optional<SurfacePair> rest;
 };
 
-/// Where cautery has charred an organ. Irreversible.
+/// Where cautery has burned an organ's skin, by cells of its triangles (OrganModel::division). Irreversible.
 struct CharState {
-  std::vector<float> exposure;  ///< per vertex of its skin: cautery per spot (s)
-  double area = 0.0;            ///< charred (m^2)
-  bool perforated = false;      ///< burned or torn open
+  std::vector<std::uint32_t> triangle;   ///< burned anywhere, in the order in which they were first touched
+  std::vector<std::uint32_t> firstCell;  ///< of each of them, in the lists below
+  std::vector<float> charring;           ///< per cell: coagulation (s)
+  std::vector<float> exposure;           ///< per cell: cautery of the wall (s)
+  double area = 0.0;                     ///< charred (m^2)
+  double maxExposure = 0.0;              ///< over all cells (s)
+  bool perforated = false;               ///< burned or torn open
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("triangle", self.triangle);
+    visit("firstCell", self.firstCell);
+    visit("charring", self.charring);
     visit("exposure", self.exposure);
     visit("area", self.area);
+    visit("maxExposure", self.maxExposure);
     visit("perforated", self.perforated);
   }
 };
@@ -118,7 +127,7 @@ struct OrganResult {
     visit(ResultField{"asleep", "", "", 1, "1: untouched and idle, not solved in this step"}, &OrganResult::asleep);
     visit(ResultField{"charred_area", "m^2", "", 3, "of the organ's skin in the reference configuration"},
           &OrganResult::charredArea);
-    visit(ResultField{"wall_exposure", "s", "", 4, "most cautery at any vertex of its skin, as time on one spot"},
+    visit(ResultField{"wall_exposure", "s", "", 4, "most cautery of any place of its skin, as time at full power"},
           &OrganResult::wallExposure);
   }
 };

@@ -91,6 +91,7 @@ struct VesselResult {
   double charred = 0.0;
   bool asleep = false;
   double covered = 0.0;
+  double injured = 0.0;
 
   template <class Visit>
   static void fields(Visit&& visit) {
@@ -112,6 +113,10 @@ struct VesselResult {
                       "share that is left of the fat within 1.5 mm of its wall in the reference configuration; 0 for a "
                       "vessel that the scene's procedure does not divide"},
           &VesselResult::covered);
+    visit(
+        ResultField{"injured_length", "m", "", 5,
+                    "length of wall that cautery injured: it had the scene's share `injury` of what parts it, or more"},
+        &VesselResult::injured);
   }
 };
 

@@ -73,16 +73,15 @@ void addDome(int ring, std::size_t cap, double away, SurfaceView& surface) {
   for (int d = 0; d + 1 < domeRings; ++d) strip(first + d * sides, first + (d + 1) * sides);
 }
 
-/// Cautery at a place: linear between the middles of elements.
+/// Cautery at a place: linear between stations.
 double exposureAt(const BeamModel& beams, const BeamState& vessels, const BeamPoint& where) {
   const auto& branch = beams.branches()[where.branch];
-  const double own = vessels.exposure[where.element];
-  const double off = where.share - 0.5;
-  const std::size_t first = branch.firstElement;
-  const std::size_t last = first + branch.elements() - 1;
-  const std::size_t neighbour = off < 0.0 ? std::max(where.element, first + 1) - 1 : std::min(where.element + 1, last);
-  const double share = off < 0.0 ? -off : off;
-  return own + share * (vessels.exposure[neighbour] - own);
+  const double last = static_cast<double>(branch.stations - 1);
+  const double at = std::clamp(where.arcLength / branch.spacing() - 0.5, 0.0, last);
+  const auto before = static_cast<std::size_t>(at);
+  const std::size_t after = std::min(before + 1, branch.stations - 1);
+  const double* const exposure = vessels.exposure.data() + branch.firstStation;
+  return exposure[before] + (at - static_cast<double>(before)) * (exposure[after] - exposure[before]);
 }
 
 /// Blood on the skin beside a cut.

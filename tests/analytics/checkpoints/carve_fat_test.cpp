@@ -164,7 +164,7 @@ TEST(CarveFat, isAssessedFromTheHandToTheCohort) {
   EXPECT_LT(cautery, 3.0) << "the stroke was not";
   for (const OrganModel& organ : model.organs()) {
     double area = 0.0;
-    for (const double a : organ.vertexArea) area += a;
+    for (const double a : organ.triangleArea) area += a;
     const std::size_t o = model.structureNamed(organ.name);
     EXPECT_NEAR(*support::valueOf(live, "organ-burned", organ.name).value,
                 recording.step(299).result.organ[o].charredArea / area, 1e-12);

@@ -58,7 +58,6 @@ TEST(SceneProcedure, EveryValueArrives) {
   EXPECT_EQ(scene.clip.minJunctionGap, 0.003);
   EXPECT_EQ(scene.cautery.power, 40.0);
   EXPECT_EQ(scene.cautery.reach, 0.0002);
-  EXPECT_EQ(scene.cautery.carve, 0.001);
   EXPECT_EQ(scene.cautery.spot, 3e-6);
   EXPECT_EQ(scene.cautery.charTime, 0.5);
 }
@@ -106,9 +105,13 @@ TEST(SceneProcedure, DefaultsAreTheSchemas) {
   EXPECT_EQ(ClipDescription().minJunctionGap, number("clip", "leastJunctionGap"));
   EXPECT_EQ(CauteryDescription().power, number("cautery", "power"));
   EXPECT_EQ(CauteryDescription().reach, number("cautery", "reach"));
-  EXPECT_EQ(CauteryDescription().carve, number("cautery", "carve"));
   EXPECT_EQ(CauteryDescription().spot, number("cautery", "spot"));
   EXPECT_EQ(CauteryDescription().charTime, number("cautery", "charTime"));
+  EXPECT_EQ(CauteryDescription().recession, number("cautery", "recession"));
+  EXPECT_EQ(CauteryDescription().coagulationPace, number("cautery", "coagulationPace"));
+  EXPECT_EQ(CauteryDescription().cutChar, number("cautery", "cutChar"));
+  EXPECT_EQ(CauteryDescription().sealRadius, number("cautery", "sealRadius"));
+  EXPECT_EQ(CauteryDescription().injury, number("cautery", "injury"));
   EXPECT_EQ(OrganDescription().burnThrough, number("organ", "burnThrough"));
   EXPECT_EQ(VesselDescription().burnThrough, number("vessel", "burnThrough"));
   EXPECT_EQ(HandDescription().clips, number("hand", "clips"));

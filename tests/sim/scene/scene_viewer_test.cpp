@@ -184,12 +184,20 @@ TEST_F(Viewer, ClipsSitOnTheirVesselWithTheCrotchTowardsThePorts) {
 
 TEST_F(Viewer, CauteryBlendsAlongAVessel) {
   State state = initialState(*model_, 1);
-  const std::size_t middle = state.vessel[0].exposure.size() / 2;
-  state.vessel[0].exposure[middle] = model_->scene().vessels[0].burnThrough;
+  const BeamModel::Branch& branch = model_->vesselTrees()[0].beams.branches()[0];
+  const std::size_t middle = branch.firstStation + branch.stations / 2;
+  // Most in the middle, half of it 2 mm beside.
+  for (std::size_t s = 0; s < branch.stations; ++s) {
+    const double off = (static_cast<double>(branch.firstStation + s) - static_cast<double>(middle)) * branch.spacing();
+    const double share = std::max(0.0, 1.0 - std::abs(off) / 0.004);
+    state.vessel[0].exposure[branch.firstStation + s] = share * model_->scene().vessels[0].burnThrough;
+  }
   const SceneView view = viewOf(*model_, state);
   const SurfaceView& duct = named(view, "duct");
   ASSERT_EQ(duct.charred.size(), duct.position.size());
-  EXPECT_FLOAT_EQ(*std::max_element(duct.charred.begin(), duct.charred.end()), 1.0F);
+  const float most = *std::max_element(duct.charred.begin(), duct.charred.end());
+  EXPECT_GT(most, 0.8F);
+  EXPECT_LE(most, 1.0F);
   EXPECT_GT(std::count_if(duct.charred.begin(), duct.charred.end(), [](float c) { return c > 0.2F && c < 0.8F; }), 16);
 }
 

@@ -66,7 +66,7 @@ class Grasping : public testing::Test {
     return p[2];
   }
 
-  const Vec3 hold_{0.001, 0.002, test::blockTop + 0.0015};
+  const Vec3 hold_{0.001, 0.002, test::blockTop + 0.0005};
   static inline std::unique_ptr<const Model> model_;
   std::unique_ptr<test::Rig> rig_;
   std::vector<Event> events_;

@@ -297,23 +297,6 @@ TEST_F(VesselScene, TheHookBurnsThrough) {
   EXPECT_GT(energy, 0.99 * least);
 }
 
-/// The charred area of an organ grows with the time of touch alone, whatever the mesh, and stays.
-TEST_F(VesselScene, TheHookCharsTheBlock) {
-  const std::uint8_t on = button::cutPedal;
-  go({Vec3(-0.015, -0.015, test::blockTop + 0.001), 0.0, InstrumentKind::hook, 0}, 80);
-  go({Vec3(-0.015, -0.015, test::blockTop - 0.001), 0.0, InstrumentKind::hook, 0}, 30);
-  const double before = step(act_).organ[0].charredArea;
-  EXPECT_EQ(before, 0.0);
-  act_.buttons = on;
-  for (int i = 0; i < 30; ++i) step(act_);
-  const double after = step(act_).organ[0].charredArea;
-  const CauteryDescription& cautery = model_->scene().cautery;
-  EXPECT_NEAR(after, cautery.spot * 0.31 / cautery.charTime, 0.05 * cautery.spot);
-  go({Vec3(-0.015, -0.015, 0.06), 0.0, InstrumentKind::hook, 0}, 30);
-  EXPECT_EQ(step(act_).organ[0].charredArea, rig_->state.charred[0].area);
-  EXPECT_GE(rig_->state.charred[0].area, after);
-}
-
 /// Saved and restored in the middle of all that, the run goes on with the same bits.
 TEST_F(VesselScene, RestoredRunsGoOnAlike) {
   closeAt(InstrumentKind::clipApplier, -0.022, 0.0042);

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an energised hook touches in a step, and for how much of it. Internal to this folder.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/connective/connective_tissue.h"
+#include "sim/step/bodies.h"
+#include "sim/step/hook_motion.h"
+#include "sim/step/surfaces.h"
+
+namespace calot {
+
+/// Touched is what is no farther from the electrode than the scene's `reach`: strands, cells of organs' skins, stations
+/// of vessels' walls, the surface of fat. Every share of the step is exact for straight motion (sim/geometry/dwell.h),
+/// so that a sweep gives the same dose in steps of any length.
+struct HookTouches {
+  struct Cell {
+    std::uint32_t structure = 0;  ///< an organ's
+    std::uint32_t triangle = 0;
+    std::uint32_t cell = 0;  ///< of the triangle
+    double share = 0.0;      ///< of the step
+  };
+  struct Station {
+    std::uint32_t structure = 0;  ///< a vessel's
+    std::uint32_t station = 0;    ///< of its branch
+    double share = 0.0;           ///< of the step
+  };
+
+  std::vector<std::vector<StrandTouch>> strand;  ///< per connective tissue
+  std::vector<Cell> cell;
+  std::vector<Station> station;
+  std::vector<double> fat;  ///< per body of fat: area touched (m^2)
+  double area = 0.0;        ///< of everything touched, in the mean over the step (m^2)
+
+  [[nodiscard]] bool any() const { return area > 0.0; }
+  /// Of the power, what each place gets: all of it as long as no more than `spot` is touched (m^2).
+  [[nodiscard]] double intensity(double spot) const { return area > spot ? spot / area : 1.0; }
+};
+
+class HookTouchSearch {
+ public:
+  explicit HookTouchSearch(const Model& model) : model_(model) {}
+
+  /// @pre surfaces are current, organs and instruments are where the step led them
+  void run(const HookSweep& sweep, Bodies& bodies, Surfaces& surfaces, const State& state, HookTouches& out);
+
+ private:
+  void touchConnective(const HookSweep& sweep, double step, const State& state, HookTouches& out) const;
+  void touchOrgan(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+                  const State& state, HookTouches& out);
+  void touchVessel(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const State& state,
+                   HookTouches& out) const;
+  void touchFat(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+                const State& state, HookTouches& out);
+  /// Triangles of a skin that the sweep may touch, ascending.
+  void findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+                     const State& state);
+
+  const Model& model_;
+  std::vector<std::uint32_t> triangle_;
+};
+
+}  // namespace calot
