@@ -65,7 +65,7 @@ struct CauteryDescription {
   double reach = 0.0003;           ///< farther than this from the hook's metal nothing is touched, of any tissue (m)
   double spot = 8e-6;              ///< area that can be touched with the full power on all of it (m^2)
   double charTime = 0.3;           ///< coagulation of a place from which on it counts as charred (s)
-  double recession = 0.015;        ///< speed at which fat recedes from the hook that cuts (m/s)
+  double recession = 0.05;         ///< speed at which fat recedes from the hook that cuts (m/s)
   double coagulationPace = 0.667;  ///< at which the coagulating current divides tissue, of that of the cutting one
   double cutChar = 0.2;            ///< char by the cutting current, of that by the coagulating one in the same time
   double sealRadius = 0.001;       ///< largest outer radius of an artery that coagulation seals (m)

@@ -10,12 +10,10 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
     HookSweep& sweep = sweeps[hand];
     sweep.electrode.clear();
     const HandState& h = state.hand[hand];
-    const bool energised = (h.buttons & (button::cutPedal | button::coagulatePedal)) != 0;
-    if (instrumentOf(h.instrument).action != InstrumentAction::burn || !energised) continue;
     const CauteryDescription& cautery = model.scene().cautery;
-    const bool cuts = (h.buttons & button::cutPedal) != 0;
-    sweep.pace = cuts ? 1.0 : cautery.coagulationPace;
-    sweep.charring = cuts ? cautery.cutChar : 1.0;
+    sweep.pace = currentPace(cautery, h);
+    if (!(sweep.pace > 0.0)) continue;
+    sweep.charring = (h.buttons & button::cutPedal) != 0 ? cautery.cutChar : 1.0;
     const HandDescription& description = model.scene().hands[hand];
     const Pose now = simulatedPose(h);
     const InstrumentShape hook =

@@ -11,8 +11,9 @@ namespace calot {
 
 namespace {
 
-constexpr int maxAdvances = 16;      ///< conservative advancements a step; each halves the way at worst
-constexpr double maxJawStep = 0.05;  ///< of a jaw near a surface in one step (rad). Assumed: 5 rad/s
+constexpr int maxAdvances = 16;  ///< conservative advancements a step; each halves the way at worst
+/// Of a jaw near a surface (rad/s). Larger: jaws jump through thin tissue; smaller: they lag behind the hand. Assumed.
+constexpr double maxJawSpeed = 5.0;
 
 }  // namespace
 
@@ -57,7 +58,8 @@ void InstrumentMotion::advance(Surfaces& surfaces, std::size_t hand, State& stat
     } else if (room > 1.05 * contactMargin && i < maxAdvances) {
       share = (room - contactMargin) / left;
     } else {
-      h.jaw += std::clamp(closing, -maxJawStep, maxJawStep);
+      const double most = maxJawSpeed * model_.stepSeconds();
+      h.jaw += std::clamp(closing, -most, most);
       break;
     }
     const Pose next = share == 1.0 ? throughPort(description.port, real.position, real.orientation,

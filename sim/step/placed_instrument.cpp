@@ -32,6 +32,12 @@ bool isClosedOnClip(const Model& model, const State& state, const HandState& han
 
 }  // namespace
 
+double currentPace(const CauteryDescription& cautery, const HandState& hand) {
+  if (instrumentOf(hand.instrument).action != InstrumentAction::burn) return 0.0;
+  if ((hand.buttons & button::cutPedal) != 0) return 1.0;
+  return (hand.buttons & button::coagulatePedal) != 0 ? cautery.coagulationPace : 0.0;
+}
+
 void PlacedInstrument::place(const HandDescription& hand, InstrumentKind kind, const Pose& pose, double jaw) {
   const double length = (pose.position - hand.port).norm();
   local = instrumentShape(kind, jaw, hand.shaftRadius, length);
@@ -41,6 +47,8 @@ void PlacedInstrument::place(const HandDescription& hand, InstrumentKind kind, c
 
 double allowedDepth(const Model& model, const State& state, std::size_t hand, const Capsule& capsule,
                     std::size_t structure) {
+  if (capsule.part == Capsule::Part::electrode && model.structures()[structure].kind == tissueId<FatTissue>)
+    return currentPace(model.scene().cautery, state.hand[hand]) * model.scene().cautery.recession * model.stepSeconds();
   const bool jaw = capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw;
   if (!jaw) return 0.0;
   const HandState& h = state.hand[hand];

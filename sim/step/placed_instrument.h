@@ -21,9 +21,12 @@ struct PlacedInstrument {
   void place(const HandDescription& hand, InstrumentKind kind, const Pose& pose, double jaw);
 };
 
+/// At which a hand's hook divides tissue now, of the cutting current's pace; 0 without current.
+double currentPace(const CauteryDescription& cautery, const HandState& hand);
+
 /// How deep this part of the instrument may stand in a structure (m): jaws in what they grasp, because a mesh does not
-/// fold between them, and in a vessel that they close a clip on, because a tube does not flatten between them; 0
-/// otherwise.
+/// fold between them, and in a vessel that they close a clip on, because a tube does not flatten between them; an
+/// energised electrode in fat, as far as that recedes in a step; 0 otherwise.
 double allowedDepth(const Model& model, const State& state, std::size_t hand, const Capsule& capsule,
                     std::size_t structure);
 

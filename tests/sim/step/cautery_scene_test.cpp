@@ -341,6 +341,7 @@ TEST(CauteryScene, FatRecedesAtTheDocumentedSpeed) {
     fat.material.youngModulus = 1e5;
     scene.fat.push_back(fat);
     scene.ticksPerStep = step;
+    scene.cautery.recession = 0.015;
     Hook hook(scene);
     hook.go(Vec3(-0.002, 0.0, 0.031), 0.3, 0);
     hook.go(Vec3(-0.002, 0.0, 0.0298), 0.3, 0);
@@ -350,7 +351,7 @@ TEST(CauteryScene, FatRecedesAtTheDocumentedSpeed) {
     const double after = hook.go(Vec3(-0.002, 0.0, 0.022), 0.25, cut()).fat[0].volume;
     removed.push_back(before - after);
   }
-  expectAlike(removed, 0.1);
+  expectAlike(removed, 0.12);  // it stands as far ahead in the fat as that recedes in a step
   // 0.3 s at 15 mm/s through a trench as wide as wire and reach, as long as the toe.
   const double trench = 0.3 * 0.015 * 0.0018 * 0.0052;
   EXPECT_GT(removed[0], 0.4 * trench);  // it gives way, too
