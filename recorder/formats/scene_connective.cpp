@@ -46,6 +46,8 @@ std::vector<ConnectiveDescription> readConnective(const JsonPlace& place, const 
     object.read("stiffness", tissue.stiffness);
     object.read("damping", tissue.damping);
     object.read("strength", tissue.strength);
+    object.read("fractureEnergy", tissue.fractureEnergy);
+    if (const std::string fault = cohesiveFault(tissue); !fault.empty()) object.fail(fault);
     object.read("fadeTime", tissue.fadeTime);
     tissues.push_back(tissue);
   }

@@ -61,8 +61,21 @@ Division divide(const std::vector<Index3>& bed, int n) {
   return out;
 }
 
-MaterialPoint pointOf(const Embedding::Anchor& anchor) {
+/// Index of each element by its corners.
+using ElementIndex = std::map<std::array<int, 4>, int>;
+
+ElementIndex elementsOf(const TetrahedralMesh& mesh) {
+  ElementIndex out;
+  for (std::size_t e = 0; e < mesh.tetrahedron.size(); ++e) {
+    const Index4& t = mesh.tetrahedron[e];
+    out.emplace(std::array{t[0], t[1], t[2], t[3]}, static_cast<int>(e));
+  }
+  return out;
+}
+
+MaterialPoint pointOf(const Embedding::Anchor& anchor, const ElementIndex& elements) {
   MaterialPoint point;
+  point.element = elements.at(anchor.node);
   point.count = 4;
   for (std::size_t k = 0; k < 4; ++k) {
     point.node[k] = anchor.node[k];
@@ -120,12 +133,14 @@ ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reac
     ends.push_back(p);
     feet.push_back(distance.closest(p).on.point);
   }
+  const ElementIndex elementsOfFirst = elementsOf(first.mesh);
+  const ElementIndex elementsOfSecond = elementsOf(second.mesh);
   const Embedding inFirst(ends, first.mesh);
   const Embedding inSecond(feet, second.mesh);
   for (std::size_t s = 0; s < ends.size(); ++s) {
     Strand strand;
-    strand.a = pointOf(inFirst.anchors()[s]);
-    strand.b = pointOf(inSecond.anchors()[s]);
+    strand.a = pointOf(inFirst.anchors()[s], elementsOfFirst);
+    strand.b = pointOf(inSecond.anchors()[s], elementsOfSecond);
     const Vec3 way = ends[s] - feet[s];
     strand.restLength = way.norm();
     // Where organs touch or overlap at rest, strands still point out of the second one.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"  // first
+
 #include "sim/connective/connective_tissue.h"
 
 #include <algorithm>
@@ -34,33 +36,40 @@ ConnectiveState intactState(const ConnectiveTissue& tissue) {
   ConnectiveState state;
   state.condition.assign(tissue.strands().size(), StrandCondition::attached);
   state.alpha.assign(tissue.strands().size(), 1.0);
+  state.damage.assign(tissue.strands().size(), 0.0);
   return state;
 }
 
-void addConnectiveLoads(const ConnectiveTissue& tissue, const ConnectiveState& state, ConnectiveSide side,
-                        const OrganMotion& own, const OrganMotion& other, double step, std::vector<Attachment>& out) {
+void linearise(const ConnectiveTissue& tissue, const ConnectiveState& state, const OrganMotion& a, const OrganMotion& b,
+               double step, ConnectiveLoads& out) {
   const ConnectiveMaterial& m = tissue.material();
+  const CohesiveLaw law = m.law();
+  out.onA.clear();
+  out.onB.clear();
+  out.damper.assign(tissue.strands().size(), 0.0);
   for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
     if (state.condition[s] != StrandCondition::attached) continue;
     const Strand& strand = tissue.strands()[s];
-    const MaterialPoint& ownPoint = side == ConnectiveSide::a ? strand.a : strand.b;
-    const MaterialPoint& otherPoint = side == ConnectiveSide::a ? strand.b : strand.a;
-    const Vec3 here = ownPoint.of(own.position);
-    const Vec3 there = otherPoint.of(other.position);
-    // d points from b to a for both sides; the two ends get opposite forces along it.
-    const Stretch stretch = side == ConnectiveSide::a ? stretchOf(strand, here, there) : stretchOf(strand, there, here);
-    const double stiffness = state.alpha[s] * m.stiffness * strand.area;
-    const double damping = state.alpha[s] * m.damping * strand.area;
-    const double tension = stiffness * (stretch.length - strand.restLength);
-    const Vec3 force =
-        side == ConnectiveSide::a ? Vec3(-tension * stretch.direction) : Vec3(tension * stretch.direction);
-    Attachment attachment;
-    attachment.point = ownPoint;
-    // An isotropic majorant of the spring's tangent stiffness: equilibrium is unchanged, motion is damped more, and the
-    // step is never unstable.
-    attachment.damper = (step * stiffness + damping) * Mat3::Identity();
-    attachment.force = force + attachment.damper * otherPoint.of(other.velocity);
-    out.push_back(attachment);
+    const Stretch stretch = stretchOf(strand, strand.a.of(a.position), strand.b.of(b.position));
+    const Vec3 velocityA = strand.a.of(a.velocity);
+    const Vec3 velocityB = strand.b.of(b.velocity);
+    const double section = state.alpha[s] * strand.area;
+    const double separation = stretch.length - strand.restLength;
+    const double tension = section * law.secant(separation, state.damage[s]) * separation;
+    // A strand that closes within the step may end in compression, where it is intact.
+    const double ahead = separation + std::min(step * stretch.direction.dot(velocityA - velocityB), 0.0);
+    const double secant = law.secant(ahead, state.damage[s]);
+    const double damper = section * (step * secant + m.damping * (secant / m.stiffness));
+    const Vec3 force = tension * stretch.direction;
+    out.damper[s] = damper;
+    Attachment& onA = out.onA.emplace_back();
+    onA.point = strand.a;
+    onA.damper = damper * Mat3::Identity();
+    onA.force = damper * velocityB - force;
+    Attachment& onB = out.onB.emplace_back();
+    onB.point = strand.b;
+    onB.damper = onA.damper;
+    onB.force = damper * velocityA + force;
   }
 }
 
@@ -68,25 +77,30 @@ double strandTension(const ConnectiveTissue& tissue, const ConnectiveState& stat
                      std::span<const Vec3> positionA, std::span<const Vec3> positionB) {
   if (state.condition[strand] != StrandCondition::attached) return 0.0;
   const Strand& s = tissue.strands()[strand];
-  const Stretch stretch = stretchOf(s, s.a.of(positionA), s.b.of(positionB));
-  return state.alpha[strand] * tissue.material().stiffness * s.area * (stretch.length - s.restLength);
+  const double separation = stretchOf(s, s.a.of(positionA), s.b.of(positionB)).length - s.restLength;
+  return state.alpha[strand] * s.area * tissue.material().law().secant(separation, state.damage[strand]) * separation;
 }
 
-double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
-                         std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn) {
-  double largest = 0.0;
+DamageReport advanceDamage(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
+                           std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn) {
+  const CohesiveLaw law = tissue.material().law();
+  DamageReport report;
   for (std::size_t s = 0; s < tissue.strands().size(); ++s) {
     if (state.condition[s] != StrandCondition::attached) continue;
-    const double area = tissue.strands()[s].area;
-    const double tension = strandTension(tissue, state, s, positionA, positionB);
-    // Fading reduces strength and stiffness alike, so that the stretch at which a strand tears is unchanged.
-    const double stress = tension / (state.alpha[s] * area);
-    largest = std::max(largest, stress);
-    if (!(stress > tissue.material().strength)) continue;
+    const Strand& strand = tissue.strands()[s];
+    const double separation =
+        stretchOf(strand, strand.a.of(positionA), strand.b.of(positionB)).length - strand.restLength;
+    const double damage = law.damageAt(separation);
+    if (damage > state.damage[s]) {
+      state.damage[s] = damage;
+      report.grown = true;
+    }
+    report.maxTraction = std::max(report.maxTraction, law.secant(separation, state.damage[s]) * separation);
+    if (state.damage[s] < 1.0) continue;
     state.condition[s] = StrandCondition::torn;
     torn.push_back(static_cast<std::uint32_t>(s));
   }
-  return largest;
+  return report;
 }
 
 void touchStrands(const ConnectiveTissue& tissue, const ConnectiveState& state, const OrganMotion& a,

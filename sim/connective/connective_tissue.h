@@ -2,14 +2,16 @@
 // Connective tissue between two organs: fibrous strands from points of one to points of the other, and
 // sheets between neighbouring strands.
 //
-// A strand is a spring and a damper between point a of the first organ and point b of the second:
-//   T = alpha k (l - l0) (tension positive),   f_a = -T d,   d = (x_a - x_b) / l.
-// Each organ is solved with the latest known motion of the other, and implicitly in its own (sim/solid/solid.h,
-// Attachment). This is stable at any stiffness. In equilibrium both forces balance exactly; in motion, one organ lags
-// the other by at most a step.
+// A strand is a cohesive spring (cohesive_law.h) and a damper between point a of the first organ and point b of the
+// second, over its area A of the bed:
+//   T = alpha A t(w),   w = l - l0 (tension positive),   f_a = -T e,   e = (x_a - x_b) / l.
+// Over a step it is linear in the velocities of both ends: f_a = -T e - c (v_a - v_b) with c = h k + damping, k the
+// secant stiffness. k I is an upper bound of the spring's tangent stiffness in every direction, so that implicit Euler
+// of both organs as one system never gains energy from a strand, at any stiffness and step.
 //
-// The energised hook fades a strand (alpha falls from 1) until it is gone: burned. A strand loaded above its strength
-// tears; its remains stay on the organs as residue until the hook burns them away.
+// The energised hook fades a strand (alpha falls from 1) until it is gone: burned. A strand pulled beyond the strength
+// softens, and is torn once its separation reaches the final one; its remains stay on the organs as residue until the
+// hook burns them away.
 #pragma once
 
 #include <array>
@@ -18,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/connective/cohesive_law.h"
 #include "sim/geometry/dwell.h"
 #include "sim/solid/solid.h"
 
@@ -34,18 +37,21 @@ struct Strand {
 
 /// Material per area of bed, independent of the subdivision into strands.
 struct ConnectiveMaterial {
-  double stiffness = 2e5;  ///< of a unit area of bed (N/m^3)
-  double damping = 2e3;    ///< (N s/m^3)
-  double strength = 4e3;   ///< tension per area at which it tears (Pa)
-  double fadeTime = 0.4;   ///< time that the energised hook takes to burn a strand through (s)
-  double goneBelow = 0.2;  ///< a strand of this alpha is gone
+  double stiffness = 2e5;        ///< K (N/m^3)
+  double damping = 2e3;          ///< (N s/m^3)
+  double strength = 4e3;         ///< sigma, the largest traction (Pa)
+  double fractureEnergy = 60.0;  ///< G_c (J/m^2)
+  double fadeTime = 0.4;         ///< time that the energised hook takes to burn a strand through (s)
+  double goneBelow = 0.2;        ///< a strand of this alpha is gone
+
+  [[nodiscard]] CohesiveLaw law() const { return {stiffness, strength, fractureEnergy}; }
 };
 
 /// Constant data of one connective tissue.
 class ConnectiveTissue {
  public:
   /// @param sheets pairs of neighbouring strands, each pair once
-  /// @pre indices in range, areas and rest lengths not negative
+  /// @pre indices in range, areas and rest lengths not negative, G_c >= CohesiveLaw::leastFractureEnergy()
   ConnectiveTissue(std::vector<Strand> strands, std::vector<std::array<std::uint32_t, 2>> sheets,
                    ConnectiveMaterial material);
 
@@ -64,12 +70,14 @@ class ConnectiveTissue {
 /// State of one connective tissue.
 struct ConnectiveState {
   std::vector<StrandCondition> condition;
-  std::vector<double> alpha;  ///< 1: intact; below ConnectiveMaterial::goneBelow: gone
+  std::vector<double> alpha;   ///< 1: intact; below ConnectiveMaterial::goneBelow: gone
+  std::vector<double> damage;  ///< d of CohesiveLaw, 0 to 1; never falls
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("condition", self.condition);
     visit("alpha", self.alpha);
+    visit("damage", self.damage);
   }
 };
 
@@ -82,23 +90,31 @@ struct OrganMotion {
   std::span<const Vec3> velocity;  ///< m/s
 };
 
-/// Which organ of a tissue: that of the points a, or of the points b.
-enum class ConnectiveSide : std::uint8_t { a, b };
+/// The attached strands over a step, as both organs feel them.
+struct ConnectiveLoads {
+  std::vector<Attachment> onA, onB;  ///< of the attached strands, ascending
+  std::vector<double> damper;        ///< per strand: c (N s/m), 0 if it is not attached
+};
 
-/// Appends the attachments of all attached strands to one of the two organs over a step.
-/// @param own, other latest known motions of that organ and of the other one
-/// @param step h (s)
-void addConnectiveLoads(const ConnectiveTissue& tissue, const ConnectiveState& state, ConnectiveSide side,
-                        const OrganMotion& own, const OrganMotion& other, double step, std::vector<Attachment>& out);
+/// Linearises all strands over a step, about the velocities at its beginning: what is left to the joined system
+/// (PointCoupling) is what each organ feels of the other's change of velocity.
+/// @param a, b motion at the step's beginning @param step h (s)
+void linearise(const ConnectiveTissue& tissue, const ConnectiveState& state, const OrganMotion& a, const OrganMotion& b,
+               double step, ConnectiveLoads& out);
 
 /// Tension of a strand (N), negative in compression, 0 if it is not attached.
 double strandTension(const ConnectiveTissue& tissue, const ConnectiveState& state, std::size_t strand,
                      std::span<const Vec3> positionA, std::span<const Vec3> positionB);
 
-/// Tears every attached strand loaded above its strength; appends their indices, ascending.
-/// @return greatest tension per area of any strand attached before (Pa)
-double tearOverstretched(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
-                         std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn);
+struct DamageReport {
+  double maxTraction = 0.0;  ///< greatest traction of any attached strand, over its remaining section alpha A (Pa)
+  bool grown = false;        ///< did the damage of any strand grow?
+};
+
+/// Damage at these positions: grows with the separation of each attached strand, which is torn where it reaches the
+/// final one. Appends indices of strands that this tore, ascending.
+DamageReport advanceDamage(const ConnectiveTissue& tissue, ConnectiveState& state, std::span<const Vec3> positionA,
+                           std::span<const Vec3> positionB, std::vector<std::uint32_t>& torn);
 
 /// A strand that a hook touched.
 struct StrandTouch {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/solid/point_coupling.h"
+#include "sim/solid/row_lanes.h"
 #include "sim/solid/sweeps.h"
 
 namespace calot {
@@ -13,13 +15,13 @@ namespace {
 using Lanes = std::array<float, laneCount>;
 using Eight = std::array<double, laneCount>;
 
-double sumOf(const Eight& lanes) {
+}  // namespace
+
+double ConjugateGradient::sumOf(const Eight& lanes) {
   double sum = 0.0;
   for (const double lane : lanes) sum += lane;
   return sum;
 }
-
-}  // namespace
 
 sweeps::Slices ConjugateGradient::slicesOf(const BlockMatrix& matrix, std::span<const float> values) const {
   return {
@@ -32,17 +34,6 @@ void ConjugateGradient::precompute(const BlockMatrix& matrix, std::span<const fl
   extra_.assign(extra.begin(), extra.end());
   inverse_.resize(matrix.slices() * 9 * laneCount);
   sweeps::invertDiagonal(slicesOf(matrix, values), inverse_.data());
-}
-
-/// u += E t.
-void ConjugateGradient::addExtra() {
-  for (const ExtraBlock& e : extra_) {
-    const float* t = t_.data() + laneOffset(e.column);
-    for (std::size_t i = 0; i < 3; ++i) {
-      u_[e.row * rowStride + i] +=
-          (e.value[3 * i] * t[0] + e.value[3 * i + 1] * t[laneCount]) + e.value[3 * i + 2] * t[2 * laneCount];
-    }
-  }
 }
 
 void ConjugateGradient::addExtraMany() {
@@ -62,31 +53,78 @@ void ConjugateGradient::clear(std::size_t size) {
   for (std::vector<float>* v : {&r_, &z_, &p_, &t_, &s_}) v->assign(size, 0.0F);
 }
 
-SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
-                                     std::span<float> x, const SolveGoal& goal) {
-  const sweeps::Slices slices = slicesOf(matrix, values);
+void ConjugateGradient::begin(const Part& part) {
+  const BlockMatrix& matrix = part.matrix;
+  pairs_ = part.lattice != nullptr;
   clear(matrix.vectorSize());
+  std::fill(part.x.begin(), part.x.end(), 0.0F);
+  if (pairs_) return beginPairs(part);
   sRows_.assign(matrix.rows() * rowStride, 0.0F);
   u_.resize(matrix.rows() * rowStride);
   for (std::size_t row = 0; row < matrix.rows(); ++row) {
     for (std::size_t i = 0; i < rowStride; ++i) {
-      u_[row * rowStride + i] = i < 3 ? b[laneOffset(row) + i * laneCount] : 0.0F;
+      u_[row * rowStride + i] = i < 3 ? part.b[laneOffset(row) + i * laneCount] : 0.0F;
     }
   }
-  std::fill(x.begin(), x.end(), 0.0F);
-  const auto forward = [&](std::vector<float>& s) {
-    Eight dot{};
-    sweeps::forward(slices, u_.data(), s.data(), sRows_.data(), p_.data(), t_.data(), dot.data());
-    return sumOf(dot);
-  };
-  const auto update = [&](float alpha) {
-    Eight dot{};
-    sweeps::update(slices, alpha, t_.data(), s_.data(), x.data(), r_.data(), z_.data(), dot.data());
-    return sumOf(dot);
-  };
+  Eight dot{};
+  sweeps::forward(slicesOf(matrix, part.values), u_.data(), r_.data(), sRows_.data(), p_.data(), t_.data(), dot.data());
+}
 
-  forward(r_);
-  const double start = update(0.0F);
+void ConjugateGradient::backward(const Part& part, float beta) {
+  if (pairs_) return backwardPairs(part, beta);
+  std::fill(u_.begin(), u_.end(), 0.0F);
+  sweeps::backward(slicesOf(part.matrix, part.values), z_.data(), beta, p_.data(), t_.data(), u_.data());
+  // u += E t
+  for (const ExtraBlock& e : extra_) {
+    const float* t = t_.data() + laneOffset(e.column);
+    for (std::size_t i = 0; i < 3; ++i) {
+      u_[e.row * rowStride + i] +=
+          (e.value[3 * i] * t[0] + e.value[3 * i + 1] * t[laneCount]) + e.value[3 * i + 2] * t[2 * laneCount];
+    }
+  }
+}
+
+double ConjugateGradient::forward(const Part& part) {
+  if (pairs_) return forwardPairs(part);
+  Eight dot{};
+  sweeps::forward(slicesOf(part.matrix, part.values), u_.data(), s_.data(), sRows_.data(), p_.data(), t_.data(),
+                  dot.data());
+  return sumOf(dot);
+}
+
+double ConjugateGradient::update(const Part& part, float alpha) {
+  if (pairs_) return updatePairs(part, alpha);
+  Eight dot{};
+  sweeps::update(slicesOf(part.matrix, part.values), alpha, t_.data(), s_.data(), part.x.data(), r_.data(), z_.data(),
+                 dot.data());
+  return sumOf(dot);
+}
+
+std::array<float, 3> ConjugateGradient::directionAt(std::size_t row) const {
+  if (pairs_) {
+    const float* p = pq_.data() + row * rows::pairStride;
+    return {p[0], p[1], p[2]};
+  }
+  const float* t = t_.data() + laneOffset(row);
+  return {t[0], t[laneCount], t[2 * laneCount]};
+}
+
+void ConjugateGradient::addToProduct(std::size_t row, const std::array<float, 3>& value) {
+  float* to = pairs_ ? uw_.data() + row * rows::pairStride + rowStride : u_.data() + row * rowStride;
+  for (std::size_t i = 0; i < 3; ++i) to[i] += value[i];
+}
+
+SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::span<const Coupled> couplings,
+                                           const SolveGoal& goal) {
+  const auto sumOver = [&](auto&& of) {
+    double sum = 0.0;
+    for (const Part& part : parts) sum += of(part);
+    return sum;
+  };
+  for (const Part& part : parts) part.gradient.begin(part);
+  // With a lattice r is the residual itself, which the update subtracts from zero.
+  const double start =
+      sumOver([](const Part& part) { return part.gradient.update(part, part.gradient.pairs_ ? -1.0F : 0.0F); });
   SolveReport report;
   if (!(start > 0.0) || !std::isfinite(start)) {
     report.converged = start == 0.0;
@@ -97,19 +135,31 @@ SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const 
   double size = start;
   float beta = 0.0F;
   while (size > target && report.iterations < goal.cap) {
-    std::fill(u_.begin(), u_.end(), 0.0F);
-    sweeps::backward(slices, z_.data(), beta, p_.data(), t_.data(), u_.data());
-    addExtra();
-    const double curvature = forward(s_);
+    for (const Part& part : parts) part.gradient.backward(part, beta);
+    for (const Coupled& c : couplings) c.by.addTo(parts[c.first].gradient, parts[c.second].gradient);
+    const double curvature = sumOver([](const Part& part) { return part.gradient.forward(part); });
     if (!(curvature > 0.0)) break;  // not positive definite or NaN: keep the current iterate
-    const double next = update(static_cast<float>(size / curvature));
+    const auto alpha = static_cast<float>(size / curvature);
+    const double next = sumOver([alpha](const Part& part) { return part.gradient.update(part, alpha); });
     beta = static_cast<float>(next / size);
     size = next;
     ++report.iterations;
   }
-  report.residual = std::sqrt(size / from);
+  report.residual = std::sqrt(std::max(0.0, size) / from);
   report.converged = size <= target;
   return report;
+}
+
+SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
+                                     std::span<float> x, const SolveGoal& goal) {
+  const Part part{*this, matrix, values, nullptr, b, x};
+  return solveJoined({&part, 1}, {}, goal);
+}
+
+SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, CoarseLattice& lattice,
+                                     std::span<const float> b, std::span<float> x, const SolveGoal& goal) {
+  const Part part{*this, matrix, values, &lattice, b, x};
+  return solveJoined({&part, 1}, {}, goal);
 }
 
 SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<const float> values,

@@ -19,6 +19,7 @@
 namespace calot {
 
 class CoarseLattice;
+class PointCoupling;
 
 namespace sweeps {
 struct Slices;
@@ -59,16 +60,52 @@ class ConjugateGradient {
   SolveReport solve(const BlockMatrix& matrix, std::span<const float> values, CoarseLattice& lattice,
                     std::span<const float> b, std::span<float> x, const SolveGoal& goal);
 
+  /// A part of a system of several parts: a matrix with its own sweeps, and a lattice if it has one.
+  struct Part {
+    ConjugateGradient& gradient;  ///< precompute() was called with this matrix
+    const BlockMatrix& matrix;
+    std::span<const float> values;
+    CoarseLattice* lattice;  ///< or null
+    std::span<const float> b;
+    std::span<float> x;
+  };
+  /// A coupling between two parts.
+  struct Coupled {
+    std::size_t first, second;  ///< of the parts
+    PointCoupling& by;
+  };
+
+  /// Solves the system of all parts and their couplings as one: parts are preconditioned each by its own sweeps (and
+  /// lattice), couplings are part of the product alone. Without couplings and of one part, this is solve().
+  /// @pre the whole is positive definite
+  static SolveReport solveJoined(std::span<const Part> parts, std::span<const Coupled> couplings,
+                                 const SolveGoal& goal);
+
+  /// Search direction of the present iteration at a row, and what is added to the product there: of couplings.
+  [[nodiscard]] std::array<float, 3> directionAt(std::size_t row) const;
+  void addToProduct(std::size_t row, const std::array<float, 3>& value);
+
   /// Eight right-hand sides at once: component i of row r of vector k stands at 24 r + 8 i + k. Zero ones stay zero at
   /// no extra cost. The solution of one does not depend on the others.
   SolveReport solveMany(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
                         std::span<float> x, double tolerance, std::uint32_t cap);
 
  private:
+  /// One iteration in pieces. The sums of forward() and update() over all parts are p.Ap and r.z of the whole.
+  void begin(const Part& part);
+  void backward(const Part& part, float beta);
+  [[nodiscard]] double forward(const Part& part);
+  [[nodiscard]] double update(const Part& part, float alpha);
+  // The same with a lattice: lattice_gradient.cpp.
+  void beginPairs(const Part& part);
+  void backwardPairs(const Part& part, float beta);
+  [[nodiscard]] double forwardPairs(const Part& part);
+  [[nodiscard]] double updatePairs(const Part& part, float alpha);
+
+  [[nodiscard]] static double sumOf(const std::array<double, laneCount>& lanes);
   /// Zeroes the work vectors.
   void clear(std::size_t size);
   [[nodiscard]] sweeps::Slices slicesOf(const BlockMatrix& matrix, std::span<const float> values) const;
-  void addExtra();
   void addExtraMany();
 
   std::vector<float> inverse_;  ///< 3x3 inverse diagonal blocks: per slice 9 x 8 lanes
@@ -76,6 +113,7 @@ class ConjugateGradient {
   std::vector<float> r_, z_, p_, t_, s_;
   std::vector<float> u_, sRows_;            ///< by rows: u, and for a single right-hand side a copy of s
   std::vector<float> q_, y_, c_, uw_, pq_;  ///< with a lattice: lattice_gradient.cpp
+  bool pairs_ = false;                      ///< does the present solve have a lattice?
 };
 
 }  // namespace calot

@@ -6,7 +6,6 @@
 // backward sweep applies K^-T and forms half of A p; the forward sweep forms the other half and applies K^-1.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "sim/solid/coarse_lattice.h"
 #include "sim/solid/conjugate_gradient.h"
@@ -16,69 +15,45 @@
 
 namespace calot {
 
-SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, CoarseLattice& lattice,
-                                     std::span<const float> b, std::span<float> x, const SolveGoal& goal) {
-  const sweeps::Slices slices = slicesOf(matrix, values);
-  const std::size_t size = matrix.vectorSize();
-  clear(size);
+/// q = b, s = K^-1 b.
+void ConjugateGradient::beginPairs(const Part& part) {
+  const std::size_t size = part.matrix.vectorSize();
   for (std::vector<float>* v : {&q_, &y_, &c_}) v->assign(size, 0.0F);
-  for (std::vector<float>* v : {&uw_, &pq_}) v->assign(matrix.rows() * rows::pairStride, 0.0F);
-  std::fill(x.begin(), x.end(), 0.0F);
-  for (std::size_t row = 0; row < matrix.rows(); ++row) {
+  for (std::vector<float>* v : {&uw_, &pq_}) v->assign(part.matrix.rows() * rows::pairStride, 0.0F);
+  for (std::size_t row = 0; row < part.matrix.rows(); ++row) {
     for (std::size_t i = 0; i < 3; ++i) {
-      uw_[row * rows::pairStride + rowStride + i] = b[laneOffset(row) + i * laneCount];
+      uw_[row * rows::pairStride + rowStride + i] = part.b[laneOffset(row) + i * laneCount];
     }
   }
-  const auto sumOf = [](const std::array<double, laneCount>& lanes) {
-    double sum = 0.0;
-    for (const double lane : lanes) sum += lane;
-    return sum;
-  };
-  const auto forward = [&] {
-    std::array<double, laneCount> dot{};
-    sweeps::forwardPairs(slices, p_.data(), uw_.data(), pq_.data(), q_.data(), s_.data(), dot.data());
-    return sumOf(dot);
-  };
-  /// @return r.z of the next residual
-  const auto update = [&](float alpha) {
-    std::array<double, laneCount> dot{};
-    sweeps::updatePairs(slices, alpha, p_.data(), q_.data(), s_.data(), x.data(), r_.data(), y_.data(), z_.data(),
-                        dot.data());
-    lattice.apply(r_.data(), c_.data());
-    return sumOf(dot) + sweeps::dot(r_.data(), c_.data(), size);
-  };
+  static_cast<void>(forwardPairs(part));  // there is no p yet
+}
 
-  forward();  // of b: there is no p yet
-  const double start = update(-1.0F);
-  SolveReport report;
-  if (!(start > 0.0) || !std::isfinite(start)) {
-    report.converged = start == 0.0;
-    return report;
-  }
-  const double from = std::max(start, goal.from());
-  const double target = goal.tolerance * goal.tolerance * from;
-  double left = start;
-  float beta = 0.0F;
-  while (left > target && report.iterations < goal.cap) {
-    std::fill(uw_.begin(), uw_.end(), 0.0F);
-    sweeps::backwardPairs(slices, z_.data(), c_.data(), beta, p_.data(), uw_.data(), pq_.data());
-    for (const ExtraBlock& e : extra_) {
-      const float* p = pq_.data() + e.column * rows::pairStride;
-      for (std::size_t i = 0; i < 3; ++i) {
-        uw_[e.row * rows::pairStride + rowStride + i] +=
-            (e.value[3 * i] * p[0] + e.value[3 * i + 1] * p[1]) + e.value[3 * i + 2] * p[2];
-      }
+void ConjugateGradient::backwardPairs(const Part& part, float beta) {
+  std::fill(uw_.begin(), uw_.end(), 0.0F);
+  sweeps::backwardPairs(slicesOf(part.matrix, part.values), z_.data(), c_.data(), beta, p_.data(), uw_.data(),
+                        pq_.data());
+  for (const ExtraBlock& e : extra_) {
+    const float* p = pq_.data() + e.column * rows::pairStride;
+    for (std::size_t i = 0; i < 3; ++i) {
+      uw_[e.row * rows::pairStride + rowStride + i] +=
+          (e.value[3 * i] * p[0] + e.value[3 * i + 1] * p[1]) + e.value[3 * i + 2] * p[2];
     }
-    const double curvature = forward();
-    if (!(curvature > 0.0)) break;  // not positive definite or NaN: keep the current iterate
-    const double next = update(static_cast<float>(left / curvature));
-    ++report.iterations;
-    beta = static_cast<float>(next / left);
-    left = next;
   }
-  report.residual = std::sqrt(std::max(0.0, left) / from);
-  report.converged = left <= target;
-  return report;
+}
+
+double ConjugateGradient::forwardPairs(const Part& part) {
+  std::array<double, laneCount> dot{};
+  sweeps::forwardPairs(slicesOf(part.matrix, part.values), p_.data(), uw_.data(), pq_.data(), q_.data(), s_.data(),
+                       dot.data());
+  return sumOf(dot);
+}
+
+double ConjugateGradient::updatePairs(const Part& part, float alpha) {
+  std::array<double, laneCount> dot{};
+  sweeps::updatePairs(slicesOf(part.matrix, part.values), alpha, p_.data(), q_.data(), s_.data(), part.x.data(),
+                      r_.data(), y_.data(), z_.data(), dot.data());
+  part.lattice->apply(r_.data(), c_.data());
+  return sumOf(dot) + sweeps::dot(r_.data(), c_.data(), part.matrix.vectorSize());
 }
 
 }  // namespace calot

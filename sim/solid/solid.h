@@ -17,6 +17,8 @@
 
 namespace calot {
 
+class PointCoupling;
+
 /// A material point of a solid: the corners of its element and their weights.
 struct MaterialPoint {
   int element = -1;  ///< index, if known: then `node` lists all its corners in order
@@ -84,6 +86,24 @@ class SolidSolver {
                                  std::span<const Vec3> external, const Settings& settings, Executor& executor,
                                  const Surroundings& surroundings = {});
 
+  /// The first half of solveUnconstrained(): assembles, without a solve. @pre then solveJoined()
+  void assembleUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
+                             std::span<const Vec3> external, const Settings& settings, Executor& executor,
+                             const Surroundings& surroundings = {});
+  /// The first half of applyImpulses(): takes the impulses, without a solve. @param impulse per node, or empty: none
+  void takeImpulses(std::span<const Vec3> impulse);
+
+  /// A coupling of two of the solids of solveJoined(), by their numbers.
+  struct Coupled {
+    std::size_t first, second;
+    PointCoupling& by;
+  };
+  /// Solves what assembleUnconstrained() or takeImpulses() of each has set up, as one linear system with the couplings,
+  /// and adds the solution to each freeVelocity(). Without couplings and of one solid, this is the second half of
+  /// solveUnconstrained() and of applyImpulses().
+  static SolveReport solveJoined(std::span<SolidSolver* const> solids, std::span<const Coupled> couplings,
+                                 const Settings& settings);
+
   /// Velocities at the end of the step: unconstrained motion plus what applyImpulses() has added so far.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
 
@@ -115,9 +135,9 @@ class SolidSolver {
   void chooseSystem(const SolidModel& model, std::span<const double> fill);
   void assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
                 const Surroundings& surroundings, Executor& executor);
-  SolveReport solve(const Settings& settings);
   void addAttachments(const Settings& settings, std::span<const Attachment> attachments);
   void addJoint(const Settings& settings, const JointAttachment& joint);
+  void addSolution();
   bool addToElement(const Attachment& attachment, double step);
   void addPair(const MaterialPoint& p, const MaterialPoint& q, const Mat3& damper, double step);
   [[nodiscard]] Vec3 cornerForce(const SolidModel& model, const SolidSystem::Contribution& contribution) const;

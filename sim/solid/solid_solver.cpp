@@ -95,13 +95,36 @@ void SolidSolver::precompute(const SolidModel& model, const Settings& settings, 
   latticeScale_ = scale;
 }
 
-/// x_ = A^-1 b_
-SolveReport SolidSolver::solve(const Settings& settings) {
-  SolveGoal goal{settings.tolerance, settings.cap, settings.speedTolerance * std::sqrt(wholeMass_)};
-  if (!lattice_) return cg_.solve(system_->matrix(), values_, b_, x_, goal);
-  goal.tolerance *= smoothErrorFactor;
-  goal.absolute *= smoothErrorFactor;
-  return cg_.solve(system_->matrix(), values_, *lattice_, b_, x_, goal);
+SolveReport SolidSolver::solveJoined(std::span<SolidSolver* const> solids, std::span<const Coupled> couplings,
+                                     const Settings& settings) {
+  std::vector<ConjugateGradient::Part> parts;
+  std::vector<ConjugateGradient::Coupled> coupled;
+  double mass = 0.0;
+  bool smooth = true;
+  for (SolidSolver* solid : solids) {
+    CoarseLattice* lattice = solid->lattice_ ? &*solid->lattice_ : nullptr;
+    parts.push_back({solid->cg_, solid->system_->matrix(), solid->values_, lattice, solid->b_, solid->x_});
+    mass += solid->wholeMass_;
+    smooth = smooth && lattice != nullptr;
+  }
+  for (const Coupled& c : couplings) coupled.push_back({c.first, c.second, c.by});
+  SolveGoal goal{settings.tolerance, settings.cap, settings.speedTolerance * std::sqrt(mass)};
+  if (smooth) {
+    goal.tolerance *= smoothErrorFactor;
+    goal.absolute *= smoothErrorFactor;
+  }
+  const SolveReport report = ConjugateGradient::solveJoined(parts, coupled, goal);
+  for (SolidSolver* solid : solids) solid->addSolution();
+  return report;
+}
+
+/// freeVelocity_ += x_
+void SolidSolver::addSolution() {
+  for (const int f : system_->nodes()) {
+    const auto node = static_cast<std::size_t>(f);
+    const std::size_t at = system_->offsetOf(node);
+    freeVelocity_[node] += Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
+  }
 }
 
 void SolidSolver::addAttachments(const Settings& settings, std::span<const Attachment> attachments) {
@@ -174,6 +197,14 @@ void SolidSolver::addPair(const MaterialPoint& p, const MaterialPoint& q, const 
 SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
                                             std::span<const Vec3> external, const Settings& settings,
                                             Executor& executor, const Surroundings& surroundings) {
+  assembleUnconstrained(model, state, gravity, external, settings, executor, surroundings);
+  SolidSolver* self = this;
+  return solveJoined({&self, 1}, {}, settings);
+}
+
+void SolidSolver::assembleUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
+                                        std::span<const Vec3> external, const Settings& settings, Executor& executor,
+                                        const Surroundings& surroundings) {
   const double h = settings.step;
   const SolidModel::Material& m = model.material();
   chooseSystem(model, surroundings.fill);
@@ -229,17 +260,10 @@ SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState&
   });
   wholeMass_ = model.wholeMass();
   cg_.precompute(system_->matrix(), values_, extra_);
-  const SolveReport report = solve(settings);
   freeVelocity_.assign(model.nodes(), Vec3::Zero());
   for (const int f : model.freeNodes()) {
     freeVelocity_[static_cast<std::size_t>(f)] = state.velocity[static_cast<std::size_t>(f)];
   }
-  for (const int f : system_->nodes()) {
-    const auto node = static_cast<std::size_t>(f);
-    const std::size_t at = system_->offsetOf(node);
-    freeVelocity_[node] += Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
-  }
-  return report;
 }
 
 SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
@@ -271,21 +295,21 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
 }
 
 SolveReport SolidSolver::applyImpulses(std::span<const Vec3> impulse, const Settings& settings) {
+  takeImpulses(impulse);
+  SolidSolver* self = this;
+  return solveJoined({&self, 1}, {}, settings);
+}
+
+void SolidSolver::takeImpulses(std::span<const Vec3> impulse) {
   b_.assign(system_->matrix().vectorSize(), 0.0F);
   x_.resize(system_->matrix().vectorSize());
+  if (impulse.empty()) return;
   for (const int f : system_->nodes()) {
     const auto node = static_cast<std::size_t>(f);
     for (int i = 0; i < 3; ++i) {
       b_[system_->offsetOf(node) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(impulse[node][i]);
     }
   }
-  const SolveReport report = solve(settings);
-  for (const int f : system_->nodes()) {
-    const auto node = static_cast<std::size_t>(f);
-    const std::size_t at = system_->offsetOf(node);
-    freeVelocity_[node] += Vec3(x_[at], x_[at + laneCount], x_[at + 2 * laneCount]);
-  }
-  return report;
 }
 
 bool SolidSolver::advance(const SolidModel& model, SolidState& state, std::span<const Vec3> correction, double step) {

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "sim/step/organ_body.h"
-
 namespace calot {
 
 namespace {
@@ -29,8 +27,11 @@ Bodies::Bodies(const Model& model, Executor& executor) : model_(model) {
   responseSettings_.tolerance = solver.responseTolerance;
   responseSettings_.speedTolerance = solver.responseSpeedTolerance;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
-    body_.push_back(std::make_unique<OrganBody>(model, o, settings_, responseSettings_, executor));
+    auto organ = std::make_unique<OrganBody>(model, o, settings_, responseSettings_, executor);
+    organ_.push_back(organ.get());
+    body_.push_back(std::move(organ));
   }
+  joined_ = std::make_unique<JoinedOrgans>(model, organ_, settings_, responseSettings_);
   for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
     auto vessels = std::make_unique<VesselBody>(model, t, settings_.step);
     vessel_.push_back(vessels.get());

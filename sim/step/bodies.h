@@ -9,6 +9,7 @@
 #include "sim/math/executor.h"
 #include "sim/step/body.h"
 #include "sim/step/fat_motion.h"
+#include "sim/step/joined_organs.h"
 #include "sim/step/step_log.h"
 #include "sim/step/tie_coupling.h"
 #include "sim/step/vessel_body.h"
@@ -34,6 +35,9 @@ class Bodies {
 
   [[nodiscard]] std::size_t organs() const { return model_.organs().size(); }
   [[nodiscard]] std::size_t firstFat() const { return organs() + vessel_.size(); }
+  [[nodiscard]] OrganBody& organ(std::size_t index) { return *organ_[index]; }
+  /// Organs as connective tissue ties them in this step.
+  [[nodiscard]] JoinedOrgans& joined() { return *joined_; }
   [[nodiscard]] const VesselBody& vessel(std::size_t tree) const { return *vessel_[tree]; }
   [[nodiscard]] FatMotion& fat(std::size_t index) { return *fat_[index]; }
   [[nodiscard]] const FatMotion& fat(std::size_t index) const { return *fat_[index]; }
@@ -63,6 +67,8 @@ class Bodies {
   const Model& model_;
   SolidSolver::Settings settings_, responseSettings_;
   std::vector<std::unique_ptr<Body>> body_;
+  std::vector<OrganBody*> organ_;
+  std::unique_ptr<JoinedOrgans> joined_;
   std::vector<VesselBody*> vessel_;
   std::vector<FatMotion*> fat_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> springs_;
@@ -73,7 +79,7 @@ class Bodies {
 struct Activity {
   std::vector<bool> awake;    ///< per body: solved in this step
   std::vector<bool> written;  ///< per body: its State is not that of the step before
-  std::vector<bool> frayed;   ///< per connective tissue: strands burned, touched or torn
+  std::vector<bool> frayed;   ///< per connective tissue: strands burned, touched, damaged or torn
   std::vector<bool> charred;  ///< per organ
   std::vector<bool> carved;   ///< per body of fat
 

@@ -36,7 +36,8 @@ void ConnectiveEffects::run(const HookSweeps& sweeps, const std::array<HookTouch
       }
     }
     strands_.clear();
-    out.maxPull = tearOverstretched(tie.tissue, tissue, a, b, strands_);
+    const DamageReport damage = advanceDamage(tie.tissue, tissue, a, b, strands_);
+    out.maxPull = damage.maxTraction;
     if (!strands_.empty()) {
       log.emit(EventKind::strandsTorn, StepLog::noHand, c, tie.tissue.strands()[strands_[0]].a.of(a),
                shareOf(tie.tissue, strands_));
@@ -45,7 +46,7 @@ void ConnectiveEffects::run(const HookSweeps& sweeps, const std::array<HookTouch
     out.attached = shares.attached;
     out.burned = shares.burned;
     out.torn = shares.torn;
-    activity.frayed[c] = out.hookTouches > 0 || !strands_.empty();
+    activity.frayed[c] = out.hookTouches > 0 || damage.grown;
     if (held && !holdsAnything(tissue)) {
       log.emit(EventKind::connectiveFreed, StepLog::noHand, c, Vec3::Zero(), shares.torn);
     }

@@ -10,7 +10,7 @@
 
 namespace calot {
 
-/// Burns the strands that the energised hooks touch, tears those that are pulled too hard.
+/// Burns the strands that the energised hooks touch; damages and tears those that are pulled too hard.
 class ConnectiveEffects {
  public:
   explicit ConnectiveEffects(const Model& model) : model_(model) {}

@@ -17,30 +17,55 @@ constexpr double minShare = 1e-3;  ///< tissue that responds by less than this s
 
 }  // namespace
 
-/// Lets the bodies follow a change of forces, all rows at once: vessels, then organs with what is grown to them, then
-/// fat.
+/// Impulses of the change of forces on a body's nodes, and of the vessels that are grown to it; empty: none.
+void ContactSolution::gatherImpulses(Bodies& bodies, const ContactSystem& contact, std::size_t which) {
+  nodal_.clear();
+  addNodalForces(contact.blocks, which, bodies[which].nodes(), change_, bodies.step(), nodal_);
+  for (TieCoupling& c : bodies.couplings()) {
+    if (c.organ() == which) c.passOn(bodies.all(), nodal_);
+  }
+}
+
+void ContactSolution::reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log) {
+  if (report.converged || log.hasMissed(miss::solver)) return;
+  log.miss(miss::solver);
+  log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(which), Vec3::Zero(), report.residual);
+}
+
+void ContactSolution::applyToOrgans(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
+                                    std::size_t group, StepLog& log) {
+  const std::vector<std::size_t>& organs = bodies.joined().groups()[group];
+  if (!activity.awake[organs[0]]) return;  // then all sleep
+  bool pushed = false;
+  for (const std::size_t o : organs) {
+    gatherImpulses(bodies, contact, o);
+    pushed = pushed || !nodal_.empty();
+    bodies.organ(o).solver().takeImpulses(nodal_);
+  }
+  if (!pushed) return;
+  const SolveReport report = bodies.joined().applyImpulses(group);
+  for (TieCoupling& c : bodies.couplings()) {
+    if (std::find(organs.begin(), organs.end(), c.organ()) != organs.end()) c.pull(bodies.all());
+  }
+  reportMiss(bodies, organs[0], report, log);
+}
+
+/// Lets the bodies follow a change of forces, all rows at once: vessels, then organs with what is grown to them and
+/// tied to them, then fat.
 void ContactSolution::applyContactImpulses(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
                                            StepLog& log) {
-  const std::size_t organs = bodies.organs();
-  const std::size_t vessels = bodies.firstFat() - organs;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    const std::size_t b = k < vessels ? organs + k : k < bodies.firstFat() ? k - vessels : k;
-    if (!activity.awake[b]) continue;
-    nodal_.clear();
-    addNodalForces(contact.blocks, b, bodies[b].nodes(), change_, bodies.step(), nodal_);
-    for (TieCoupling& c : bodies.couplings()) {
-      if (c.organ() == b) c.passOn(bodies.all(), nodal_);
+  const auto apply = [&](std::size_t from, std::size_t end) {
+    for (std::size_t b = from; b < end; ++b) {
+      if (!activity.awake[b]) continue;
+      gatherImpulses(bodies, contact, b);
+      if (!nodal_.empty()) reportMiss(bodies, b, bodies[b].applyImpulses(nodal_), log);
     }
-    if (nodal_.empty()) continue;
-    const SolveReport report = bodies[b].applyImpulses(nodal_);
-    for (TieCoupling& c : bodies.couplings()) {
-      if (c.organ() == b) c.pull(bodies.all());
-    }
-    if (!report.converged && !log.hasMissed(miss::solver)) {
-      log.miss(miss::solver);
-      log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(b), Vec3::Zero(), report.residual);
-    }
+  };
+  apply(bodies.organs(), bodies.firstFat());
+  for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
+    applyToOrgans(bodies, activity, contact, group, log);
   }
+  apply(bodies.firstFat(), bodies.size());
 }
 
 /// Gaps after change_ was applied, `response_` of the tissue and what W predicted. @return s.y and s.W s for the change

@@ -23,6 +23,10 @@ class ContactSolution {
            ContactResult& result, StepLog& log);
 
  private:
+  void gatherImpulses(Bodies& bodies, const ContactSystem& contact, std::size_t which);
+  void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
+  void applyToOrgans(Bodies& bodies, const Activity& activity, const ContactSystem& contact, std::size_t group,
+                     StepLog& log);
   void applyContactImpulses(Bodies& bodies, const Activity& activity, const ContactSystem& contact, StepLog& log);
   std::array<double, 2> measureResponse(Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
                                         ContactSystem& contact);

@@ -32,10 +32,17 @@ void addAttachments(std::span<const TieLoad> ties, double step, std::span<const 
 
 SolveReport OrganBody::solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
                                           std::span<const TieLoad> ties, const Surroundings& loads) {
+  assembleUnconstrained(state, gravity, force, ties, loads);
+  SolidSolver* solver = &solver_;
+  return SolidSolver::solveJoined({&solver, 1}, {}, settings_);
+}
+
+void OrganBody::assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
+                                      std::span<const TieLoad> ties, const Surroundings& loads) {
   load_.assign(loads.attachments.begin(), loads.attachments.end());
   addAttachments(ties, settings_.step, position(state), load_);
-  return solver_.solveUnconstrained(solid_, state.organ[organ_], gravity, force, settings_, executor_,
-                                    {load_, {}, loads.joints});
+  solver_.assembleUnconstrained(solid_, state.organ[organ_], gravity, force, settings_, executor_,
+                                {load_, {}, loads.joints});
 }
 
 SolveReport OrganBody::applyImpulses(std::span<const Vec3> impulse) {

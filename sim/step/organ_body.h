@@ -22,6 +22,10 @@ class OrganBody final : public Body {
                                  std::span<const TieLoad> ties, const Surroundings& loads) override;
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
   SolveReport applyImpulses(std::span<const Vec3> impulse) override;
+  /// Assembles the step's system, which is then solved by solver() alone or joined with others.
+  void assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
+                             std::span<const TieLoad> ties, const Surroundings& loads);
+  [[nodiscard]] SolidSolver& solver() { return solver_; }
   void precomputeCompliance(std::span<const int> nodes) override { rest_.precomputeCompliance(nodes); }
   void precompute() override { solver_.precompute(solid_, settings_, executor_); }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;

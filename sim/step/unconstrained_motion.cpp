@@ -32,23 +32,6 @@ void UnconstrainedMotion::gatherTies(const Bodies& bodies, const Activity& activ
   }
 }
 
-/// Attachments of an organ by all connective tissue that joins it to others. Organs of lower number are solved already.
-void UnconstrainedMotion::gatherConnective(const Bodies& bodies, const Activity& activity, const State& state,
-                                           std::size_t organ) {
-  for (std::size_t c = 0; c < model_.connective().size(); ++c) {
-    const ConnectiveModel& tie = model_.connective()[c];
-    if (tie.a != organ && tie.b != organ) continue;
-    const std::size_t other = tie.a == organ ? tie.b : tie.a;
-    const SolidState& own = state.organ[organ];
-    const SolidState& their = state.organ[other];
-    const bool known = other < organ && activity.awake[other];
-    addConnectiveLoads(tie.tissue, state.connective[c], tie.a == organ ? ConnectiveSide::a : ConnectiveSide::b,
-                       {own.position, own.velocity},
-                       {their.position, known ? bodies[other].freeVelocity() : std::span<const Vec3>(their.velocity)},
-                       bodies.step(), attachments_);
-  }
-}
-
 /// An assistant's springs: their far ends follow the scene's displacement, smoothly.
 void UnconstrainedMotion::gatherRetractions(const Bodies& bodies, const State& state, std::size_t organ) {
   const double time = static_cast<double>(state.clock.step) * bodies.step();
@@ -71,43 +54,66 @@ void UnconstrainedMotion::gatherRetractions(const Bodies& bodies, const State& s
   }
 }
 
-void UnconstrainedMotion::solveUnconstrained(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
-                                             std::size_t which, State& state, StepResult& result, StepLog& log) {
-  const bool isOrgan = which < bodies.organs();
+void UnconstrainedMotion::gatherLoads(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
+                                      const State& state, std::size_t which) {
+  nodal_.clear();
+  addNodalForces(contact.blocks, which, bodies[which].nodes(), contact.carried, 1.0, nodal_);
+  attachments_.clear();
+  joints_.clear();
+  gatherTies(bodies, activity, state, which);
+  if (which >= bodies.organs()) return;
+  bodies.joined().addAttachments(which, attachments_);
+  gatherRetractions(bodies, state, which);
+  for (TieCoupling& c : bodies.couplings()) {
+    if (c.organ() != which) continue;
+    c.begin(state, bodies.all());
+    joints_.push_back(c.joint());
+  }
+}
+
+void UnconstrainedMotion::reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log) {
+  if (report.converged) return;
+  log.miss(miss::solver);
+  log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(which), Vec3::Zero(), report.residual);
+}
+
+/// Vessels or fat.
+void UnconstrainedMotion::solveBody(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
+                                    std::size_t which, State& state, StepResult& result, StepLog& log) {
   SolveReport report;
   if (activity.awake[which]) {
-    nodal_.clear();
-    addNodalForces(contact.blocks, which, bodies[which].nodes(), contact.carried, 1.0, nodal_);
-    attachments_.clear();
-    joints_.clear();
-    gatherTies(bodies, activity, state, which);
-    if (isOrgan) {
-      gatherConnective(bodies, activity, state, which);
-      gatherRetractions(bodies, state, which);
-      for (TieCoupling& c : bodies.couplings()) {
-        if (c.organ() != which) continue;
-        c.begin(state, bodies.all());
-        joints_.push_back(c.joint());
-      }
-    }
+    gatherLoads(bodies, contact, activity, state, which);
     report =
         bodies[which].solveUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_, {attachments_, {}, joints_});
-    for (TieCoupling& c : bodies.couplings()) {
-      if (c.organ() == which) c.pull(bodies.all());
-    }
-    if (!report.converged) {
-      log.miss(miss::solver);
-      log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(which), Vec3::Zero(), report.residual);
-    }
+    reportMiss(bodies, which, report, log);
   }
   solved_[which] = true;
-  if (isOrgan) {
-    OrganResult& out = result.organ[which];
-    out.asleep = !activity.awake[which];
-    out.residual = report.residual;
-    out.iterations = report.iterations;
-  } else if (which >= bodies.firstFat()) {
-    FatResult& out = result.fat[which - bodies.firstFat()];
+  if (which < bodies.firstFat()) return;
+  FatResult& out = result.fat[which - bodies.firstFat()];
+  out.residual = report.residual;
+  out.iterations = report.iterations;
+}
+
+void UnconstrainedMotion::solveOrgans(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
+                                      std::size_t group, State& state, StepResult& result, StepLog& log) {
+  const std::vector<std::size_t>& organs = bodies.joined().groups()[group];
+  SolveReport report;
+  if (activity.awake[organs[0]]) {  // then all are
+    for (const std::size_t o : organs) {
+      gatherLoads(bodies, contact, activity, state, o);
+      bodies.organ(o).assembleUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_,
+                                            {attachments_, {}, joints_});
+    }
+    report = bodies.joined().solveUnconstrained(group);
+    for (TieCoupling& c : bodies.couplings()) {
+      if (std::find(organs.begin(), organs.end(), c.organ()) != organs.end()) c.pull(bodies.all());
+    }
+    reportMiss(bodies, organs[0], report, log);
+  }
+  for (const std::size_t o : organs) {
+    solved_[o] = true;
+    OrganResult& out = result.organ[o];
+    out.asleep = !activity.awake[o];
     out.residual = report.residual;
     out.iterations = report.iterations;
   }
@@ -116,11 +122,14 @@ void UnconstrainedMotion::solveUnconstrained(Bodies& bodies, const ContactSystem
 void UnconstrainedMotion::run(Bodies& bodies, const ContactSystem& contact, const Activity& activity, State& state,
                               StepResult& result, StepLog& log) {
   std::fill(solved_.begin(), solved_.end(), false);
+  bodies.joined().linearise(state, activity.awake);
   const auto solve = [&](std::size_t from, std::size_t end) {
-    for (std::size_t b = from; b < end; ++b) solveUnconstrained(bodies, contact, activity, b, state, result, log);
+    for (std::size_t b = from; b < end; ++b) solveBody(bodies, contact, activity, b, state, result, log);
   };
   solve(bodies.organs(), bodies.firstFat());
-  solve(0, bodies.organs());
+  for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
+    solveOrgans(bodies, contact, activity, group, state, result, log);
+  }
   solve(bodies.firstFat(), bodies.size());
 }
 

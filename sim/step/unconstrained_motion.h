@@ -4,15 +4,15 @@
 
 #include <vector>
 
-#include "sim/connective/connective_tissue.h"
 #include "sim/step/bodies.h"
 #include "sim/step/contact_block.h"
 
 namespace calot {
 
 /// One implicit step of each awake body under gravity, ties, connective tissue and retraction, and under the contact
-/// forces that the last step left: vessels first, then organs, which take the vessels that are grown to them along,
-/// then fat. A body solved later sees the new velocities of those before it.
+/// forces that the last step left: vessels first, then organs (those that connective tissue ties as one system), which
+/// take the vessels that are grown to them along, then fat. A body solved later sees the new velocities of those before
+/// it.
 ///
 /// Reads: State, `contact.carried`. Writes: rotations of State, contact-free velocities (Body::freeVelocity()),
 /// residuals and iterations of the result.
@@ -23,10 +23,14 @@ class UnconstrainedMotion {
            StepLog& log);
 
  private:
-  void solveUnconstrained(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t which,
-                          State& state, StepResult& result, StepLog& log);
+  void solveBody(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t which,
+                 State& state, StepResult& result, StepLog& log);
+  void solveOrgans(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t group,
+                   State& state, StepResult& result, StepLog& log);
+  void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
+  void gatherLoads(Bodies& bodies, const ContactSystem& contact, const Activity& activity, const State& state,
+                   std::size_t which);
   void gatherTies(const Bodies& bodies, const Activity& activity, const State& state, std::size_t which);
-  void gatherConnective(const Bodies& bodies, const Activity& activity, const State& state, std::size_t organ);
   void gatherRetractions(const Bodies& bodies, const State& state, std::size_t organ);
   [[nodiscard]] Vec3 endOf(const Bodies& bodies, const State& state, const Tie& tie, std::size_t side) const;
 

@@ -104,6 +104,7 @@ TEST(StiffnessContrast, GrownTogether) {
     bed.first = "plate";
     bed.second = "block";
     bed.strength = 1e6;
+    bed.fractureEnergy = 1e7;
     scene.connective.push_back(bed);
     const std::unique_ptr<const Model> model = test::buildModel(scene);
     ASSERT_TRUE(model);

@@ -28,6 +28,13 @@ std::string addConnective(const SceneDescription& scene, const ConnectiveDescrip
     if (organ == organs.size()) return what + "the scene has no organ '" + name + "'";
   }
   if (a == b) return what + "joins organ '" + description.first + "' to itself";
+  if (std::string fault = cohesiveFault(description); !fault.empty()) return what + fault;
+  ConnectiveMaterial material;
+  material.stiffness = description.stiffness;
+  material.damping = description.damping;
+  material.strength = description.strength;
+  material.fractureEnergy = description.fractureEnergy;
+  material.fadeTime = description.fadeTime;
   const auto meshOf = [&](std::size_t o) {
     return TetrahedralMesh{organs[o].solid.rest(), organs[o].solid.tetrahedra()};
   };
@@ -37,11 +44,6 @@ std::string addConnective(const SceneDescription& scene, const ConnectiveDescrip
   const TetrahedralMesh meshB = meshOf(b);
   ConnectiveBed bed = makeBed({skinA, meshA}, {skinB, meshB}, description.reach, description.strands);
   if (!bed.ok()) return what + bed.error;
-  ConnectiveMaterial material;
-  material.stiffness = description.stiffness;
-  material.damping = description.damping;
-  material.strength = description.strength;
-  material.fadeTime = description.fadeTime;
   model.connectiveModel.push_back(
       {description.name, a, b, ConnectiveTissue(std::move(bed.strands), std::move(bed.sheets), material), {}});
   return {};
@@ -73,6 +75,14 @@ class ConnectiveViewer final : public TissueViewer {
 
 }  // namespace
 
+std::string cohesiveFault(const ConnectiveDescription& description) {
+  const CohesiveLaw law{description.stiffness, description.strength, description.fractureEnergy};
+  if (law.fractureEnergy >= law.leastFractureEnergy()) return {};
+  return "fractureEnergy " + std::to_string(law.fractureEnergy) +
+         " J/m^2 is below strength^2 / (2 stiffness) = " + std::to_string(law.leastFractureEnergy()) +
+         " J/m^2, which is stored before it softens";
+}
+
 std::string ConnectiveKind::build(const SceneDescription& scene, Model& model) {
   for (const ConnectiveDescription& description : scene.connective) {
     if (std::string fault = addConnective(scene, description, model); !fault.empty()) return fault;
@@ -96,9 +106,11 @@ bool ConnectiveKind::fits(const Model& model, const States& states) {
     const ConnectiveState& connective = states.connective[c];
     const std::size_t strands = model.connective()[c].tissue.strands().size();
     if (connective.condition.size() != strands || connective.alpha.size() != strands) return false;
+    if (connective.damage.size() != strands) return false;
     for (std::size_t s = 0; s < strands; ++s) {
       if (connective.condition[s] > StrandCondition::torn) return false;
       if (!(connective.alpha[s] >= 0.0) || connective.alpha[s] > 1.0) return false;
+      if (!(connective.damage[s] >= 0.0) || connective.damage[s] > 1.0) return false;
     }
   }
   return true;

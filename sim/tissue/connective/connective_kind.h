@@ -19,14 +19,15 @@ namespace calot {
 struct ConnectiveDescription {
   std::string name;
   StructureRole role = StructureRole::other;
-  std::string first;            ///< organ whose surface the bed is part of
-  std::string second;           ///< organ that it lies on
-  double reach = 0.004;         ///< triangles of the first organ no farther from the second are the bed (m)
-  std::uint32_t strands = 200;  ///< at least so many
-  double stiffness = 2e5;       ///< of a unit area of bed (N/m^3)
-  double damping = 2e3;         ///< (N s/m^3)
-  double strength = 4e3;        ///< pull per area at which it tears (Pa)
-  double fadeTime = 0.4;        ///< in which the energised hook burns a strand through (s)
+  std::string first;             ///< organ whose surface the bed is part of
+  std::string second;            ///< organ that it lies on
+  double reach = 0.004;          ///< triangles of the first organ no farther from the second are the bed (m)
+  std::uint32_t strands = 200;   ///< at least so many
+  double stiffness = 2e5;        ///< of a unit area of bed (N/m^3)
+  double damping = 2e3;          ///< (N s/m^3)
+  double strength = 4e3;         ///< largest traction: beyond, it softens (Pa)
+  double fractureEnergy = 60.0;  ///< that tearing a unit area of bed takes (J/m^2), at least strength^2 / (2 stiffness)
+  double fadeTime = 0.4;         ///< in which the energised hook burns a strand through (s)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -39,9 +40,14 @@ struct ConnectiveDescription {
     visit("stiffness", self.stiffness);
     visit("damping", self.damping);
     visit("strength", self.strength);
+    visit("fractureEnergy", self.fractureEnergy);
     visit("fadeTime", self.fadeTime);
   }
 };
+
+/// Why its cohesive law is none: the fracture energy must cover what is stored at the strength. @return one clause, or
+/// nothing
+std::string cohesiveFault(const ConnectiveDescription& description);
 
 /// Connective tissue between organs `a` and `b`.
 struct ConnectiveModel {

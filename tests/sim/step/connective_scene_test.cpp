@@ -217,6 +217,10 @@ TEST(ConnectiveDescription, WhatIsWrongIsSaid) {
             "connective tissue 'bed': the scene has no organ 'spleen'");
   EXPECT_EQ(errorOf([](ConnectiveDescription& c) { c.second = "pad"; }),
             "connective tissue 'bed': joins organ 'pad' to itself");
+  EXPECT_NE(errorOf([](ConnectiveDescription& c) { c.fractureEnergy = 39.0; })
+                .find("below strength^2 / (2 stiffness) = 40.000000 J/m^2"),
+            std::string::npos);
+  EXPECT_EQ(errorOf([](ConnectiveDescription& c) { c.fractureEnergy = 40.0; }), "");
   EXPECT_NE(errorOf([](ConnectiveDescription& c) { c.reach = 1e-4; }).find("there is no bed"), std::string::npos);
 }
 
