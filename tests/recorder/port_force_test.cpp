@@ -2,7 +2,9 @@
 // Friction of the trocar and resistance of the wall, recorded and verified; what they leave alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,7 +56,7 @@ struct Ran {
 };
 
 /// A performer's first two seconds, recorded.
-Ran record(const std::filesystem::path& file, const std::string& keys) {
+Ran recordFelt(const std::filesystem::path& file, const std::string& keys) {
   Ran ran;
   const LoadedScene scene = portScene(keys);
   Model::Built built = Model::build(scene.description);
@@ -78,9 +80,9 @@ Ran record(const std::filesystem::path& file, const std::string& keys) {
 
 TEST(PortForceRecorded, ReplayVerifiesIt) {
   const test::Folder folder;
-  const Ran without = record(folder / "without.h5", "");
-  const Ran zero = record(folder / "zero.h5", R"("trocarFriction": 0, "wallStiffness": 0, )");
-  const Ran with = record(folder / "with.h5", R"("trocarFriction": 1, "wallStiffness": 0.5, )");
+  const Ran without = recordFelt(folder / "without.h5", "");
+  const Ran zero = recordFelt(folder / "zero.h5", R"("trocarFriction": 0, "wallStiffness": 0, )");
+  const Ran with = recordFelt(folder / "with.h5", R"("trocarFriction": 1, "wallStiffness": 0.5, )");
   for (const HandDescription& hand : with.model->scene().hands) {
     ASSERT_EQ(hand.trocarFriction, 1.0);
     ASSERT_EQ(hand.wallStiffness, 0.5);
@@ -101,7 +103,7 @@ TEST(PortForceRecorded, ReplayVerifiesIt) {
 /// From a keyframe on, ticks give the recorded forces: the seal's stretch is part of it.
 TEST(PortForceRecorded, GoesOnFromAKeyframe) {
   const test::Folder folder;
-  const Ran ran = record(folder / "with.h5", R"("trocarFriction": 1, "wallStiffness": 0.5, )");
+  const Ran ran = recordFelt(folder / "with.h5", R"("trocarFriction": 1, "wallStiffness": 0.5, )");
   Recording recording(folder / "with.h5");
   SerialExecutor executor;
   Session session(*ran.model, recording.header().seed, executor);
