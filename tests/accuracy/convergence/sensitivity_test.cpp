@@ -202,7 +202,7 @@ void print(const std::string& scene, double seconds, const Sensitivity& s) {
   }
 }
 
-/// A weaker bed tears more of itself, a stronger one less; char by a touch needs less time where less of it counts.
+/// A weaker bed tears more of itself, a stronger one less; skin that chars in less time is burned more.
 TEST(Sensitivity, HasTheRightSign) {
   const double seconds = 12.0;
   const Sensitivity s = sensitivity("dissect-bed", seconds, {"connective.*.strength", "cautery.charTime"});
