@@ -68,6 +68,8 @@ HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& work
   object.read("largestForce", hand.maxForce);
   object.read("slipForce", hand.slipForce);
   object.read("tearForce", hand.tearForce);
+  object.read("trocarFriction", hand.trocarFriction);
+  object.read("wallStiffness", hand.wallStiffness);
   object.read("clips", hand.clips);
   if ((hand.home.array() < workspace[0].array()).any() || (hand.home.array() > workspace[1].array()).any()) {
     object.at("home").fail("outside the workspace");

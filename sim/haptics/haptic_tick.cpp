@@ -87,7 +87,11 @@ HapticForce hapticTick(const HapticModel& model, HapticState& state, const Conta
   state.torque = out[3] + state.torqueResidual;
   const double size = state.force.norm();
   if (size > model.maxForce) state.force *= model.maxForce / size;
-  return {state.force, state.torque * axis};
+  if (!model.port.felt()) return {state.force, state.torque * axis};
+  Vec3 shown = state.force + portForce(model.port, state.tip, state.seal);
+  const double total = shown.norm();
+  if (total > model.maxForce) shown *= model.maxForce / total;
+  return {shown, state.torque * axis};
 }
 
 }  // namespace calot

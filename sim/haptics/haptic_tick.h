@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/contact/contact_solver.h"
+#include "sim/haptics/port_force.h"
 #include "sim/instruments/port.h"
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
@@ -50,10 +51,11 @@ struct HapticState {
   std::int64_t set = -1;                ///< step of the contact set that `lambda` belongs to
   std::uint32_t age = 0;                ///< ticks that used this set so far
   std::vector<double> lambda;           ///< N
-  Vec3 force = Vec3::Zero();            ///< force of the last tick (N)
+  Vec3 force = Vec3::Zero();            ///< contact force of the last tick (N)
   double torque = 0.0;                  ///< about the axis (N m)
   Vec3 forceResidual = Vec3::Zero();    ///< decaying difference from the last change of sets (N)
   double torqueResidual = 0.0;          ///< N m
+  double seal = -1.0;  ///< PortModel: where the trocar's seal is unstretched (m); negative: no tick yet
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -66,6 +68,7 @@ struct HapticState {
     visit("torque", self.torque);
     visit("forceResidual", self.forceResidual);
     visit("torqueResidual", self.torqueResidual);
+    visit("seal", self.seal);
   }
 };
 
@@ -81,6 +84,7 @@ struct HapticModel {
   std::uint32_t ticksPerStep = 10;
   std::uint32_t sweeps = 4;  ///< of the reduced problem, from the last tick's forces
   double tolerance = 1e-6;   ///< m
+  PortModel port;            ///< felt beside the contact forces; nothing unless the scene says so
 };
 
 /// Largest stretch of the coupling about the shaft (rad).

@@ -26,6 +26,8 @@ struct HandDescription {
   double slipForce = 4.0;             ///< pull at which closed jaws begin to lose tissue (N)
   std::uint32_t clips = 8;            ///< in its clip applier
   double tearForce = 6.0;             ///< pull at which tissue tears that is held faster (locked jaws) (N)
+  double trocarFriction = 0.0;        ///< of the trocar's seal on the shaft, felt by the hand alone (N)
+  double wallStiffness = 0.0;         ///< of the abdominal wall to tilting the shaft, felt alone (N m/rad)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -39,6 +41,8 @@ struct HandDescription {
     visit("slipForce", self.slipForce);
     visit("clips", self.clips);
     visit("tearForce", self.tearForce);
+    visit("trocarFriction", self.trocarFriction);
+    visit("wallStiffness", self.wallStiffness);
   }
 };
 

@@ -25,6 +25,8 @@ HapticModel hapticModel(const Model& model, std::size_t hand) {
   haptics.maxForce = description.maxForce;
   haptics.maxStretch = description.maxForce / description.couplingStiffness;
   haptics.ticksPerStep = model.scene().ticksPerStep;
+  haptics.port = {description.port, axisOf(description.port, description.home), description.trocarFriction,
+                  description.wallStiffness, description.couplingStiffness};
   return haptics;
 }
 

@@ -17,7 +17,7 @@ HapticState initialHaptics(const State& state, std::size_t hand);
 /// measurement.
 void takeSample(const Model& model, std::size_t hand, const InstrumentSample& sample, HapticState& haptics);
 
-/// Limits of a hand's virtual coupling and device.
+/// Limits of a hand's virtual coupling and device, and its port: the wall is at rest where the shaft is at the start.
 HapticModel hapticModel(const Model& model, std::size_t hand);
 
 }  // namespace calot

@@ -8,16 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/collector.h"
-#include "recorder/attempt.h"
-#include "recorder/formats/scene_file.h"
-#include "recorder/session.h"
-#include "tests/bench/performed.h"
+#include "tests/accuracy/convergence/support/graded.h"
 
 namespace calot::analytics {
 namespace {
@@ -30,19 +24,8 @@ struct Variant {
   [[nodiscard]] std::string name() const { return fmt::format("mesh x {}, {} ms", mesh, ticksPerStep); }
 };
 
-/// A value by checkpoint and subject.
-using Values = std::map<std::string, CheckpointValue>;
-
-std::vector<TickSamples> performedTicks(const std::string& scene, double seconds) {
-  std::vector<TickSamples> ticks;
-  for (const std::vector<TickSamples>& step : bench::performed(scene, seconds).step) {
-    ticks.insert(ticks.end(), step.begin(), step.end());
-  }
-  return ticks;
-}
-
 SceneDescription variantOf(const std::string& scene, const Variant& variant) {
-  SceneDescription description = recorder::loadScene(CALOT_SOURCE_DIR "/assets/scenes/" + scene + ".json").description;
+  SceneDescription description = sceneOf(scene);
   description.ticksPerStep = variant.ticksPerStep;
   for (OrganDescription& organ : description.organs) {
     organ.tetrahedra = static_cast<std::uint32_t>(std::lround(variant.mesh * organ.tetrahedra));
@@ -54,38 +37,8 @@ SceneDescription variantOf(const std::string& scene, const Variant& variant) {
   return description;
 }
 
-struct Graded {
-  Values values;
-  std::size_t tetrahedra = 0;
-};
-
 Graded run(const std::string& scene, const Variant& variant, const std::vector<TickSamples>& ticks) {
-  Graded out;
-  const Model::Built built = Model::build(variantOf(scene, variant));
-  if (!built.model) {
-    ADD_FAILURE() << scene << ", " << variant.name() << ": " << built.error;
-    return out;
-  }
-  const Model& model = *built.model;
-  for (const OrganModel& organ : model.organs()) out.tetrahedra += organ.solid.tetrahedra().size();
-  SerialExecutor executor;
-  recorder::Session session(model, 1, executor);
-  recorder::Provenance by;
-  by.profile = "skilled";
-  CheckpointCollector collector(recorder::makeHeader(model, {}, by, {}), model.scene());
-  session.join(collector);
-  const std::size_t every = variant.ticksPerStep;
-  std::vector<recorder::TickOutcome> outcome(every);
-  for (std::size_t begin = 0; begin + every <= ticks.size(); begin += every) {
-    const std::span<const TickSamples> step(ticks.data() + begin, every);
-    for (std::size_t i = 0; i < every; ++i) outcome[i] = session.tick(step[i]);
-    session.step(step, outcome, 0.0F);
-  }
-  session.end(recorder::Outcome::completed);
-  for (const CheckpointValue& value : collector.values()) {
-    out.values[value.name + (value.subject.empty() ? "" : " " + value.subject)] = value;
-  }
-  return out;
+  return graded(scene + ", " + variant.name(), variantOf(scene, variant), ticks);
 }
 
 /// Table in the form of docs/accuracy.md: a line a checkpoint, its value in the last run and the relative difference
