@@ -15,7 +15,7 @@ constexpr double seconds = 2.5;
 
 /// A pad of 40 x 20 x 10 mm, 2 mm above the block, lifted by 45 mm at one end and bent over.
 SceneDescription peeledPad(double mesh, std::uint32_t ticksPerStep) {
-  SceneDescription scene = test::blockScene(static_cast<std::uint32_t>(400.0 * mesh));
+  SceneDescription scene = test::blockScene(static_cast<std::uint32_t>(800.0 * mesh));
   scene.name = "pad peeled off a block";
   scene.ticksPerStep = ticksPerStep;
   scene.organs[0].material.youngModulus = 20e3;
@@ -24,7 +24,7 @@ SceneDescription peeledPad(double mesh, std::uint32_t ticksPerStep) {
   pad.appearance = "gallbladder";
   pad.surface = test::boxSurface(Vec3(-0.02, -0.01, test::blockTop + 0.002), Vec3(0.02, 0.01, test::blockTop + 0.012),
                                  {12, 6, 3});
-  pad.tetrahedra = static_cast<std::uint32_t>(400.0 * mesh);
+  pad.tetrahedra = static_cast<std::uint32_t>(800.0 * mesh);
   pad.material = {20e3, 0.45, 1020.0, 2.0, 0.01};
   scene.organs.push_back(pad);
   ConnectiveDescription bed;
@@ -73,7 +73,8 @@ TEST(Peel, TornShareDependsNeitherOnStepNorOnMesh) {
   EXPECT_LT(finest, 0.8);
   for (const std::uint32_t ticks : {2U, 5U, 10U, 20U}) {
     EXPECT_NEAR(tornShare(1.0, ticks) / finest, 1.0, 0.05) << ticks << " ms";
-    if (ticks != 2U) EXPECT_NEAR(tornShare(4.0, ticks) / finest, 1.0, 0.05) << ticks << " ms";
+    if (ticks == 2U) continue;
+    EXPECT_NEAR(tornShare(4.0, ticks) / finest, 1.0, 0.05) << ticks << " ms";
   }
 }
 

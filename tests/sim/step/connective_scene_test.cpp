@@ -189,9 +189,9 @@ TEST_F(ConnectiveScene, TheHookBurnsWithItsPedal) {
 TEST_F(ConnectiveScene, ARestoredStateGoesOnWithTheSameBits) {
   test::Rig first(*model_);
   Surgery surgery;
-  surgery.lift = 0.05;
+  surgery.lift = 0.06;
   surgery.speed = 0.05;
-  for (int i = 0; i < 130; ++i) step(first, scene(), surgery);
+  for (int i = 0; i < 170; ++i) step(first, scene(), surgery);
   const std::vector<std::byte> saved = saveState(first.state);
   test::Rig second(*model_);
   ASSERT_TRUE(restoreState(*model_, saved, second.state));
@@ -201,8 +201,8 @@ TEST_F(ConnectiveScene, ARestoredStateGoesOnWithTheSameBits) {
     step(second, scene(), surgery);
     ASSERT_EQ(digestOf(first.state), digestOf(second.state)) << i;
   }
-  const std::vector<StrandCondition>& condition = first.state.connective[0].condition;
-  EXPECT_GT(std::count(condition.begin(), condition.end(), StrandCondition::torn), 0) << "the run must tear";
+  const std::vector<double>& damage = first.state.connective[0].damage;
+  EXPECT_GT(*std::max_element(damage.begin(), damage.end()), 0.0) << "the run must soften strands";
   State untouched = first.state;
   EXPECT_FALSE(restoreState(*model_, std::span(saved).first(saved.size() - 1), untouched));
 }
@@ -217,8 +217,9 @@ TEST(ConnectiveDescription, WhatIsWrongIsSaid) {
             "connective tissue 'bed': the scene has no organ 'spleen'");
   EXPECT_EQ(errorOf([](ConnectiveDescription& c) { c.second = "pad"; }),
             "connective tissue 'bed': joins organ 'pad' to itself");
-  EXPECT_NE(errorOf([](ConnectiveDescription& c) { c.fractureEnergy = 39.0; })
-                .find("below strength^2 / (2 stiffness) = 40.000000 J/m^2"),
+  EXPECT_NE(errorOf([](ConnectiveDescription& c) {
+              c.fractureEnergy = 39.0;
+            }).find("below strength^2 / (2 stiffness) = 40.000000 J/m^2"),
             std::string::npos);
   EXPECT_EQ(errorOf([](ConnectiveDescription& c) { c.fractureEnergy = 40.0; }), "");
   EXPECT_NE(errorOf([](ConnectiveDescription& c) { c.reach = 1e-4; }).find("there is no bed"), std::string::npos);
