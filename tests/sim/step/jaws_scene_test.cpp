@@ -11,16 +11,16 @@
 namespace calot {
 namespace {
 
-constexpr double height = 0.05;  ///< of the duct's centre line (m)
-constexpr double radius = 0.002;
+constexpr double ductHeight = 0.05;  ///< of the duct's centre line (m)
+constexpr double ductRadius = 0.002;
 
 SceneDescription ductInTheOpen(std::uint32_t elements, std::uint32_t ticksPerStep) {
   SceneDescription scene = test::blockScene(300, 6);
   VesselDescription d;
   d.name = "duct";
   d.role = StructureRole::cysticDuct;
-  d.path = {Vec3(-0.02, 0.0, height), Vec3(0.02, 0.0, height)};
-  d.radius = radius;
+  d.path = {Vec3(-0.02, 0.0, ductHeight), Vec3(0.02, 0.0, ductHeight)};
+  d.radius = ductRadius;
   d.wall = 0.001;
   d.elements = elements;
   d.material = {1e6, 0.45, 1050.0, 5.0, 0.01};
@@ -77,7 +77,7 @@ class Jaws : public testing::TestWithParam<std::tuple<std::uint32_t, std::uint32
 
 TEST_P(Jaws, TakeWhatLiesBetweenThem) {
   const SceneDescription scene = ductInTheOpen(std::get<0>(GetParam()), std::get<1>(GetParam()));
-  const Vec3 between(0.001, 0.0, height - 0.004);
+  const Vec3 between(0.001, 0.0, ductHeight - 0.004);
   EXPECT_EQ(closeOn(scene, InstrumentKind::grasper, between).grasps, 1);
   EXPECT_EQ(closeOn(scene, InstrumentKind::clipApplier, between).clips, 1);
   EXPECT_EQ(closeOn(scene, InstrumentKind::scissors, between).cuts, 1);
@@ -86,8 +86,8 @@ TEST_P(Jaws, TakeWhatLiesBetweenThem) {
 /// A duct that lies 2.5 mm before the tips, or beside the closing jaws, is near their line and not between them.
 TEST_P(Jaws, TakeNothingThatIsMerelyNear) {
   const SceneDescription scene = ductInTheOpen(std::get<0>(GetParam()), std::get<1>(GetParam()));
-  const Vec3 before(0.001, 0.0, height + radius + 0.0025);
-  const Vec3 beside(0.001, 0.0115, height - 0.004);
+  const Vec3 before(0.001, 0.0, ductHeight + ductRadius + 0.0025);
+  const Vec3 beside(0.001, 0.0115, ductHeight - 0.004);
   for (const Vec3& tip : {before, beside}) {
     EXPECT_EQ(closeOn(scene, InstrumentKind::grasper, tip).grasps, 0);
     const Closing applier = closeOn(scene, InstrumentKind::clipApplier, tip);
@@ -100,7 +100,7 @@ TEST_P(Jaws, TakeNothingThatIsMerelyNear) {
 /// What jaws hold counts as contact, though they stand in it without pressing, and the grip is told.
 TEST_P(Jaws, HoldingIsContact) {
   const SceneDescription scene = ductInTheOpen(std::get<0>(GetParam()), std::get<1>(GetParam()));
-  const Closing held = closeOn(scene, InstrumentKind::grasper, Vec3(0.001, 0.0, height - 0.004));
+  const Closing held = closeOn(scene, InstrumentKind::grasper, Vec3(0.001, 0.0, ductHeight - 0.004));
   EXPECT_NE(held.contacts & 2U, 0U);
   EXPECT_NEAR(held.gripForce, scene.hands[0].slipForce, 1e-12) << "closed jaws, no ratchet";
 }
