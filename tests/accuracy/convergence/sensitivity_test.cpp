@@ -124,7 +124,9 @@ std::vector<Constant> constants() {
   all.push_back(ofHands("tearForce", &HandDescription::tearForce));
   all.push_back(ofCautery("power", &CauteryDescription::power));
   all.push_back(ofCautery("reach", &CauteryDescription::reach));
-  all.push_back(ofCautery("carve", &CauteryDescription::carve));
+  all.push_back(ofCautery("recession", &CauteryDescription::recession));
+  all.push_back(ofCautery("coagulationPace", &CauteryDescription::coagulationPace));
+  all.push_back(ofCautery("cutChar", &CauteryDescription::cutChar));
   all.push_back(ofCautery("spot", &CauteryDescription::spot));
   all.push_back(ofCautery("charTime", &CauteryDescription::charTime));
   return all;
