@@ -38,8 +38,8 @@ TEST(Holding, IsContact) {
   EXPECT_EQ(*o.value("time-held", "organ-a").value, 0.0);
   EXPECT_NEAR(*o.value("crush-dose", "v1").value, 4.0 * 0.5, 1e-12);
   EXPECT_NEAR(*o.value("crush-dose", "v2").value, 4.0 * 0.2, 1e-12);
-  EXPECT_NEAR(*o.value("structure-force-maximum", "v1").value, 1.5, 1e-12);
-  EXPECT_NEAR(*o.value("structure-force-maximum", "v2").value, 0.75, 1e-12) << "both hands";
+  EXPECT_NEAR(*o.value("structure-force-p99", "v1").value, 1.5, 1e-12);
+  EXPECT_NEAR(*o.value("structure-force-p99", "v2").value, 0.75, 1e-12) << "both hands";
   EXPECT_NEAR(*o.value("structure-force-impulse", "v1").value, 1.5 * 0.5, 1e-12);
   EXPECT_NEAR(*o.value("structure-force-impulse", "v2").value, 0.75 * 0.2, 1e-12);
 }
