@@ -19,14 +19,14 @@ struct CohesiveLaw {
   double fractureEnergy = 0.0;  ///< G_c (J/m^2)
 
   /// Energy stored where softening begins, the least fracture energy (J/m^2).
-  [[nodiscard]] double leastFractureEnergy() const { return 0.5 * strength * strength / stiffness; }
+  [[nodiscard]] double minFractureEnergy() const { return 0.5 * strength * strength / stiffness; }
   /// w_0 (m)
   [[nodiscard]] double peakSeparation() const { return strength / stiffness; }
   /// w_f (m)
   [[nodiscard]] double finalSeparation() const { return 2.0 * fractureEnergy / strength; }
 
   /// d for the largest separation so far (m).
-  /// @pre fractureEnergy >= leastFractureEnergy(); where both are equal, the law is brittle.
+  /// @pre fractureEnergy >= minFractureEnergy(); where both are equal, the law is brittle.
   [[nodiscard]] double damageAt(double largest) const {
     const double peak = peakSeparation();
     const double last = finalSeparation();

@@ -51,7 +51,7 @@ struct ConnectiveMaterial {
 class ConnectiveTissue {
  public:
   /// @param sheets pairs of neighbouring strands, each pair once
-  /// @pre indices in range, areas and rest lengths not negative, G_c >= CohesiveLaw::leastFractureEnergy()
+  /// @pre indices in range, areas and rest lengths not negative, G_c >= CohesiveLaw::minFractureEnergy()
   ConnectiveTissue(std::vector<Strand> strands, std::vector<std::array<std::uint32_t, 2>> sheets,
                    ConnectiveMaterial material);
 

@@ -88,7 +88,7 @@ TEST_F(HapticForces, PullingHeldTissueHasNoJumps) {
       [](double t) {
         const double down = std::min(1.0, t / 0.3);
         const double pull = t < 0.8 ? 0.0 : 0.02 * (t < 1.2 ? t - 0.8 : 1.6 - t);
-        return Vec3(-0.009, 0.0013, 0.030 - 0.0135 * down + pull);
+        return Vec3(-0.009, 0.0013, 0.030 - 0.0145 * down + pull);
       },
       [](double t) { return t < 0.4 ? 0.6 : std::max(0.0, 0.6 - 2.0 * (t - 0.4)); }, "pulling held tissue at 20 mm/s");
   EXPECT_LT(felt.maxJump, 0.05);
@@ -103,7 +103,7 @@ TEST_F(HapticForces, LettingGoHasNoJumps) {
         [&](double t) {
           const double down = std::min(1.0, t / 0.3);
           const double pull = t < 0.8 ? 0.0 : std::min(lift, 0.02 * (t - 0.8));
-          return Vec3(-0.009, 0.0013, 0.030 - 0.0135 * down + pull);
+          return Vec3(-0.009, 0.0013, 0.030 - 0.0145 * down + pull);
         },
         [](double t) {
           if (t > 1.2) return std::min(0.6, 2.0 * (t - 1.2));

@@ -71,7 +71,11 @@ class CysticContactTime final : public Checkpoint {
 };
 
 const CheckpointDefinition& cysticInPhases() {
-  static const CheckpointDefinition d = phaseDefinition(cysticContactTimeDefinition(), "steps");
+  static const CheckpointDefinition d = [] {
+    CheckpointDefinition phase = phaseDefinition(cysticContactTimeDefinition(), "steps");
+    phase.version = judgedVersion(2);
+    return phase;
+  }();
   return d;
 }
 

@@ -77,9 +77,9 @@ class ConnectiveViewer final : public TissueViewer {
 
 std::string cohesiveFault(const ConnectiveDescription& description) {
   const CohesiveLaw law{description.stiffness, description.strength, description.fractureEnergy};
-  if (law.fractureEnergy >= law.leastFractureEnergy()) return {};
+  if (law.fractureEnergy >= law.minFractureEnergy()) return {};
   return "fractureEnergy " + std::to_string(law.fractureEnergy) +
-         " J/m^2 is below strength^2 / (2 stiffness) = " + std::to_string(law.leastFractureEnergy()) +
+         " J/m^2 is below strength^2 / (2 stiffness) = " + std::to_string(law.minFractureEnergy()) +
          " J/m^2, which is stored before it softens";
 }
 

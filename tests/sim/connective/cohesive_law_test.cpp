@@ -60,7 +60,7 @@ TEST(CohesiveLaw, OpeningTakesTheFractureEnergyAndNoMoreThanTheStrength) {
 /// With the least fracture energy it is brittle: intact up to the strength, then gone.
 TEST(CohesiveLaw, TheLeastFractureEnergyIsBrittle) {
   CohesiveLaw law{2e5, 4e3, 0.0};
-  law.fractureEnergy = law.leastFractureEnergy();
+  law.fractureEnergy = law.minFractureEnergy();
   EXPECT_DOUBLE_EQ(law.fractureEnergy, 40.0);
   EXPECT_DOUBLE_EQ(law.finalSeparation(), law.peakSeparation());
   EXPECT_EQ(law.damageAt(0.999 * law.peakSeparation()), 0.0);
