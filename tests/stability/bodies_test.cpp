@@ -127,7 +127,7 @@ TEST(Bodies, EverythingTouchesEverything) {
       const double side = h == 0 ? -1.0 : 1.0;
       const double down = std::min(1.0, t / 0.3);
       const double height = h == 0 ? 0.004 + 0.008 * std::sin(4.0 * t) : 0.020 + 0.008 * std::sin(3.0 * t);
-      tick.hand[h].position = Vec3(side * ((h == 0 ? 0.025 : 0.010) - 0.006 * std::sin(5.0 * t)),
+      tick.hand[h].position = Vec3(side * ((h == 0 ? 0.0245 : 0.010) - 0.006 * std::sin(5.0 * t)),
                                    0.006 * std::cos(6.0 * t), 0.06 + down * (test::blockTop + height - 0.06));
       tick.hand[h].instrument = h == 0 ? InstrumentKind::grasper : InstrumentKind::hook;
       tick.hand[h].jaw = 0.4 + 0.4 * std::sin(8.0 * t);
@@ -145,7 +145,7 @@ TEST(Bodies, EverythingTouchesEverything) {
     tissue = std::max(tissue, result.contact.tissueDepth);
     among += !loop.rig.state.tissue.key.empty() ? 1 : 0;
     for (std::size_t h = 0; h < handCount; ++h) {
-      touchedOrgans |= result.hand[h].touching;
+      touchedOrgans |= result.hand[h].contacts();
       double& kept = result.contact.pinchedDepth > 0.0 ? pinched : deepest;
       kept = std::max(kept, test::instrumentDepth(*model, loop.rig.state, h));
     }
