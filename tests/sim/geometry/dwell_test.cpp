@@ -31,7 +31,7 @@ double counted(const Inside& inside) {
 TEST(Dwell, OfAPointInACapsule) {
   Random random(11);
   int met = 0;
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < 600; ++trial) {
     const Vec3 from = randomPoint(random, 2.0);
     const Vec3 way = randomPoint(random, 3.0);
     const Vec3 a = randomPoint(random, 1.0);
@@ -46,13 +46,13 @@ TEST(Dwell, OfAPointInACapsule) {
     EXPECT_NEAR(share, expected, 1e-3) << trial;
     met += share > 0.0 ? 1 : 0;
   }
-  EXPECT_GT(met, 200);
+  EXPECT_GT(met, 50);
 }
 
 TEST(Dwell, OfASegmentNearAnother) {
   Random random(12);
   int met = 0;
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < 600; ++trial) {
     const Vec3 s0 = randomPoint(random, 1.0);
     const Vec3 s1 = trial % 7 == 0 ? s0 : randomPoint(random, 1.0);
     const Vec3 c0 = randomPoint(random, 1.0);
@@ -68,7 +68,7 @@ TEST(Dwell, OfASegmentNearAnother) {
     EXPECT_NEAR(share, expected, 1e-3) << trial;
     met += share > 0.0 ? 1 : 0;
   }
-  EXPECT_GT(met, 200);
+  EXPECT_GT(met, 50);
 }
 
 /// A wire that swings about its hinge by 29 degrees over a point: of second order in the angle.
