@@ -69,6 +69,22 @@ std::string figureText(const std::vector<CheckpointValue>& values, const Summary
   return "-";
 }
 
+/// A value's interval, and its parts: what step and mesh change, and the spread by constants. Empty where there is
+/// none.
+std::pair<std::string, std::string> intervalTexts(const std::vector<ValueInterval>& intervals,
+                                                  const CheckpointValue& of, double factor) {
+  const auto found = std::find_if(intervals.begin(), intervals.end(),
+                                  [&](const ValueInterval& i) { return i.name == of.name && i.subject == of.subject; });
+  if (found == intervals.end()) return {};
+  if (!found->lower) return {"none", found->reason};
+  if (*found->lower == *found->upper) return {"exact", ""};
+  const auto shown = [&](double si) { return significant(si * factor); };
+  const auto change = [&](double si) { return (si > 0.0 ? "+" : "") + significant(si * factor, 2); };
+  return {fmt::format("[{}, {}]", shown(*found->lower), shown(*found->upper)),
+          fmt::format("{}, {}, {}", change(found->stepEffect), change(found->meshEffect),
+                      significant(found->constantsSpread * factor, 2))};
+}
+
 Verdict verdictOf(recorder::ReplayVerdict verdict) {
   switch (verdict) {
     case recorder::ReplayVerdict::exact:
@@ -160,10 +176,13 @@ Imported store(CohortDatabase& database, const AssessedAttempt& assessed) {
   return database.storeAttempt(recordOf(assessed), assessed.values);
 }
 
-void printValues(const std::vector<CheckpointValue>& values, std::ostream& out) {
+void printValues(const std::vector<CheckpointValue>& values, const std::vector<ValueInterval>& intervals,
+                 std::ostream& out) {
   TextTable table({{"checkpoint", Align::left},
                    {"value", Align::right},
+                   {"interval", Align::right},
                    {"unit", Align::left},
+                   {"step, mesh, constants", Align::right},
                    {"origin", Align::left},
                    {"", Align::left}});
   for (const CheckpointValue& v : values) {
@@ -171,11 +190,13 @@ void printValues(const std::vector<CheckpointValue>& values, std::ostream& out) 
     const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
     if (!v.value) {
       const char* missing = v.availability == Availability::notApplicable ? "not applicable" : "not available";
-      table.add({name, "-", "", "", fmt::format("{}: {}", missing, v.reason)});
+      table.add({name, "-", "", "", "", "", fmt::format("{}: {}", missing, v.reason)});
       continue;
     }
-    table.add({name, significant(*v.value * (definition != nullptr ? definition->displayFactor : 1.0)),
-               definition != nullptr ? definition->displayUnit : v.unit, nameOf(v.origin), v.note});
+    const double factor = definition != nullptr ? definition->displayFactor : 1.0;
+    const auto [interval, parts] = intervalTexts(intervals, v, factor);
+    table.add({name, significant(*v.value * factor), interval, definition != nullptr ? definition->displayUnit : v.unit,
+               parts, nameOf(v.origin), v.note});
   }
   if (table.rows() > 0) table.print(out);
 }

@@ -48,8 +48,10 @@ Imported store(CohortDatabase& database, const AssessedAttempt& assessed);
 /// The row that store() writes.
 AttemptRecord recordOf(const AssessedAttempt& assessed);
 
-/// Every value of one attempt, in display units, or the reason why there is none.
-void printValues(const std::vector<CheckpointValue>& values, std::ostream& out);
+/// Every value of one attempt, in display units, or the reason why there is none; with intervals, two columns more: the
+/// interval, and what it is made of.
+void printValues(const std::vector<CheckpointValue>& values, const std::vector<ValueInterval>& intervals,
+                 std::ostream& out);
 
 /// Closing table of `calot assess`: every attempt of the database with outcome, verification and the checkpoints that
 /// ask for columns there (CheckpointPlace::summaryTitle), without those that no attempt has; synthetic ones are marked.

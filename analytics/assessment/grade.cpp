@@ -15,6 +15,8 @@ namespace calot::analytics {
 namespace {
 
 constexpr const char* criticalName = "critical-errors";
+/// Between no error and one.
+constexpr double anyError = 0.5;
 
 bool same(const CheckpointValue& v, const NormCheckpoint& mark) {
   return v.name == mark.checkpoint && v.subject == mark.subject;
@@ -34,11 +36,12 @@ void askForComparable(const AttemptRow& a, const Norm& norm, bool mixKeys, const
                 {Remedy::mixKeys});
 }
 
-void judge(GradedFigure& figure, const CheckpointValue* value, const Norm& norm, std::size_t position) {
-  if (value == nullptr) {
+void judge(GradedFigure& figure, const AttemptValue* found, const Norm& norm, std::size_t position) {
+  if (found == nullptr) {
     figure.missing = "the attempt has no such figure";
     return;
   }
+  const CheckpointValue* value = &found->value;
   if (!value->value || !std::isfinite(*value->value)) {
     figure.missing = value->value ? "not finite" : value->reason;
     return;
@@ -60,31 +63,41 @@ void judge(GradedFigure& figure, const CheckpointValue* value, const Norm& norm,
   }
   figure.passed = passes(figure.mark, *figure.value);
   figure.open = figure.mark.lower && *figure.value >= *figure.mark.lower && *figure.value <= *figure.mark.upper;
+  figure.interval = found->interval;
+  // A mark at the end of an interval that is a point is decided: the value is exact.
+  if (figure.interval && figure.interval->lower)
+    figure.undecided = passes(figure.mark, *figure.interval->lower) != passes(figure.mark, *figure.interval->upper);
 }
 
 void conclude(Grade& grade) {
-  std::size_t least = 0, most = 0;
+  std::size_t least = 0, most = 0, surelyMarked = 0, perhapsMarked = 0;
   for (const GradedFigure& f : grade.figures) {
     if (!f.mark.inRule) continue;
     ++grade.inRule;
     const bool passed = f.passed.value_or(false);
     grade.passedCount += passed ? 1 : 0;
-    least += passed && !f.open ? 1 : 0;
-    most += passed || f.open ? 1 : 0;
+    least += passed && !f.undecided ? 1 : 0;
+    most += passed || f.undecided ? 1 : 0;
+    surelyMarked += passed && !f.open ? 1 : 0;
+    perhapsMarked += passed || f.open ? 1 : 0;
   }
   grade.needed = neededPasses(grade.norm);
   if (grade.criticalErrors.value_or(0.0) > 0.0) {
     grade.passed = false;
-    grade.verdict = fmt::format("Not passed: {:g} critical error{}, of which one fails an attempt.",
-                                *grade.criticalErrors, *grade.criticalErrors == 1.0 ? "" : "s");
+    grade.certain = !grade.criticalUndecided;
+    grade.verdict =
+        fmt::format("Not passed: {:g} critical error{}, of which one fails an attempt{}.", *grade.criticalErrors,
+                    *grade.criticalErrors == 1.0 ? "" : "s", grade.certain ? "" : "; not decided by this simulation");
     return;
   }
   grade.passed = grade.passedCount >= grade.needed;
-  grade.certain = (least >= grade.needed) == (most >= grade.needed);
-  grade.verdict =
-      fmt::format("{}: {} of {} figures in the rule passed, {} wanted{}.", grade.passed ? "Passed" : "Not passed",
-                  grade.passedCount, grade.inRule, grade.needed,
-                  grade.certain ? "" : "; not certain, as figures lie within the intervals of their pass marks");
+  const bool simulated = (least >= grade.needed) == (most >= grade.needed) && !grade.criticalUndecided;
+  const bool marked = (surelyMarked >= grade.needed) == (perhapsMarked >= grade.needed);
+  grade.certain = simulated && marked;
+  grade.verdict = fmt::format("{}: {} of {} figures in the rule passed, {} wanted{}{}.",
+                              grade.passed ? "Passed" : "Not passed", grade.passedCount, grade.inRule, grade.needed,
+                              marked ? "" : "; not certain, as figures lie within the intervals of their pass marks",
+                              simulated ? "" : "; not decided by this simulation, whose intervals hold pass marks");
 }
 
 /// The participant's attempts of this key up to this one, by start.
@@ -105,12 +118,13 @@ std::vector<const AttemptRow*> pastOf(const AttemptRow& attempt, const std::vect
 }
 
 void addHistory(GradedFigure& figure, const std::vector<const AttemptRow*>& past,
-                const std::map<std::string, std::vector<const CheckpointValue*>>& valuesOf) {
+                const std::map<std::string, std::vector<const AttemptValue*>>& valuesOf) {
   std::vector<double> x, y;
   for (std::size_t i = 0; i < past.size(); ++i) {
     const auto at = valuesOf.find(past[i]->uuid);
     if (at == valuesOf.end()) continue;
-    for (const CheckpointValue* v : at->second) {
+    for (const AttemptValue* of : at->second) {
+      const CheckpointValue* v = &of->value;
       if (!same(*v, figure.mark) || !v->value || v->version != figure.mark.version) continue;
       figure.history.push_back({past[i]->uuid, past[i]->startUtc, *v->value * figure.displayFactor});
       x.push_back(static_cast<double>(i + 1));
@@ -146,14 +160,15 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
   grade.attempt = attempt;
   grade.norm = norm;
   std::tie(grade.competentRate, grade.otherRate) = passRates(norm);
-  std::map<std::string, std::vector<const CheckpointValue*>> valuesOf;
-  for (const AttemptValue& v : values) valuesOf[v.attempt].push_back(&v.value);
-  const std::vector<const CheckpointValue*>& own = valuesOf[attempt.uuid];
+  std::map<std::string, std::vector<const AttemptValue*>> valuesOf;
+  for (const AttemptValue& v : values) valuesOf[v.attempt].push_back(&v);
+  const std::vector<const AttemptValue*>& own = valuesOf[attempt.uuid];
   grade.criticalMissing = "not computed for this attempt";
-  for (const CheckpointValue* v : own) {
-    if (v->name != criticalName) continue;
-    grade.criticalErrors = v->value;
-    grade.criticalMissing = v->reason;
+  for (const AttemptValue* v : own) {
+    if (v->value.name != criticalName) continue;
+    grade.criticalErrors = v->value.value;
+    grade.criticalMissing = v->value.reason;
+    grade.criticalUndecided = v->interval && v->interval->contains(anyError);
   }
   const std::vector<const AttemptRow*> past = pastOf(attempt, attempts);
   for (std::size_t i = 0; i < norm.checkpoints.size(); ++i) {
@@ -166,7 +181,7 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
       figure.displayFactor = d->displayFactor;
     }
     const auto at =
-        std::find_if(own.begin(), own.end(), [&](const CheckpointValue* v) { return same(*v, figure.mark); });
+        std::find_if(own.begin(), own.end(), [&](const AttemptValue* v) { return same(v->value, figure.mark); });
     judge(figure, at == own.end() ? nullptr : *at, norm, i);
     addHistory(figure, past, valuesOf);
     grade.figures.push_back(std::move(figure));

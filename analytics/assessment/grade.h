@@ -35,6 +35,8 @@ struct GradedFigure {
   std::string missing;          ///< why it is not judged, or empty
   std::optional<bool> passed;
   bool open = false;  ///< the value lies within the interval of the cut: another norm might judge otherwise
+  std::optional<ValueInterval> interval;  ///< of the simulation, where one was worked out
+  bool undecided = false;                 ///< the pass mark lies within it: not decided by this simulation
   Expected<double> rank = Expected<double>::none("not judged");                   ///< percentile()
   std::uint64_t competent = 0;                                                    ///< members that rank is among
   FigureMoments moments;                                                          ///< of a weak figure
@@ -50,11 +52,12 @@ struct Grade {
   PassRate competentRate, otherRate;  ///< of the norm's own members, by its rule
   std::optional<double> criticalErrors;
   std::string criticalMissing;        ///< why they are not known, or empty
+  bool criticalUndecided = false;     ///< the simulation's interval holds no error and one
   std::vector<double> criticalTimes;  ///< begin of the moments at which they happened (s)
   std::vector<GradedFigure> figures;  ///< in the norm's order
   std::size_t inRule = 0, needed = 0, passedCount = 0;
   bool passed = false;
-  bool certain = true;  ///< the judgement is the same however the open figures are taken
+  bool certain = true;  ///< the judgement is the same however the open and undecided figures are taken
   std::string verdict;  ///< one sentence
   std::vector<std::string> remarks;
   std::string momentsMissing;  ///< why no recording was looked at, or empty

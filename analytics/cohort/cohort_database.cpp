@@ -160,6 +160,18 @@ void CohortDatabase::storeValues(const std::string& attempt, const std::vector<C
   });
 }
 
+void CohortDatabase::storeIntervals(const std::string& attempt, const std::vector<ValueInterval>& intervals) {
+  guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::int64_t id = attemptId(db, attempt);
+    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
+    if (replaceIntervals(db, id, intervals))
+      audit(db, "attempt-intervals", attempt, fmt::format("{} intervals", intervals.size()));
+    transaction.commit();
+  });
+}
+
 namespace {
 
 void checkDecision(const std::string& reason, const std::string& by) {
@@ -232,6 +244,10 @@ std::optional<AttemptRow> CohortDatabase::attempt(const std::string& uuid) const
 
 std::vector<CheckpointValue> CohortDatabase::values(const std::string& attempt) const {
   return guarded(path(), [&] { return readValues(*storage_->db, attemptId(*storage_->db, attempt)); });
+}
+
+std::vector<ValueInterval> CohortDatabase::intervals(const std::string& attempt) const {
+  return guarded(path(), [&] { return readIntervals(*storage_->db, attemptId(*storage_->db, attempt)); });
 }
 
 std::vector<AttemptValue> CohortDatabase::allValues(const std::vector<std::string>& without) const {

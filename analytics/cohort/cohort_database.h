@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/uncertainty/value_interval.h"
 
 namespace calot::analytics {
 
@@ -110,6 +111,7 @@ struct GroupCount {
 struct AttemptValue {
   std::string attempt;
   CheckpointValue value;
+  std::optional<ValueInterval> interval = {};  ///< of this value, where one was worked out
 };
 
 /// One connection to a cohort database: WAL mode, foreign keys, strict tables. Two processes may write at once (the
@@ -153,6 +155,8 @@ class CohortDatabase {
   Imported upsertAttempt(const AttemptRecord& attempt);
   /// Replaces the attempt's values. @throws Error (refused) if there is no such attempt.
   void storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values);
+  /// Replaces the intervals of the attempt's values. @throws Error (refused) if there is no such attempt.
+  void storeIntervals(const std::string& attempt, const std::vector<ValueInterval>& intervals);
 
   /// Marks an attempt as excluded from studies, or replaces the mark; audited. @throws Error (invalid) without reason
   /// or name; (refused) if there is no such attempt.
@@ -166,7 +170,10 @@ class CohortDatabase {
   [[nodiscard]] std::optional<AttemptRow> attempt(const std::string& uuid) const;
   /// An attempt's values in the order in which they were stored (the registry's).
   [[nodiscard]] std::vector<CheckpointValue> values(const std::string& attempt) const;
-  /// Values of all attempts, by attempt, then in stored order. @param without names of checkpoints to leave out.
+  /// Intervals of the attempt's present values, in their order; none of a value that has changed since.
+  [[nodiscard]] std::vector<ValueInterval> intervals(const std::string& attempt) const;
+  /// Values of all attempts with their intervals, by attempt, then in stored order. @param without names of checkpoints
+  /// to leave out.
   [[nodiscard]] std::vector<AttemptValue> allValues(const std::vector<std::string>& without = {}) const;
   [[nodiscard]] std::vector<GroupCount> groups() const;  ///< by name
 

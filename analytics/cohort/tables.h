@@ -61,6 +61,17 @@ bool isWithdrawn(SQLite::Database& db, const std::string& uuid);
 
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
 std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<std::string>& without);
+/// Columns of intervalRow(), of value_interval as i.
+inline constexpr const char* intervalColumns =
+    "i.name, i.subject, i.version, i.value, i.step_effect, i.mesh_effect, i.constants_spread, i.lower, i.upper, "
+    "i.reason ";
+ValueInterval intervalRow(SQLite::Statement& row, int column);
+/// Whether the row of value_interval as i is of the value in the row of checkpoint_value as c, by the present method.
+std::string intervalIsOfValue();
+/// Intervals of present values, in the values' order.
+std::vector<ValueInterval> readIntervals(SQLite::Database& db, std::int64_t attempt);
+/// @returns whether anything changed.
+bool replaceIntervals(SQLite::Database& db, std::int64_t attempt, const std::vector<ValueInterval>& intervals);
 /// @returns whether anything changed.
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
 

@@ -8,6 +8,7 @@ namespace {
 
 constexpr const char* valueColumns =
     "c.name, c.subject, c.version, c.availability, c.value, c.reason, c.note, c.unit, c.origin, c.filter ";
+constexpr int valueColumnCount = 10;
 
 CheckpointValue valueRow(SQLite::Statement& row, int c) {
   CheckpointValue v;
@@ -88,13 +89,20 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
 std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<std::string>& without) {
   std::string places;
   for (std::size_t i = 0; i < without.size(); ++i) places += i == 0 ? "?" : ", ?";
-  SQLite::Statement select(db,
-                           fmt::format("SELECT a.uuid, {} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt "
-                                       "WHERE c.name NOT IN ({}) ORDER BY a.uuid, c.position",
-                                       valueColumns, places));
+  // Most cohorts have no intervals; looking for one beside each value costs as much as reading the values.
+  const bool intervals = db.execAndGet("SELECT EXISTS (SELECT 1 FROM value_interval)").getInt() != 0;
+  SQLite::Statement select(
+      db, fmt::format("SELECT a.uuid, {}{} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt {} "
+                      "WHERE c.name NOT IN ({}) ORDER BY a.uuid, c.position",
+                      valueColumns, intervals ? fmt::format(", i.attempt, {}", intervalColumns) : "",
+                      intervals ? "LEFT JOIN value_interval i ON " + intervalIsOfValue() : "", places));
   for (std::size_t i = 0; i < without.size(); ++i) select.bind(static_cast<int>(i) + 1, without[i]);
+  constexpr int first = 1 + valueColumnCount;
   std::vector<AttemptValue> values;
-  while (select.executeStep()) values.push_back({text(select.getColumn(0)), valueRow(select, 1)});
+  while (select.executeStep()) {
+    AttemptValue& value = values.emplace_back(AttemptValue{text(select.getColumn(0)), valueRow(select, 1), {}});
+    if (intervals && !select.getColumn(first).isNull()) value.interval = intervalRow(select, first + 1);
+  }
   return values;
 }
 

@@ -8,7 +8,7 @@ namespace calot::analytics {
 namespace {
 
 // table, column, title, unit, allowed values, what stands where there is none
-constexpr std::array<ColumnNote, 201> notes{{
+constexpr std::array<ColumnNote, 213> notes{{
     {"participant", "id", "number of the row, which other tables name"},
     {"participant", "pseudonym", "pseudonym"},
     {"participant", "study_group", "study group", "", "", "empty"},
@@ -81,6 +81,18 @@ constexpr std::array<ColumnNote, 201> notes{{
     {"checkpoint_value", "unit", "SI unit of the value"},
     {"checkpoint_value", "origin", "what it was computed from", "", "0 re-simulated, 1 observables, 2 samples"},
     {"checkpoint_value", "filter", "resampling and filter when the value was made"},
+    {"value_interval", "attempt", "row of attempt"},
+    {"value_interval", "name", "checkpoint"},
+    {"value_interval", "subject", "hand, organ or phase", "", "", "empty: the attempt as a whole"},
+    {"value_interval", "version", "version of the checkpoint"},
+    {"value_interval", "method", "how the interval was made"},
+    {"value_interval", "value", "the value that the interval is of, in the checkpoint's unit"},
+    {"value_interval", "step_effect", "change of the value to steps of length zero, extrapolated"},
+    {"value_interval", "mesh_effect", "change of the value to elements of size zero, extrapolated"},
+    {"value_interval", "constants_spread", "standard deviation of the value over the assumed constants"},
+    {"value_interval", "lower", "lower end of the interval", "", "finite", "empty: there is none"},
+    {"value_interval", "upper", "upper end of the interval", "", "finite", "empty: there is none"},
+    {"value_interval", "reason", "why there is no interval", "", "", "empty where there is one"},
     {"site", "name", "name of the site"},
     {"site", "note", "a word on it", "", "", "empty"},
     {"arm", "name", "name of the study arm"},

@@ -59,6 +59,7 @@ ReportTable figuresTable(const Grade& g) {
                      {"unit", Align::left},
                      {"better", Align::left},
                      {"value", Align::right},
+                     {"simulation", Align::right},
                      {"pass mark", Align::right},
                      {"95 %", Align::right},
                      {"passed", Align::left},
@@ -66,11 +67,16 @@ ReportTable figuresTable(const Grade& g) {
                      {"percentile", Align::right}},
                     {}};
   for (const GradedFigure& f : g.figures) {
-    table.rows.push_back({nameOf(f), f.unit == "1" ? "" : f.unit, analytics::nameOf(f.mark.direction),
-                          shown(f, f.value), shown(f, f.mark.cut),
-                          f.mark.lower ? fmt::format("[{}, {}]", shown(f, f.mark.lower), shown(f, f.mark.upper)) : "-",
-                          !f.passed ? "-" : fmt::format("{}{}", *f.passed ? "yes" : "no", f.open ? ", open" : ""),
-                          f.mark.inRule ? "counts" : "", f.rank ? fmt::format("{:.0f}", *f.rank) : "-"});
+    const bool known = f.interval && f.interval->lower;
+    table.rows.push_back(
+        {nameOf(f), f.unit == "1" ? "" : f.unit, analytics::nameOf(f.mark.direction), shown(f, f.value),
+         known ? fmt::format("[{}, {}]", shown(f, f.interval->lower), shown(f, f.interval->upper)) : "",
+         shown(f, f.mark.cut),
+         f.mark.lower ? fmt::format("[{}, {}]", shown(f, f.mark.lower), shown(f, f.mark.upper)) : "-",
+         !f.passed ? "-"
+                   : fmt::format("{}{}{}", *f.passed ? "yes" : "no", f.open ? ", open" : "",
+                                 f.undecided ? ", undecided" : ""),
+         f.mark.inRule ? "counts" : "", f.rank ? fmt::format("{:.0f}", *f.rank) : "-"});
   }
   return table;
 }
@@ -79,6 +85,11 @@ std::vector<std::string> notes(const Grade& g) {
   std::vector<std::string> lines{
       "pass mark: the cut of contrasting groups, at which one passes, with its bootstrap interval. open: the value "
       "lies within that interval. percentile: among the competent members; higher is better."};
+  if (std::any_of(g.figures.begin(), g.figures.end(), [](const GradedFigure& f) { return f.interval.has_value(); })) {
+    lines.emplace_back(
+        "simulation: where the value may lie for an exact simulation with the right constants. undecided: the pass "
+        "mark lies within it, so that the figure is not decided by this simulation.");
+  }
   if (std::string warning = passMarkWarning(g.norm); !warning.empty()) lines.push_back(std::move(warning));
   for (const GradedFigure& f : g.figures) {
     if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
@@ -181,6 +192,10 @@ Json figureJson(const GradedFigure& f) {
           {"in_rule", f.mark.inRule},
           {"passed", f.passed ? Json(*f.passed) : Json(nullptr)},
           {"open", f.open},
+          {"simulation_lower", number(f.interval ? f.interval->lower : std::nullopt)},
+          {"simulation_upper", number(f.interval ? f.interval->upper : std::nullopt)},
+          {"no_simulation_interval", f.interval ? f.interval->reason : "none was worked out"},
+          {"undecided", f.undecided},
           {"percentile", f.rank ? Json(*f.rank) : Json(nullptr)},
           {"no_percentile", f.rank.reason()},
           {"competent_members", f.competent},

@@ -245,7 +245,8 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     column.unit = item.value.unit;
     const Member& m = at->second;
     const CheckpointDefinition* definition = findCheckpoint(item.value.name);
-    const double shown = item.value.value.value_or(0.0) * (definition != nullptr ? definition->displayFactor : 1.0);
+    const double factor = definition != nullptr ? definition->displayFactor : 1.0;
+    const double shown = item.value.value.value_or(0.0) * factor;
     if (!item.value.value || !std::isfinite(shown)) {
       column.sample.missing[m.group][m.participant].push_back(item.value.value ? "not finite" : item.value.reason);
       if (item.value.availability == Availability::notAvailable && !m.completed && options.protocol &&
@@ -255,7 +256,9 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     }
     column.versions.insert(item.value.version);
     column.origins.insert(nameOf(item.value.origin));
-    column.sample.values[m.group].push_back({m.participant, m.number, shown});
+    StudyValue& value = column.sample.values[m.group].emplace_back(StudyValue{m.participant, m.number, shown, {}});
+    if (item.interval && item.interval->lower)
+      value.interval = {*item.interval->lower * factor, *item.interval->upper * factor};
   }
   const auto place = [](const std::string& checkpoint) {
     const auto& registry = checkpointRegistry();
@@ -280,6 +283,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     StudyRow& row = study.rows.emplace_back(describedRow(key, column));
     if (options.protocol) declareRow(row, study, options.protocol->protocol);
     fillRow(row, column.sample);
+    addSimulationRange(row, column.sample);
     if (row.checkpoint != "attempt-duration") continue;
     for (std::size_t g = 0; g < 2; ++g) {
       for (std::size_t i = 0; i < row.values[g].size(); ++i) duration[g][row.participants[g][i]] = row.values[g][i];

@@ -15,6 +15,7 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/ratings.h"
+#include "analytics/report/simulation_range.h"
 #include "analytics/statistics/covariance_analysis.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/hedges.h"
@@ -145,6 +146,7 @@ struct StudyRow {
   std::optional<BaselineAdjustment> adjusted;              ///< of a table with a baseline
   std::vector<std::string> coverageWarnings;               ///< intervals whose published coverage is low at these sizes
   std::optional<double> publishedExpert, publishedNovice;  ///< the paper's means, for reference
+  std::optional<SimulationRange> simulation;               ///< where values have intervals
 };
 
 /// A participant without a row at an occasion where others have one.

@@ -15,7 +15,7 @@
 namespace calot::analytics {
 namespace {
 
-std::string number(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
+std::string numberCell(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
 
 std::string watermark(const Study& study) { return study.synthetic ? "SYNTHETIC" : ""; }
 
@@ -30,7 +30,7 @@ std::string hypothesisCells(const StudyRow& row) {
 std::string effectCells(const StudyRow& row) {
   std::string text =
       row.area ? fmt::format(",{},{},{}", row.area->value.a, row.area->a.lower, row.area->a.upper) : ",,,";
-  text += fmt::format(",{}", number(row.holm));
+  text += fmt::format(",{}", numberCell(row.holm));
   text += row.hedges ? fmt::format(",{}", row.hedges->g) : ",";
   text += row.hedges && row.hedges->interval
               ? fmt::format(",{},{}", row.hedges->interval->lower, row.hedges->interval->upper)
@@ -44,8 +44,15 @@ std::string baselineCells(const StudyRow& row) {
   if (!row.adjusted || !row.adjusted->analysis) return ",,,,,,,";
   const CovarianceAnalysis& a = *row.adjusted->analysis;
   return fmt::format(",{},{},{},{},{},{},{}", a.difference, a.interval.lower, a.interval.upper, a.p,
-                     number(row.adjusted->holm), a.slope,
-                     number(a.sameSlope ? std::optional(*a.sameSlope) : std::nullopt));
+                     numberCell(row.adjusted->holm), a.slope,
+                     numberCell(a.sameSlope ? std::optional(*a.sameSlope) : std::nullopt));
+}
+
+std::string simulationCells(const StudyRow& row) {
+  if (!row.simulation) return ",,,,";
+  const SimulationRange& s = *row.simulation;
+  if (!s.area) return fmt::format(",{},,,", s.halfWidth);
+  return fmt::format(",{},{},{},{}", s.halfWidth, s.area->first, s.area->second, s.decided() ? "yes" : "no");
 }
 
 std::string summaryTable(const Study& study) {
@@ -57,15 +64,15 @@ std::string summaryTable(const Study& study) {
       "p_holm,g,g_lower,g_upper,rho_duration,rho_p,rho_n,partial_a,partial_b,baseline_difference,baseline_lower,"
       "baseline_upper,baseline_p,baseline_p_holm,baseline_slope,baseline_slope_p,coverage_warnings,role,p_benjamini_"
       "hochberg,supported,"
-      "worst_ranked_a,worst_ranked_b\n";
+      "worst_ranked_a,worst_ranked_b,simulation_half_width,first_larger_lower,first_larger_upper,simulation_decided\n";
   for (const StudyRow& row : study.rows) {
     text += fmt::format("{},{},{},{}", csvCell(row.checkpoint), csvCell(row.subject), csvCell(row.unit),
                         nameOf(row.direction));
     for (std::size_t g = 0; g < 2; ++g) {
       const GroupSummary& s = row.group[g];
-      text +=
-          fmt::format(",{},{},{},{},{},{},{},{}", csvCell(study.groups[g]), s.n, s.missing, number(s.mean),
-                      number(s.standardDeviation), number(s.lowerQuartile), number(s.median), number(s.upperQuartile));
+      text += fmt::format(",{},{},{},{},{},{},{},{}", csvCell(study.groups[g]), s.n, s.missing, numberCell(s.mean),
+                          numberCell(s.standardDeviation), numberCell(s.lowerQuartile), numberCell(s.median),
+                          numberCell(s.upperQuartile));
     }
     text += row.shift ? fmt::format(",{}", *row.shift) : ",";
     text += row.shiftInterval ? fmt::format(",{},{},{}", row.shiftInterval->lower, row.shiftInterval->upper,
@@ -74,16 +81,17 @@ std::string summaryTable(const Study& study) {
     text +=
         row.test ? fmt::format(",{},{},{}", row.test->u, row.test->p, row.test->exact ? "exact" : "asymptotic") : ",,,";
     text += row.effect ? fmt::format(",{},{}", row.effect->delta, row.effect->a) : ",,";
-    text += fmt::format(",{},{},{},{},{}", csvCell(row.test.reason()), number(row.publishedExpert),
-                        number(row.publishedNovice), study.heading, watermark(study));
+    text += fmt::format(",{},{},{},{},{}", csvCell(row.test.reason()), numberCell(row.publishedExpert),
+                        numberCell(row.publishedNovice), study.heading, watermark(study));
     text += hypothesisCells(row) + effectCells(row) + baselineCells(row);
     std::string warnings;
     for (const std::string& w : row.coverageWarnings) warnings += (warnings.empty() ? "" : "; ") + w;
-    text += fmt::format(",{},{},{},{},{},{}\n", csvCell(warnings), nameOf(row.role), number(row.benjaminiHochberg),
+    text += fmt::format(",{},{},{},{},{},{}", csvCell(warnings), nameOf(row.role), numberCell(row.benjaminiHochberg),
                         !row.supported   ? ""
                         : *row.supported ? "yes"
                                          : "no",
                         row.worstRanked[0], row.worstRanked[1]);
+    text += simulationCells(row) + "\n";
   }
   return text;
 }
@@ -128,8 +136,8 @@ std::string ratingsFile(const Study& study) {
         text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csvCell(report.name), report.version,
                             csvCell(item.key), csvCell(report.groups[g]),
                             !item.primaryGroup.empty() && item.primaryGroup == report.groups[g] ? "yes" : "", s.n,
-                            s.blank, number(s.lowerQuartile), number(s.median), number(s.upperQuartile), number(s.mean),
-                            number(item.published[g]), icc, watermark(study));
+                            s.blank, numberCell(s.lowerQuartile), numberCell(s.median), numberCell(s.upperQuartile),
+                            numberCell(s.mean), numberCell(item.published[g]), icc, watermark(study));
       }
     }
   }

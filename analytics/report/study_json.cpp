@@ -96,6 +96,15 @@ Json protocolJson(const Study& study) {
           {"deviations", p.deviations}};
 }
 
+Json simulationJson(const StudyRow& row) {
+  if (!row.simulation) return nullptr;
+  const SimulationRange& s = *row.simulation;
+  Json j{{"values", s.values}, {"with_interval", s.known}, {"half_width", s.halfWidth}};
+  j["first_larger"] = s.area ? Json{{"lower", s.area->first}, {"upper", s.area->second}} : Json(nullptr);
+  j["decided"] = s.area ? Json(s.decided()) : Json(nullptr);
+  return j;
+}
+
 Json rowJson(const Study& study, const StudyRow& row) {
   Json j{{"checkpoint", row.checkpoint},       {"subject", row.subject},   {"title", row.title},    {"unit", row.unit},
          {"direction", nameOf(row.direction)}, {"versions", row.versions}, {"origins", row.origins}};
@@ -138,6 +147,7 @@ Json rowJson(const Study& study, const StudyRow& row) {
   });
   j["at_one_baseline"] = row.adjusted ? adjustedJson(*row.adjusted) : Json(nullptr);
   j["coverage_warnings"] = row.coverageWarnings;
+  j["simulation"] = simulationJson(row);
   j["published"] = row.publishedExpert
                        ? Json{{"expert_mean", *row.publishedExpert}, {"novice_mean", *row.publishedNovice}}
                        : Json(nullptr);

@@ -39,6 +39,13 @@ void explainColumns(const Study& study, std::vector<std::string>& notes) {
                   correlated ? " rho: Spearman's correlation with the attempt's duration, over both groups." : ""));
   if (study.source == "cohort" && !correlated)
     notes.emplace_back("No correlation with the attempt's duration: durations are missing, too few, or all equal.");
+  if (any(study, [](const StudyRow& r) { return r.simulation.has_value(); })) {
+    notes.emplace_back(
+        "Uncertainty of the simulation: each attempt was run again in smaller steps, with a finer mesh and with other "
+        "assumed constants. half-width: of the values' intervals, their median. range of A: with every value of one "
+        "group at one end of its interval and every value of the other at the other end. decided: the same group is "
+        "ahead throughout. Figures that no simulation changes are left out.");
+  }
   if (any(study, [](const StudyRow& r) { return r.adjusted.has_value(); })) {
     notes.push_back(fmt::format(
         "difference: {} - {} at one baseline, analysis of covariance with HC3 errors, Student's t; n: those "

@@ -239,6 +239,17 @@ void fillRow(StudyRow& row, const StudySample& sample) {
   for (std::size_t g = 0; g < 2; ++g) summarise(row.group[g], row.values[g]);
 }
 
+void addSimulationRange(StudyRow& row, const StudySample& sample) {
+  std::array<std::vector<RangedValue>, 2> groups;
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (const StudyValue& v : sample.values[g]) {
+      const auto at = std::lower_bound(row.participants[g].begin(), row.participants[g].end(), v.participant);
+      groups[g].push_back({static_cast<std::size_t>(at - row.participants[g].begin()), v.value, v.interval});
+    }
+  }
+  row.simulation = simulationRange(groups);
+}
+
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
   const std::vector<double>&x = row.values[0], &y = row.values[1];
   const bool firstBetter = study.better == study.groups[0];

@@ -5,8 +5,10 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analytics/report/study.h"
@@ -29,8 +31,9 @@ std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoice
 /// One value of a participant's attempt.
 struct StudyValue {
   std::string participant;
-  std::size_t attempt = 0;  ///< number within the study, by time
-  double value = 0.0;       ///< in the display unit
+  std::size_t attempt = 0;                                 ///< number within the study, by time
+  double value = 0.0;                                      ///< in the display unit
+  std::optional<std::pair<double, double>> interval = {};  ///< of the simulation, in the display unit
 };
 
 /// One row's values by group.
@@ -50,6 +53,9 @@ void fillRow(StudyRow& row, const StudySample& sample);
 /// the row. Participants ranked behind all enter test, A and delta; shift and g use values only.
 /// @param duration participants' durations by group, empty where they are not known
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration);
+
+/// What the simulation's intervals say of the row, where values have any.
+void addSimulationRange(StudyRow& row, const StudySample& sample);
 
 /// Adjusts over the family of the protocol, or without one of the choices, says which it is, and turns warnings of rows
 /// into remarks.

@@ -133,6 +133,35 @@ ReportTable furtherTable(const Study& study) {
   return table;
 }
 
+/// Figures whose intervals are points are left out: nothing that is simulated changes them.
+ReportTable simulationTable(const Study& study) {
+  ReportTable table{"Uncertainty of the simulation",
+                    {{"checkpoint", Align::left},
+                     {"unit", Align::left},
+                     {"half-width", Align::right},
+                     {"A", Align::right},
+                     {"range of A", Align::right},
+                     {"", Align::left}},
+                    {}};
+  for (const StudyRow& row : study.rows) {
+    if (!row.simulation || hasNoValue(row)) continue;
+    const SimulationRange& s = *row.simulation;
+    if (s.known == s.values && s.halfWidth == 0.0 && s.decided()) continue;
+    const bool turned = row.hypothesis && *row.hypothesis == Hypothesis::firstSmaller;
+    std::string range = "-";
+    if (s.area) {
+      range = turned ? fmt::format("[{}, {}]", share(1.0 - s.area->second), share(1.0 - s.area->first))
+                     : fmt::format("[{}, {}]", share(s.area->first), share(s.area->second));
+    }
+    table.rows.push_back({rowName(row), row.unit, significant(s.halfWidth, 3),
+                          row.area ? share(row.area->value.a) : "-", range,
+                          !s.area       ? fmt::format("{} of {} values have an interval", s.known, s.values)
+                          : s.decided() ? "decided"
+                                        : "not decided by this simulation"});
+  }
+  return table;
+}
+
 ReportTable baselineTable(const Study& study) {
   ReportTable table{"At one baseline",
                     {{"outcome", Align::left},
@@ -187,7 +216,7 @@ bool hasNoValue(const StudyRow& row) { return row.group[0].n == 0 && row.group[1
 std::vector<ReportTable> studyTables(const Study& study) {
   std::vector<ReportTable> tables;
   for (ReportTable table : {hypothesesTable(study), valuesTable(study), comparisonTable(study), furtherTable(study),
-                            baselineTable(study)}) {
+                            simulationTable(study), baselineTable(study)}) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
   for (const FormReport& report : study.ratings) {

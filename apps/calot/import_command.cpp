@@ -110,7 +110,7 @@ int import(const ImportOptions& o) {
       std::cout << fmt::format("{}: {}, {}\n", file, o.cohort.empty() ? "shown" : result.how,
                                summaryOf(*result.motion));
       if (o.files.size() == 1 || o.cohort.empty()) {
-        analytics::printValues(result.values, std::cout);
+        analytics::printValues(result.values, {}, std::cout);
         std::cout << '\n';
       }
     }

@@ -21,7 +21,19 @@ const char* importedName(analytics::Imported imported) {
   return "";
 }
 
-nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values) {
+namespace {
+
+nlohmann::ordered_json intervalJson(const analytics::ValueInterval& i) {
+  using Json = nlohmann::ordered_json;
+  if (!i.lower) return {{"lower", nullptr}, {"upper", nullptr}, {"reason", i.reason}};
+  return Json{{"lower", *i.lower},           {"upper", *i.upper},           {"limit", i.limit()},
+              {"step_effect", i.stepEffect}, {"mesh_effect", i.meshEffect}, {"constants_spread", i.constantsSpread}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values,
+                              const std::vector<analytics::ValueInterval>& intervals) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const analytics::CheckpointValue& v : values) {
     nlohmann::ordered_json row = {{"name", v.name}, {"subject", v.subject}, {"version", v.version}};
@@ -34,6 +46,10 @@ nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& val
       row["reason"] = v.reason;
     }
     if (!v.note.empty()) row["note"] = v.note;
+    const auto interval = std::find_if(intervals.begin(), intervals.end(), [&](const analytics::ValueInterval& i) {
+      return i.name == v.name && i.subject == v.subject;
+    });
+    if (interval != intervals.end()) row["interval"] = intervalJson(*interval);
     list.push_back(row);
   }
   return list;

@@ -15,8 +15,9 @@ namespace calot::apps {
 /// "added", "unchanged", "extended".
 const char* importedName(analytics::Imported imported);
 
-/// A row for each value: its name, subject, version, number or the reason why there is none, filter.
-nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values);
+/// A row for each value: its name, subject, version, number or the reason why there is none, filter, interval.
+nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values,
+                              const std::vector<analytics::ValueInterval>& intervals = {});
 
 /// Adds --cohort, where values are stored, and --cutoff, with which they are only shown.
 /// @param[out] cutoff Hz; 0: not given

@@ -39,6 +39,34 @@ class Assess(program.ProgramTest):
             contents.append(content(cohort))
         self.assertEqual(*contents)
 
+    def test_uncertainty_is_stored_once(self):
+        cohort = self.path("c.db")
+        r = attempts()[0]
+        rows = json.loads(self.well("assess", "--json", "--uncertainty", r, "--cohort", cohort).out)
+        values = {(c["name"], c["subject"]): c for c in rows[0]["checkpoints"] if c["value"] is not None}
+        for value in values.values():
+            interval = value["interval"]
+            self.assertLessEqual(interval["lower"], value["value"], value)
+            self.assertLessEqual(value["value"], interval["upper"], value)
+        path, force = values["path-length", "left"]["interval"], values["force-mean", "left"]["interval"]
+        self.assertEqual(path["lower"], path["upper"], "hands move alike in every simulation")
+        self.assertLess(force["lower"], force["upper"])
+        self.assertGreater(force["constants_spread"], 0.0)
+        self.assertNotEqual(force["step_effect"], 0.0)
+        self.assertNotEqual(force["mesh_effect"], 0.0)
+        before = content(cohort)
+        again = json.loads(self.well("assess", "--json", "--uncertainty", r, "--cohort", cohort).out)
+        self.assertEqual(again[0]["checkpoints"], rows[0]["checkpoints"])
+        self.assertEqual(content(cohort), before)
+        fresh = self.path("threads.db")
+        one = json.loads(self.well("assess", "--json", "--uncertainty", "--threads", 1, r, "--cohort", fresh).out)
+        self.assertEqual(one[0]["checkpoints"], rows[0]["checkpoints"], "at every thread count")
+
+    def test_uncertainty_wants_a_cohort(self):
+        answer = calot("assess", "--uncertainty", "--cutoff", 6, attempts()[0])
+        self.assertEqual(answer.code, 2, answer)
+        self.assertIn("--cohort", answer.err)
+
     def test_values_are_those_of_the_observables(self):
         # Trajectory and duration, computed anew from what the recording says of itself.
         cohort = self.path("c.db")

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "analytics/uncertainty/scene_variants.h"
 #include "tests/accuracy/convergence/support/graded.h"
 
 namespace calot::analytics {
@@ -18,27 +19,14 @@ namespace {
 
 /// The same scene, divided otherwise in space and time.
 struct Variant {
-  double mesh = 1.0;  ///< tetrahedra of every organ, over those of the scene; fat's cubes by the next whole edge
+  double mesh = 1.0;  ///< tetrahedra of every organ, over those of the scene (redivided())
   std::uint32_t ticksPerStep = 10;
 
   [[nodiscard]] std::string name() const { return fmt::format("mesh x {}, {} ms", mesh, ticksPerStep); }
 };
 
-SceneDescription variantOf(const std::string& scene, const Variant& variant) {
-  SceneDescription description = sceneOf(scene);
-  description.ticksPerStep = variant.ticksPerStep;
-  for (OrganDescription& organ : description.organs) {
-    organ.tetrahedra = static_cast<std::uint32_t>(std::lround(variant.mesh * organ.tetrahedra));
-  }
-  for (FatDescription& fat : description.fat) {
-    fat.cellsPerCube =
-        static_cast<std::uint32_t>(std::max(1L, std::lround(fat.cellsPerCube / std::cbrt(variant.mesh))));
-  }
-  return description;
-}
-
 Graded run(const std::string& scene, const Variant& variant, const std::vector<TickSamples>& ticks) {
-  return graded(scene + ", " + variant.name(), variantOf(scene, variant), ticks);
+  return graded(scene + ", " + variant.name(), redivided(sceneOf(scene), variant.ticksPerStep, variant.mesh), ticks);
 }
 
 /// Table in the form of docs/accuracy.md: a line a checkpoint, its value in the last run and the relative difference

@@ -9,134 +9,15 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "analytics/uncertainty/scene_constants.h"
 #include "recorder/live/worker_pool.h"
 #include "tests/accuracy/convergence/support/graded.h"
 
 namespace calot::analytics {
 namespace {
-
-constexpr double change = 0.3;
-
-/// A constant, by its name in docs/materials.md.
-struct Constant {
-  std::string name;
-  std::function<bool(SceneDescription&, double)> multiply;  ///< false where the scene has none
-};
-
-OrganDescription* organOf(SceneDescription& scene, const std::string& name) {
-  const auto found =
-      std::find_if(scene.organs.begin(), scene.organs.end(), [&](const auto& o) { return o.name == name; });
-  return found == scene.organs.end() ? nullptr : &*found;
-}
-
-/// One of an organ.
-Constant ofOrgan(const std::string& organ, const std::string& name,
-                 const std::function<double&(OrganDescription&)>& of) {
-  return {fmt::format("organs.{}.{}", organ, name), [organ, of](SceneDescription& scene, double factor) {
-            OrganDescription* found = organOf(scene, organ);
-            if (found == nullptr || of(*found) == 0.0) return false;
-            of(*found) *= factor;
-            return true;
-          }};
-}
-
-/// One of every element of a list.
-template <class Part>
-Constant ofEach(const std::string& name, std::vector<Part> SceneDescription::*list,
-                const std::function<double&(Part&)>& of) {
-  return {name, [list, of](SceneDescription& scene, double factor) {
-            for (Part& part : scene.*list) of(part) *= factor;
-            return !(scene.*list).empty();
-          }};
-}
-
-/// One of both hands.
-Constant ofHands(const std::string& name, double HandDescription::*member) {
-  return {"hands.*." + name, [member](SceneDescription& scene, double factor) {
-            for (HandDescription& hand : scene.hands) hand.*member *= factor;
-            return true;
-          }};
-}
-
-Constant ofCautery(const std::string& name, double CauteryDescription::*member) {
-  return {"cautery." + name, [member](SceneDescription& scene, double factor) {
-            scene.cautery.*member *= factor;
-            return true;
-          }};
-}
-
-std::vector<Constant> constants() {
-  using Organ = OrganDescription;
-  using Bed = ConnectiveDescription;
-  using Vessel = VesselDescription;
-  using Fat = FatDescription;
-  std::vector<Constant> all;
-  for (const char* organ : {"liver", "gallbladder"}) {
-    all.push_back(ofOrgan(organ, "material.youngModulus", [](Organ& o) -> double& { return o.material.youngModulus; }));
-    all.push_back(
-        ofOrgan(organ, "material.stiffnessDamping", [](Organ& o) -> double& { return o.material.stiffnessDamping; }));
-    all.push_back(ofOrgan(organ, "material.density", [](Organ& o) -> double& { return o.material.density; }));
-    all.push_back(ofOrgan(organ, "friction", [](Organ& o) -> double& { return o.friction; }));
-    all.push_back(ofOrgan(organ, "burnThrough", [](Organ& o) -> double& { return o.burnThrough; }));
-  }
-  // Times 0.5 - nu, which compressibility goes with: nu itself may not reach one half.
-  all.push_back({"organs.*.material.poissonRatio (0.5 - nu)", [](SceneDescription& scene, double factor) {
-                   for (Organ& organ : scene.organs) {
-                     organ.material.poissonRatio = 0.5 - factor * (0.5 - organ.material.poissonRatio);
-                   }
-                   return true;
-                 }});
-  all.push_back(ofEach<Bed>("connective.*.stiffness", &SceneDescription::connective,
-                            [](Bed& b) -> double& { return b.stiffness; }));
-  all.push_back(
-      ofEach<Bed>("connective.*.damping", &SceneDescription::connective, [](Bed& b) -> double& { return b.damping; }));
-  // With the separation at which it is torn, 2 G_c / sigma, as it was.
-  all.push_back({"connective.*.strength", [](SceneDescription& scene, double factor) {
-                   for (Bed& bed : scene.connective) {
-                     bed.strength *= factor;
-                     bed.fractureEnergy *= factor;
-                   }
-                   return !scene.connective.empty();
-                 }});
-  all.push_back(ofEach<Bed>("connective.*.fadeTime", &SceneDescription::connective,
-                            [](Bed& b) -> double& { return b.fadeTime; }));
-  all.push_back(ofEach<Vessel>("vessels.*.material.youngModulus", &SceneDescription::vessels,
-                               [](Vessel& v) -> double& { return v.material.youngModulus; }));
-  all.push_back(
-      ofEach<Vessel>("vessels.*.wall", &SceneDescription::vessels, [](Vessel& v) -> double& { return v.wall; }));
-  all.push_back(ofEach<Vessel>("vessels.*.ultimateStrain", &SceneDescription::vessels,
-                               [](Vessel& v) -> double& { return v.ultimateStrain; }));
-  all.push_back(ofEach<Vessel>("vessels.*.burnThrough", &SceneDescription::vessels,
-                               [](Vessel& v) -> double& { return v.burnThrough; }));
-  all.push_back(ofEach<Vessel>("vessels.*.friction", &SceneDescription::vessels,
-                               [](Vessel& v) -> double& { return v.friction; }));
-  all.push_back(ofEach<Fat>("fat.*.material.youngModulus", &SceneDescription::fat,
-                            [](Fat& f) -> double& { return f.material.youngModulus; }));
-  all.push_back(ofEach<Fat>("fat.*.friction", &SceneDescription::fat, [](Fat& f) -> double& { return f.friction; }));
-  all.push_back({"fat.*.attachments.*.stiffness", [](SceneDescription& scene, double factor) {
-                   for (Fat& fat : scene.fat) {
-                     for (FatAttachmentDescription& attachment : fat.attachments) attachment.stiffness *= factor;
-                   }
-                   return !scene.fat.empty();
-                 }});
-  all.push_back(ofEach<RetractionDescription>("retraction.*.stiffness", &SceneDescription::retraction,
-                                              [](RetractionDescription& r) -> double& { return r.stiffness; }));
-  all.push_back(ofHands("couplingStiffness", &HandDescription::couplingStiffness));
-  all.push_back(ofHands("slipForce", &HandDescription::slipForce));
-  all.push_back(ofHands("tearForce", &HandDescription::tearForce));
-  all.push_back(ofCautery("power", &CauteryDescription::power));
-  all.push_back(ofCautery("reach", &CauteryDescription::reach));
-  all.push_back(ofCautery("recession", &CauteryDescription::recession));
-  all.push_back(ofCautery("coagulationPace", &CauteryDescription::coagulationPace));
-  all.push_back(ofCautery("cutChar", &CauteryDescription::cutChar));
-  all.push_back(ofCautery("spot", &CauteryDescription::spot));
-  all.push_back(ofCautery("charTime", &CauteryDescription::charTime));
-  return all;
-}
 
 /// Of the paper's Table 2, with the torn share beside the bed's remainder, or of force.
 bool isShown(const std::string& name) {
@@ -163,10 +44,10 @@ Sensitivity sensitivity(const std::string& scene, double seconds, const std::vec
   const std::vector<TickSamples> ticks = performedTicks(scene, seconds);
   Sensitivity out;
   std::vector<std::pair<std::string, SceneDescription>> runs{{scene, sceneOf(scene)}};
-  for (const Constant& constant : constants()) {
+  for (const SceneConstant& constant : sceneConstants()) {
     if (!names.empty() && std::find(names.begin(), names.end(), constant.name) == names.end()) continue;
     bool there = true;
-    for (const double factor : {1.0 - change, 1.0 + change}) {
+    for (const double factor : {1.0 - assumedChange, 1.0 + assumedChange}) {
       SceneDescription description = sceneOf(scene);
       there = there && constant.multiply(description, factor);
       if (there) runs.emplace_back(fmt::format("{}, {} x {}", scene, constant.name, factor), std::move(description));

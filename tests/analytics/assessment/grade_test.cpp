@@ -191,6 +191,42 @@ TEST_F(Grades, weakOpenAndMissingFigures) {
   EXPECT_EQ(graded(0, norm).remarks, std::vector<std::string>{"The attempt is itself a member of the norm."});
 }
 
+/// A mark inside a figure's interval is not decided by the simulation, whatever the norm's own interval.
+TEST_F(Grades, aMarkInsideTheIntervalIsNotDecided) {
+  const Norm norm = made();
+  const double cut = *norm.checkpoints[0].cut;
+  const auto withInterval = [&](unsigned n, double lower, double upper) {
+    add(n, fmt::format("U{}", n), "", figures(100.0, 2.0));
+    cohort_.storeIntervals(uuidOf(n), {{"path-length", "left", 2, 100.0, 0, 0, 1.0, lower, upper, ""},
+                                       {"path-length", "right", 2, 2.0, 0, 0, 0.0, 2.0, 2.0, ""}});
+    return graded(n, norm);
+  };
+  const Grade decided = withInterval(40, cut + 1.0, 150.0);
+  ASSERT_TRUE(decided.figures[0].interval);
+  EXPECT_FALSE(decided.figures[0].undecided);
+  EXPECT_TRUE(decided.certain);
+  const Grade undecided = withInterval(41, cut - 1.0, 150.0);
+  EXPECT_TRUE(undecided.figures[0].undecided);
+  EXPECT_FALSE(undecided.passed) << "the value itself still counts";
+  EXPECT_FALSE(undecided.certain);
+  EXPECT_NE(undecided.verdict.find("not decided by this simulation"), std::string::npos) << undecided.verdict;
+  std::ostringstream sheet;
+  printGrade(undecided, sheet);
+  EXPECT_NE(sheet.str().find("no, undecided"), std::string::npos) << sheet.str();
+  EXPECT_TRUE(nlohmann::json::parse(gradeJson(undecided))["figures"][0]["undecided"].get<bool>());
+}
+
+TEST_F(Grades, aCriticalErrorThatOnlySomeSimulationsSeeIsNotDecided) {
+  const Norm norm = made();
+  add(42, "U", "", figures(50.0, 2.0, 1.0));
+  EXPECT_TRUE(graded(42, norm).certain);
+  const CheckpointValue errors = cohort_.values(uuidOf(42)).back();
+  ASSERT_EQ(errors.name, "critical-errors");
+  cohort_.storeIntervals(uuidOf(42), {{errors.name, "", errors.version, 1.0, 0, 0, 0.4, 0.2, 1.8, ""}});
+  EXPECT_FALSE(graded(42, norm).passed);
+  EXPECT_FALSE(graded(42, norm).certain);
+}
+
 TEST_F(Grades, comparesOnlyWhatCompares) {
   const Norm norm = made();
   AttemptRecord other = humanAttempt(30, "T9");

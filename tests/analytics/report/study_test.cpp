@@ -515,5 +515,44 @@ TEST(TextTable, writesSignificantDigits) {
   EXPECT_EQ(pText(0.0524259023), "0.0524");
 }
 
+/// Values of groups that lie apart by 2: decided with intervals of half that, not decided with three times that.
+TEST(Study, saysWhatTheSimulationDoesNotDecide) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  unsigned n = 0;
+  std::vector<std::string> left;
+  for (const char* who : {"skilled", "unskilled"}) {
+    for (const double t : {1.0, 2.0, 3.0}) {
+      const double value = std::string(who) == "skilled" ? t : t + 4.0;
+      const std::string uuid = uuidOf(n);
+      database.storeAttempt(attemptOf(n++, who), valuesOf(value, value / 1000));
+      if (n == 6) break;
+      database.storeIntervals(uuid, {{"elapsed-time", "", 1, value, 0, 0, 0.25, value - 0.5, value + 0.5, ""},
+                                     {"path-length", "left", 2, value / 1000, 0, 0, 0.0015, value / 1000 - 0.003,
+                                      value / 1000 + 0.003, ""}});
+    }
+  }
+  const Study partly = makeStudy(database, performers);
+  ASSERT_TRUE(rowOf(partly, "elapsed-time", "").simulation);
+  EXPECT_EQ(rowOf(partly, "elapsed-time", "").simulation->known, 5U);
+  EXPECT_FALSE(rowOf(partly, "elapsed-time", "").simulation->area) << "of one attempt nobody knows";
+  EXPECT_NE(textOf(partly).find("5 of 6 values have an interval"), std::string::npos) << textOf(partly);
+  database.storeIntervals(uuidOf(5), {{"elapsed-time", "", 1, 7.0, 0, 0, 0.25, 6.5, 7.5, ""},
+                                      {"path-length", "left", 2, 0.007, 0, 0, 0.0015, 0.004, 0.010, ""}});
+  const Study study = makeStudy(database, performers);
+  const SimulationRange& time = *rowOf(study, "elapsed-time", "").simulation;
+  EXPECT_DOUBLE_EQ(time.halfWidth, 0.5);
+  EXPECT_TRUE(time.decided());
+  EXPECT_DOUBLE_EQ(time.area->second, 0.0) << "no skilled one is slower than an unskilled one";
+  const SimulationRange& path = *rowOf(study, "path-length", "left").simulation;
+  EXPECT_NEAR(path.halfWidth, 3.0, 1e-9) << "mm";
+  EXPECT_DOUBLE_EQ(path.area->first, 0.0);
+  EXPECT_GT(path.area->second, 0.5) << "4, 5, 6 against 2, 3, 4";
+  EXPECT_FALSE(path.decided());
+  EXPECT_NE(textOf(study).find("not decided by this simulation"), std::string::npos) << textOf(study);
+  EXPECT_NE(studyJson(study).find("\"decided\": false"), std::string::npos);
+  EXPECT_FALSE(rowOf(study, "path-length", "right").simulation) << "has no value";
+}
+
 }  // namespace
 }  // namespace calot::analytics

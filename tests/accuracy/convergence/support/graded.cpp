@@ -3,12 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <span>
-
-#include "analytics/checkpoints/collector.h"
+#include "analytics/uncertainty/uncertainty.h"
 #include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/session.h"
 #include "tests/bench/performed.h"
 
 namespace calot::analytics {
@@ -32,23 +29,12 @@ Graded graded(const std::string& name, const SceneDescription& scene, const std:
     ADD_FAILURE() << name << ": " << built.error;
     return out;
   }
-  const Model& model = *built.model;
-  for (const OrganModel& organ : model.organs()) out.tetrahedra += organ.solid.tetrahedra().size();
-  SerialExecutor executor;
-  recorder::Session session(model, 1, executor);
   recorder::Provenance by;
   by.profile = "skilled";
-  CheckpointCollector collector(recorder::makeHeader(model, {}, by, {}), model.scene());
-  session.join(collector);
-  const std::size_t every = scene.ticksPerStep;
-  std::vector<recorder::TickOutcome> outcome(every);
-  for (std::size_t begin = 0; begin + every <= ticks.size(); begin += every) {
-    const std::span<const TickSamples> step(ticks.data() + begin, every);
-    for (std::size_t i = 0; i < every; ++i) outcome[i] = session.tick(step[i]);
-    session.step(step, outcome, 0.0F);
-  }
-  session.end(recorder::Outcome::completed);
-  for (const CheckpointValue& value : collector.values()) {
+  const recorder::AttemptInputs inputs{ticks, {}, recorder::Outcome::completed, 1};
+  OpenLoopRun run = runIn(scene, recorder::makeHeader(*built.model, {}, by, {}), inputs, name);
+  out.tetrahedra = run.tetrahedra;
+  for (const CheckpointValue& value : run.values) {
     out.values[value.name + (value.subject.empty() ? "" : " " + value.subject)] = value;
   }
   return out;
