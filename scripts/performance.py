@@ -117,6 +117,50 @@ def diagram(run, out):
     return True
 
 
+def grade_diagram(run, out):
+    """A panel a figure: error against its extrapolated limit over cost, a mark a mesh, joined over steps."""
+    points = {}
+    for name, value in run.items():
+        match = re.fullmatch(r"grade\.([\w-]+)\.m([\d.]+)\.h(\d+)\.t([\d.]+)\.error\.(.*)", name)
+        if match:
+            scene, mesh, step, tolerance, figure = match.groups()
+            cost = run.get(f"grade.{scene}.m{mesh}.h{step}.t{tolerance}.ms")
+            points.setdefault((scene, figure), []).append((float(mesh), int(step), float(tolerance), cost, value))
+    if not points:
+        return False
+    import matplotlib
+    matplotlib.use("svg")
+    matplotlib.rcParams["svg.hashsalt"] = "calot"
+    import matplotlib.pyplot as plot
+    columns = 4
+    rows = -(-len(points) // columns)
+    figure, axes = plot.subplots(rows, columns, figsize=(12, 2.5 * rows), layout="constrained", squeeze=False, sharex=True)
+    colours = {0.5: "#56b4e9", 1.0: "#0072b2", 2.0: "#009e73", 4.0: "#d55e00"}
+    for panel, ((scene, name), data) in zip(axes.flat, sorted(points.items())):
+        for mesh in sorted({p[0] for p in data}):
+            line = sorted((p[3], 100 * p[4]) for p in data if p[0] == mesh and p[2] == 1)
+            panel.semilogx([p[0] for p in line], [p[1] for p in line], "o-", markersize=4, color=colours.get(mesh),
+                           label=f"{mesh:g} times the elements" if panel is axes.flat[0] else None)
+        others = [(p[3], 100 * p[4]) for p in data if p[2] != 1]
+        panel.semilogx([p[0] for p in others], [p[1] for p in others], "x", color="#999999", markersize=5,
+                       label="other tolerances" if panel is axes.flat[0] else None)
+        chosen = [p for p in data if p[:3] == (1.0, 10, 1.0)]
+        panel.semilogx([p[3] for p in chosen], [100 * p[4] for p in chosen], "o", markersize=9, fillstyle="none", color="black",
+                       label="the scene's default" if panel is axes.flat[0] else None)
+        panel.axhline(10, color="black", linewidth=0.6, linestyle=":")
+        panel.set_title(f"{scene}: {name}", fontsize=8)
+        panel.set_ylim(bottom=0)
+        panel.tick_params(labelsize=7)
+        panel.grid(True, which="major", alpha=0.3)
+    for panel in list(axes.flat)[len(points):]:
+        panel.set_visible(False)
+    figure.supxlabel("CPU time for 10 ms of the attempt (ms)")
+    figure.supylabel("error against the extrapolated limit (%)")
+    figure.legend(loc="outside upper center", ncols=6, fontsize=8)
+    figure.savefig(out, metadata={"Date": None})
+    return True
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("run", nargs=2, type=pathlib.Path)
@@ -134,6 +178,7 @@ def main():
     after = rest.split(END, 1)[1]
     page.write_text(f"{before}{BEGIN}\n\n{table(runs)}\n\n{END}{after}", encoding="utf-8")
     diagram(runs[1], arguments.root / "docs/pictures/performance-precision.svg")
+    grade_diagram(runs[1], arguments.root / "docs/pictures/performance-grade.svg")
     missed = [name for name, _, _, bound in HEADLINES if any(name in run and not meets(run[name], bound) for run in runs)]
     print(f"performance: {page.name} written; bounds missed: {', '.join(missed) if missed else 'none'}")
 

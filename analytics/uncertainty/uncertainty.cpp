@@ -49,19 +49,22 @@ std::uint64_t tetrahedraOf(const Model& model) {
 
 }  // namespace
 
-OpenLoopRun runIn(const SceneDescription& scene, const recorder::AttemptHeader& header,
-                  const recorder::AttemptInputs& inputs, const std::string& what) {
-  Model::Built built = Model::build(scene);
-  if (!built.model) throw Error(ErrorKind::refused, fmt::format("{}: {}", what, built.error));
-  const Model& model = *built.model;
+OpenLoopRun runIn(const Model& model, const recorder::AttemptHeader& header, const recorder::AttemptInputs& inputs) {
   recorder::AttemptHeader divided = header;
-  divided.ticksPerStep = scene.ticksPerStep;
+  divided.ticksPerStep = model.scene().ticksPerStep;
   divided.stepResultVersion = stepResultVersion;
   CheckpointCollector collector(divided, model.scene());
   SerialExecutor executor;
   const std::array<recorder::Observer*, 1> observers{&collector};
   recorder::runOpenLoop(model, inputs, observers, executor);
   return {collector.values(), tetrahedraOf(model)};
+}
+
+OpenLoopRun runIn(const SceneDescription& scene, const recorder::AttemptHeader& header,
+                  const recorder::AttemptInputs& inputs, const std::string& what) {
+  const Model::Built built = Model::build(scene);
+  if (!built.model) throw Error(ErrorKind::refused, fmt::format("{}: {}", what, built.error));
+  return runIn(*built.model, header, inputs);
 }
 
 std::vector<ValueInterval> estimateUncertainty(const SceneDescription& scene, const recorder::AttemptHeader& header,

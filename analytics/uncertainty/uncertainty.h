@@ -19,7 +19,9 @@ struct OpenLoopRun {
   std::uint64_t tetrahedra = 0;  ///< of all organs
 };
 
-/// @param header of the recording; its division into steps is the scene's
+/// On the caller's thread. @param header of the recording; its division into steps is the scene's
+OpenLoopRun runIn(const Model& model, const recorder::AttemptHeader& header, const recorder::AttemptInputs& inputs);
+
 /// @throws Error (refused) with `what` where the scene cannot be built.
 OpenLoopRun runIn(const SceneDescription& scene, const recorder::AttemptHeader& header,
                   const recorder::AttemptInputs& inputs, const std::string& what);

@@ -106,7 +106,8 @@ void AttemptsPage::buildDetails(QBoxLayout& layout) {
   banner_ = new AttemptBanner;
   layout.addWidget(banner_);
   details_ = makeTable(checkpoints_, "checkpoints", "Checkpoints of the selected attempt");
-  setWidths(*details_, {330, 110, 170, 0, 0, 140, 150, 110, 70});
+  setWidths(*details_, {330, 110, 170, 150, 0, 0, 140, 150, 110, 70});
+  details_->hideColumn(CheckpointTableModel::intervalColumn);
   details_->hideColumn(CheckpointTableModel::normColumn);
   details_->hideColumn(CheckpointTableModel::momentColumn);
   // The longest words are a window's.
@@ -179,7 +180,8 @@ void AttemptsPage::showSelected() {
   }
   banner_->showAttempt(*attempt);
   try {
-    checkpoints_.setValues(document_->values(attempt->uuid));
+    checkpoints_.setValues(document_->values(attempt->uuid), document_->intervals(attempt->uuid));
+    details_->setColumnHidden(CheckpointTableModel::intervalColumn, !checkpoints_.hasIntervals());
   } catch (const Error& error) {
     checkpoints_.setValues({});
     emit problem(QString::fromStdString(problemText(error)));

@@ -33,18 +33,43 @@ QString momentText(const analytics::Moment& moment) {
       .arg(QString::fromStdString(timeText(moment.begin)), QLocale().toString(std::lround(100.0 * moment.share)));
 }
 
+double factorOf(const analytics::CheckpointValue& value) {
+  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
+  return definition != nullptr ? definition->displayFactor : 1.0;
+}
+
+QString intervalText(const analytics::ValueInterval& interval, double factor) {
+  if (!interval.lower) return "not known";
+  if (*interval.lower == *interval.upper) return "exact";
+  return QString::fromUtf8("%1 to %2").arg(numberText(*interval.lower * factor), numberText(*interval.upper * factor));
+}
+
+QString intervalToolTip(const analytics::ValueInterval& interval, double factor) {
+  if (!interval.lower) return "No interval: " + QString::fromStdString(interval.reason) + ".";
+  if (*interval.lower == *interval.upper)
+    return "The same in smaller steps, with a finer mesh and with other assumed constants.";
+  return QString(
+             "Where the value may lie for an exact simulation with the right constants.\nIn steps of length zero: "
+             "%1; with elements of size zero: %2 (changes, extrapolated)\nSpread by assumed constants: %3")
+      .arg(numberText(interval.stepEffect * factor), numberText(interval.meshEffect * factor),
+           numberText(interval.constantsSpread * factor));
+}
+
 QString standingText(const FigureStanding& standing) {
   QString text;
   if (standing.passed) text = *standing.passed ? QString::fromUtf8("✓ passes") : QString::fromUtf8("▼ falls short");
+  if (standing.undecided) text += QString::fromUtf8(" (undecided)");
   if (standing.percentile) text += QString(text.isEmpty() ? "P %1" : ", P %1").arg(std::lround(*standing.percentile));
   return text;
 }
 
 }  // namespace
 
-void CheckpointTableModel::setValues(std::vector<analytics::CheckpointValue> values) {
+void CheckpointTableModel::setValues(std::vector<analytics::CheckpointValue> values,
+                                     std::vector<analytics::ValueInterval> intervals) {
   beginResetModel();
   values_ = std::move(values);
+  intervals_ = std::move(intervals);
   standings_.clear();
   moments_.clear();
   momentsText_.clear();
@@ -69,6 +94,14 @@ void CheckpointTableModel::setMomentsText(const QString& text) {
 const FigureStanding* CheckpointTableModel::standing(int row) const { return entryOf(standings_, value(row)); }
 const analytics::FigureMoments* CheckpointTableModel::moments(int row) const { return entryOf(moments_, value(row)); }
 
+const analytics::ValueInterval* CheckpointTableModel::interval(int row) const {
+  const auto of = [&](const analytics::ValueInterval& i) {
+    return i.name == value(row).name && i.subject == value(row).subject;
+  };
+  const auto at = std::find_if(intervals_.begin(), intervals_.end(), of);
+  return at == intervals_.end() ? nullptr : &*at;
+}
+
 int CheckpointTableModel::rowCount(const QModelIndex& parent) const {
   return parent.isValid() ? 0 : static_cast<int>(values_.size());
 }
@@ -84,6 +117,8 @@ QString CheckpointTableModel::text(int row, int column) const {
       return shown.subject.empty() ? QStringLiteral("attempt") : QString::fromStdString(shown.subject);
     case valueColumn:
       return valueText(shown) + (shown.note.empty() ? "" : " *");
+    case intervalColumn:
+      return interval(row) != nullptr ? intervalText(*interval(row), factorOf(shown)) : QString();
     case normColumn:
       return standing(row) != nullptr ? standingText(*standing(row)) : QString();
     case momentColumn:
@@ -114,6 +149,8 @@ QString CheckpointTableModel::toolTip(int row, int column) const {
                       numberText(place->band->p50), numberText(place->band->p90));
     return tip;
   }
+  if (const analytics::ValueInterval* found = interval(row); column == intervalColumn && found != nullptr)
+    return intervalToolTip(*found, factorOf(shown));
   if (const analytics::FigureMoments* found = moments(row); column == momentColumn && found != nullptr) {
     if (found->moments.empty()) return QString::fromStdString(found->none);
     QStringList lines{"Most of it came about here; each click goes to the next:"};
@@ -138,6 +175,7 @@ QVariant CheckpointTableModel::data(const QModelIndex& index, int role) const {
     case Qt::ToolTipRole:
       return toolTip(row, column);
     case Qt::TextAlignmentRole:
+      if (column == intervalColumn) return QVariant::fromValue(Qt::Alignment(Qt::AlignVCenter | Qt::AlignRight));
       if (column == valueColumn)
         return QVariant::fromValue(Qt::Alignment(Qt::AlignVCenter | (missing ? Qt::AlignLeft : Qt::AlignRight)));
       return {};
@@ -152,8 +190,9 @@ QVariant CheckpointTableModel::data(const QModelIndex& index, int role) const {
 }
 
 QVariant CheckpointTableModel::headerData(int section, Qt::Orientation orientation, int role) const {
-  static constexpr const char* titles[columnTotal] = {"Checkpoint", "Of",     "Value",  "In the norm", "Worst moment",
-                                                      "Direction",  "Window", "Origin", "Version"};
+  static constexpr const char* titles[columnTotal] = {"Checkpoint",  "Of",           "Value",     "Simulation",
+                                                      "In the norm", "Worst moment", "Direction", "Window",
+                                                      "Origin",      "Version"};
   if (orientation != Qt::Horizontal || role != Qt::DisplayRole || section < 0 || section >= columnTotal) return {};
   return QString(titles[section]);
 }

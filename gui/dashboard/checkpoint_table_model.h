@@ -6,6 +6,7 @@
 
 #include "analytics/assessment/moments.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/uncertainty/value_interval.h"
 #include "gui/dashboard/figure_standing.h"
 
 namespace calot::gui {
@@ -19,8 +20,9 @@ class CheckpointTableModel : public QAbstractTableModel {
     nameColumn,
     subjectColumn,
     valueColumn,
-    normColumn,    ///< drawn by a BandDelegate
-    momentColumn,  ///< when it got worst
+    intervalColumn,  ///< of the simulation
+    normColumn,      ///< drawn by a BandDelegate
+    momentColumn,    ///< when it got worst
     directionColumn,
     windowColumn,
     originColumn,
@@ -34,7 +36,8 @@ class CheckpointTableModel : public QAbstractTableModel {
 
   using QAbstractTableModel::QAbstractTableModel;
   /// Standings and moments of former values are gone.
-  void setValues(std::vector<analytics::CheckpointValue> values);
+  void setValues(std::vector<analytics::CheckpointValue> values, std::vector<analytics::ValueInterval> intervals = {});
+  [[nodiscard]] bool hasIntervals() const { return !intervals_.empty(); }
   void setStandings(std::vector<FigureStanding> standings);
   void setMoments(std::vector<analytics::FigureMoments> moments);
   /// What the momentColumn says while moments are being looked for, or why there are none at all.
@@ -56,7 +59,10 @@ class CheckpointTableModel : public QAbstractTableModel {
   [[nodiscard]] QString text(int row, int column) const;
   [[nodiscard]] QString toolTip(int row, int column) const;
 
+  [[nodiscard]] const analytics::ValueInterval* interval(int row) const;  ///< or null
+
   std::vector<analytics::CheckpointValue> values_;
+  std::vector<analytics::ValueInterval> intervals_;
   std::vector<FigureStanding> standings_;
   std::vector<analytics::FigureMoments> moments_;
   QString momentsText_;

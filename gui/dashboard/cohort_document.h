@@ -23,6 +23,10 @@ class CohortDocument {
     return database_.values(uuid);
   }
   /// @throws calot::Error
+  [[nodiscard]] std::vector<analytics::ValueInterval> intervals(const std::string& uuid) const {
+    return database_.intervals(uuid);
+  }
+  /// @throws calot::Error
   [[nodiscard]] std::vector<analytics::AttemptValue> allValues() const { return database_.allValues(); }
   [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
   /// Read when they are first asked for. @throws calot::Error

@@ -25,7 +25,7 @@ FigurePanel::FigurePanel(QWidget* parent)
       figureTable_(makeTable(figures_, "attempt-checkpoints", "Checkpoints of the attempt")),
       eventTable_(makeTable(events_, "events", "Events of the attempt")) {
   figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
-  setWidths(*figureTable_, {188, 76, 96, 226, 110, 130, 460, 100, 60});
+  setWidths(*figureTable_, {188, 76, 96, 130, 226, 110, 130, 460, 100, 60});
   wrapWords(*figureTable_);
   setWidths(*eventTable_, {80});
   auto* tabs = new QTabWidget;
@@ -69,11 +69,14 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
   events_.setEvents({});
   try {
     values_ = document_->values(attempt.uuid);
+    intervals_ = document_->intervals(attempt.uuid);
   } catch (const Error& error) {
     values_.clear();
+    intervals_.clear();
     emit problem(QString::fromStdString(problemText(error)));
   }
-  figures_.setValues(values_);
+  figures_.setValues(values_, intervals_);
+  figureTable_->setColumnHidden(CheckpointTableModel::intervalColumn, !figures_.hasIntervals());
   {
     const QSignalBlocker quiet(norm_);
     norm_->clear();
@@ -89,6 +92,7 @@ void FigurePanel::clear() {
   attempt_.reset();
   wanted_.reset();
   values_.clear();
+  intervals_.clear();
   figures_.setValues({});
   events_.setEvents({});
   {
@@ -114,7 +118,7 @@ void FigurePanel::showStanding() {
     figures_.setStandings({});
     return;
   }
-  const AttemptStanding standing = standingOf(*attempt_, values_, *norms[static_cast<std::size_t>(at)]);
+  const AttemptStanding standing = standingOf(*attempt_, values_, *norms[static_cast<std::size_t>(at)], intervals_);
   verdict_->setText(QString::fromStdString(standing.verdict));
   figures_.setStandings(standing.figures);
 }

@@ -49,6 +49,7 @@ class FigurePanel : public QWidget {
   std::shared_ptr<const CohortDocument> document_;
   std::optional<analytics::AttemptRow> attempt_;
   std::vector<analytics::CheckpointValue> values_;
+  std::vector<analytics::ValueInterval> intervals_;
   std::optional<std::pair<std::string, std::string>> wanted_;  ///< figure to go to when its moments are known
   CheckpointTableModel figures_;
   EventTableModel events_;

@@ -33,10 +33,13 @@ std::optional<FigureStanding::Band> bandOf(const std::vector<double>& sorted, do
 void judge(FigureStanding& standing, const analytics::GradedFigure& figure) {
   standing.passed = figure.passed;
   standing.open = figure.open;
+  standing.undecided = figure.undecided;
   if (figure.rank) standing.percentile = *figure.rank;
   if (figure.passed) {
     standing.explanation = *figure.passed ? "On the passing side of the norm's cut." : "Falls short of the norm's cut.";
     if (figure.open) standing.explanation += " Within the cut's interval: another norm might judge otherwise.";
+    if (figure.undecided)
+      standing.explanation += " Not decided by this simulation: the cut lies within the value's interval.";
   } else if (!figure.missing.empty()) {
     standing.explanation = "Not judged: " + figure.missing + ".";
   }
@@ -63,7 +66,7 @@ std::vector<const analytics::Norm*> normsFor(const analytics::AttemptRow& attemp
 }
 
 AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
-                           const analytics::Norm& norm) {
+                           const analytics::Norm& norm, const std::vector<analytics::ValueInterval>& intervals) {
   AttemptStanding standing;
   standing.norm = fmt::format("{} version {}", norm.name, norm.version);
   std::optional<analytics::Grade> grade;
@@ -71,7 +74,13 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
     // Alone: how the participant's attempts went over time is the trainee page's.
     std::vector<analytics::AttemptValue> own;
     own.reserve(values.size());
-    for (const analytics::CheckpointValue& value : values) own.push_back({attempt.uuid, value});
+    for (const analytics::CheckpointValue& value : values) {
+      const auto of = [&](const analytics::ValueInterval& i) {
+        return i.name == value.name && i.subject == value.subject;
+      };
+      const auto at = std::find_if(intervals.begin(), intervals.end(), of);
+      own.push_back({attempt.uuid, value, at == intervals.end() ? std::nullopt : std::optional(*at)});
+    }
     grade = analytics::gradeAttempt(attempt, {attempt}, own, norm, false, "this cohort");
     standing.verdict = grade->verdict;
     standing.judged = true;

@@ -22,6 +22,7 @@ struct FigureStanding {
   std::optional<double> percentile;  ///< 0 to 100, of the competent; 100: none of them was better
   std::optional<bool> passed;
   bool open = false;        ///< the value lies within the interval of the cut
+  bool undecided = false;   ///< the cut lies within the simulation's interval of the value
   std::string explanation;  ///< sentences for a person
 };
 
@@ -40,6 +41,6 @@ std::vector<const analytics::Norm*> normsFor(const analytics::AttemptRow& attemp
 
 /// An attempt that did not verify, or is not whole, is not judged: the verdict then says why, and the bands stand.
 AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
-                           const analytics::Norm& norm);
+                           const analytics::Norm& norm, const std::vector<analytics::ValueInterval>& intervals = {});
 
 }  // namespace calot::gui

@@ -25,6 +25,7 @@ void registerRecordings();  ///< recording: what it costs the loop; replay and s
 
 void registerAttemptGrowth();  ///< growth/attempt: to 45 minutes of it
 void registerPrice();          ///< price, memory: the boxes without the determinism contract; what they take
+void registerGradeError();     ///< grade: figures against their limits over meshes, steps and tolerances
 void registerRoofline();       ///< roofline: the solver's kernels against what the machine can do
 
 inline void registerAll() {
@@ -46,6 +47,7 @@ inline void registerAll() {
   registerRecordings();
   registerAttemptGrowth();
   registerPrice();
+  registerGradeError();
   registerRoofline();
 }
 

@@ -41,14 +41,14 @@ class Assess(program.ProgramTest):
 
     def test_uncertainty_is_stored_once(self):
         cohort = self.path("c.db")
-        r = attempts()[0]
+        r = program.skilled()
         rows = json.loads(self.well("assess", "--json", "--uncertainty", r, "--cohort", cohort).out)
         values = {(c["name"], c["subject"]): c for c in rows[0]["checkpoints"] if c["value"] is not None}
         for value in values.values():
             interval = value["interval"]
             self.assertLessEqual(interval["lower"], value["value"], value)
             self.assertLessEqual(value["value"], interval["upper"], value)
-        path, force = values["path-length", "left"]["interval"], values["force-mean", "left"]["interval"]
+        path, force = values["path-length", "left"]["interval"], values["force-mean", "right"]["interval"]
         self.assertEqual(path["lower"], path["upper"], "hands move alike in every simulation")
         self.assertLess(force["lower"], force["upper"])
         self.assertGreater(force["constants_spread"], 0.0)

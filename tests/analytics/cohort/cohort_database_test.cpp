@@ -12,7 +12,6 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -580,33 +579,6 @@ TEST(Assess, storesWhatAReplayGave) {
   EXPECT_NE(table.str().find("SYNTHETIC"), std::string::npos);
   EXPECT_NE(table.str().find("verified"), std::string::npos);
   EXPECT_NE(table.str().find("500.0"), std::string::npos) << "left path in mm\n" << table.str();
-}
-
-/// An interval is of one value: it is there while the value is, and gone with it.
-TEST(CohortDatabase, keepsIntervalsOfPresentValues) {
-  const Folder folder;
-  CohortDatabase database(folder.file("c.db"), Access::create);
-  database.storeAttempt(attemptOf(1, "skilled"), valuesOf(10.0, 0.3));
-  const std::vector<ValueInterval> made{
-      {"elapsed-time", "", 1, 10.0, 0.1, -0.2, 0.3, 9.0, 11.0, ""},
-      {"path-length", "left", 2, 0.3, 0.0, 0.0, 0.0, {}, {}, "it has no value with a finer mesh: nothing was done"}};
-  database.storeIntervals(uuidOf(1), made);
-  EXPECT_EQ(database.intervals(uuidOf(1)), made);
-  const std::string before = dump(database.path());
-  database.storeIntervals(uuidOf(1), made);
-  EXPECT_EQ(dump(database.path()), before) << "again changes nothing";
-  std::size_t with = 0;
-  for (const AttemptValue& v : database.allValues()) {
-    with += v.interval ? 1 : 0;
-    if (v.interval && v.value.name == "elapsed-time") {
-      EXPECT_EQ(*v.interval, made[0]);
-    }
-  }
-  EXPECT_EQ(with, 2U);
-  database.storeValues(uuidOf(1), valuesOf(std::nextafter(10.0, 11.0), 0.3));
-  ASSERT_EQ(database.intervals(uuidOf(1)).size(), 1U) << "of the changed value there is none";
-  EXPECT_EQ(database.intervals(uuidOf(1))[0].name, "path-length");
-  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.storeIntervals(uuidOf(9), made); });
 }
 
 }  // namespace

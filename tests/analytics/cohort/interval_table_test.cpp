@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Intervals of the simulation beside the values that they are of.
+#include <gtest/gtest.h>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <cmath>
+#include <vector>
+
+#include "analytics/cohort/cohort_database.h"
+#include "recorder/errors.h"
+#include "tests/analytics/cohort/support/cohort_support.h"
+#include "tests/analytics/support/refusal.h"
+
+namespace calot::analytics {
+namespace {
+
+using support::attemptOf;
+using support::expectRefusal;
+using support::Folder;
+using support::uuidOf;
+using support::valuesOf;
+
+/// An interval is of one value: it is there while the value is, and gone with it.
+TEST(Intervals, areOfPresentValues) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), CohortDatabase::Access::create);
+  database.storeAttempt(attemptOf(1, "skilled"), valuesOf(10.0, 0.3));
+  const std::vector<ValueInterval> made{
+      {"elapsed-time", "", 1, 10.0, 0.1, -0.2, 0.3, 9.0, 11.0, ""},
+      {"path-length", "left", 2, 0.3, 0.0, 0.0, 0.0, {}, {}, "it has no value with a finer mesh: nothing was done"}};
+  database.storeIntervals(uuidOf(1), made);
+  EXPECT_EQ(database.intervals(uuidOf(1)), made);
+  const auto audited = [&] {
+    const SQLite::Database raw(database.path(), SQLite::OPEN_READONLY);
+    SQLite::Statement rows(raw, "SELECT count(*) FROM audit WHERE action = 'attempt-intervals'");
+    rows.executeStep();
+    return rows.getColumn(0).getInt();
+  };
+  EXPECT_EQ(audited(), 1);
+  database.storeIntervals(uuidOf(1), made);
+  EXPECT_EQ(audited(), 1) << "again changes nothing";
+  std::size_t with = 0;
+  for (const AttemptValue& v : database.allValues()) {
+    with += v.interval ? 1 : 0;
+    if (v.interval && v.value.name == "elapsed-time") {
+      EXPECT_EQ(*v.interval, made[0]);
+    }
+  }
+  EXPECT_EQ(with, 2U);
+  database.storeValues(uuidOf(1), valuesOf(std::nextafter(10.0, 11.0), 0.3));
+  ASSERT_EQ(database.intervals(uuidOf(1)).size(), 1U) << "of the changed value there is none";
+  EXPECT_EQ(database.intervals(uuidOf(1))[0].name, "path-length");
+  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.storeIntervals(uuidOf(9), made); });
+}
+
+}  // namespace
+}  // namespace calot::analytics
