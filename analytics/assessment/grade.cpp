@@ -47,6 +47,7 @@ void judge(GradedFigure& figure, const AttemptValue* found, const Norm& norm, st
     return;
   }
   figure.value = value->value;
+  figure.interval = found->interval;
   if (value->version != figure.mark.version) {
     figure.missing = fmt::format("of version {}, the norm's is {}", value->version, figure.mark.version);
     return;
@@ -63,7 +64,6 @@ void judge(GradedFigure& figure, const AttemptValue* found, const Norm& norm, st
   }
   figure.passed = passes(figure.mark, *figure.value);
   figure.open = figure.mark.lower && *figure.value >= *figure.mark.lower && *figure.value <= *figure.mark.upper;
-  figure.interval = found->interval;
   // A mark at the end of an interval that is a point is decided: the value is exact.
   if (figure.interval && figure.interval->lower)
     figure.undecided = passes(figure.mark, *figure.interval->lower) != passes(figure.mark, *figure.interval->upper);

@@ -2,7 +2,12 @@
 // Intervals of values, beside the values that they are of.
 #include <fmt/format.h>
 
+#include <bit>
+#include <cstring>
+
 #include "analytics/cohort/tables.h"
+
+static_assert(std::endian::native == std::endian::little, "the file's doubles are little-endian");
 
 namespace calot::analytics::tables {
 
@@ -24,7 +29,10 @@ ValueInterval intervalRow(SQLite::Statement& row, int c) {
   i.constantsSpread = row.getColumn(c++).getDouble();
   if (const SQLite::Column lower = row.getColumn(c++); !lower.isNull()) i.lower = lower.getDouble();
   if (const SQLite::Column upper = row.getColumn(c++); !upper.isNull()) i.upper = upper.getDouble();
-  i.reason = text(row.getColumn(c));
+  i.reason = text(row.getColumn(c++));
+  const SQLite::Column runs = row.getColumn(c);
+  i.runs.resize(static_cast<std::size_t>(runs.getBytes()) / sizeof(double));
+  if (!i.runs.empty()) std::memcpy(i.runs.data(), runs.getBlob(), i.runs.size() * sizeof(double));
   return i;
 }
 
@@ -55,7 +63,7 @@ bool replaceIntervals(SQLite::Database& db, std::int64_t id, const std::vector<V
   SQLite::Statement clear(db, "DELETE FROM value_interval WHERE attempt = ?");
   clear.bind(1, id);
   clear.exec();
-  SQLite::Statement put(db, "INSERT INTO value_interval VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement put(db, "INSERT INTO value_interval VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (const ValueInterval& i : intervals) {
     put.reset();
     put.clearBindings();
@@ -71,6 +79,9 @@ bool replaceIntervals(SQLite::Database& db, std::int64_t id, const std::vector<V
     bindOrNull(put, 10, i.lower);
     bindOrNull(put, 11, i.upper);
     put.bind(12, i.reason);
+    // A null pointer would be NULL, even with no bytes.
+    static const double none = 0.0;
+    put.bind(13, i.runs.empty() ? &none : i.runs.data(), static_cast<int>(i.runs.size() * sizeof(double)));
     put.exec();
   }
   return true;

@@ -64,7 +64,7 @@ std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<
 /// Columns of intervalRow(), of value_interval as i.
 inline constexpr const char* intervalColumns =
     "i.name, i.subject, i.version, i.value, i.step_effect, i.mesh_effect, i.constants_spread, i.lower, i.upper, "
-    "i.reason ";
+    "i.reason, i.runs ";
 ValueInterval intervalRow(SQLite::Statement& row, int column);
 /// Whether the row of value_interval as i is of the value in the row of checkpoint_value as c, by the present method.
 std::string intervalIsOfValue();

@@ -8,7 +8,7 @@ namespace calot::analytics {
 namespace {
 
 // table, column, title, unit, allowed values, what stands where there is none
-constexpr std::array<ColumnNote, 213> notes{{
+constexpr std::array<ColumnNote, 214> notes{{
     {"participant", "id", "number of the row, which other tables name"},
     {"participant", "pseudonym", "pseudonym"},
     {"participant", "study_group", "study group", "", "", "empty"},
@@ -93,6 +93,8 @@ constexpr std::array<ColumnNote, 213> notes{{
     {"value_interval", "lower", "lower end of the interval", "", "finite", "empty: there is none"},
     {"value_interval", "upper", "upper end of the interval", "", "finite", "empty: there is none"},
     {"value_interval", "reason", "why there is no interval", "", "", "empty where there is one"},
+    {"value_interval", "runs", "the value in each run with other constants, little-endian doubles", "", "",
+     "empty: there is no interval"},
     {"site", "name", "name of the site"},
     {"site", "note", "a word on it", "", "", "empty"},
     {"arm", "name", "name of the study arm"},

@@ -53,6 +53,14 @@ std::vector<std::string> opening(const Grade& g) {
   return lines;
 }
 
+/// The simulation's interval; empty where none was worked out.
+std::string simulationText(const GradedFigure& f) {
+  if (!f.interval) return "";
+  if (!f.interval->lower) return "not known";
+  if (*f.interval->lower == *f.interval->upper) return "exact";
+  return fmt::format("[{}, {}]", shown(f, f.interval->lower), shown(f, f.interval->upper));
+}
+
 ReportTable figuresTable(const Grade& g) {
   ReportTable table{"Figures",
                     {{"checkpoint", Align::left},
@@ -67,16 +75,13 @@ ReportTable figuresTable(const Grade& g) {
                      {"percentile", Align::right}},
                     {}};
   for (const GradedFigure& f : g.figures) {
-    const bool known = f.interval && f.interval->lower;
-    table.rows.push_back(
-        {nameOf(f), f.unit == "1" ? "" : f.unit, analytics::nameOf(f.mark.direction), shown(f, f.value),
-         known ? fmt::format("[{}, {}]", shown(f, f.interval->lower), shown(f, f.interval->upper)) : "",
-         shown(f, f.mark.cut),
-         f.mark.lower ? fmt::format("[{}, {}]", shown(f, f.mark.lower), shown(f, f.mark.upper)) : "-",
-         !f.passed ? "-"
-                   : fmt::format("{}{}{}", *f.passed ? "yes" : "no", f.open ? ", open" : "",
-                                 f.undecided ? ", undecided" : ""),
-         f.mark.inRule ? "counts" : "", f.rank ? fmt::format("{:.0f}", *f.rank) : "-"});
+    table.rows.push_back({nameOf(f), f.unit == "1" ? "" : f.unit, analytics::nameOf(f.mark.direction),
+                          shown(f, f.value), simulationText(f), shown(f, f.mark.cut),
+                          f.mark.lower ? fmt::format("[{}, {}]", shown(f, f.mark.lower), shown(f, f.mark.upper)) : "-",
+                          !f.passed ? "-"
+                                    : fmt::format("{}{}{}", *f.passed ? "yes" : "no", f.open ? ", open" : "",
+                                                  f.undecided ? ", undecided" : ""),
+                          f.mark.inRule ? "counts" : "", f.rank ? fmt::format("{:.0f}", *f.rank) : "-"});
   }
   return table;
 }
@@ -88,7 +93,9 @@ std::vector<std::string> notes(const Grade& g) {
   if (std::any_of(g.figures.begin(), g.figures.end(), [](const GradedFigure& f) { return f.interval.has_value(); })) {
     lines.emplace_back(
         "simulation: where the value may lie for an exact simulation with the right constants. undecided: the pass "
-        "mark lies within it, so that the figure is not decided by this simulation.");
+        "mark lies within it, so that the figure is not decided by this simulation. exact: no simulation changes it. "
+        "not "
+        "known: the figure does not exist in one of the runs.");
   }
   if (std::string warning = passMarkWarning(g.norm); !warning.empty()) lines.push_back(std::move(warning));
   for (const GradedFigure& f : g.figures) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Does the difference between two groups stand, wherever in their intervals the exact values lie?
+// Does the difference between two groups stand in every simulation that was tried?
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -14,22 +15,21 @@ namespace calot::analytics {
 struct SimulationRange {
   std::uint64_t known = 0, values = 0;  ///< attempts' values that have an interval, and all of them
   double halfWidth = 0.0;               ///< median over the intervals
-  /// Where every value has one: P(first group larger) + P(equal) / 2 with the first group's values at their lower ends
-  /// and the second's at their upper ends, and the other way round. Errors that all attempts share shift both groups
-  /// alike, so that this range is too wide rather than too narrow.
+  /// Where every value has one: least and largest P(first group larger) + P(equal) / 2 over the worlds
+  /// (ValueInterval::worlds()), in each of which all attempts have the same step, mesh and constants.
   std::optional<std::pair<double, double>> area;
 
-  /// The same group has the larger values throughout the range, or the range is a point.
+  /// The same group has the larger values in every world, or A is the same in all.
   [[nodiscard]] bool decided() const {
     return area && (area->first > 0.5 || area->second < 0.5 || area->first == area->second);
   }
 };
 
-/// One attempt's value and its interval.
+/// One attempt's value in every world.
 struct RangedValue {
   std::size_t participant = 0;
-  double value = 0.0;
-  std::optional<std::pair<double, double>> interval;
+  double halfWidth = 0.0;
+  std::vector<double> worlds;  ///< empty: it has no interval
 };
 
 /// Means over each participant's attempts are compared. Nothing where no value has an interval, or a group is empty.

@@ -256,9 +256,11 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     }
     column.versions.insert(item.value.version);
     column.origins.insert(nameOf(item.value.origin));
-    StudyValue& value = column.sample.values[m.group].emplace_back(StudyValue{m.participant, m.number, shown, {}});
-    if (item.interval && item.interval->lower)
-      value.interval = {*item.interval->lower * factor, *item.interval->upper * factor};
+    StudyValue& value = column.sample.values[m.group].emplace_back(StudyValue{m.participant, m.number, shown, {}, 0.0});
+    if (item.interval && item.interval->lower) {
+      value.halfWidth = 0.5 * factor * (*item.interval->upper - *item.interval->lower);
+      for (const double world : item.interval->worlds()) value.worlds.push_back(world * factor);
+    }
   }
   const auto place = [](const std::string& checkpoint) {
     const auto& registry = checkpointRegistry();

@@ -42,9 +42,10 @@ void explainColumns(const Study& study, std::vector<std::string>& notes) {
   if (any(study, [](const StudyRow& r) { return r.simulation.has_value(); })) {
     notes.emplace_back(
         "Uncertainty of the simulation: each attempt was run again in smaller steps, with a finer mesh and with other "
-        "assumed constants. half-width: of the values' intervals, their median. range of A: with every value of one "
-        "group at one end of its interval and every value of the other at the other end. decided: the same group is "
-        "ahead throughout. Figures that no simulation changes are left out.");
+        "assumed constants. half-width: of the values' intervals, their median. range of A: over these runs, in each "
+        "of "
+        "which all attempts have the same step, mesh and constants, and over what step and mesh are extrapolated to. "
+        "decided: the same group is ahead in all of them. Figures that no simulation changes are left out.");
   }
   if (any(study, [](const StudyRow& r) { return r.adjusted.has_value(); })) {
     notes.push_back(fmt::format(

@@ -244,7 +244,7 @@ void addSimulationRange(StudyRow& row, const StudySample& sample) {
   for (std::size_t g = 0; g < 2; ++g) {
     for (const StudyValue& v : sample.values[g]) {
       const auto at = std::lower_bound(row.participants[g].begin(), row.participants[g].end(), v.participant);
-      groups[g].push_back({static_cast<std::size_t>(at - row.participants[g].begin()), v.value, v.interval});
+      groups[g].push_back({static_cast<std::size_t>(at - row.participants[g].begin()), v.halfWidth, v.worlds});
     }
   }
   row.simulation = simulationRange(groups);

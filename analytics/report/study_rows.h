@@ -5,10 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analytics/report/study.h"
@@ -31,9 +29,10 @@ std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoice
 /// One value of a participant's attempt.
 struct StudyValue {
   std::string participant;
-  std::size_t attempt = 0;                                 ///< number within the study, by time
-  double value = 0.0;                                      ///< in the display unit
-  std::optional<std::pair<double, double>> interval = {};  ///< of the simulation, in the display unit
+  std::size_t attempt = 0;          ///< number within the study, by time
+  double value = 0.0;               ///< in the display unit
+  std::vector<double> worlds = {};  ///< ValueInterval::worlds(), in the display unit; empty: none
+  double halfWidth = 0.0;           ///< of the interval
 };
 
 /// One row's values by group.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "analytics/uncertainty/scene_variants.h"
 
@@ -42,7 +43,7 @@ double varianceOf(const std::vector<double>& design) {
 }
 
 ValueInterval intervalOf(const CheckpointValue& of, const VariedValues& varied) {
-  ValueInterval interval{of.name, of.subject, of.version, *of.value, 0.0, 0.0, 0.0, {}, {}, {}};
+  ValueInterval interval{of.name, of.subject, of.version, *of.value, 0.0, 0.0, 0.0, {}, {}, {}, {}};
   const auto smallerStep = valueIn(varied.smallerStep, of, "in smaller steps", interval.reason);
   const auto finerMesh = valueIn(varied.finerMesh, of, "with a finer mesh", interval.reason);
   std::vector<double> design;
@@ -63,10 +64,18 @@ ValueInterval intervalOf(const CheckpointValue& of, const VariedValues& varied) 
   if (neverBelowZero) lower = std::max(0.0, lower);
   interval.lower = lower;
   interval.upper = std::max(v, interval.limit() + half);
+  interval.runs = std::move(design);
   return interval;
 }
 
 }  // namespace
+
+std::vector<double> ValueInterval::worlds() const {
+  if (!lower) return {};
+  std::vector<double> all{value, value + stepEffect, value + meshEffect, limit()};
+  all.insert(all.end(), runs.begin(), runs.end());
+  return all;
+}
 
 std::vector<ValueInterval> intervalsOf(const std::vector<CheckpointValue>& values, const VariedValues& varied) {
   assert(varied.stepRatio > 1.0 && varied.meshRatio > 1.0 && varied.design.size() == designRuns);

@@ -27,10 +27,15 @@ struct ValueInterval {
   double meshEffect = 0.0;       ///< and with elements of size zero
   double constantsSpread = 0.0;  ///< its standard deviation over the assumed constants
   std::optional<double> lower, upper;
-  std::string reason;  ///< why there is no interval; or empty
+  std::string reason;        ///< why there is no interval; or empty
+  std::vector<double> runs;  ///< the value in each run of the design, designRuns of them; or empty, as the interval
 
   /// value + stepEffect + meshEffect.
   [[nodiscard]] double limit() const { return value + stepEffect + meshEffect; }
+  /// The value in every world that was tried or extrapolated, the same worlds in the same order for every attempt: as
+  /// it is, in steps of length zero, with elements of size zero, with both, and in each run of the design. Errors of a
+  /// simulation are common to all attempts: groups are to be compared within a world. Empty without an interval.
+  [[nodiscard]] std::vector<double> worlds() const;
   /// Could the exact value lie on the other side of the mark, or on it?
   [[nodiscard]] bool contains(double mark) const { return lower && mark >= *lower && mark <= *upper; }
   bool operator==(const ValueInterval&) const = default;

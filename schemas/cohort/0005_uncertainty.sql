@@ -15,6 +15,7 @@ CREATE TABLE value_interval (
   lower REAL,
   upper REAL,
   reason TEXT NOT NULL DEFAULT '', -- why there is no interval
+  runs BLOB NOT NULL, -- the value in each run with other constants, doubles, least significant byte first; empty without an interval
   PRIMARY KEY (attempt, name, subject),
   CHECK ((lower IS NULL) = (upper IS NULL)),
   CHECK ((lower IS NULL) = (reason <> '')),

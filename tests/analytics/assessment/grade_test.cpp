@@ -197,8 +197,8 @@ TEST_F(Grades, aMarkInsideTheIntervalIsNotDecided) {
   const double cut = *norm.checkpoints[0].cut;
   const auto withInterval = [&](unsigned n, double lower, double upper) {
     add(n, fmt::format("U{}", n), "", figures(100.0, 2.0));
-    cohort_.storeIntervals(uuidOf(n), {{"path-length", "left", 2, 100.0, 0, 0, 1.0, lower, upper, ""},
-                                       {"path-length", "right", 2, 2.0, 0, 0, 0.0, 2.0, 2.0, ""}});
+    cohort_.storeIntervals(uuidOf(n), {{"path-length", "left", 2, 100.0, 0, 0, 1.0, lower, upper, "", {}},
+                                       {"path-length", "right", 2, 2.0, 0, 0, 0.0, 2.0, 2.0, "", {}}});
     return graded(n, norm);
   };
   const Grade decided = withInterval(40, cut + 1.0, 150.0);
@@ -222,7 +222,7 @@ TEST_F(Grades, aCriticalErrorThatOnlySomeSimulationsSeeIsNotDecided) {
   EXPECT_TRUE(graded(42, norm).certain);
   const CheckpointValue errors = cohort_.values(uuidOf(42)).back();
   ASSERT_EQ(errors.name, "critical-errors");
-  cohort_.storeIntervals(uuidOf(42), {{errors.name, "", errors.version, 1.0, 0, 0, 0.4, 0.2, 1.8, ""}});
+  cohort_.storeIntervals(uuidOf(42), {{errors.name, "", errors.version, 1.0, 0, 0, 0.4, 0.2, 1.8, "", {}}});
   EXPECT_FALSE(graded(42, norm).passed);
   EXPECT_FALSE(graded(42, norm).certain);
 }

@@ -27,8 +27,18 @@ TEST(Intervals, areOfPresentValues) {
   CohortDatabase database(folder.file("c.db"), CohortDatabase::Access::create);
   database.storeAttempt(attemptOf(1, "skilled"), valuesOf(10.0, 0.3));
   const std::vector<ValueInterval> made{
-      {"elapsed-time", "", 1, 10.0, 0.1, -0.2, 0.3, 9.0, 11.0, ""},
-      {"path-length", "left", 2, 0.3, 0.0, 0.0, 0.0, {}, {}, "it has no value with a finer mesh: nothing was done"}};
+      {"elapsed-time", "", 1, 10.0, 0.1, -0.2, 0.3, 9.0, 11.0, "", {9.5, 10.25, 0.1 + 0.2}},
+      {"path-length",
+       "left",
+       2,
+       0.3,
+       0.0,
+       0.0,
+       0.0,
+       {},
+       {},
+       "it has no value with a finer mesh: nothing was done",
+       {}}};
   database.storeIntervals(uuidOf(1), made);
   EXPECT_EQ(database.intervals(uuidOf(1)), made);
   const auto audited = [&] {

@@ -106,6 +106,9 @@ TEST(ValueInterval, HoldsTheLimitOfFirstOrder) {
   const double half = std::hypot(0.2, 0.1);
   EXPECT_NEAR(*i.lower, 3.0 - half, 1e-12);
   EXPECT_NEAR(*i.upper, 3.0 + half, 1e-12);
+  ASSERT_EQ(i.worlds().size(), 4 + designRuns);
+  EXPECT_EQ(i.worlds()[0], i.value);
+  EXPECT_NEAR(i.worlds()[3], 3.0, 1e-12);
 }
 
 /// The spread is that of constants anywhere within the change alike: E / sqrt 3 each, independent of each other.
@@ -142,6 +145,7 @@ TEST(ValueInterval, SaysWhereAFigureIsGone) {
   EXPECT_FALSE(intervals[0].lower);
   EXPECT_EQ(intervals[0].reason, "it has no value in smaller steps: nothing was done");
   EXPECT_FALSE(intervals[0].contains(0.7));
+  EXPECT_TRUE(intervals[0].worlds().empty());
 }
 
 TEST(ValueInterval, IsNotMadeOfWhatHasNoValue) {
