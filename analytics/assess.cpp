@@ -73,9 +73,8 @@ std::string figureText(const std::vector<CheckpointValue>& values, const Summary
 /// none.
 std::pair<std::string, std::string> intervalTexts(const std::vector<ValueInterval>& intervals,
                                                   const CheckpointValue& of, double factor) {
-  const auto found = std::find_if(intervals.begin(), intervals.end(),
-                                  [&](const ValueInterval& i) { return i.name == of.name && i.subject == of.subject; });
-  if (found == intervals.end()) return {};
+  const ValueInterval* found = findInterval(intervals, of);
+  if (found == nullptr) return {};
   if (!found->lower) return {"none", found->reason};
   if (*found->lower == *found->upper) return {"exact", ""};
   const auto shown = [&](double si) { return significant(si * factor); };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/open_loop.h"
 
-#include <algorithm>
-
 #include "recorder/recording/reader.h"
 #include "recorder/session.h"
 

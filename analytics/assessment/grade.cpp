@@ -69,17 +69,24 @@ void judge(GradedFigure& figure, const AttemptValue* found, const Norm& norm, st
     figure.undecided = passes(figure.mark, *figure.interval->lower) != passes(figure.mark, *figure.interval->upper);
 }
 
+/// The rule answers alike however the unsure figures of it are taken.
+template <class Unsure>
+bool isSteady(const Grade& grade, Unsure unsure) {
+  std::size_t surely = 0, perhaps = 0;
+  for (const GradedFigure& f : grade.figures) {
+    if (!f.mark.inRule) continue;
+    const bool passed = f.passed.value_or(false);
+    surely += passed && !unsure(f) ? 1 : 0;
+    perhaps += passed || unsure(f) ? 1 : 0;
+  }
+  return (surely >= grade.needed) == (perhaps >= grade.needed);
+}
+
 void conclude(Grade& grade) {
-  std::size_t least = 0, most = 0, surelyMarked = 0, perhapsMarked = 0;
   for (const GradedFigure& f : grade.figures) {
     if (!f.mark.inRule) continue;
     ++grade.inRule;
-    const bool passed = f.passed.value_or(false);
-    grade.passedCount += passed ? 1 : 0;
-    least += passed && !f.undecided ? 1 : 0;
-    most += passed || f.undecided ? 1 : 0;
-    surelyMarked += passed && !f.open ? 1 : 0;
-    perhapsMarked += passed || f.open ? 1 : 0;
+    grade.passedCount += f.passed.value_or(false) ? 1 : 0;
   }
   grade.needed = neededPasses(grade.norm);
   if (grade.criticalErrors.value_or(0.0) > 0.0) {
@@ -91,13 +98,20 @@ void conclude(Grade& grade) {
     return;
   }
   grade.passed = grade.passedCount >= grade.needed;
-  const bool simulated = (least >= grade.needed) == (most >= grade.needed) && !grade.criticalUndecided;
-  const bool marked = (surelyMarked >= grade.needed) == (perhapsMarked >= grade.needed);
-  grade.certain = simulated && marked;
-  grade.verdict = fmt::format("{}: {} of {} figures in the rule passed, {} wanted{}{}.",
-                              grade.passed ? "Passed" : "Not passed", grade.passedCount, grade.inRule, grade.needed,
-                              marked ? "" : "; not certain, as figures lie within the intervals of their pass marks",
-                              simulated ? "" : "; not decided by this simulation, whose intervals hold pass marks");
+  const bool marked = isSteady(grade, [](const GradedFigure& f) { return f.open; });
+  const bool simulated = isSteady(grade, [](const GradedFigure& f) { return f.undecided; }) && !grade.criticalUndecided;
+  // Open and undecided figures together may turn what neither turns alone.
+  grade.certain = marked && simulated && isSteady(grade, [](const GradedFigure& f) { return f.open || f.undecided; });
+  std::string doubt;
+  if (!marked) doubt += "; not certain, as figures lie within the intervals of their pass marks";
+  if (!simulated) doubt += "; not decided by this simulation, whose intervals hold pass marks";
+  if (!grade.certain && doubt.empty())
+    doubt =
+        "; not certain, as figures within the intervals of their pass marks and figures that this simulation does "
+        "not decide can turn it together";
+  grade.verdict =
+      fmt::format("{}: {} of {} figures in the rule passed, {} wanted{}.", grade.passed ? "Passed" : "Not passed",
+                  grade.passedCount, grade.inRule, grade.needed, doubt);
 }
 
 /// The participant's attempts of this key up to this one, by start.

@@ -27,26 +27,14 @@ ValueInterval intervalRow(SQLite::Statement& row, int c) {
   i.stepEffect = row.getColumn(c++).getDouble();
   i.meshEffect = row.getColumn(c++).getDouble();
   i.constantsSpread = row.getColumn(c++).getDouble();
-  if (const SQLite::Column lower = row.getColumn(c++); !lower.isNull()) i.lower = lower.getDouble();
-  if (const SQLite::Column upper = row.getColumn(c++); !upper.isNull()) i.upper = upper.getDouble();
+  i.lower = optional(row.getColumn(c++));
+  i.upper = optional(row.getColumn(c++));
   i.reason = text(row.getColumn(c++));
   const SQLite::Column runs = row.getColumn(c);
   i.runs.resize(static_cast<std::size_t>(runs.getBytes()) / sizeof(double));
   if (!i.runs.empty()) std::memcpy(i.runs.data(), runs.getBlob(), i.runs.size() * sizeof(double));
   return i;
 }
-
-namespace {
-
-void bindOrNull(SQLite::Statement& put, int at, const std::optional<double>& value) {
-  if (value) {
-    put.bind(at, *value);
-  } else {
-    put.bind(at);
-  }
-}
-
-}  // namespace
 
 std::vector<ValueInterval> readIntervals(SQLite::Database& db, std::int64_t id) {
   SQLite::Statement select(db, fmt::format("SELECT {} FROM value_interval i JOIN checkpoint_value c ON {} WHERE "
@@ -76,8 +64,8 @@ bool replaceIntervals(SQLite::Database& db, std::int64_t id, const std::vector<V
     put.bind(7, i.stepEffect);
     put.bind(8, i.meshEffect);
     put.bind(9, i.constantsSpread);
-    bindOrNull(put, 10, i.lower);
-    bindOrNull(put, 11, i.upper);
+    bindOptional(put, 10, i.lower);
+    bindOptional(put, 11, i.upper);
     put.bind(12, i.reason);
     // A null pointer would be NULL, even with no bytes.
     static const double none = 0.0;

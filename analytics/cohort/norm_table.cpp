@@ -15,18 +15,6 @@ using namespace tables;
 
 namespace {
 
-void bindOptional(SQLite::Statement& statement, int index, const std::optional<double>& value) {
-  if (value) {
-    statement.bind(index, *value);
-  } else {
-    statement.bind(index);
-  }
-}
-
-std::optional<double> optional(const SQLite::Column& column) {
-  return column.isNull() ? std::nullopt : std::optional(column.getDouble());
-}
-
 void writeCheckpoints(SQLite::Database& db, std::int64_t id, const Norm& norm) {
   SQLite::Statement put(db, "INSERT INTO norm_checkpoint VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t i = 0; i < norm.checkpoints.size(); ++i) {

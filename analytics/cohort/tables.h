@@ -30,6 +30,19 @@ Enum enumeration(const SQLite::Column& column) {
 
 inline std::string text(const SQLite::Column& column) { return column.getString(); }
 
+/// NULL where there is no number.
+inline void bindOptional(SQLite::Statement& statement, int index, const std::optional<double>& value) {
+  if (value) {
+    statement.bind(index, *value);
+  } else {
+    statement.bind(index);
+  }
+}
+
+inline std::optional<double> optional(const SQLite::Column& column) {
+  return column.isNull() ? std::nullopt : std::optional(column.getDouble());
+}
+
 void audit(SQLite::Database& db, const std::string& action, const std::string& subject, const std::string& detail);
 
 /// @throws Error (invalid).

@@ -16,8 +16,7 @@ CheckpointValue valueRow(SQLite::Statement& row, int c) {
   v.subject = text(row.getColumn(c++));
   v.version = row.getColumn(c++).getUInt();
   v.availability = enumeration<Availability>(row.getColumn(c++));
-  const SQLite::Column value = row.getColumn(c++);
-  if (!value.isNull()) v.value = value.getDouble();
+  v.value = optional(row.getColumn(c++));
   v.reason = text(row.getColumn(c++));
   v.note = text(row.getColumn(c++));
   v.unit = text(row.getColumn(c++));
@@ -71,11 +70,7 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
     put.bind(4, v.subject);
     put.bind(5, v.version);
     put.bind(6, number(v.availability));
-    if (v.value) {
-      put.bind(7, *v.value);
-    } else {
-      put.bind(7);
-    }
+    bindOptional(put, 7, v.value);
     put.bind(8, v.reason);
     put.bind(9, v.note);
     put.bind(10, v.unit);

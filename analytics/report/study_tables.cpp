@@ -144,7 +144,7 @@ ReportTable simulationTable(const Study& study) {
                      {"", Align::left}},
                     {}};
   for (const StudyRow& row : study.rows) {
-    if (!row.simulation || hasNoValue(row)) continue;
+    if (!row.simulation || !row.area) continue;
     const SimulationRange& s = *row.simulation;
     if (s.known == s.values && s.halfWidth == 0.0 && s.decided()) continue;
     const bool turned = row.hypothesis && *row.hypothesis == Hypothesis::firstSmaller;
@@ -153,8 +153,7 @@ ReportTable simulationTable(const Study& study) {
       range = turned ? fmt::format("[{}, {}]", share(1.0 - s.area->second), share(1.0 - s.area->first))
                      : fmt::format("[{}, {}]", share(s.area->first), share(s.area->second));
     }
-    table.rows.push_back({rowName(row), row.unit, significant(s.halfWidth, 3),
-                          row.area ? share(row.area->value.a) : "-", range,
+    table.rows.push_back({rowName(row), row.unit, significant(s.halfWidth, 3), share(row.area->value.a), range,
                           !s.area       ? fmt::format("{} of {} values have an interval", s.known, s.values)
                           : s.decided() ? "decided"
                                         : "not decided by this simulation"});

@@ -70,6 +70,12 @@ ValueInterval intervalOf(const CheckpointValue& of, const VariedValues& varied) 
 
 }  // namespace
 
+const ValueInterval* findInterval(const std::vector<ValueInterval>& intervals, const CheckpointValue& of) {
+  const auto found = std::find_if(intervals.begin(), intervals.end(),
+                                  [&](const ValueInterval& i) { return i.name == of.name && i.subject == of.subject; });
+  return found == intervals.end() ? nullptr : &*found;
+}
+
 std::vector<double> ValueInterval::worlds() const {
   if (!lower) return {};
   std::vector<double> all{value, value + stepEffect, value + meshEffect, limit()};

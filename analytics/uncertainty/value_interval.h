@@ -41,6 +41,9 @@ struct ValueInterval {
   bool operator==(const ValueInterval&) const = default;
 };
 
+/// The interval that is of this value, or null.
+const ValueInterval* findInterval(const std::vector<ValueInterval>& intervals, const CheckpointValue& of);
+
 /// An attempt's values in other divisions and with other constants.
 struct VariedValues {
   std::vector<CheckpointValue> smallerStep;

@@ -46,10 +46,8 @@ nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& val
       row["reason"] = v.reason;
     }
     if (!v.note.empty()) row["note"] = v.note;
-    const auto interval = std::find_if(intervals.begin(), intervals.end(), [&](const analytics::ValueInterval& i) {
-      return i.name == v.name && i.subject == v.subject;
-    });
-    if (interval != intervals.end()) row["interval"] = intervalJson(*interval);
+    if (const analytics::ValueInterval* interval = analytics::findInterval(intervals, v))
+      row["interval"] = intervalJson(*interval);
     list.push_back(row);
   }
   return list;

@@ -95,11 +95,7 @@ const FigureStanding* CheckpointTableModel::standing(int row) const { return ent
 const analytics::FigureMoments* CheckpointTableModel::moments(int row) const { return entryOf(moments_, value(row)); }
 
 const analytics::ValueInterval* CheckpointTableModel::interval(int row) const {
-  const auto of = [&](const analytics::ValueInterval& i) {
-    return i.name == value(row).name && i.subject == value(row).subject;
-  };
-  const auto at = std::find_if(intervals_.begin(), intervals_.end(), of);
-  return at == intervals_.end() ? nullptr : &*at;
+  return analytics::findInterval(intervals_, value(row));
 }
 
 int CheckpointTableModel::rowCount(const QModelIndex& parent) const {

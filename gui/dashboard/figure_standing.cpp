@@ -75,11 +75,8 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
     std::vector<analytics::AttemptValue> own;
     own.reserve(values.size());
     for (const analytics::CheckpointValue& value : values) {
-      const auto of = [&](const analytics::ValueInterval& i) {
-        return i.name == value.name && i.subject == value.subject;
-      };
-      const auto at = std::find_if(intervals.begin(), intervals.end(), of);
-      own.push_back({attempt.uuid, value, at == intervals.end() ? std::nullopt : std::optional(*at)});
+      const analytics::ValueInterval* interval = analytics::findInterval(intervals, value);
+      own.push_back({attempt.uuid, value, interval != nullptr ? std::optional(*interval) : std::nullopt});
     }
     grade = analytics::gradeAttempt(attempt, {attempt}, own, norm, false, "this cohort");
     standing.verdict = grade->verdict;
