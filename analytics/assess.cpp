@@ -78,7 +78,7 @@ std::pair<std::string, std::string> intervalTexts(const std::vector<ValueInterva
   if (!found->lower) return {"none", found->reason};
   if (*found->lower == *found->upper) return {"exact", ""};
   const auto shown = [&](double si) { return significant(si * factor); };
-  const auto change = [&](double si) { return (si > 0.0 ? "+" : "") + significant(si * factor, 2); };
+  const auto change = [&](double si) { return fmt::format("{}{}", si > 0.0 ? "+" : "", significant(si * factor, 2)); };
   return {fmt::format("[{}, {}]", shown(*found->lower), shown(*found->upper)),
           fmt::format("{}, {}, {}", change(found->stepEffect), change(found->meshEffect),
                       significant(found->constantsSpread * factor, 2))};
