@@ -21,8 +21,8 @@ using namespace tables;
 
 /// Tables that are merged as attempts, not row by row.
 bool ofAttempts(const std::string& table) {
-  static const std::set<std::string> names{"attempt", "recording", "recording_signature", "verification",
-                                           "checkpoint_value"};
+  static const std::set<std::string> names{"attempt",      "recording",        "recording_signature",
+                                           "verification", "checkpoint_value", "value_interval"};
   return names.count(table) > 0;
 }
 
@@ -98,7 +98,16 @@ class Merge {
         continue;
       }
       numbers_["attempt"][number[a.uuid]] = attemptId(into_, a.uuid);
+      mergeIntervals(a.uuid, number[a.uuid]);
     }
+  }
+
+  /// Theirs where there are none here: like values they can be made again, so that two sets are no conflict.
+  void mergeIntervals(const std::string& uuid, std::int64_t number) {
+    const std::int64_t id = attemptId(into_, uuid);
+    if (!readIntervals(into_, id).empty()) return;
+    const auto intervals = guarded(fromPath_, [&] { return readIntervals(from_, number); });
+    if (replaceIntervals(into_, id, intervals)) result_.rows += intervals.size();
   }
 
   void mergeAttempt(const AttemptRow& a, std::int64_t number) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/cohort/merge.h"
 #include "recorder/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
@@ -62,6 +63,32 @@ TEST(Intervals, areOfPresentValues) {
   ASSERT_EQ(database.intervals(uuidOf(1)).size(), 1U) << "of the changed value there is none";
   EXPECT_EQ(database.intervals(uuidOf(1))[0].name, "path-length");
   expectRefusal(ErrorKind::refused, "no attempt", [&] { database.storeIntervals(uuidOf(9), made); });
+}
+
+/// Two sets of intervals are no conflict: those that are there stay, and fill what is empty.
+TEST(Intervals, mergeWithTheirAttempts) {
+  const Folder folder;
+  const std::string a = folder.file("a.db"), b = folder.file("b.db");
+  const auto intervalOf = [](double lower) {
+    return std::vector<ValueInterval>{{"elapsed-time", "", 1, 10.0, 0.1, -0.2, 0.3, lower, 11.0, "", {9.5, 10.25}}};
+  };
+  {
+    CohortDatabase first(a, CohortDatabase::Access::create), second(b, CohortDatabase::Access::create);
+    for (const unsigned n : {1U, 2U}) {
+      first.storeAttempt(attemptOf(n, "skilled"), valuesOf(10.0, 0.3));
+      second.storeAttempt(attemptOf(n, "skilled"), valuesOf(10.0, 0.3));
+    }
+    second.storeAttempt(attemptOf(3, "skilled"), valuesOf(10.0, 0.3));
+    first.storeIntervals(uuidOf(1), intervalOf(9.0));
+    for (const unsigned n : {1U, 2U, 3U}) second.storeIntervals(uuidOf(n), intervalOf(8.0));
+  }
+  const CohortMerge merge = mergeCohorts(a, b);
+  EXPECT_TRUE(merge.conflicts.empty());
+  EXPECT_FALSE(mergeCohorts(a, b).changed());
+  const CohortDatabase merged(a, CohortDatabase::Access::read);
+  EXPECT_EQ(merged.intervals(uuidOf(1)), intervalOf(9.0));
+  EXPECT_EQ(merged.intervals(uuidOf(2)), intervalOf(8.0));
+  EXPECT_EQ(merged.intervals(uuidOf(3)), intervalOf(8.0));
 }
 
 }  // namespace
