@@ -49,8 +49,21 @@ CALOT_LANE_KERNEL void deformation(const NodeLanes& x, const ElementGroup& group
   }
 }
 
+/// sigma + R^T F sigma_0 in place of sigma. @param b R^T F
+CALOT_INLINE void addInitial(const InitialStress& initial, const FourDoubles (&b)[3][3], std::size_t from,
+                             FourDoubles (&s)[3][3]) {
+  FourDoubles at[6];
+  for (std::size_t k = 0; k < 6; ++k) readVector(initial[k].data() + from, at[k]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    s[i][0] += (b[i][0] * at[0] + b[i][1] * at[3]) + b[i][2] * at[4];
+    s[i][1] += (b[i][0] * at[3] + b[i][1] * at[1]) + b[i][2] * at[5];
+    s[i][2] += (b[i][0] * at[4] + b[i][1] * at[5]) + b[i][2] * at[2];
+  }
+}
+
+/// @param initial stress at rest, or null: none
 CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameConstants material,
-                           const RotationGroup& q, std::size_t from, ElementResult& out) {
+                           const InitialStress* initial, const RotationGroup& q, std::size_t from, ElementResult& out) {
   const double lambda = material.lambda;
   const double mu = material.mu;
   FourDoubles w;
@@ -74,19 +87,19 @@ CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameCo
   const FourDoubles e11 = b[1][1] - 1.0;
   const FourDoubles e22 = b[2][2] - 1.0;
   const FourDoubles trace = lambda * ((e00 + e11) + e22);
-  const FourDoubles s00 = 2.0 * mu * e00 + trace;
-  const FourDoubles s11 = 2.0 * mu * e11 + trace;
-  const FourDoubles s22 = 2.0 * mu * e22 + trace;
-  const FourDoubles s01 = mu * (b[0][1] + b[1][0]);
-  const FourDoubles s02 = mu * (b[0][2] + b[2][0]);
-  const FourDoubles s12 = mu * (b[1][2] + b[2][1]);
+  FourDoubles s[3][3];
+  s[0][0] = 2.0 * mu * e00 + trace;
+  s[1][1] = 2.0 * mu * e11 + trace;
+  s[2][2] = 2.0 * mu * e22 + trace;
+  s[0][1] = s[1][0] = mu * (b[0][1] + b[1][0]);
+  s[0][2] = s[2][0] = mu * (b[0][2] + b[2][0]);
+  s[1][2] = s[2][1] = mu * (b[1][2] + b[2][1]);
+  if (initial != nullptr) addInitial(*initial, b, from, s);
   FourDoubles volume;
   readVector(group.volume.data() + from, volume);
   FourDoubles p[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
-    p[i][0] = (r[i][0] * s00 + r[i][1] * s01) + r[i][2] * s02;
-    p[i][1] = (r[i][0] * s01 + r[i][1] * s11) + r[i][2] * s12;
-    p[i][2] = (r[i][0] * s02 + r[i][1] * s12) + r[i][2] * s22;
+    for (std::size_t j = 0; j < 3; ++j) p[i][j] = (r[i][0] * s[0][j] + r[i][1] * s[1][j]) + r[i][2] * s[2][j];
   }
   for (std::size_t a = 0; a < 4; ++a) {
     FourDoubles g[3];
@@ -99,9 +112,9 @@ CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameCo
 }
 
 CALOT_LANE_KERNEL void forces(const NodeLanes& x, const ElementGroup& group, LameConstants material,
-                              const RotationGroup& q, ElementResult& out) {
-  forcesOf(x, group, material, q, 0, out);
-  forcesOf(x, group, material, q, 4, out);
+                              const InitialStress* initial, const RotationGroup& q, ElementResult& out) {
+  forcesOf(x, group, material, initial, q, 0, out);
+  forcesOf(x, group, material, initial, q, 4, out);
 }
 
 CALOT_LANE_KERNEL void rotated(const ElementGroup& group, const RotationGroup& q, RotatedGradients& out) {
@@ -173,9 +186,28 @@ void TetrahedralElements::evaluate(std::span<const Vec3> position, std::span<con
           for (std::size_t l = 0; l < laneCount; ++l) x[a][i][l] += lookAhead * v[a][i][l];
         }
       }
-      forces(x, groups_[g], material, rotation[g], result[g]);
+      forces(x, groups_[g], material, stress_.empty() ? nullptr : &stress_[g], rotation[g], result[g]);
     }
   });
+}
+
+void TetrahedralElements::preload(std::span<const Vec3> displacement, LameConstants material) {
+  stress_.assign(groups_.size(), {});
+  for (std::size_t e = 0; e < count_; ++e) {
+    const ElementGroup& group = groups_[e / laneCount];
+    const std::size_t l = e % laneCount;
+    Mat3 slope = Mat3::Zero();
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Vec3 gradient(group.gradient[a][0][l], group.gradient[a][1][l], group.gradient[a][2][l]);
+      slope += displacement[static_cast<std::size_t>(group.node[a][l])] * gradient.transpose();
+    }
+    const Mat3 stress = material.mu * (slope + slope.transpose()) + (material.lambda * slope.trace()) * Mat3::Identity();
+    InitialStress& out = stress_[e / laneCount];
+    for (int i = 0; i < 3; ++i) out[static_cast<std::size_t>(i)][l] = stress(i, i);
+    out[3][l] = stress(0, 1);
+    out[4][l] = stress(0, 2);
+    out[5][l] = stress(1, 2);
+  }
 }
 
 void TetrahedralElements::gradients(std::size_t group, const RotationGroup& rotation, RotatedGradients& out) const {

@@ -31,6 +31,9 @@ struct ElementGroup {
   std::array<double, laneCount> volume;                                  ///< at rest (m^3)
 };
 
+/// Stress of a group at rest (Pa): xx, yy, zz, xy, xz, yz.
+using InitialStress = std::array<std::array<double, laneCount>, 6>;
+
 /// Forces of an element group, for the right-hand side.
 struct ElementResult {
   std::array<std::array<std::array<double, laneCount>, 3>, 4> force;  ///< on the nodes (N)
@@ -53,13 +56,20 @@ class TetrahedralElements {
 
   /// For each group: rotates `rotation` towards the polar rotation of F(position) by `sweeps` Newton steps, then
   /// computes forces of the linear law in the rotated frame at position + lookAhead * velocity:
-  ///   F = sum_a x_a grad_a^T,  eps = sym(R^T F) - I,  sigma = 2 mu eps + lambda tr(eps) I,  f_a = -V R sigma grad_a.
+  ///   F = sum_a x_a grad_a^T,  eps = sym(R^T F) - I,  sigma = 2 mu eps + lambda tr(eps) I,
+  ///   f_a = -V (R sigma + F sigma_0) grad_a.
+  /// The stress at rest sigma_0 is taken along by F, as a second Piola-Kirchhoff stress: its forces have the potential
+  /// V/2 sigma_0 : (F^T F - I), and no moment (Zienkiewicz and Taylor 2000, vol. 2, 10.5).
   /// With lookAhead = dt + beta this is the elastic part of the right-hand side of implicit
   /// Euler with stiffness damping.
   /// @param rotation in: last step's; out: this step's (unit). It is part of State.
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                 LameConstants material, int sweeps, std::span<RotationGroup> rotation, std::span<ElementResult> result,
                 Executor& executor) const;
+
+  /// Gives each element the stress at rest that these displacements of the nodes (m) would: sigma of
+  /// eps = sym(sum_a u_a grad_a^T).
+  void preload(std::span<const Vec3> displacement, LameConstants material);
 
   void gradients(std::size_t group, const RotationGroup& rotation, RotatedGradients& out) const;
 
@@ -69,6 +79,7 @@ class TetrahedralElements {
  private:
   std::size_t count_ = 0;
   std::vector<ElementGroup> groups_;
+  std::vector<InitialStress> stress_;  ///< sigma_0 of each group; empty: none
 };
 
 }  // namespace calot

@@ -83,6 +83,7 @@ TEST(Beam, ForcesAreTheGradientOfTheEnergy) {
     e.b = 1;
     e.length = 0.7;
     e.axis = axis / axis.norm();
+    e.slack = e.axis;
     e.bend = vectorOf(random, 0.1);
     e.stretching = 10.0;
     e.bending = 2.0;

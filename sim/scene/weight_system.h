@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What carries the weight of a scene where it is drawn. Internal to this folder.
+//
+// A scene is drawn as it is in the body, under gravity g: there every force is to be in equilibrium. The law of all
+// tissue is linear about that reference configuration, so the inverse problem is linear too: with K the stiffness of
+// organs, fat, vessels, ties and strands in the reference configuration, all of them as one system, and M their masses,
+//   K x = M g,
+// and what each element, tie and strand carries is its own part of K x, kept as a load of its own. To first order the
+// configuration that is free of stress lies at -x from the reference configuration (the first step of Sellier's fixed
+// point; the rest moves the configuration that is free of stress and leaves the equilibrium as it is).
+//
+// Strands count with their stiffness in all directions, not only along them: what holds a bed carries shear too.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "sim/math/linear.h"
+
+namespace calot {
+
+class Model;
+
+/// x, by bodies (Model::bodies()).
+struct WeightMotion {
+  std::vector<std::vector<Vec3>> displacement;  ///< per node (m)
+  std::vector<std::vector<Vec3>> rotation;      ///< per node of vessels (rad)
+  /// Per body: is it, with all that ties and strands join to it, held? If not, x is zero, and it falls.
+  std::vector<bool> held;
+};
+
+/// Solves for x, each group of bodies that ties and strands join as a system of its own.
+WeightMotion motionUnderWeight(const Model& model);
+
+}  // namespace calot

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every scene is drawn as it is under its weight: nothing moves, and everything sleeps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "tests/sim/scene/support/scenes.h"
+#include "tests/weight/support/rest_forces.h"
+
+namespace calot {
+namespace {
+
+/// The scene without its assistant, who pulls on purpose.
+SceneDescription leftAlone(const std::string& name) {
+  SceneDescription scene = test::sceneNamed(name);
+  scene.retraction.clear();
+  return scene;
+}
+
+double driftOf(const StepResult& result) {
+  double drift = 0.0;
+  for (const OrganResult& organ : result.organ) drift = std::max(drift, organ.maxDisplacement);
+  for (const VesselResult& vessel : result.vessel) drift = std::max(drift, vessel.maxDisplacement);
+  for (const FatResult& fat : result.fat) drift = std::max(drift, fat.maxDisplacement);
+  return drift;
+}
+
+bool allAsleep(const StepResult& result) {
+  const auto asleep = [](const auto& part) { return part.asleep; };
+  return std::all_of(result.organ.begin(), result.organ.end(), asleep) &&
+         std::all_of(result.vessel.begin(), result.vessel.end(), asleep) &&
+         std::all_of(result.fat.begin(), result.fat.end(), asleep);
+}
+
+void wakeAll(State& state) {
+  for (SolidState& organ : state.organ) organ.quietSteps = 0;
+  for (BeamState& vessel : state.vessel) vessel.quietSteps = 0;
+  for (FatState& fat : state.fat) fat.solid.quietSteps = 0;
+}
+
+class ScenesAtRest : public testing::TestWithParam<const char*> {};
+
+TEST_P(ScenesAtRest, HaveTheWeightOfASupineBody) {
+  const Vec3 gravity = test::sceneNamed(GetParam()).gravity;
+  EXPECT_NEAR(gravity.norm(), 9.81, 1e-3);
+  EXPECT_NEAR(gravity[2] / gravity[1], std::tan(20.0 * 3.14159265358979 / 180.0), 1e-4) << "head up by 20 degrees";
+}
+
+TEST_P(ScenesAtRest, ForcesBalanceAtEveryNode) {
+  const std::unique_ptr<const Model> model = test::buildModel(leftAlone(GetParam()));
+  ASSERT_TRUE(model);
+  const test::RestForces forces = test::restForces(*model);
+  double left = 0.0;
+  double moment = 0.0;
+  for (std::size_t b = 0; b < model->bodies(); ++b) {
+    EXPECT_TRUE(model->holds(b)) << b;
+    for (const Vec3& f : forces.force[b]) left = std::max(left, f.norm());
+    for (const Vec3& m : forces.moment[b]) moment = std::max(moment, m.norm());
+  }
+  std::printf("%s: weight %.3f N, left of it at a node %.1e N, moment %.1e N m\n", GetParam(), forces.weight.norm(),
+              left, moment);
+  EXPECT_LT(left, 1e-9 * forces.weight.norm());
+  EXPECT_LT(moment, 1e-9 * forces.weight.norm() * 0.1);
+}
+
+TEST_P(ScenesAtRest, SleepFromTheStart) {
+  const std::unique_ptr<const Model> model = test::buildModel(leftAlone(GetParam()));
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  for (int i = 0; i < 1000; ++i) {
+    const StepResult& result = rig.step(model->scene().hands[0].home);
+    ASSERT_TRUE(allAsleep(result)) << i;
+    ASSERT_EQ(driftOf(result), 0.0) << i;
+  }
+}
+
+TEST_P(ScenesAtRest, FallAsleepAgainWhereTheyAreDrawn) {
+  const std::unique_ptr<const Model> model = test::buildModel(leftAlone(GetParam()));
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  wakeAll(rig.state);
+  for (int i = 0; i < 60; ++i) {
+    const StepResult& result = rig.step(model->scene().hands[0].home);
+    EXPECT_EQ(result.misses, 0U) << i;
+    if (i > 51) EXPECT_TRUE(allAsleep(result)) << i;
+    EXPECT_LT(driftOf(result), 1e-9) << i;
+  }
+}
+
+TEST_P(ScenesAtRest, StayWhereTheyAreDrawnWithoutSleep) {
+  SceneDescription scene = leftAlone(GetParam());
+  scene.solver.sleeping = false;
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  double drift = 0.0;
+  for (int i = 0; i < 1000; ++i) drift = std::max(drift, driftOf(rig.step(scene.hands[0].home)));
+  std::printf("%s: drift in 10 s %.1e m\n", GetParam(), drift);
+  EXPECT_LT(drift, 1e-4);
+}
+
+/// The equilibrium is stable: kicked, everything comes back.
+TEST_P(ScenesAtRest, ComeBackAfterAKick) {
+  SceneDescription scene = leftAlone(GetParam());
+  scene.solver.sleeping = false;
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  for (std::size_t o = 0; o < rig.state.organ.size(); ++o) {
+    for (std::size_t n = 0; n < rig.state.organ[o].velocity.size(); ++n) {
+      if (model->organs()[o].solid.row(n) >= 0) rig.state.organ[o].velocity[n] = Vec3(0.03, -0.05, 0.02);
+    }
+  }
+  double largest = 0.0;
+  double last = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    last = driftOf(rig.step(scene.hands[0].home));
+    largest = std::max(largest, last);
+  }
+  std::printf("%s: kicked by %.2f mm, after 10 s away by %.4f mm\n", GetParam(), 1e3 * largest, 1e3 * last);
+  EXPECT_GT(largest, 1e-4);
+  EXPECT_LT(last, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ScenesAtRest,
+                         testing::Values("touch-liver", "clip-and-cut", "carve-fat", "dissect-bed", "cholecystectomy"),
+                         [](const auto& scene) {
+                           std::string name = scene.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace calot
