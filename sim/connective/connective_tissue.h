@@ -96,7 +96,7 @@ ConnectiveState intactState(const ConnectiveTissue& tissue);
 struct OrganMotion {
   std::span<const Vec3> position;                ///< m
   std::span<const Vec3> velocity;                ///< m/s
-  std::span<const RotationGroup> rotation = {};  ///< of its elements; empty: none turned
+  std::span<const RotationGroup> rotation = {};  ///< of its elements; empty: none is rotated
 };
 
 /// The attached strands over a step, as both organs feel them.

@@ -13,8 +13,8 @@ namespace calot {
 
 namespace {
 
-/// Corrections of a solution at most. Two reach the accuracy of its residual; a third tells.
-constexpr int maxRefinements = 4;
+/// Corrections of a solution at most. Two reach the accuracy of its residual.
+constexpr int maxRefinements = 3;
 
 /// L^-1 of a 3 x 3 block A = L L^T. A pivot below its share of `whole` becomes none: its row and column of L^-1 are
 /// zero. @return how many

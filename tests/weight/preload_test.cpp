@@ -58,14 +58,22 @@ SolidModel bar(Kind kind, double young, double poisson) {
 
 class PreloadedBar : public testing::TestWithParam<Kind> {};
 
-/// u(x) = rho g / E (L x - x^2 / 2): exact at the nodes, but for lumped masses, without lateral contraction.
+/// u(x) = rho g / E (L x - x^2 / 2) of a bar that does not contract sideways, over its sections.
 TEST_P(PreloadedBar, HangsAsABarDoes) {
   const SolidModel model = bar(GetParam(), 20e3, 0.0);
   const std::vector<Vec3> x = solveWeight(model, Vec3(9.81, 0.0, 0.0));
-  for (std::size_t n = 0; n < model.nodes(); ++n) {
-    const double at = model.rest()[n][0];
-    const double exact = density * 9.81 / 20e3 * (0.06 * at - 0.5 * at * at);
-    EXPECT_NEAR(x[n][0], exact, 0.01 * density * 9.81 / 20e3 * 0.5 * 0.06 * 0.06);
+  const double tip = density * 9.81 / 20e3 * 0.5 * 0.06 * 0.06;
+  for (int section = 1; section <= 12; ++section) {
+    const double at = 0.005 * section;
+    double mean = 0.0;
+    double nodes = 0.0;
+    for (std::size_t n = 0; n < model.nodes(); ++n) {
+      if (std::abs(model.rest()[n][0] - at) > 1e-6) continue;
+      mean += x[n][0];
+      nodes += 1.0;
+    }
+    EXPECT_EQ(nodes, 25.0);
+    EXPECT_NEAR(mean / nodes, density * 9.81 / 20e3 * (0.06 * at - 0.5 * at * at), 0.01 * tip);
   }
 }
 
@@ -172,7 +180,8 @@ TEST_P(PreloadedBar, LoadsHaveNoResultant) {
       sum += force[n].norm();
     }
     EXPECT_LT(push.norm(), 1e-12 * sum);
-    if (GetParam() == Kind::tetrahedra || !isStrained) EXPECT_LT(turn.norm(), 1e-12 * sum);
+    if (GetParam() == Kind::cubes && isStrained) continue;
+    EXPECT_LT(turn.norm(), 1e-12 * sum);
   }
 }
 
@@ -182,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(Both, PreloadedBar, testing::Values(Kind::tetrahedra, K
 /// Kinetic energy, energy of tetrahedra and of their loads, height: kicked and left alone, their sum never grows.
 TEST(PreloadedTetrahedra, GainNoEnergy) {
   const Vec3 gravity(0.0, -9.81, 0.0);
-  const SolidModel plain = bar(Kind::tetrahedra, 8e3, 0.45);
+  const SolidModel plain = bar(Kind::tetrahedra, 60e3, 0.45);
   SolidModel model = plain;
   const std::vector<Vec3> x = solveWeight(plain, gravity);
   model.preload(x);

@@ -92,6 +92,7 @@ inline RestForces restForces(const Model& model) {
   }
   for (const auto& fat : model.fat()) {
     out.force.push_back(solidForces(fat->solid(), fat->restFill(), gravity));
+    out.moment.emplace_back();
     position.push_back(fat->solid().rest());
   }
   for (const Tie& tie : model.ties()) {
