@@ -206,8 +206,8 @@ std::string FatModel::divide(const SolidModel::Material& material) {
     cubeStart_.push_back(cubeAtNode_.size());
   }
   const std::size_t nodes = rest.size();
-  solid_ = std::make_unique<SolidModel>(std::move(rest), std::move(cubes), edge, std::vector<bool>(nodes, false),
-                                        material);
+  solid_ =
+      std::make_unique<SolidModel>(std::move(rest), std::move(cubes), edge, std::vector<bool>(nodes, false), material);
   return {};
 }
 

@@ -6,7 +6,19 @@
 #include "sim/scene/weight_system.h"
 #include "sim/vessel/beam_preload.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace calot {
+
+namespace {
+
+std::vector<Vec3> times(double factor, std::vector<Vec3> values) {
+  for (Vec3& v : values) v *= factor;
+  return values;
+}
+
+}  // namespace
 
 void Model::carryWeight() {
   held_.assign(bodies(), true);
@@ -15,13 +27,17 @@ void Model::carryWeight() {
   held_ = x.held;
   const std::size_t firstVessel = organs().size();
   const std::size_t firstFat = firstVessel + vesselTrees().size();
-  for (std::size_t o = 0; o < firstVessel; ++o) organModel[o].solid.preload(x.displacement[o]);
+  const auto loads = [&](std::size_t body) { return times(x.stiffening[body], x.displacement[body]); };
+  const auto ofJoint = [&](std::size_t a, std::size_t b) { return std::min(x.stiffening[a], x.stiffening[b]); };
+  for (std::size_t o = 0; o < firstVessel; ++o) organModel[o].solid.preload(loads(o));
   for (std::size_t t = 0; t < vesselTrees().size(); ++t) {
-    preload(vesselTree[t].beams, x.displacement[firstVessel + t], x.rotation[firstVessel + t]);
+    const std::size_t body = firstVessel + t;
+    preload(vesselTree[t].beams, loads(body), times(x.stiffening[body], x.rotation[body]));
   }
-  for (std::size_t f = 0; f < fat().size(); ++f) fatModel[f]->preload(x.displacement[firstFat + f]);
+  for (std::size_t f = 0; f < fat().size(); ++f) fatModel[f]->preload(loads(firstFat + f));
   for (Tie& tie : tie_) {
-    const Vec3 ahead = tie.place[0].of(x.displacement[tie.body[0]]) - tie.place[1].of(x.displacement[tie.body[1]]);
+    const Vec3 apart = tie.place[0].of(x.displacement[tie.body[0]]) - tie.place[1].of(x.displacement[tie.body[1]]);
+    const Vec3 ahead = ofJoint(tie.body[0], tie.body[1]) * apart;
     if (tie.body[0] < firstVessel) {
       tie.offset += ahead;
       continue;
@@ -30,7 +46,8 @@ void Model::carryWeight() {
     tie.offset += beams.restOrientation()[static_cast<std::size_t>(tie.place[0].node[0])].conjugate() * ahead;
   }
   for (ConnectiveModel& connective : connectiveModel) {
-    connective.tissue.preload(x.displacement[connective.a], x.displacement[connective.b]);
+    const double factor = ofJoint(connective.a, connective.b);
+    connective.tissue.preload(times(factor, x.displacement[connective.a]), times(factor, x.displacement[connective.b]));
   }
 }
 

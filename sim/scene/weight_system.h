@@ -9,6 +9,11 @@
 // configuration that is free of stress lies at -x from the reference configuration (the first step of Sellier's fixed
 // point; the rest moves the configuration that is free of stress and leaves the equilibrium as it is).
 //
+// What grows on an organ that sags already bears its own weight and not the organ's. So in K what bears is stiffer than
+// what it bears, by `bearing` a rank: fat, then vessels and organs that nothing anchors, then anchored organs; a joint
+// counts as the softer of what it joins. Any such K balances the weight; without ranks, fat between liver and
+// gallbladder would hold up the liver, with strains above one.
+//
 // Strands count with their stiffness in all directions, not only along them: what holds a bed carries shear too.
 #pragma once
 
@@ -25,6 +30,7 @@ class Model;
 struct WeightMotion {
   std::vector<std::vector<Vec3>> displacement;  ///< per node (m)
   std::vector<std::vector<Vec3>> rotation;      ///< per node of vessels (rad)
+  std::vector<double> stiffening;               ///< of each body in K; a joint has the lesser of its two bodies'
   /// Per body: is it, with all that ties and strands join to it, held? If not, x is zero, and it falls.
   std::vector<bool> held;
 };

@@ -62,7 +62,8 @@ class SolidModel {
   /// Nodal masses of partly filled cubes (kg). @pre made of cubes
   void massOf(std::span<const double> fill, std::vector<double>& mass) const;
   /// Loads its elements at rest as these displacements of the nodes (m) would, without moving them: to first order, the
-  /// shape that is free of stress is the reference configuration less the displacements. The loads turn with the elements.
+  /// shape that is free of stress is the reference configuration less the displacements. The loads turn with the
+  /// elements.
   void preload(std::span<const Vec3> displacement);
   /// Elements at a node, ascending.
   [[nodiscard]] std::vector<std::int32_t> elementsAt(std::size_t node) const;

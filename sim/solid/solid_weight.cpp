@@ -16,29 +16,30 @@ void addBlock(std::span<const int> row, int a, int b, const Mat3& block, Symmetr
 }
 
 /// K_ab = V (mu (g_a . g_b) I + mu g_b g_a^T + lambda g_a g_b^T)
-void addTetrahedra(const SolidModel& model, std::span<const int> row, SymmetricBlocks& matrix) {
+void addTetrahedra(const SolidModel& model, double factor, std::span<const int> row, SymmetricBlocks& matrix) {
   const LameConstants m = model.material().lame;
   for (std::size_t e = 0; e < model.tetrahedra().size(); ++e) {
     const ElementGroup& group = model.elements().groups()[e / laneCount];
     const std::size_t l = e % laneCount;
     std::array<Vec3, 4> g;
-    for (std::size_t a = 0; a < 4; ++a) g[a] = {group.gradient[a][0][l], group.gradient[a][1][l], group.gradient[a][2][l]};
+    for (std::size_t a = 0; a < 4; ++a)
+      g[a] = {group.gradient[a][0][l], group.gradient[a][1][l], group.gradient[a][2][l]};
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
         Mat3 block = (m.mu * g[a].dot(g[b])) * Mat3::Identity();
         block += m.mu * (g[b] * g[a].transpose()) + m.lambda * (g[a] * g[b].transpose());
-        addBlock(row, group.node[a][l], group.node[b][l], group.volume[l] * block, matrix);
+        addBlock(row, group.node[a][l], group.node[b][l], (factor * group.volume[l]) * block, matrix);
       }
     }
   }
 }
 
-void addCubes(const SolidModel& model, std::span<const double> fill, std::span<const int> row,
+void addCubes(const SolidModel& model, std::span<const double> fill, double factor, std::span<const int> row,
               SymmetricBlocks& matrix) {
   const auto& stiffness = model.hexahedra().stiffness();
   for (std::size_t e = 0; e < model.cubes().size(); ++e) {
     const Index8& cube = model.cubes()[e];
-    const double share = fill.empty() ? 1.0 : fill[e];
+    const double share = fill.empty() ? factor : factor * fill[e];
     for (std::size_t a = 0; a < 8; ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
         Mat3 block;
@@ -55,12 +56,12 @@ void addCubes(const SolidModel& model, std::span<const double> fill, std::span<c
 
 }  // namespace
 
-void addStiffness(const SolidModel& model, std::span<const double> fill, std::span<const int> row,
+void addStiffness(const SolidModel& model, std::span<const double> fill, double factor, std::span<const int> row,
                   SymmetricBlocks& matrix) {
   if (model.madeOfCubes()) {
-    addCubes(model, fill, row, matrix);
+    addCubes(model, fill, factor, row, matrix);
   } else {
-    addTetrahedra(model, row, matrix);
+    addTetrahedra(model, factor, row, matrix);
   }
 }
 

@@ -12,8 +12,9 @@ namespace calot {
 
 /// Adds a solid's stiffness K (N/m) at rest.
 /// @param fill remaining share of each cube; empty: all full
+/// @param factor of all of it
 /// @param row per node: its row of the matrix; -1: fixed
-void addStiffness(const SolidModel& model, std::span<const double> fill, std::span<const int> row,
+void addStiffness(const SolidModel& model, std::span<const double> fill, double factor, std::span<const int> row,
                   SymmetricBlocks& matrix);
 
 /// A material point and the rows of its solid's nodes.

@@ -201,7 +201,8 @@ void TetrahedralElements::preload(std::span<const Vec3> displacement, LameConsta
       const Vec3 gradient(group.gradient[a][0][l], group.gradient[a][1][l], group.gradient[a][2][l]);
       slope += displacement[static_cast<std::size_t>(group.node[a][l])] * gradient.transpose();
     }
-    const Mat3 stress = material.mu * (slope + slope.transpose()) + (material.lambda * slope.trace()) * Mat3::Identity();
+    const Mat3 stress =
+        material.mu * (slope + slope.transpose()) + (material.lambda * slope.trace()) * Mat3::Identity();
     InitialStress& out = stress_[e / laneCount];
     for (int i = 0; i < 3; ++i) out[static_cast<std::size_t>(i)][l] = stress(i, i);
     out[3][l] = stress(0, 1);

@@ -28,8 +28,7 @@ void JoinedOrgans::linearise(const State& state, const std::vector<bool>& awake)
     tissue.holds = false;
     if (!awake[tie.a]) continue;  // organs that strands tie are awake together
     calot::linearise(tie.tissue, state.connective[c], {a.position, a.velocity, a.rotation},
-                     {b.position, b.velocity, b.rotation},
-                     settings_.step, tissue.loads);
+                     {b.position, b.velocity, b.rotation}, settings_.step, tissue.loads);
     tissue.holds = !tissue.loads.onA.empty();
     if (!tissue.holds) continue;
     tissue.coupling->assemble(tissue.loads.damper, settings_.step);

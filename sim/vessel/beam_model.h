@@ -62,14 +62,14 @@ struct BeamElement {
   int a = 0;  ///< nearer to the branch's start
   int b = 0;
   int branch = 0;
-  double length = 0.0;       ///< L at rest (m)
+  double length = 0.0;        ///< L at rest (m)
   Vec3 axis = Vec3::Zero();   ///< unit, in the middle frame at rest
   Vec3 slack = Vec3::Zero();  ///< d / L, in the middle frame, at which it is free of force; unloaded: the axis
   Vec3 bend = Vec3::Zero();   ///< P_0, at which it is free of moments
-  double stretching = 0.0;   ///< E A (N)
-  double bending = 0.0;      ///< E I (N m^2)
-  double twisting = 0.0;     ///< G J (N m^2)
-  double damping = 0.0;      ///< beta (s)
+  double stretching = 0.0;    ///< E A (N)
+  double bending = 0.0;       ///< E I (N m^2)
+  double twisting = 0.0;      ///< G J (N m^2)
+  double damping = 0.0;       ///< beta (s)
 };
 
 class BeamModel {

@@ -10,7 +10,7 @@
 
 namespace calot {
 
-void addStiffness(const BeamModel& model, std::span<const int> row, SymmetricBlocks& matrix) {
+void addStiffness(const BeamModel& model, double factor, std::span<const int> row, SymmetricBlocks& matrix) {
   const BeamState rest = restState(model);
   for (std::size_t index = 0; index < model.elements().size(); ++index) {
     const BeamElement& e = model.elements()[index];
@@ -22,7 +22,7 @@ void addStiffness(const BeamModel& model, std::span<const int> row, SymmetricBlo
     const int b = row[static_cast<std::size_t>(e.b)];
     const auto add = [&](int node, int turn, int other, int otherTurn, const Mat3& block) {
       if (node < 0 || other < 0) return;
-      matrix.add(static_cast<std::size_t>(node + turn), static_cast<std::size_t>(other + otherTurn), block);
+      matrix.add(static_cast<std::size_t>(node + turn), static_cast<std::size_t>(other + otherTurn), factor * block);
     };
     add(a, 0, a, 0, axial);
     add(a, 1, a, 0, -k.stretch * gat);
@@ -46,8 +46,7 @@ void preload(BeamModel& model, std::span<const Vec3> displacement, std::span<con
     const auto b = static_cast<std::size_t>(e.b);
     const BeamStrain s = strainOf(e, rest, index);
     const BeamStiffness k = stiffnessOf(e, s, 0.0);
-    const Vec3 force =
-        k.stretch * (displacement[b] - displacement[a] + k.ga * rotation[a] + k.gb * rotation[b]);
+    const Vec3 force = k.stretch * (displacement[b] - displacement[a] + k.ga * rotation[a] + k.gb * rotation[b]);
     const Vec3 moment = k.bend * (rotation[b] - rotation[a]);
     const Mat3 toMiddle = blend(rest.orientation[a], rest.orientation[b], 0.5).toRotationMatrix().transpose();
     e.slack -= toMiddle * force / e.stretching;

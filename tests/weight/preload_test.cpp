@@ -29,7 +29,7 @@ std::vector<Vec3> solveWeight(const SolidModel& model, const Vec3& gravity) {
   int rows = 0;
   for (std::size_t n = 0; n < model.nodes(); ++n) row.push_back(model.row(n) < 0 ? -1 : rows++);
   SymmetricBlocks matrix(static_cast<std::size_t>(rows));
-  addStiffness(model, {}, row, matrix);
+  addStiffness(model, {}, 1.0, row, matrix);
   std::vector<Vec3> weight;
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     if (row[n] >= 0) weight.emplace_back(model.mass()[n] * gravity);
@@ -77,7 +77,8 @@ TEST_P(PreloadedBar, HangsAsABarDoes) {
   }
 }
 
-/// Loaded, it stays where it is under its weight; without its weight it springs back by x, and under it again it returns.
+/// Loaded, it stays where it is under its weight; without its weight it springs back by x, and under it again it
+/// returns.
 TEST_P(PreloadedBar, SpringsToItsFreeShapeAndBack) {
   SolidModel model = bar(GetParam(), 200e3, 0.3);
   const Vec3 gravity(0.0, -9.81, 0.0);
@@ -116,16 +117,19 @@ std::vector<Vec3> forcesOf(const SolidModel& model, const std::vector<Vec3>& pos
     for (std::size_t e = 0; e < model.cubes().size(); ++e) {
       for (std::size_t a = 0; a < 8; ++a) {
         const auto& f = result[e / laneCount].force[a];
-        out[static_cast<std::size_t>(model.cubes()[e][a])] += Vec3(f[0][e % laneCount], f[1][e % laneCount], f[2][e % laneCount]);
+        out[static_cast<std::size_t>(model.cubes()[e][a])] +=
+            Vec3(f[0][e % laneCount], f[1][e % laneCount], f[2][e % laneCount]);
       }
     }
   } else {
     std::vector<ElementResult> result(model.groups());
-    model.elements().evaluate(position, state.velocity, 0.0, model.material().lame, 40, state.rotation, result, executor);
+    model.elements().evaluate(position, state.velocity, 0.0, model.material().lame, 40, state.rotation, result,
+                              executor);
     for (std::size_t e = 0; e < model.tetrahedra().size(); ++e) {
       for (int a = 0; a < 4; ++a) {
         const auto& f = result[e / laneCount].force[static_cast<std::size_t>(a)];
-        out[static_cast<std::size_t>(model.tetrahedra()[e][a])] += Vec3(f[0][e % laneCount], f[1][e % laneCount], f[2][e % laneCount]);
+        out[static_cast<std::size_t>(model.tetrahedra()[e][a])] +=
+            Vec3(f[0][e % laneCount], f[1][e % laneCount], f[2][e % laneCount]);
       }
     }
   }
@@ -153,7 +157,8 @@ TEST_P(PreloadedBar, ForcesTurnWithTheBody) {
     std::vector<Vec3> turned;
     for (const Vec3& p : shape) turned.emplace_back(turn * p + Vec3(0.1, -0.2, 0.3));
     const std::vector<Vec3> after = forcesOf(model, turned);
-    for (std::size_t n = 0; n < before.size(); ++n) EXPECT_LT((after[n] - turn * before[n]).norm(), 1e-9 * largest) << n;
+    for (std::size_t n = 0; n < before.size(); ++n)
+      EXPECT_LT((after[n] - turn * before[n]).norm(), 1e-9 * largest) << n;
   }
 }
 
@@ -262,7 +267,7 @@ BeamAnswer solveWeight(const BeamModel& model, const Vec3& gravity) {
     weight.emplace_back(Vec3::Zero());
   }
   SymmetricBlocks matrix(static_cast<std::size_t>(rows));
-  addStiffness(model, row, matrix);
+  addStiffness(model, 1.0, row, matrix);
   EXPECT_EQ(matrix.factor(), 0U);
   const std::vector<Vec3> x = matrix.solve(weight);
   BeamAnswer out{std::vector<Vec3>(model.nodes(), Vec3::Zero()), std::vector<Vec3>(model.nodes(), Vec3::Zero())};

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <Eigen/Dense>
 #include <vector>
 
 #include "sim/math/random.h"
@@ -40,8 +40,10 @@ struct System {
       if (held > 0.0) add(i, i, held * Mat3::Identity());
     }
     for (std::size_t s = 0; s < springs; ++s) {
-      const std::size_t i = s < rows - 1 ? s + 1 : static_cast<std::size_t>(random.uniform() * static_cast<double>(rows));
-      const std::size_t j = static_cast<std::size_t>(random.uniform() * static_cast<double>(s < rows - 1 ? s + 1 : rows));
+      const std::size_t i =
+          s < rows - 1 ? s + 1 : static_cast<std::size_t>(random.uniform() * static_cast<double>(rows));
+      const std::size_t j =
+          static_cast<std::size_t>(random.uniform() * static_cast<double>(s < rows - 1 ? s + 1 : rows));
       if (i == j) continue;
       const Mat3 a = randomBlock(random);
       const Mat3 k = a * a.transpose() + 0.1 * Mat3::Identity();
