@@ -66,6 +66,22 @@ TEST_P(ScenesAtRest, ForcesBalanceAtEveryNode) {
   EXPECT_LT(moment, 1e-9 * forces.weight.norm() * 0.1);
 }
 
+/// A bed bears its organ by a small part of what would tear it.
+TEST_P(ScenesAtRest, BedsAreFarFromTearing) {
+  const std::unique_ptr<const Model> model = test::buildModel(leftAlone(GetParam()));
+  ASSERT_TRUE(model);
+  for (const ConnectiveModel& bed : model->connective()) {
+    double largest = 0.0;
+    double mean = 0.0;
+    for (const Strand& strand : bed.tissue.strands()) {
+      largest = std::max(largest, strand.load.norm() / strand.area);
+      mean += strand.load.norm() / bed.tissue.area();
+    }
+    std::printf("%s: strands bear %.0f Pa, at most %.0f Pa\n", GetParam(), mean, largest);
+    EXPECT_LT(largest, 0.5 * bed.tissue.material().strength);
+  }
+}
+
 TEST_P(ScenesAtRest, SleepFromTheStart) {
   const std::unique_ptr<const Model> model = test::buildModel(leftAlone(GetParam()));
   ASSERT_TRUE(model);
