@@ -12,6 +12,8 @@ namespace calot {
 namespace {
 
 constexpr std::size_t elementGroupsPerTask = 16;
+/// Least determinant of tr(U) I - U, 8 at rest: flatter elements keep no moments. Numerical.
+constexpr double leastTurn = 1.0;
 
 /// Node values of one group, lane-wise.
 using NodeLanes = std::array<std::array<std::array<double, laneCount>, 3>, 4>;
@@ -49,16 +51,38 @@ CALOT_LANE_KERNEL void deformation(const NodeLanes& x, const ElementGroup& group
   }
 }
 
-/// sigma + R^T F sigma_0 in place of sigma. @param b R^T F
-CALOT_INLINE void addInitial(const InitialStress& initial, const FourDoubles (&b)[3][3], std::size_t from,
+/// sigma + sigma_0 + Omega in place of sigma, where Omega U + U Omega = U sigma_0 - sigma_0 U (Omega is skew: with
+/// Omega = [w]x and the right side [k]x, (tr(U) I - U) w = k).
+/// @param e U - I: xx, yy, zz, xy, xz, yz
+CALOT_INLINE void addInitial(const InitialStress& initial, const FourDoubles (&e)[6], std::size_t from,
                              FourDoubles (&s)[3][3]) {
-  FourDoubles at[6];
-  for (std::size_t k = 0; k < 6; ++k) readVector(initial[k].data() + from, at[k]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    s[i][0] += (b[i][0] * at[0] + b[i][1] * at[3]) + b[i][2] * at[4];
-    s[i][1] += (b[i][0] * at[3] + b[i][1] * at[1]) + b[i][2] * at[5];
-    s[i][2] += (b[i][0] * at[4] + b[i][1] * at[5]) + b[i][2] * at[2];
-  }
+  FourDoubles t[6];
+  for (std::size_t k = 0; k < 6; ++k) readVector(initial[k].data() + from, t[k]);
+  const FourDoubles k0 = (e[4] * t[3] + e[5] * t[1] + e[2] * t[5]) - (e[3] * t[4] + e[1] * t[5] + e[5] * t[2]);
+  const FourDoubles k1 = (e[0] * t[4] + e[3] * t[5] + e[4] * t[2]) - (e[4] * t[0] + e[5] * t[3] + e[2] * t[4]);
+  const FourDoubles k2 = (e[3] * t[0] + e[1] * t[3] + e[5] * t[4]) - (e[0] * t[3] + e[3] * t[1] + e[4] * t[5]);
+  const FourDoubles g00 = (2.0 + e[1]) + e[2];
+  const FourDoubles g11 = (2.0 + e[0]) + e[2];
+  const FourDoubles g22 = (2.0 + e[0]) + e[1];
+  const FourDoubles c00 = g11 * g22 - e[5] * e[5];
+  const FourDoubles c11 = g00 * g22 - e[4] * e[4];
+  const FourDoubles c22 = g00 * g11 - e[3] * e[3];
+  const FourDoubles c01 = e[3] * g22 + e[4] * e[5];
+  const FourDoubles c02 = e[4] * g11 + e[3] * e[5];
+  const FourDoubles c12 = e[5] * g00 + e[3] * e[4];
+  FourDoubles determinant = (g00 * c00 - e[3] * c01) - e[4] * c02;
+  const FourDoubles least = FourDoubles{} + leastTurn;
+  determinant = determinant > least ? determinant : least;
+  const FourDoubles w0 = ((c00 * k0 + c01 * k1) + c02 * k2) / determinant;
+  const FourDoubles w1 = ((c01 * k0 + c11 * k1) + c12 * k2) / determinant;
+  const FourDoubles w2 = ((c02 * k0 + c12 * k1) + c22 * k2) / determinant;
+  for (std::size_t i = 0; i < 3; ++i) s[i][i] += t[i];
+  s[0][1] += t[3] - w2;
+  s[1][0] += t[3] + w2;
+  s[0][2] += t[4] + w1;
+  s[2][0] += t[4] - w1;
+  s[1][2] += t[5] - w0;
+  s[2][1] += t[5] + w0;
 }
 
 /// @param initial stress at rest, or null: none
@@ -94,7 +118,11 @@ CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameCo
   s[0][1] = s[1][0] = mu * (b[0][1] + b[1][0]);
   s[0][2] = s[2][0] = mu * (b[0][2] + b[2][0]);
   s[1][2] = s[2][1] = mu * (b[1][2] + b[2][1]);
-  if (initial != nullptr) addInitial(*initial, b, from, s);
+  if (initial != nullptr) {
+    const FourDoubles e[6] = {
+        e00, e11, e22, 0.5 * (b[0][1] + b[1][0]), 0.5 * (b[0][2] + b[2][0]), 0.5 * (b[1][2] + b[2][1])};
+    addInitial(*initial, e, from, s);
+  }
   FourDoubles volume;
   readVector(group.volume.data() + from, volume);
   FourDoubles p[3][3];

@@ -57,11 +57,11 @@ class TetrahedralElements {
   /// For each group: rotates `rotation` towards the polar rotation of F(position) by `sweeps` Newton steps, then
   /// computes forces of the linear law in the rotated frame at position + lookAhead * velocity:
   ///   F = sum_a x_a grad_a^T,  eps = sym(R^T F) - I,  sigma = 2 mu eps + lambda tr(eps) I,
-  ///   f_a = -V (R sigma + F sigma_0) grad_a.
-  /// The stress at rest sigma_0 is taken along by F, as a second Piola-Kirchhoff stress: its forces have the potential
-  /// V/2 sigma_0 : (F^T F - I), and no moment (Zienkiewicz and Taylor 2000, vol. 2, 10.5).
-  /// With lookAhead = dt + beta this is the elastic part of the right-hand side of implicit
-  /// Euler with stiffness damping.
+  ///   f_a = -V R (sigma + sigma_0 + Omega) grad_a.
+  /// The stress at rest sigma_0 adds V sigma_0 : (U - I) to the energy, with U = sym(R^T F): a Biot stress, as sigma
+  /// is. Omega is the skew matrix that makes (sigma_0 + Omega) U symmetric, so that the forces are that energy's
+  /// gradient and have no moment (Ogden 1984, 3.5; sigma has the axes of U and needs none). With lookAhead = dt + beta
+  /// this is the elastic part of the right-hand side of implicit Euler with stiffness damping.
   /// @param rotation in: last step's; out: this step's (unit). It is part of State.
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                 LameConstants material, int sweeps, std::span<RotationGroup> rotation, std::span<ElementResult> result,

@@ -201,27 +201,30 @@ TEST(PreloadedTetrahedra, GainNoEnergy) {
   const std::vector<Vec3> x = solveWeight(plain, gravity);
   model.preload(x);
   const auto energy = [&](const SolidState& state) {
-    std::vector<RotationGroup> rotation;
-    const std::vector<Vec3> elastic = forcesOf(plain, state.position, &rotation);
-    const std::vector<Vec3> whole = forcesOf(model, state.position);
+    const SolidState rest = restState(plain);
+    std::vector<RotationGroup> rotation = state.rotation;
+    SerialExecutor executor;
+    std::vector<ElementResult> elastic(model.groups());
+    std::vector<ElementResult> whole(model.groups());
+    const LameConstants lame = plain.material().lame;
+    plain.elements().evaluate(state.position, rest.velocity, 0.0, lame, 8, rotation, elastic, executor);
+    model.elements().evaluate(state.position, rest.velocity, 0.0, lame, 0, rotation, whole, executor);
     double sum = 0.0;
     for (std::size_t n = 0; n < model.nodes(); ++n) {
-      sum += 0.5 * model.mass()[n] * state.velocity[n].squaredNorm();
-      sum -= model.mass()[n] * gravity.dot(state.position[n]);
-      // Loads are linear in the positions: half of their work.
-      sum -= 0.5 * (whole[n] - elastic[n]).dot(state.position[n]);
+      sum += model.mass()[n] * (0.5 * state.velocity[n].squaredNorm() - gravity.dot(state.position[n]));
     }
-    SerialExecutor executor;
-    std::vector<ElementResult> result(model.groups());
-    const SolidState rest = restState(plain);
-    plain.elements().evaluate(state.position, rest.velocity, 0.0, plain.material().lame, 8, rotation, result, executor);
     for (std::size_t e = 0; e < plain.tetrahedra().size(); ++e) {
       const Mat3 r = rotationOf(rotation, static_cast<int>(e));
       for (int a = 0; a < 4; ++a) {
-        const auto& f = result[e / laneCount].force[static_cast<std::size_t>(a)];
+        const auto forceOf = [&](const ElementResult& result) {
+          const auto& f = result.force[static_cast<std::size_t>(a)];
+          return Vec3(f[0][e % laneCount], f[1][e % laneCount], f[2][e % laneCount]);
+        };
         const auto n = static_cast<std::size_t>(plain.tetrahedra()[e][a]);
-        sum -= 0.5 * Vec3(f[0][e % laneCount], f[1][e % laneCount], f[2][e % laneCount])
-                         .dot(state.position[n] - r * plain.rest()[n]);
+        // V sigma : eps / 2 and V sigma_0 : eps
+        const Vec3 own = forceOf(elastic[e / laneCount]);
+        const Vec3 load = forceOf(whole[e / laneCount]) - own;
+        sum -= (0.5 * own + load).dot(state.position[n] - r * plain.rest()[n]);
       }
     }
     return sum;
