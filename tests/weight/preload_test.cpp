@@ -250,7 +250,7 @@ TEST(PreloadedTetrahedra, GainNoEnergy) {
     before = now;
   }
   std::printf("kick %.2e J: gained in a step at most %.1e of it; left %.1e\n", kick, gained / kick, before / kick);
-  EXPECT_LT(gained, 1e-3 * kick);
+  EXPECT_LT(gained, 1e-9 * kick);
   EXPECT_LT(std::abs(before), 1e-3 * kick);
 }
 

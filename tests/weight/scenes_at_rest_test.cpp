@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/sim/scene/support/scenes.h"
 #include "tests/weight/support/rest_forces.h"
@@ -139,6 +141,44 @@ TEST_P(ScenesAtRest, ComeBackAfterAKick) {
   std::printf("%s: kicked by %.2f mm, after 10 s away by %.4f mm\n", GetParam(), 1e3 * largest, 1e3 * last);
   EXPECT_GT(largest, 1e-4);
   EXPECT_LT(last, 1e-4);
+}
+
+/// The gallbladder's weight alone, no hand near, tears the rest of its bed once that is too small: spread evenly it
+/// would hold while it has W / strength of area.
+TEST(DissectBed, WeightTearsTheLastOfTheBed) {
+  SceneDescription scene = leftAlone("dissect-bed");
+  scene.solver.sleeping = false;
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  const ConnectiveModel& bed = model->connective()[0];
+  const std::vector<Strand>& strands = bed.tissue.strands();
+  std::vector<std::pair<double, std::size_t>> order;  // from below
+  for (std::size_t s = 0; s < strands.size(); ++s) {
+    order.emplace_back(strands[s].a.of(model->organs()[bed.a].solid.rest())[1], s);
+  }
+  std::sort(order.begin(), order.end());
+  test::Rig rig(*model);
+  std::size_t burned = 0;
+  double heldWith = 1.0;  // least share of the bed that held
+  for (int step = 0; step < 3000; ++step) {
+    ConnectiveState& state = rig.state.connective[0];
+    for (std::size_t k = 0; step % 100 == 0 && k < strands.size() / 24 && burned < strands.size(); ++k, ++burned) {
+      if (state.condition[order[burned].second] != StrandCondition::attached) continue;
+      state.condition[order[burned].second] = StrandCondition::burned;
+      state.alpha[order[burned].second] = 0.0;
+    }
+    const ConnectiveResult& result = rig.step(scene.hands[0].home).connective[0];
+    if (result.attached == 0.0) break;
+    if (result.torn == 0.0 && step % 100 == 99) heldWith = result.attached;
+  }
+  const ConnectiveShares shares = sharesOf(bed.tissue, rig.state.connective[0]);
+  const double even = model->organs()[bed.a].solid.wholeMass() * scene.gravity.norm() /
+                      (bed.tissue.material().strength * bed.tissue.area());
+  std::printf("bed: %.3f torn by weight alone, %.3f held; spread evenly %.3f\n", shares.torn, heldWith, even);
+  EXPECT_EQ(shares.attached, 0.0);
+  EXPECT_GT(shares.torn, 0.5 * even);
+  EXPECT_LT(shares.torn, 2.5 * even);
+  EXPECT_LT(heldWith, 3.0 * even);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ScenesAtRest,
