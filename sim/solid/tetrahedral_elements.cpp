@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t elementGroupsPerTask = 16;
 /// Least determinant of tr(U) I - U, 8 at rest: flatter elements keep no moments. Numerical.
-constexpr double leastTurn = 1.0;
+constexpr double minTurn = 1.0;
 
 /// Node values of one group, lane-wise.
 using NodeLanes = std::array<std::array<std::array<double, laneCount>, 3>, 4>;
@@ -71,7 +71,7 @@ CALOT_INLINE void addInitial(const InitialStress& initial, const FourDoubles (&e
   const FourDoubles c02 = e[4] * g11 + e[3] * e[5];
   const FourDoubles c12 = e[5] * g00 + e[3] * e[4];
   FourDoubles determinant = (g00 * c00 - e[3] * c01) - e[4] * c02;
-  const FourDoubles least = FourDoubles{} + leastTurn;
+  const FourDoubles least = FourDoubles{} + minTurn;
   determinant = determinant > least ? determinant : least;
   const FourDoubles w0 = ((c00 * k0 + c01 * k1) + c02 * k2) / determinant;
   const FourDoubles w1 = ((c01 * k0 + c11 * k1) + c12 * k2) / determinant;
