@@ -32,6 +32,12 @@ ConnectiveTissue::ConnectiveTissue(std::vector<Strand> strands, std::vector<std:
   for (const Strand& strand : strand_) area_ += strand.area;
 }
 
+void ConnectiveTissue::preload(std::span<const Vec3> displacementA, std::span<const Vec3> displacementB) {
+  for (Strand& strand : strand_) {
+    strand.load = stiffnessOf(strand) * (strand.b.of(displacementB) - strand.a.of(displacementA));
+  }
+}
+
 ConnectiveState intactState(const ConnectiveTissue& tissue) {
   ConnectiveState state;
   state.condition.assign(tissue.strands().size(), StrandCondition::attached);
@@ -60,7 +66,12 @@ void linearise(const ConnectiveTissue& tissue, const ConnectiveState& state, con
     const double ahead = separation + std::min(step * stretch.direction.dot(velocityA - velocityB), 0.0);
     const double secant = law.secant(ahead, state.damage[s]);
     const double damper = section * (step * secant + m.damping * (secant / m.stiffness));
-    const Vec3 force = tension * stretch.direction;
+    Vec3 force = tension * stretch.direction;
+    if (!strand.load.isZero(0.0)) {
+      const double left = state.alpha[s] * (1.0 - state.damage[s]);
+      const Vec3 load = b.rotation.empty() ? strand.load : Vec3(rotationOf(b.rotation, strand.b.element) * strand.load);
+      force -= left * load;
+    }
     out.damper[s] = damper;
     Attachment& onA = out.onA.emplace_back();
     onA.point = strand.a;

@@ -4,7 +4,9 @@
 //
 // A strand is a cohesive spring (cohesive_law.h) and a damper between point a of the first organ and point b of the
 // second, over its area A of the bed:
-//   T = alpha A t(w),   w = l - l0 (tension positive),   f_a = -T e,   e = (x_a - x_b) / l.
+//   T = alpha A t(w),   w = l - l0 (tension positive),   f_a = -T e + alpha (1 - d) R f_0,   e = (x_a - x_b) / l.
+// f_0 is what it carries of the weight where the scene is drawn (sim/scene/weight_system.h), mostly shear; R turns it
+// with the second organ. It fades and breaks with the strand.
 // Over a step it is linear in the velocities of both ends: f_a = -T e - c (v_a - v_b) with c = h k + damping, k the
 // secant stiffness. k I is an upper bound of the spring's tangent stiffness in every direction, so that implicit Euler
 // of both organs as one system never gains energy from a strand, at any stiffness and step.
@@ -33,6 +35,8 @@ struct Strand {
   double restLength = 0.0;             ///< l0 (m)
   Vec3 restDirection = Vec3::UnitZ();  ///< d at rest, used if the ends coincide
   double area = 0.0;                   ///< of the bed that it represents (m^2)
+  /// Force on the first organ that it carries at rest, besides its law, in the frame of the second one's element (N).
+  Vec3 load = Vec3::Zero();
 };
 
 /// Material per area of bed, independent of the subdivision into strands.
@@ -59,6 +63,10 @@ class ConnectiveTissue {
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& sheets() const { return sheet_; }
   [[nodiscard]] const ConnectiveMaterial& material() const { return material_; }
   [[nodiscard]] double area() const { return area_; }  ///< of all strands (m^2)
+  /// Of an intact one, in any direction (N/m).
+  [[nodiscard]] double stiffnessOf(const Strand& strand) const { return strand.area * material_.stiffness; }
+  /// Loads the strands at rest as displacements of the organs' nodes (m) would if they were as stiff in all directions.
+  void preload(std::span<const Vec3> displacementA, std::span<const Vec3> displacementB);
 
  private:
   std::vector<Strand> strand_;
@@ -86,8 +94,9 @@ ConnectiveState intactState(const ConnectiveTissue& tissue);
 
 /// Nodal positions and velocities of one organ.
 struct OrganMotion {
-  std::span<const Vec3> position;  ///< m
-  std::span<const Vec3> velocity;  ///< m/s
+  std::span<const Vec3> position;                ///< m
+  std::span<const Vec3> velocity;                ///< m/s
+  std::span<const RotationGroup> rotation = {};  ///< of its elements; empty: none is rotated
 };
 
 /// The attached strands over a step, as both organs feel them.

@@ -55,9 +55,9 @@ std::string partnerFault(const FatPartner& p) {
 
 }  // namespace
 
-std::unique_ptr<const FatModel> FatModel::make(const TriangleMesh& surface, const FatSettings& settings,
-                                               std::span<const FatPartner> partners, std::span<const FatRegion> regions,
-                                               std::string& error) {
+std::unique_ptr<FatModel> FatModel::make(const TriangleMesh& surface, const FatSettings& settings,
+                                         std::span<const FatPartner> partners, std::span<const FatRegion> regions,
+                                         std::string& error) {
   const FloatingPointScope scope;
   error = settingsFault(settings);
   for (const FatPartner& p : partners) {
@@ -206,8 +206,8 @@ std::string FatModel::divide(const SolidModel::Material& material) {
     cubeStart_.push_back(cubeAtNode_.size());
   }
   const std::size_t nodes = rest.size();
-  solid_ = std::make_unique<const SolidModel>(std::move(rest), std::move(cubes), edge, std::vector<bool>(nodes, false),
-                                              material);
+  solid_ =
+      std::make_unique<SolidModel>(std::move(rest), std::move(cubes), edge, std::vector<bool>(nodes, false), material);
   return {};
 }
 

@@ -60,9 +60,9 @@ class FatModel {
  public:
   /// @param surface closed, outward (m, W)
   /// @return null and one line of reason (without the fat's name) if there is no such fat
-  static std::unique_ptr<const FatModel> make(const TriangleMesh& surface, const FatSettings& settings,
-                                              std::span<const FatPartner> partners, std::span<const FatRegion> regions,
-                                              std::string& error);
+  static std::unique_ptr<FatModel> make(const TriangleMesh& surface, const FatSettings& settings,
+                                        std::span<const FatPartner> partners, std::span<const FatRegion> regions,
+                                        std::string& error);
 
   static constexpr double bandCells = 3.0;  ///< of the field
 
@@ -70,6 +70,8 @@ class FatModel {
   [[nodiscard]] const FieldModel& field() const { return field_; }
   [[nodiscard]] const BrickLattice& lattice() const { return field_.lattice; }
   [[nodiscard]] const SolidModel& solid() const { return *solid_; }
+  /// SolidModel::preload()
+  void preload(std::span<const Vec3> displacement) { solid_->preload(displacement); }
   [[nodiscard]] int cellsPerCube() const { return k_; }
   /// Inside nodes of a full cube.
   [[nodiscard]] int fullCount() const { return k_ * k_ * k_; }
@@ -128,7 +130,7 @@ class FatModel {
   void rankBlocks();
 
   FieldModel field_;
-  std::unique_ptr<const SolidModel> solid_;
+  std::unique_ptr<SolidModel> solid_;
   int k_ = 1;
   Index3 hexahedra_ = Index3::Zero();
   std::vector<std::int32_t> cubeOf_;

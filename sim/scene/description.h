@@ -177,7 +177,7 @@ struct SceneDescription : Tissues::Descriptions {
   std::uint32_t majorVersion = 1;  ///< changes when attempts before and after must not be compared
   std::uint32_t minorVersion = 0;
   std::uint32_t ticksPerStep = 10;  ///< a tick is 1 ms
-  Vec3 gravity = Vec3::Zero();      ///< m/s^2; zero: the organs' rest shape is their shape in the body, under gravity
+  Vec3 gravity = Vec3::Zero();      ///< m/s^2; the scene is drawn as it is under it (sim/scene/weight_system.h)
   double timeLimit = 0.0;           ///< s; 0: none
   std::array<Vec3, 2> workspace{Vec3::Constant(-0.5), Vec3::Constant(0.5)};  ///< lower and upper corner for tips (m)
   ProcedureDescription procedure;

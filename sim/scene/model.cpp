@@ -31,6 +31,7 @@ Model::Built Model::build(SceneDescription scene) {
   built.error = model->addProcedure(model->scene_);
   if (built.error.empty()) built.error = model->addRetractions(model->scene_);
   if (!built.error.empty()) return built;
+  model->carryWeight();
   model->layout_ = digestLayout(*model);
   built.model = std::move(model);
   return built;

@@ -46,6 +46,8 @@ class Model : public Tissues::Models {
   [[nodiscard]] const std::vector<RetractionModel>& retractions() const { return retraction_; }
   /// Linear systems: organs, then vessel trees, then fat.
   [[nodiscard]] std::size_t bodies() const;
+  /// Is a body in equilibrium in the reference configuration? One with weight that nothing holds is not.
+  [[nodiscard]] bool holds(std::size_t body) const { return held_[body]; }
   /// Index of the structure of this name, or structures().size().
   [[nodiscard]] std::size_t structureNamed(const std::string& name) const;
   [[nodiscard]] const DigestLayout& layout() const { return layout_; }
@@ -58,12 +60,14 @@ class Model : public Tissues::Models {
   Model() = default;
   std::string addProcedure(const SceneDescription& scene);
   std::string addRetractions(const SceneDescription& scene);
+  void carryWeight();
 
   SceneDescription scene_;
   std::vector<StructureModel> structure_;
   std::vector<Tie> tie_;
   std::vector<VesselCover> cover_;
   std::vector<RetractionModel> retraction_;
+  std::vector<bool> held_;  ///< per body
   DigestLayout layout_;
 };
 

@@ -64,10 +64,12 @@ CALOT_LANE_KERNEL void matrices(const RotationGroup& q, RotationLanes& r) {
   }
 }
 
-/// u = R^T (x - middle) - corner, then f = -fill R K u, of lanes `from` to `from` + 3.
+constexpr InitialForces noForces{};
+
+/// u = R^T (x - middle) - corner, then f = -fill R (K u + f_0), of lanes `from` to `from` + 3.
 CALOT_INLINE void forcesOf(const CornerLanes& x, const std::array<Vec3, 8>& corner, const Stiffness& stiffness,
-                           const RotationLanes& rotation, const std::array<double, laneCount>& fill, std::size_t from,
-                           HexahedronResult& out) {
+                           const InitialForces& initial, const RotationLanes& rotation,
+                           const std::array<double, laneCount>& fill, std::size_t from, HexahedronResult& out) {
   FourDoubles r[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) readVector(rotation[i][j].data() + from, r[i][j]);
@@ -96,7 +98,8 @@ CALOT_INLINE void forcesOf(const CornerLanes& x, const std::array<Vec3, 8>& corn
   FourDoubles share;
   readVector(fill.data() + from, share);
   for (std::size_t a = 0; a < 8; ++a) {
-    FourDoubles p[3]{};
+    FourDoubles p[3];
+    for (std::size_t i = 0; i < 3; ++i) readVector(initial[3 * a + i].data() + from, p[i]);
     for (std::size_t k = 0; k < 24; ++k) {
       for (std::size_t i = 0; i < 3; ++i) p[i] += stiffness[3 * a + i][k] * u[k];
     }
@@ -108,10 +111,10 @@ CALOT_INLINE void forcesOf(const CornerLanes& x, const std::array<Vec3, 8>& corn
 }
 
 CALOT_LANE_KERNEL void forces(const CornerLanes& x, const std::array<Vec3, 8>& corner, const Stiffness& stiffness,
-                              const RotationLanes& r, const std::array<double, laneCount>& fill,
-                              HexahedronResult& out) {
-  forcesOf(x, corner, stiffness, r, fill, 0, out);
-  forcesOf(x, corner, stiffness, r, fill, 4, out);
+                              const InitialForces& initial, const RotationLanes& r,
+                              const std::array<double, laneCount>& fill, HexahedronResult& out) {
+  forcesOf(x, corner, stiffness, initial, r, fill, 0, out);
+  forcesOf(x, corner, stiffness, initial, r, fill, 4, out);
 }
 
 CALOT_LANE_KERNEL void rotateStiffness(const Stiffness& stiffness, const RotationLanes& r,
@@ -211,6 +214,22 @@ HexahedralElements::HexahedralElements(std::span<const Index8> cells, double edg
   integrate(edge, material, stiffness_);
 }
 
+void HexahedralElements::preload(std::span<const Vec3> displacement) {
+  force_.assign(groups_.size(), {});
+  for (std::size_t e = 0; e < count_; ++e) {
+    const HexahedronGroup& group = groups_[e / laneCount];
+    const std::size_t l = e % laneCount;
+    for (std::size_t k = 0; k < 24; ++k) {
+      double sum = 0.0;
+      for (std::size_t b = 0; b < 8; ++b) {
+        const Vec3& u = displacement[static_cast<std::size_t>(group.node[b][l])];
+        for (std::size_t j = 0; j < 3; ++j) sum += stiffness_[k][3 * b + j] * u[static_cast<int>(j)];
+      }
+      force_[e / laneCount][k][l] = sum;
+    }
+  }
+}
+
 std::array<double, laneCount> HexahedralElements::fillOf(std::size_t group, std::span<const double> fill) const {
   std::array<double, laneCount> out = groups_[group].weight;
   if (!fill.empty()) {
@@ -249,7 +268,7 @@ void HexahedralElements::evaluate(std::span<const Vec3> position, std::span<cons
           for (std::size_t l = 0; l < laneCount; ++l) x[a][i][l] += lookAhead * v[a][i][l];
         }
       }
-      forces(x, corner_, stiffness_, r, share, result[g]);
+      forces(x, corner_, stiffness_, force_.empty() ? noForces : force_[g], r, share, result[g]);
     }
   });
 }

@@ -3,7 +3,7 @@
 //
 // Each cube has one rotation, the polar rotation of its mean deformation gradient, and small strain
 // in the rotated frame:
-//   f = -fill R K (R^T x - X).
+//   f = -fill R (K (R^T x - X) + f_0),   f_0 what the cube carries at rest.
 // K integrates the deviatoric part at 2 x 2 x 2 Gauss points, which is exact for a cube, and the volumetric part with
 // the mean dilatation (Nagtegaal, Parks and Rice 1974; Hughes 1980, "B-bar"), so that nearly incompressible tissue does
 // not lock. All cubes share one K.
@@ -31,6 +31,9 @@ struct HexahedronGroup {
   std::array<std::array<int, laneCount>, 8> node;
   std::array<double, laneCount> weight;  ///< 1, or 0 where the lane is not used
 };
+
+/// K u of a group's cubes at rest, in their frames: of corner a along i at [3 a + i] (N).
+using InitialForces = std::array<std::array<double, laneCount>, 24>;
 
 /// Forces of a group, for the assembly.
 struct HexahedronResult {
@@ -63,6 +66,9 @@ class HexahedralElements {
                 std::span<const double> fill, std::span<RotationGroup> rotation, std::span<HexahedronResult> result,
                 Executor& executor) const;
 
+  /// Gives each cube the forces at rest, f_0 = K u, that these displacements of the nodes (m) would add to a full one.
+  void preload(std::span<const Vec3> displacement);
+
   /// Fill of a group's cubes, by lane: 0 where a lane is not used.
   [[nodiscard]] std::array<double, laneCount> fillOf(std::size_t group, std::span<const double> fill) const;
   /// Stiffness of a group's cubes, rotated by `rotation`. @param fill by lane @param out per lane
@@ -77,7 +83,8 @@ class HexahedralElements {
   double edge_ = 0.0;
   std::vector<HexahedronGroup> groups_;
   std::array<std::array<double, 24>, 24> stiffness_{};
-  std::array<Vec3, 8> corner_{};  ///< at rest, from the cube's middle (m)
+  std::array<Vec3, 8> corner_{};      ///< at rest, from the cube's middle (m)
+  std::vector<InitialForces> force_;  ///< f_0 of each group; empty: none
 };
 
 }  // namespace calot

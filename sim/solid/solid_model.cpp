@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"  // first
+
 #include "sim/solid/solid_model.h"
 
 #include <algorithm>
@@ -44,6 +46,13 @@ double SolidModel::volume(std::span<const Vec3> position, std::span<const double
   return madeOfCubes() ? hexahedra().volume(position, fill) : elements().volume(position);
 }
 
+Mat3 rotationOf(std::span<const RotationGroup> rotation, int element) {
+  const auto e = static_cast<std::size_t>(element);
+  const RotationGroup& group = rotation[e / laneCount];
+  const std::size_t l = e % laneCount;
+  return Quat(group[0][l], group[1][l], group[2][l], group[3][l]).toRotationMatrix();
+}
+
 SolidState restState(const SolidModel& model) {
   SolidState state;
   state.position = model.rest();
@@ -62,6 +71,14 @@ void SolidModel::massOf(std::span<const double> fill, std::vector<double>& mass)
   const double eighth = 0.125 * material_.density * (edge * edge * edge);
   for (std::size_t e = 0; e < cube_.size(); ++e) {
     for (const int node : cube_[e]) mass[static_cast<std::size_t>(node)] += fill[e] * eighth;
+  }
+}
+
+void SolidModel::preload(std::span<const Vec3> displacement) {
+  if (madeOfCubes()) {
+    std::get<HexahedralElements>(elements_).preload(displacement);
+  } else {
+    std::get<TetrahedralElements>(elements_).preload(displacement, material_.lame);
   }
 }
 

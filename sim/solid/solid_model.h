@@ -61,6 +61,10 @@ class SolidModel {
   [[nodiscard]] std::size_t elementCount() const { return madeOfCubes() ? cube_.size() : tetrahedra_.size(); }
   /// Nodal masses of partly filled cubes (kg). @pre made of cubes
   void massOf(std::span<const double> fill, std::vector<double>& mass) const;
+  /// Loads its elements at rest as these displacements of the nodes (m) would, without moving them: to first order, the
+  /// shape that is free of stress is the reference configuration less the displacements. The loads turn with the
+  /// elements.
+  void preload(std::span<const Vec3> displacement);
   /// Elements at a node, ascending.
   [[nodiscard]] std::vector<std::int32_t> elementsAt(std::size_t node) const;
 
@@ -94,6 +98,9 @@ struct SolidState {
     visit("largestDisplacement", self.maxDisplacement);
   }
 };
+
+/// Rotation of one element. @param rotation of all (SolidState::rotation)
+Mat3 rotationOf(std::span<const RotationGroup> rotation, int element);
 
 /// Reference state: no displacement, no velocity, asleep.
 SolidState restState(const SolidModel& model);

@@ -12,6 +12,8 @@ namespace calot {
 namespace {
 
 constexpr std::size_t elementGroupsPerTask = 16;
+/// Least determinant of tr(U) I - U, 8 at rest: flatter elements keep no moments. Numerical.
+constexpr double minTurn = 1.0;
 
 /// Node values of one group, lane-wise.
 using NodeLanes = std::array<std::array<std::array<double, laneCount>, 3>, 4>;
@@ -49,8 +51,43 @@ CALOT_LANE_KERNEL void deformation(const NodeLanes& x, const ElementGroup& group
   }
 }
 
+/// sigma + sigma_0 + Omega in place of sigma, where Omega U + U Omega = U sigma_0 - sigma_0 U (Omega is skew: with
+/// Omega = [w]x and the right side [k]x, (tr(U) I - U) w = k).
+/// @param e U - I: xx, yy, zz, xy, xz, yz
+CALOT_INLINE void addInitial(const InitialStress& initial, const FourDoubles (&e)[6], std::size_t from,
+                             FourDoubles (&s)[3][3]) {
+  FourDoubles t[6];
+  for (std::size_t k = 0; k < 6; ++k) readVector(initial[k].data() + from, t[k]);
+  const FourDoubles k0 = (e[4] * t[3] + e[5] * t[1] + e[2] * t[5]) - (e[3] * t[4] + e[1] * t[5] + e[5] * t[2]);
+  const FourDoubles k1 = (e[0] * t[4] + e[3] * t[5] + e[4] * t[2]) - (e[4] * t[0] + e[5] * t[3] + e[2] * t[4]);
+  const FourDoubles k2 = (e[3] * t[0] + e[1] * t[3] + e[5] * t[4]) - (e[0] * t[3] + e[3] * t[1] + e[4] * t[5]);
+  const FourDoubles g00 = (2.0 + e[1]) + e[2];
+  const FourDoubles g11 = (2.0 + e[0]) + e[2];
+  const FourDoubles g22 = (2.0 + e[0]) + e[1];
+  const FourDoubles c00 = g11 * g22 - e[5] * e[5];
+  const FourDoubles c11 = g00 * g22 - e[4] * e[4];
+  const FourDoubles c22 = g00 * g11 - e[3] * e[3];
+  const FourDoubles c01 = e[3] * g22 + e[4] * e[5];
+  const FourDoubles c02 = e[4] * g11 + e[3] * e[5];
+  const FourDoubles c12 = e[5] * g00 + e[3] * e[4];
+  FourDoubles determinant = (g00 * c00 - e[3] * c01) - e[4] * c02;
+  const FourDoubles least = FourDoubles{} + minTurn;
+  determinant = determinant > least ? determinant : least;
+  const FourDoubles w0 = ((c00 * k0 + c01 * k1) + c02 * k2) / determinant;
+  const FourDoubles w1 = ((c01 * k0 + c11 * k1) + c12 * k2) / determinant;
+  const FourDoubles w2 = ((c02 * k0 + c12 * k1) + c22 * k2) / determinant;
+  for (std::size_t i = 0; i < 3; ++i) s[i][i] += t[i];
+  s[0][1] += t[3] - w2;
+  s[1][0] += t[3] + w2;
+  s[0][2] += t[4] + w1;
+  s[2][0] += t[4] - w1;
+  s[1][2] += t[5] - w0;
+  s[2][1] += t[5] + w0;
+}
+
+/// @param initial stress at rest, or null: none
 CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameConstants material,
-                           const RotationGroup& q, std::size_t from, ElementResult& out) {
+                           const InitialStress* initial, const RotationGroup& q, std::size_t from, ElementResult& out) {
   const double lambda = material.lambda;
   const double mu = material.mu;
   FourDoubles w;
@@ -74,19 +111,23 @@ CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameCo
   const FourDoubles e11 = b[1][1] - 1.0;
   const FourDoubles e22 = b[2][2] - 1.0;
   const FourDoubles trace = lambda * ((e00 + e11) + e22);
-  const FourDoubles s00 = 2.0 * mu * e00 + trace;
-  const FourDoubles s11 = 2.0 * mu * e11 + trace;
-  const FourDoubles s22 = 2.0 * mu * e22 + trace;
-  const FourDoubles s01 = mu * (b[0][1] + b[1][0]);
-  const FourDoubles s02 = mu * (b[0][2] + b[2][0]);
-  const FourDoubles s12 = mu * (b[1][2] + b[2][1]);
+  FourDoubles s[3][3];
+  s[0][0] = 2.0 * mu * e00 + trace;
+  s[1][1] = 2.0 * mu * e11 + trace;
+  s[2][2] = 2.0 * mu * e22 + trace;
+  s[0][1] = s[1][0] = mu * (b[0][1] + b[1][0]);
+  s[0][2] = s[2][0] = mu * (b[0][2] + b[2][0]);
+  s[1][2] = s[2][1] = mu * (b[1][2] + b[2][1]);
+  if (initial != nullptr) {
+    const FourDoubles e[6] = {
+        e00, e11, e22, 0.5 * (b[0][1] + b[1][0]), 0.5 * (b[0][2] + b[2][0]), 0.5 * (b[1][2] + b[2][1])};
+    addInitial(*initial, e, from, s);
+  }
   FourDoubles volume;
   readVector(group.volume.data() + from, volume);
   FourDoubles p[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
-    p[i][0] = (r[i][0] * s00 + r[i][1] * s01) + r[i][2] * s02;
-    p[i][1] = (r[i][0] * s01 + r[i][1] * s11) + r[i][2] * s12;
-    p[i][2] = (r[i][0] * s02 + r[i][1] * s12) + r[i][2] * s22;
+    for (std::size_t j = 0; j < 3; ++j) p[i][j] = (r[i][0] * s[0][j] + r[i][1] * s[1][j]) + r[i][2] * s[2][j];
   }
   for (std::size_t a = 0; a < 4; ++a) {
     FourDoubles g[3];
@@ -99,9 +140,9 @@ CALOT_INLINE void forcesOf(const NodeLanes& x, const ElementGroup& group, LameCo
 }
 
 CALOT_LANE_KERNEL void forces(const NodeLanes& x, const ElementGroup& group, LameConstants material,
-                              const RotationGroup& q, ElementResult& out) {
-  forcesOf(x, group, material, q, 0, out);
-  forcesOf(x, group, material, q, 4, out);
+                              const InitialStress* initial, const RotationGroup& q, ElementResult& out) {
+  forcesOf(x, group, material, initial, q, 0, out);
+  forcesOf(x, group, material, initial, q, 4, out);
 }
 
 CALOT_LANE_KERNEL void rotated(const ElementGroup& group, const RotationGroup& q, RotatedGradients& out) {
@@ -173,9 +214,29 @@ void TetrahedralElements::evaluate(std::span<const Vec3> position, std::span<con
           for (std::size_t l = 0; l < laneCount; ++l) x[a][i][l] += lookAhead * v[a][i][l];
         }
       }
-      forces(x, groups_[g], material, rotation[g], result[g]);
+      forces(x, groups_[g], material, stress_.empty() ? nullptr : &stress_[g], rotation[g], result[g]);
     }
   });
+}
+
+void TetrahedralElements::preload(std::span<const Vec3> displacement, LameConstants material) {
+  stress_.assign(groups_.size(), {});
+  for (std::size_t e = 0; e < count_; ++e) {
+    const ElementGroup& group = groups_[e / laneCount];
+    const std::size_t l = e % laneCount;
+    Mat3 slope = Mat3::Zero();
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Vec3 gradient(group.gradient[a][0][l], group.gradient[a][1][l], group.gradient[a][2][l]);
+      slope += displacement[static_cast<std::size_t>(group.node[a][l])] * gradient.transpose();
+    }
+    const Mat3 stress =
+        material.mu * (slope + slope.transpose()) + (material.lambda * slope.trace()) * Mat3::Identity();
+    InitialStress& out = stress_[e / laneCount];
+    for (int i = 0; i < 3; ++i) out[static_cast<std::size_t>(i)][l] = stress(i, i);
+    out[3][l] = stress(0, 1);
+    out[4][l] = stress(0, 2);
+    out[5][l] = stress(1, 2);
+  }
 }
 
 void TetrahedralElements::gradients(std::size_t group, const RotationGroup& rotation, RotatedGradients& out) const {

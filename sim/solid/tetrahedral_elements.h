@@ -31,6 +31,9 @@ struct ElementGroup {
   std::array<double, laneCount> volume;                                  ///< at rest (m^3)
 };
 
+/// Stress of a group at rest (Pa): xx, yy, zz, xy, xz, yz.
+using InitialStress = std::array<std::array<double, laneCount>, 6>;
+
 /// Forces of an element group, for the right-hand side.
 struct ElementResult {
   std::array<std::array<std::array<double, laneCount>, 3>, 4> force;  ///< on the nodes (N)
@@ -53,13 +56,20 @@ class TetrahedralElements {
 
   /// For each group: rotates `rotation` towards the polar rotation of F(position) by `sweeps` Newton steps, then
   /// computes forces of the linear law in the rotated frame at position + lookAhead * velocity:
-  ///   F = sum_a x_a grad_a^T,  eps = sym(R^T F) - I,  sigma = 2 mu eps + lambda tr(eps) I,  f_a = -V R sigma grad_a.
-  /// With lookAhead = dt + beta this is the elastic part of the right-hand side of implicit
-  /// Euler with stiffness damping.
+  ///   F = sum_a x_a grad_a^T,  eps = sym(R^T F) - I,  sigma = 2 mu eps + lambda tr(eps) I,
+  ///   f_a = -V R (sigma + sigma_0 + Omega) grad_a.
+  /// The stress at rest sigma_0 adds V sigma_0 : (U - I) to the energy, with U = sym(R^T F): a Biot stress, as sigma
+  /// is. Omega is the skew matrix that makes (sigma_0 + Omega) U symmetric, so that the forces are that energy's
+  /// gradient and have no moment (Ogden 1984, 3.5; sigma has the axes of U and needs none). With lookAhead = dt + beta
+  /// this is the elastic part of the right-hand side of implicit Euler with stiffness damping.
   /// @param rotation in: last step's; out: this step's (unit). It is part of State.
   void evaluate(std::span<const Vec3> position, std::span<const Vec3> velocity, double lookAhead,
                 LameConstants material, int sweeps, std::span<RotationGroup> rotation, std::span<ElementResult> result,
                 Executor& executor) const;
+
+  /// Gives each element the stress at rest that these displacements of the nodes (m) would: sigma of
+  /// eps = sym(sum_a u_a grad_a^T).
+  void preload(std::span<const Vec3> displacement, LameConstants material);
 
   void gradients(std::size_t group, const RotationGroup& rotation, RotatedGradients& out) const;
 
@@ -69,6 +79,7 @@ class TetrahedralElements {
  private:
   std::size_t count_ = 0;
   std::vector<ElementGroup> groups_;
+  std::vector<InitialStress> stress_;  ///< sigma_0 of each group; empty: none
 };
 
 }  // namespace calot

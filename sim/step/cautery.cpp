@@ -124,6 +124,16 @@ void CauteryEffects::burnVessels(const HookTouches& touches, const Dose& dose, s
   }
 }
 
+/// Bodies that ties of the fat pull, ascending.
+void CauteryEffects::findTied(std::size_t fat, const Bodies& bodies) {
+  tied_.clear();
+  for (const Tie& tie : model_.ties()) {
+    if (tie.fat == fat && bodies.shareLeft(tie) > 0.0) tied_.push_back(tie.body[0]);
+  }
+  std::sort(tied_.begin(), tied_.end());
+  tied_.erase(std::unique(tied_.begin(), tied_.end()), tied_.end());
+}
+
 /// Takes off the fat that the hook sweeps over.
 void CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::size_t hand, std::size_t fat,
                            Tissue& tissue) {
@@ -132,12 +142,14 @@ void CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::size_t
   for (const MovingCapsule& part : sweep.electrode) {
     blades_.push_back({part.before[0], part.before[1], part.now[0], part.now[1], part.radius + cautery.reach});
   }
+  findTied(fat, tissue.bodies);
   const FatStroke done = tissue.bodies.fat(fat).stroke(tissue.state, blades_, cautery.recession * dose.wall);
   if (!done.changed) return;
   const std::size_t structure = tissue.bodies.structureOfFat(fat);
   tissue.activity.carved[fat] = true;
   tissue.surfaces.markStale(structure);
   tissue.activity.disturb(tissue.bodies, tissue.state, tissue.bodies.firstFat() + fat);
+  for (const std::size_t body : tied_) tissue.activity.disturb(tissue.bodies, tissue.state, body);  // it bears less now
   tissue.result.fat[fat].carved += done.removed;
   tissue.result.fat[fat].islands += done.islands;
   if (done.islands > 0.0) tissue.log.emit(EventKind::fatCameLoose, hand, structure, done.where, done.islands);

@@ -39,11 +39,13 @@ class CauteryEffects {
   void charOrgans(const HookTouches& touches, const Dose& dose, Tissue& tissue) const;
   void burnVessels(const HookTouches& touches, const Dose& dose, std::size_t hand, Tissue& tissue) const;
   void carve(const HookSweep& sweep, const Dose& dose, std::size_t hand, std::size_t fat, Tissue& tissue);
+  void findTied(std::size_t fat, const Bodies& bodies);
   [[nodiscard]] std::uint32_t firstTouched(const HookTouches& touches, const Tissue& tissue) const;
   void emitSmoke(std::size_t hand, std::uint32_t source, double energy, Tissue& tissue) const;
 
   const Model& model_;
   std::vector<SweptCapsule> blades_;  ///< of the hook, as fat feels them
+  std::vector<std::size_t> tied_;     ///< bodies that carried some of the fat before a stroke
 };
 
 }  // namespace calot

@@ -27,8 +27,8 @@ void JoinedOrgans::linearise(const State& state, const std::vector<bool>& awake)
     Tissue& tissue = tissue_[c];
     tissue.holds = false;
     if (!awake[tie.a]) continue;  // organs that strands tie are awake together
-    calot::linearise(tie.tissue, state.connective[c], {a.position, a.velocity}, {b.position, b.velocity},
-                     settings_.step, tissue.loads);
+    calot::linearise(tie.tissue, state.connective[c], {a.position, a.velocity, a.rotation},
+                     {b.position, b.velocity, b.rotation}, settings_.step, tissue.loads);
     tissue.holds = !tissue.loads.onA.empty();
     if (!tissue.holds) continue;
     tissue.coupling->assemble(tissue.loads.damper, settings_.step);

@@ -86,8 +86,11 @@ void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body
   // A sum of 1 / d and what is positive semidefinite.
   if (!invertPositive(joint_.damper, 3 * n)) joint_.damper.assign(9 * n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 gap = tie(i).place[0].of(body[organ_]->position(state)) -
-                     body[vesselOf(i)]->position(state)[static_cast<std::size_t>(nodeOf(i))];
+    Vec3 gap = tie(i).place[0].of(body[organ_]->position(state)) -
+               body[vesselOf(i)]->position(state)[static_cast<std::size_t>(nodeOf(i))];
+    if (!tie(i).offset.isZero(0.0)) {
+      gap += rotationOf(state.organ[organ_].rotation, tie(i).place[0].element) * tie(i).offset;
+    }
     ahead_[i] = (tie(i).stiffness / (step_ * tie(i).stiffness + tie(i).damping)) * gap;
     vesselSeen_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
     change_[i] = vesselSeen_[i] - ahead_[i];

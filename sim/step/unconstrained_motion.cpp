@@ -10,6 +10,9 @@ Vec3 UnconstrainedMotion::endOf(const Bodies& bodies, const State& state, const 
   const std::size_t which = tie.body[side];
   const Vec3 place = tie.place[side].of(bodies[which].position(state));
   if (side == 1 || tie.offset.isZero(0.0)) return place;
+  if (which < model_.organs().size()) {
+    return place + rotationOf(state.organ[which].rotation, tie.place[0].element) * tie.offset;
+  }
   const BeamState& vessels = state.vessel[which - model_.organs().size()];
   return place + vessels.orientation[static_cast<std::size_t>(tie.place[0].node[0])] * tie.offset;
 }

@@ -30,13 +30,15 @@ struct StructureModel {
   double friction = 0.0;   ///< Coulomb coefficient of an instrument on it
 };
 
-/// A spring and a damper between material points of two bodies that coincide in the reference configuration.
+/// A spring and a damper between material points of two bodies that coincide in the reference configuration, or lie as
+/// far apart there as the spring has to stretch for the weight that it carries.
 struct Tie {
   static constexpr std::size_t none = ~std::size_t{0};
 
   std::array<std::size_t, 2> body{};
   std::array<MaterialPoint, 2> place;
-  Vec3 offset = Vec3::Zero();  ///< of the first point from its node, in the node's frame; of vessels only (m)
+  Vec3 offset = Vec3::Zero();  ///< of the spring's end from the first point, in the frame of what that belongs to: a
+                               ///< vessel's node or an organ's element (m)
   std::size_t fat = none;      ///< body of fat with which it fades, as
   std::size_t fatTie = 0;      ///< its tie of that number
   double stiffness = 0.0;      ///< N/m

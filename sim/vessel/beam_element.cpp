@@ -30,7 +30,7 @@ BeamStrain strainOf(const BeamElement& e, const BeamState& state, std::size_t in
   const double inverse = 1.0 / e.length;
   const Vec3 scaled = inverse * out.chord;
   out.stretch = scaled.norm() - 1.0;
-  out.force = e.stretching * (scaled - out.axis);
+  out.force = e.stretching * (scaled - middle * e.slack);
   Vec3 bend = bent(e, out.axis, out.rotation - middle * e.bend);
   const double sleeve = state.sleeve[index];
   if (sleeve > 0.0) {

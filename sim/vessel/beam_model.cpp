@@ -164,6 +164,7 @@ BeamModel::BeamModel(const std::vector<BeamBranch>& branches) {
       const Vec3 d = node[i] - node[i - 1];
       e.length = d.norm();
       e.axis = middle.transpose() * (d / e.length);
+      e.slack = e.axis;
       e.bend = middle.transpose() * quarterTangent(qa, frame);
       e.stretching = m.young * area;
       e.bending = m.young * second;

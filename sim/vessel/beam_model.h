@@ -4,7 +4,8 @@
 // A vessel is a chain of nodes, each with a position and an orientation (unit quaternion), joined by two-node
 // elements with one integration point. The strains of an element are measured in its middle frame R_m, the geodesic
 // mean of its nodes' orientations:
-//   gamma = d / L - R_m a      d = x_b - x_a, L the rest length, a the rest axis in the middle frame
+//   gamma = d / L - R_m a      d = x_b - x_a, L the rest length, a the rest axis in the middle frame (where the
+//                              element is loaded at rest, `slack`: sim/vessel/beam_preload.h)
 //   kappa = 4 / L (P - P_0)    P = tan(theta/4) n: relative rotation of the nodes by theta about n, in the middle frame
 // and the energy is L/2 (E A |gamma|^2 + kappa . D kappa) with D = diag(EI, EI, GJ) about the axis. Both strains are
 // invariant under rigid motions of any size and defined for every state, including collapsed and inverted elements,
@@ -18,6 +19,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/math/linear.h"
@@ -60,13 +62,14 @@ struct BeamElement {
   int a = 0;  ///< nearer to the branch's start
   int b = 0;
   int branch = 0;
-  double length = 0.0;       ///< L at rest (m)
-  Vec3 axis = Vec3::Zero();  ///< unit, in the middle frame at rest
-  Vec3 bend = Vec3::Zero();  ///< P_0
-  double stretching = 0.0;   ///< E A (N)
-  double bending = 0.0;      ///< E I (N m^2)
-  double twisting = 0.0;     ///< G J (N m^2)
-  double damping = 0.0;      ///< beta (s)
+  double length = 0.0;        ///< L at rest (m)
+  Vec3 axis = Vec3::Zero();   ///< unit, in the middle frame at rest
+  Vec3 slack = Vec3::Zero();  ///< d / L, in the middle frame, at which it is free of force; unloaded: the axis
+  Vec3 bend = Vec3::Zero();   ///< P_0, at which it is free of moments
+  double stretching = 0.0;    ///< E A (N)
+  double bending = 0.0;       ///< E I (N m^2)
+  double twisting = 0.0;      ///< G J (N m^2)
+  double damping = 0.0;       ///< beta (s)
 };
 
 class BeamModel {
@@ -105,6 +108,8 @@ class BeamModel {
   /// Reference orientation of each node: z along the centre line, x and y transported along it without twist.
   [[nodiscard]] const std::vector<Quat>& restOrientation() const { return restOrientation_; }
   [[nodiscard]] const std::vector<BeamElement>& elements() const { return element_; }
+  /// @pre the same elements, otherwise loaded (sim/vessel/beam_preload.h)
+  void setElements(std::vector<BeamElement> elements) { element_ = std::move(elements); }
   [[nodiscard]] const std::vector<Branch>& branches() const { return branch_; }
   /// Of all branches.
   [[nodiscard]] std::size_t stations() const { return branch_.back().firstStation + branch_.back().stations; }

@@ -22,7 +22,7 @@ test::SmallScene fallingScene() {
     ASSERT_NE(at, std::string::npos) << from;
     text.replace(at, from.size(), to);
   };
-  put(R"("gravity": [0, 0, 0])", R"("gravity": [0, 0, -20], "solver": {"sleeping": false})");
+  put(R"("gravity": [0, -9.218, -3.355])", R"("gravity": [0, 0, -20], "solver": {"sleeping": false})");
   put(R"([{"nearOrgan": {"organ": "liver", "distance": 0.004}}])", "[]");
   const auto* first = reinterpret_cast<const std::byte*>(text.data());
   bytes.assign(first, first + text.size());

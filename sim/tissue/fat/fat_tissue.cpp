@@ -98,7 +98,7 @@ std::string addFat(const SceneDescription& scene, const FatDescription& descript
   settings.cellsPerCube = static_cast<int>(description.cellsPerCube);
   settings.material = solidMaterial(description.material);
   std::string error;
-  std::unique_ptr<const FatModel> fat = FatModel::make(description.surface.mesh(), settings, partners, regions, error);
+  std::unique_ptr<FatModel> fat = FatModel::make(description.surface.mesh(), settings, partners, regions, error);
   if (fat == nullptr) return what + error;
   const std::size_t body = model.bodies();
   for (std::size_t p = 0; p < known.size(); ++p) {
@@ -162,9 +162,10 @@ const std::string& FatTissue::nameOf(const Model& model, std::size_t index) { re
 void FatTissue::resize(const Model& model, States& states) { states.fat.resize(model.fat().size()); }
 
 void FatTissue::start(const Model& model, States& states) {
-  for (const std::unique_ptr<const FatModel>& fat : model.fat()) {
-    states.fat.push_back(restState(*fat));
-    if (!model.scene().gravity.isZero(0.0)) states.fat.back().solid.quietSteps = 0;
+  const std::size_t firstBody = model.organs().size() + model.vesselTrees().size();
+  for (std::size_t f = 0; f < model.fat().size(); ++f) {
+    states.fat.push_back(restState(*model.fat()[f]));
+    if (!model.holds(firstBody + f)) states.fat.back().solid.quietSteps = 0;
   }
 }
 

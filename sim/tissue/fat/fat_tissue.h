@@ -120,9 +120,9 @@ struct FatTissue {
     }
   };
   struct Models {
-    std::vector<std::unique_ptr<const FatModel>> fatModel;
+    std::vector<std::unique_ptr<FatModel>> fatModel;
 
-    [[nodiscard]] const std::vector<std::unique_ptr<const FatModel>>& fat() const { return fatModel; }
+    [[nodiscard]] const std::vector<std::unique_ptr<FatModel>>& fat() const { return fatModel; }
   };
   struct States {
     std::vector<FatState> fat;

@@ -2,6 +2,7 @@
 #include "sim/tissue/organ/organ_tissue.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -136,9 +137,9 @@ void OrganTissue::resize(const Model& model, States& states) {
 }
 
 void OrganTissue::start(const Model& model, States& states) {
-  for (const OrganModel& organ : model.organs()) {
-    states.organ.push_back(restState(organ.solid));
-    if (!model.scene().gravity.isZero(0.0)) states.organ.back().quietSteps = 0;
+  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    states.organ.push_back(restState(model.organs()[o].solid));
+    if (!model.holds(o)) states.organ.back().quietSteps = 0;
     states.charred.emplace_back();
   }
 }
@@ -158,9 +159,15 @@ void OrganTissue::resize(const Model& model, Results& results) { results.organ.r
 
 std::vector<MaterialPoint> pointsOnOrgan(const OrganModel& organ, const std::vector<Vec3>& points) {
   const Embedding embedding(points, {organ.solid.rest(), organ.solid.tetrahedra()});
+  std::map<std::array<int, 4>, int> elements;
+  for (std::size_t e = 0; e < organ.solid.tetrahedra().size(); ++e) {
+    const Index4& t = organ.solid.tetrahedra()[e];
+    elements.emplace(std::array{t[0], t[1], t[2], t[3]}, static_cast<int>(e));
+  }
   std::vector<MaterialPoint> places;
   for (const Embedding::Anchor& anchor : embedding.anchors()) {
     MaterialPoint& place = places.emplace_back();
+    place.element = elements.at(anchor.node);
     place.count = anchor.node.size();
     std::copy(anchor.node.begin(), anchor.node.end(), place.node.begin());
     std::copy(anchor.weight.begin(), anchor.weight.end(), place.weight.begin());

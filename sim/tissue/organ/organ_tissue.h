@@ -193,7 +193,7 @@ struct OrganTissue {
   static std::unique_ptr<TissueViewer> makeViewer(const Model& model);
 };
 
-/// Material points of an organ's solid that lie at points of the reference configuration (m).
+/// Material points of an organ's solid, with their elements, that lie at points of the reference configuration (m).
 std::vector<MaterialPoint> pointsOnOrgan(const OrganModel& organ, const std::vector<Vec3>& points);
 
 }  // namespace calot

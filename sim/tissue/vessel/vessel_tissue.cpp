@@ -126,9 +126,9 @@ const std::string& VesselTissue::nameOf(const Model& model, std::size_t index) {
 void VesselTissue::resize(const Model& model, States& states) { states.vessel.resize(model.vesselTrees().size()); }
 
 void VesselTissue::start(const Model& model, States& states) {
-  for (const VesselTree& tree : model.vesselTrees()) {
-    states.vessel.push_back(restState(tree.beams));
-    if (!model.scene().gravity.isZero(0.0)) states.vessel.back().quietSteps = 0;
+  for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
+    states.vessel.push_back(restState(model.vesselTrees()[t].beams));
+    if (!model.holds(model.organs().size() + t)) states.vessel.back().quietSteps = 0;
   }
 }
 

@@ -66,7 +66,7 @@ double energyOf(const BeamElement& e, const BeamState& state) {
   const auto a = static_cast<std::size_t>(e.a);
   const auto b = static_cast<std::size_t>(e.b);
   const Mat3 middle = blend(state.orientation[a], state.orientation[b], 0.5).toRotationMatrix();
-  const Vec3 gamma = middle.transpose() * (state.position[b] - state.position[a]) / e.length - e.axis;
+  const Vec3 gamma = middle.transpose() * (state.position[b] - state.position[a]) / e.length - e.slack;
   const Vec3 turn = middle.transpose() * quarterTangent(state.orientation[a], state.orientation[b]);
   const Vec3 kappa = 4.0 / e.length * (turn - e.bend);
   const double twist = kappa.dot(e.axis);
@@ -83,6 +83,7 @@ TEST(Beam, ForcesAreTheGradientOfTheEnergy) {
     e.b = 1;
     e.length = 0.7;
     e.axis = axis / axis.norm();
+    e.slack = e.axis + vectorOf(random, 0.2);  // loaded at rest
     e.bend = vectorOf(random, 0.1);
     e.stretching = 10.0;
     e.bending = 2.0;

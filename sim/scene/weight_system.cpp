@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/scene/weight_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/scene/model.h"
+#include "sim/solid/solid_weight.h"
+#include "sim/vessel/beam_preload.h"
+
+namespace calot {
+
+namespace {
+
+/// A group is held if what its system leaves is less than this share of its weight. Larger: what nothing holds might
+/// count as held; smaller: rounding might let what is held fall. Assumed.
+constexpr double unheldShare = 1e-6;
+
+/// By how much what bears is stiffer than what it bears. Larger: digits are lost; smaller: fat props the liver.
+/// Assumed: a sag of 80 mm moves what hangs on it by 0.08 mm.
+constexpr double bearing = 1000.0;
+
+/// One group of bodies as a system.
+class WeightSystem {
+ public:
+  WeightSystem(const Model& model, const std::vector<double>& stiffening)
+      : model_(model), stiffening_(stiffening), row_(model.bodies()), massOf_(model.bodies()) {}
+
+  void addBody(std::size_t body);
+  /// @pre its bodies were added
+  void addJoints(const std::vector<bool>& member);
+  /// @return is it held?
+  bool solve(WeightMotion& out);
+
+ private:
+  void number(std::size_t body, std::size_t nodes, std::size_t each, const auto& isFixed);
+  [[nodiscard]] std::size_t firstFat() const { return model_.organs().size() + model_.vesselTrees().size(); }
+  [[nodiscard]] const BeamModel& beams(std::size_t body) const {
+    return model_.vesselTrees()[body - model_.organs().size()].beams;
+  }
+  void assemble(SymmetricBlocks& matrix) const;
+
+  [[nodiscard]] double ofJoint(std::size_t a, std::size_t b) const { return std::min(stiffening_[a], stiffening_[b]); }
+
+  const Model& model_;
+  const std::vector<double>& stiffening_;
+  std::vector<std::size_t> body_;
+  std::size_t rows_ = 0;
+  std::vector<std::vector<int>> row_;        ///< per body and node; -1: fixed
+  std::vector<std::vector<double>> massOf_;  ///< per body and node (kg)
+  std::vector<const Tie*> tie_;
+  std::vector<const ConnectiveModel*> connective_;
+};
+
+void WeightSystem::number(std::size_t body, std::size_t nodes, std::size_t each, const auto& isFixed) {
+  for (std::size_t n = 0; n < nodes; ++n) {
+    row_[body].push_back(isFixed(n) ? -1 : static_cast<int>(rows_));
+    if (!isFixed(n)) rows_ += each;
+  }
+}
+
+void WeightSystem::addBody(std::size_t body) {
+  body_.push_back(body);
+  if (body < model_.organs().size()) {
+    const SolidModel& solid = model_.organs()[body].solid;
+    massOf_[body] = solid.mass();
+    number(body, solid.nodes(), 1, [&](std::size_t n) { return solid.row(n) < 0; });
+  } else if (body < firstFat()) {
+    massOf_[body] = beams(body).mass();
+    number(body, beams(body).nodes(), 2, [&](std::size_t n) { return beams(body).fixed(n); });
+  } else {
+    const FatModel& fat = *model_.fat()[body - firstFat()];
+    fat.solid().massOf(fat.restFill(), massOf_[body]);
+    number(body, fat.solid().nodes(), 1, [](std::size_t) { return false; });
+  }
+}
+
+void WeightSystem::addJoints(const std::vector<bool>& member) {
+  for (const Tie& tie : model_.ties()) {
+    if (member[tie.body[0]]) tie_.push_back(&tie);
+  }
+  for (const ConnectiveModel& connective : model_.connective()) {
+    if (member[connective.a]) connective_.push_back(&connective);
+  }
+}
+
+void WeightSystem::assemble(SymmetricBlocks& matrix) const {
+  for (const std::size_t body : body_) {
+    if (body < model_.organs().size()) {
+      addStiffness(model_.organs()[body].solid, {}, stiffening_[body], row_[body], matrix);
+    } else if (body < firstFat()) {
+      addStiffness(beams(body), stiffening_[body], row_[body], matrix);
+    } else {
+      const FatModel& fat = *model_.fat()[body - firstFat()];
+      addStiffness(fat.solid(), fat.restFill(), stiffening_[body], row_[body], matrix);
+    }
+  }
+  for (const Tie* tie : tie_) {
+    addSpring({tie->place[0], row_[tie->body[0]]}, {tie->place[1], row_[tie->body[1]]},
+              ofJoint(tie->body[0], tie->body[1]) * tie->stiffness, matrix);
+  }
+  for (const ConnectiveModel* connective : connective_) {
+    for (const Strand& strand : connective->tissue.strands()) {
+      addSpring({strand.a, row_[connective->a]}, {strand.b, row_[connective->b]},
+                ofJoint(connective->a, connective->b) * connective->tissue.stiffnessOf(strand), matrix);
+    }
+  }
+}
+
+bool WeightSystem::solve(WeightMotion& out) {
+  SymmetricBlocks matrix(rows_);
+  assemble(matrix);
+  std::vector<Vec3> weight(rows_, Vec3::Zero());
+  for (const std::size_t body : body_) {
+    for (std::size_t n = 0; n < row_[body].size(); ++n) {
+      if (row_[body][n] >= 0)
+        weight[static_cast<std::size_t>(row_[body][n])] = massOf_[body][n] * model_.scene().gravity;
+    }
+  }
+  matrix.factor();
+  const std::vector<Vec3> x = matrix.solve(weight);
+  const std::vector<Vec3> carried = matrix.times(x);
+  Vec3 whole = Vec3::Zero();
+  double left = 0.0;
+  for (std::size_t i = 0; i < rows_; ++i) {
+    if (!x[i].allFinite()) return false;
+    whole += weight[i];
+    left = std::max(left, (weight[i] - carried[i]).norm());
+  }
+  if (left > unheldShare * whole.norm()) return false;
+  for (const std::size_t body : body_) {
+    const bool turns = body >= model_.organs().size() && body < firstFat();
+    for (std::size_t n = 0; n < row_[body].size(); ++n) {
+      if (row_[body][n] < 0) continue;
+      const auto i = static_cast<std::size_t>(row_[body][n]);
+      out.displacement[body][n] = x[i];
+      if (turns) out.rotation[body][n] = x[i + 1];
+    }
+  }
+  return true;
+}
+
+/// Of each body in K.
+std::vector<double> stiffeningOf(const Model& model) {
+  std::vector<double> out;
+  for (const OrganModel& organ : model.organs()) {
+    const bool anchored = organ.solid.freeNodes().size() < organ.solid.nodes();
+    out.push_back(anchored ? bearing * bearing : bearing);
+  }
+  out.resize(model.organs().size() + model.vesselTrees().size(), bearing);
+  out.resize(model.bodies(), 1.0);
+  return out;
+}
+
+/// Per body, the first of the bodies that ties and strands join it to.
+std::vector<std::size_t> groupsOf(const Model& model) {
+  std::vector<std::size_t> first(model.bodies());
+  std::iota(first.begin(), first.end(), std::size_t{0});
+  const auto join = [&](std::size_t a, std::size_t b) {
+    const std::size_t kept = std::min(first[a], first[b]);
+    const std::size_t merged = std::max(first[a], first[b]);
+    std::replace(first.begin(), first.end(), merged, kept);
+  };
+  for (const Tie& tie : model.ties()) join(tie.body[0], tie.body[1]);
+  for (const ConnectiveModel& connective : model.connective()) join(connective.a, connective.b);
+  return first;
+}
+
+}  // namespace
+
+WeightMotion motionUnderWeight(const Model& model) {
+  WeightMotion out;
+  const std::size_t bodies = model.bodies();
+  out.displacement.resize(bodies);
+  out.rotation.resize(bodies);
+  out.held.assign(bodies, false);
+  for (std::size_t o = 0; o < model.organs().size(); ++o) {
+    out.displacement[o].assign(model.organs()[o].solid.nodes(), Vec3::Zero());
+  }
+  for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
+    const std::size_t body = model.organs().size() + t;
+    out.displacement[body].assign(model.vesselTrees()[t].beams.nodes(), Vec3::Zero());
+    out.rotation[body] = out.displacement[body];
+  }
+  for (std::size_t f = 0; f < model.fat().size(); ++f) {
+    const std::size_t body = model.organs().size() + model.vesselTrees().size() + f;
+    out.displacement[body].assign(model.fat()[f]->solid().nodes(), Vec3::Zero());
+  }
+  out.stiffening = stiffeningOf(model);
+  const std::vector<std::size_t> first = groupsOf(model);
+  for (std::size_t group = 0; group < bodies; ++group) {
+    if (first[group] != group) continue;
+    WeightSystem system(model, out.stiffening);
+    std::vector<bool> member(bodies, false);
+    for (std::size_t body = group; body < bodies; ++body) {
+      if (first[body] != group) continue;
+      member[body] = true;
+      system.addBody(body);
+    }
+    system.addJoints(member);
+    const bool held = system.solve(out);
+    for (std::size_t body = 0; body < bodies; ++body) {
+      if (member[body]) out.held[body] = held;
+    }
+  }
+  return out;
+}
+
+}  // namespace calot
