@@ -21,6 +21,7 @@ struct ContactBlock {
 
   BlockKind kind = BlockKind::frictional;
   double limit = 0.0;         ///< friction coefficient; largest force of a grasp (N)
+  double softness = 0.0;      ///< by which tissue sinks into tissue for the force at this point (m/N)
   std::size_t hand = none;    ///< whose instrument is pushed along +direction,
   std::size_t other = none;   ///< or which body is,
   std::size_t body = none;    ///< and which body along -direction,

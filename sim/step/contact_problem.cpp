@@ -51,7 +51,7 @@ void measureGaps(const Model& model, const Bodies& bodies, const Activity& activ
       contact.trueGap[block.row + k] = block.gap[k] + block.direction[k].dot(apart) + block.tool[k].dot(q);
       if (block.isClash()) contact.trueGap[block.row + k] += block.otherTool[k].dot(stretch[block.otherHand]);
     }
-    if (block.isTissueOnTissue()) contact.trueGap[block.row] += tissueSoftness * contact.lambda[block.row];
+    if (block.isTissueOnTissue()) contact.trueGap[block.row] += block.softness * contact.lambda[block.row];
   }
 }
 
@@ -172,7 +172,7 @@ void ContactProblemStage::assembleCouplings(ContactSystem& contact) const {
   std::vector<double>& w = contact.couplingCompliance;
   w.assign(rows * rows, 0.0);
   for (const ContactBlock& a : contact.blocks) {
-    if (a.isTissueOnTissue()) w[a.row * rows + a.row] = tissueSoftness;
+    if (a.isTissueOnTissue()) w[a.row * rows + a.row] = a.softness;
     for (const ContactBlock& b : contact.blocks) {
       for (std::size_t h = 0; h < handCount; ++h) {
         const std::array<ToolRow, 3>* const one = a.toolOf(h);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/step/contact_problem.h"
+
 namespace calot {
 
 namespace {
@@ -89,6 +91,7 @@ double TissueContacts::addPair(Surfaces& surfaces, const State& state, std::size
     block.kind = BlockKind::unilateral;
     block.body = block.structure = pair.b;
     block.other = pair.a;
+    block.softness = tissueSoftness;
     block.direction[0] = contact.normal;
     block.place = surfaces.skin(pair.b).influence(contact.node, contact.weight);
     block.otherPlace = surfaces.skin(pair.a).influence({contact.vertex, contact.vertex, contact.vertex}, Vec3::UnitX());

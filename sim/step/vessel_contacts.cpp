@@ -7,7 +7,6 @@
 
 #include "sim/contact/surface_normal.h"
 #include "sim/geometry/closest_point.h"
-#include "sim/step/instrument_motion.h"
 #include "sim/step/tissue_contacts.h"
 
 namespace calot {
@@ -20,7 +19,8 @@ constexpr double searchMargin = 0.003;
 constexpr double rounding = 1e-9;      ///< of a motion (m)
 constexpr double wholeOrgan = 0.3;     ///< no point inside an organ is farther from its surface (m)
 constexpr unsigned pairShift = 40;     ///< of a contact's key: below, the capsules; from here up, the pair
-constexpr unsigned capsuleShift = 20;  ///< of a contact's key: the first capsule
+/// Of a capsule, nearer to an end than this share of it, a contact is that of the end. Assumed.
+constexpr double endShare = 0.05;
 
 double distanceOf(const Box& a, const Box& b) {
   return (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(Vec3::Zero()).norm();
@@ -33,7 +33,12 @@ Box boxOf(const VesselCapsule& c) {
   return box;
 }
 
-std::uint64_t numberOf(const VesselCapsule& c) { return 2 * c.element + (c.after ? 1 : 0); }
+/// Where on a capsule a contact is.
+enum class Place : std::uint8_t { start, between, end };
+
+std::uint64_t keyOf(const VesselCapsule& c, Place place) {
+  return (2 * c.element + (c.after ? 1 : 0)) * 4 + static_cast<std::uint64_t>(place);
+}
 
 double largestSpeed(std::span<const Vec3> velocity) {
   double speed = 0.0;
@@ -153,14 +158,51 @@ void VesselContacts::follow(const Surfaces& surfaces, const Bodies& bodies, cons
   wasAwake_ = awake;
 }
 
+/// The surface's nearest point to an end of a capsule.
+VesselContacts::Point VesselContacts::endOnOrgan(const Surfaces& surfaces, std::size_t organ,
+                                                 std::span<const std::uint32_t> patches, const Vec3& end, double radius,
+                                                 double reach) const {
+  Point point;
+  const NearestPoint nearest = nearestPoint(surfaces.mesh(organ), surfaces.points(organ), patches, end,
+                                            capsuleSearch(radius, reach));
+  if (!nearest.found) return point;
+  const double distance = std::sqrt(nearest.point.squaredDistance);
+  if (!(distance > rounding)) return point;
+  const Index3& corners = surfaces.mesh(organ).triangles()[nearest.triangle];
+  point.gap = (nearest.inside ? -distance : distance) - radius;
+  point.normal = (end - nearest.point.point) / (nearest.inside ? -distance : distance);
+  point.node = {corners[0], corners[1], corners[2]};
+  point.weight = nearest.point.barycentric;
+  return point;
+}
+
 double VesselContacts::touchOrgan(Surfaces& surfaces, const State& state, double step, std::size_t o, Vessel& v,
                                   std::vector<ContactBlock>& blocks) {
-  const double reach = 2.0 * allowedOverlap + std::min((v.speed + organSpeed_[o]) * step, maxSlide);
+  const double reach = 2.0 * allowedOverlap + std::min((v.speed + organSpeed_[o]) * step, maxApproach);
   const double near = capsuleSearch(v.radius, reach);
   const std::uint64_t pair = structurePairNumber(model_, o, v.structure) << pairShift;
   double depth = 0.0;
   Box whole;
   bool bounded = false;
+  const auto add = [&](const VesselCapsule& c, double share, const Point& point, double offset, Place place) {
+    const double gap = point.gap - offset;
+    if (!(gap < reach)) return;
+    if (std::any_of(point.node.begin(), point.node.end(), [&](int n) { return isInverted(model_, state, o, n); })) {
+      return;
+    }
+    depth = std::max(depth, -gap);
+    ContactBlock block;
+    block.kind = BlockKind::unilateral;
+    block.softness = vesselSoftness;
+    block.body = block.structure = o;
+    block.other = v.body;
+    block.direction[0] = point.normal;
+    block.place = surfaces.skin(o).influence(point.node, point.weight);
+    block.otherPlace = c.place(share);
+    block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
+    block.key = pair | keyOf(c, place);
+    blocks.push_back(block);
+  };
   for (std::size_t i = 0; i < v.now.size(); ++i) {
     const VesselCapsule& c = v.now[i];
     Clearance& clearance = v.toOrgan[o][i];
@@ -185,28 +227,25 @@ double VesselContacts::touchOrgan(Surfaces& surfaces, const State& state, double
     const AxisDistance nearest = axisDistance(surfaces.mesh(o), surfaces.points(o), patches, c.p0, c.p1, limit);
     clearance = {nearest.distance, nearest.found && !nearest.inside};
     if (clearance.distance > (clearance.outside ? v.radius + reach : near)) continue;
+    const double offset = v.restOffset[o][c.element];
+    // A node is an end of two capsules, and of either's depth at rest.
+    const bool follows = i > 0 && v.now[i - 1].node1 == c.node0 && !c.after;
+    const Point first = endOnOrgan(surfaces, o, patches, c.p0, v.radius, reach);
+    add(c, 0.0, first, follows ? std::min(offset, v.restOffset[o][v.now[i - 1].element]) : offset, Place::start);
     found_.clear();
     capsuleContacts(surfaces.mesh(o), surfaces.points(o), patches, c.p0, c.p1, v.radius, reach, 0, found_);
-    const SurfaceContact* deepest = nullptr;
+    const Point last = endOnOrgan(surfaces, o, patches, c.p1, v.radius, reach);
+    Point between;
+    between.gap = std::min(first.gap, last.gap) - allowedOverlap;
+    double share = -1.0;
     for (const SurfaceContact& contact : found_) {
-      const bool inverted = std::any_of(contact.node.begin(), contact.node.end(),
-                                        [&](int n) { return isInverted(model_, state, o, n); });
-      if (!inverted && (deepest == nullptr || contact.gap < deepest->gap)) deepest = &contact;
+      const double s = closestOnSegment(contact.onAxis, c.p0, c.p1);
+      if (s < endShare || s > 1.0 - endShare || !(contact.gap < between.gap)) continue;
+      between = {contact.gap, contact.normal, contact.node, contact.weight};
+      share = s;
     }
-    if (deepest == nullptr) continue;
-    const double gap = deepest->gap - v.restOffset[o][c.element];
-    if (!(gap < reach)) continue;
-    depth = std::max(depth, -gap);
-    ContactBlock block;
-    block.kind = BlockKind::unilateral;
-    block.body = block.structure = o;
-    block.other = v.body;
-    block.direction[0] = deepest->normal;
-    block.place = surfaces.skin(o).influence(deepest->node, deepest->weight);
-    block.otherPlace = c.place(closestOnSegment(deepest->onAxis, c.p0, c.p1));
-    block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
-    block.key = pair | numberOf(c);
-    blocks.push_back(block);
+    if (share >= 0.0) add(c, share, between, offset, Place::between);
+    if (i + 1 == v.now.size() || v.now[i + 1].after) add(c, 1.0, last, offset, Place::end);
   }
   return depth;
 }
@@ -230,46 +269,67 @@ double VesselContacts::restOverlap(const Vessel& a, std::size_t i, const Vessel&
 double VesselContacts::touchVessel(double step, std::size_t one, std::size_t two, std::vector<ContactBlock>& blocks) {
   Vessel& a = vessel_[one];
   const Vessel& b = vessel_[two];
-  const double reach = 2.0 * allowedOverlap + std::min((a.speed + b.speed) * step, maxSlide);
+  const double reach = 2.0 * allowedOverlap + std::min((a.speed + b.speed) * step, maxApproach);
   const double near = a.radius + b.radius + reach;
   const std::uint64_t pair = structurePairNumber(model_, a.structure, b.structure) << pairShift;
   double depth = 0.0;
+  /// The nearest of b's capsules to a segment on capsule i of a, nearer than `limit`.
+  struct Nearest {
+    SegmentSegment points;
+    std::size_t with = 0;
+    double distance = 0.0;
+    bool found = false;
+  };
+  const auto nearestTo = [&](std::size_t i, const Vec3& p0, const Vec3& p1, double limit) {
+    Nearest nearest;
+    nearest.distance = limit;
+    const Vec3 middle = 0.5 * (p0 + p1);
+    const double half = 0.5 * (p1 - p0).norm();
+    for (std::size_t j = 0; j < b.now.size(); ++j) {
+      const VesselCapsule& q = b.now[j];
+      const double far = nearest.distance + half + 0.5 * (q.p1 - q.p0).norm();
+      if ((middle - 0.5 * (q.p0 + q.p1)).squaredNorm() > far * far || areOneWall(a, i, b, j)) continue;
+      ++searches_;
+      const SegmentSegment points = closestSegments(p0, p1, q.p0, q.p1);
+      if (!(points.squaredDistance < nearest.distance * nearest.distance)) continue;
+      nearest = {points, j, std::sqrt(points.squaredDistance), true};
+    }
+    return nearest;
+  };
+  const auto add = [&](std::size_t i, double share, const Nearest& nearest, Place place) {
+    if (!nearest.found || !(nearest.distance > rounding)) return;
+    const double gap = nearest.distance - a.radius - b.radius - restOverlap(a, i, b, nearest.with);
+    if (!(gap < reach)) return;
+    depth = std::max(depth, -gap);
+    ContactBlock block;
+    block.kind = BlockKind::unilateral;
+    block.softness = vesselSoftness;
+    block.body = b.body;
+    block.structure = b.structure;
+    block.other = a.body;
+    block.direction[0] = (nearest.points.first - nearest.points.second) / nearest.distance;
+    block.place = b.now[nearest.with].place(nearest.points.t);
+    block.otherPlace = a.now[i].place(share);
+    block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
+    block.key = pair | keyOf(a.now[i], place);
+    blocks.push_back(block);
+  };
   for (std::size_t i = 0; i < a.now.size(); ++i) {
     const VesselCapsule& p = a.now[i];
     Clearance& clearance = a.toVessel[two][i];
     if (clearance.distance > near) continue;
-    clearance.distance = near + searchMargin;
-    const Vec3 middle = 0.5 * (p.p0 + p.p1);
-    const double half = 0.5 * (p.p1 - p.p0).norm();
-    SegmentSegment nearest;
-    std::size_t with = b.now.size();
-    for (std::size_t j = 0; j < b.now.size(); ++j) {
-      const VesselCapsule& q = b.now[j];
-      const double far = clearance.distance + half + 0.5 * (q.p1 - q.p0).norm();
-      if ((middle - 0.5 * (q.p0 + q.p1)).squaredNorm() > far * far) continue;
-      if (areOneWall(a, i, b, j)) continue;
-      ++searches_;
-      const SegmentSegment found = closestSegments(p.p0, p.p1, q.p0, q.p1);
-      if (!(found.squaredDistance < clearance.distance * clearance.distance)) continue;
-      clearance.distance = std::sqrt(found.squaredDistance);
-      nearest = found;
-      with = j;
+    const Nearest whole = nearestTo(i, p.p0, p.p1, near + searchMargin);
+    clearance.distance = whole.distance;
+    if (whole.distance > near) continue;
+    const Nearest first = nearestTo(i, p.p0, p.p0, near);
+    const Nearest last = nearestTo(i, p.p1, p.p1, near);
+    add(i, 0.0, first, Place::start);
+    const double s = whole.points.s;
+    if (s >= endShare && s <= 1.0 - endShare &&
+        whole.distance < std::min(first.distance, last.distance) - allowedOverlap) {
+      add(i, s, whole, Place::between);
     }
-    if (clearance.distance > near || with == b.now.size()) continue;
-    const double gap = clearance.distance - a.radius - b.radius - restOverlap(a, i, b, with);
-    if (!(gap < reach) || !(clearance.distance > rounding)) continue;
-    depth = std::max(depth, -gap);
-    ContactBlock block;
-    block.kind = BlockKind::unilateral;
-    block.body = b.body;
-    block.structure = b.structure;
-    block.other = a.body;
-    block.direction[0] = (nearest.first - nearest.second) / clearance.distance;
-    block.place = b.now[with].place(nearest.t);
-    block.otherPlace = p.place(nearest.s);
-    block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
-    block.key = pair | numberOf(p) << capsuleShift | numberOf(b.now[with]);
-    blocks.push_back(block);
+    if (i + 1 == a.now.size() || a.now[i + 1].after) add(i, 1.0, last, Place::end);
   }
   return depth;
 }

@@ -17,14 +17,22 @@ namespace calot {
 /// Larger: it passes through the organ beside its root; smaller: contact and tie pull against each other. Assumed:
 /// twice the length over which ends are tied.
 inline constexpr double tiedReach = 0.006;
+/// By which a vessel sinks into an organ or another vessel for the force at a contact point (m/N). Of few points, each
+/// carries much: ten times harder than organs on organs. Larger: visible overlap; smaller: rows that repeat each other.
+/// Assumed.
+inline constexpr double vesselSoftness = 1e-4;
+/// As far ahead as contact is sought for what comes fast (m). Larger: rows that stay open; smaller: passes through.
+/// Assumed: what the fastest vessel goes in half a step.
+inline constexpr double maxApproach = 0.05;
 /// Vessels of one tree touch each other only farther apart along the tree than this many times the sum of their radii:
 /// at their junction they are one wall. Larger: they pass through each other beside it; smaller: a bent junction pushes
 /// itself apart. Assumed.
 inline constexpr double junctionReach = 4.0;
 
 /// Capsules of vessels against triangles of organs and against capsules of other vessels. Wet tissue on wet tissue
-/// slides without friction, as organs do: blocks are unilateral. Of each capsule with an organ, and with another
-/// vessel, the deepest point counts.
+/// slides without friction, as organs do: blocks are unilateral. Rows are the capsules' ends, each once, and a point
+/// between them where that is deeper than both: a vessel that lies along a surface rests on all its nodes, and an edge
+/// or another vessel that crosses it between two is felt.
 ///
 /// A capsule that overlaps an organ or another vessel in the reference configuration is measured from that depth,
 /// however large: what a scene draws into each other does not push at rest.
@@ -66,8 +74,18 @@ class VesselContacts {
     std::vector<std::vector<Clearance>> toVessel;
   };
 
+  /// A point of an organ's surface near a vessel.
+  struct Point {
+    double gap = 1e300;
+    Vec3 normal = Vec3::Zero();  ///< unit, from the organ towards the vessel
+    std::array<int, 3> node{};
+    Vec3 weight = Vec3::Zero();
+  };
+
   void measureRest(Vessel& vessel);
   void follow(const Surfaces& surfaces, const Bodies& bodies, const State& state, const std::vector<bool>& awake);
+  [[nodiscard]] Point endOnOrgan(const Surfaces& surfaces, std::size_t organ, std::span<const std::uint32_t> patches,
+                                 const Vec3& end, double radius, double reach) const;
   double touchOrgan(Surfaces& surfaces, const State& state, double step, std::size_t organ, Vessel& vessel,
                     std::vector<ContactBlock>& blocks);
   double touchVessel(double step, std::size_t one, std::size_t two, std::vector<ContactBlock>& blocks);

@@ -16,7 +16,7 @@ namespace {
 
 /// Shafts through ports 100 mm apart whose tips change sides: seen from the front, an X far above the block.
 SceneDescription crossScene(std::uint32_t ticksPerStep) {
-  SceneDescription scene = test::blockScene(100, 4);
+  SceneDescription scene = test::blockScene(300, 6);
   scene.name = "crossed shafts";
   scene.ticksPerStep = ticksPerStep;
   scene.hands[0].port = Vec3(-0.05, 0.0, 0.14);
@@ -104,9 +104,9 @@ TEST(InstrumentClash, ForcesAreEqualAndOpposite) {
     };
     for (int i = 0; i * static_cast<int>(ticks) < 600; ++i) {
       const StepResult& result = loop.step(sample, [&] {
-        // Between steps each hand feels the other as it was; both come nearer alike.
+        // Between steps each hand feels the other as it was; both come nearer alike, but the left one moves first.
         const Vec3 sum = loop.force[0].force - turned(loop.force[1].force);
-        EXPECT_LT(sum.norm(), 0.02 * loop.force[0].force.norm() + 1e-3);
+        EXPECT_LT(sum.norm(), 0.02 * loop.force[0].force.norm() + 0.02);
         strongest = std::max(strongest, loop.force[0].force.norm());
       });
       const Vec3& left = result.hand[0].contactForce;
@@ -123,12 +123,12 @@ TEST(InstrumentClash, ForcesAreEqualAndOpposite) {
 /// at the same point, turned round.
 TEST(InstrumentClash, PushesTheSamePointWhereverThatIs) {
   SceneDescription scene = crossScene(10);
-  scene.hands[1].home = Vec3(-0.01, -0.03, 0.08);
+  scene.hands[1].home = Vec3(-0.01, -0.015, 0.08);
   const std::unique_ptr<const Model> model = test::buildModel(scene);
   ASSERT_TRUE(model);
   test::Rig rig(*model);
   const StepResult* result = nullptr;
-  for (int i = 0; i < 60; ++i) result = &rig.step(tipAt(std::max(0.03 - 0.001 * i, -0.015)));
+  for (int i = 0; i < 60; ++i) result = &rig.step(tipAt(std::max(0.03 - 0.001 * i, -0.03)));
   ASSERT_TRUE(result->contact.instrumentsTouch);
   std::vector<ClashPoint> points;
   clashPoints(placedHand(*model, rig.state, 0), placedHand(*model, rig.state, 1), 1e-3, points);
@@ -255,7 +255,7 @@ TEST(InstrumentClash, PointsAreTheNearestOnes) {
     const double gap = apart(*model, rig.state).gap;
     EXPECT_DOUBLE_EQ(gapBetween(a, b, 1.0), gap);
     EXPECT_DOUBLE_EQ(gapBetween(a, b, 0.5 * gap), 0.5 * gap);
-    if (surelyApart(a, b, 0.01)) EXPECT_GT(gap, 0.01);
+    EXPECT_TRUE(!surelyApart(a, b, 0.01) || gap > 0.01);
     std::vector<ClashPoint> points;
     clashPoints(a, b, gap + 1e-4, points);
     ASSERT_FALSE(points.empty());

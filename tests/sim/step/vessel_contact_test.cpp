@@ -43,6 +43,24 @@ SceneDescription overBlock(std::uint32_t tetrahedra, std::uint32_t elements, std
   return scene;
 }
 
+/// The same with a block that is lifted by 12 mm in half a second, against the duct.
+SceneDescription liftedBlock(std::uint32_t tetrahedra, std::uint32_t elements, std::uint32_t ticksPerStep) {
+  SceneDescription scene = overBlock(tetrahedra, elements, ticksPerStep);
+  scene.organs[0].anchors.clear();
+  scene.vessels[0].material.youngModulus = 1.5e6;
+  RetractionDescription lift;
+  lift.organ = "block";
+  lift.centre = Vec3(0.0, 0.0, -0.1);
+  lift.radius = 0.095;
+  lift.displacement = Vec3(0.0, 0.0, 0.012);
+  lift.duration = 0.5;
+  lift.stiffness = 3000.0;
+  lift.damping = 30.0;
+  scene.retraction.push_back(lift);
+  for (HandDescription& hand : scene.hands) hand.home = Vec3(hand.home[0], 0.08, 0.1);
+  return scene;
+}
+
 /// A block that hangs free, without damping by mass.
 SceneDescription freeBlock(std::uint32_t tetrahedra) {
   SceneDescription scene = test::blockScene(tetrahedra, 8);
@@ -110,29 +128,26 @@ void throwVessel(State& state, std::size_t tree, const Vec3& velocity) {
   std::fill(state.vessel[tree].velocity.begin(), state.vessel[tree].velocity.end(), velocity);
 }
 
-TEST(VesselContact, PressedOntoAnOrganItDoesNotPass) {
+TEST(VesselContact, PressedByAnOrganItDoesNotPass) {
   for (const std::uint32_t tetrahedra : {300U, 1500U}) {
     for (const std::uint32_t elements : {20U, 60U}) {
       for (const std::uint32_t ticks : {2U, 10U, 20U}) {
         SCOPED_TRACE(testing::Message() << tetrahedra << " tetrahedra, " << elements << " elements, " << ticks << " ms");
-        const std::unique_ptr<const Model> model = test::buildModel(overBlock(tetrahedra, elements, ticks));
+        const std::unique_ptr<const Model> model = test::buildModel(liftedBlock(tetrahedra, elements, ticks));
         ASSERT_TRUE(model);
         test::Rig rig(*model);
         double deepest = -1.0;
         double force = 0.0;
-        const double h = model->stepSeconds();
-        for (double t = 0.0; t < 0.6; t += h) {  // down by 30 mm at 10 cm/s: the tip presses the duct 4 mm into the block
-          const double z = std::max(0.04 - 0.1 * t, test::blockTop + radius - 0.004);
-          const StepResult& result = rig.step(Vec3(0.003, 0.0, z));
+        for (double t = 0.0; t < 1.0; t += model->stepSeconds()) {
+          const StepResult& result = rig.step(model->scene().hands[0].home);
           deepest = std::max(deepest, depthIn(*model, rig.state, 0, 0));
-          force = std::max(force, result.hand[0].structureForce[1]);
+          force = std::accumulate(rig.state.tissue.force.begin(), rig.state.tissue.force.end(), 0.0);
           EXPECT_EQ(result.misses & miss::speed, 0U) << "at " << t << " s";
         }
-        EXPECT_GT(force, 0.1) << "it must be pressed";
-        EXPECT_GT(rig.state.organ[0].maxDisplacement, 5e-4) << "and press the block";
+        EXPECT_GT(force, 0.2) << "it must be pressed";
         EXPECT_GT(deepest, -1e-4);
-        // Tissue on tissue yields by 1 mm/N where it touches.
         EXPECT_LT(deepest, 4e-4);
+        EXPECT_LT(depthIn(*model, rig.state, 0, 0), 1e-4) << "at the end";
       }
     }
   }
@@ -221,6 +236,7 @@ TEST(VesselContact, HangingByACutEndItComesToRestOnTheOrgan) {
     const double height = test::blockTop + 0.008;
     VesselDescription d = tube("duct", Vec3(-0.045, 0.0, height), Vec3(0.045, 0.0, height), 30);
     d.material.youngModulus = 5e4;
+    d.material.massDamping = 10.0;
     d.start.kind = d.end.kind = VesselEndDescription::Kind::fixed;
     scene.vessels.push_back(d);
     for (HandDescription& hand : scene.hands) hand.home = Vec3(hand.home[0], 0.08, 0.1);
@@ -270,7 +286,7 @@ TEST(VesselContact, TwoVesselsDoNotPassEachOther) {
   for (const std::uint32_t ticks : {2U, 10U, 20U}) {
     for (const std::uint32_t elements : {10U, 40U}) {
       SCOPED_TRACE(testing::Message() << ticks << " ms, " << elements << " elements");
-      SceneDescription scene = freeBlock(60);
+      SceneDescription scene = freeBlock(300);
       scene.ticksPerStep = ticks;
       VesselDescription over = tube("over", Vec3(-0.02, 0.001, 0.06), Vec3(0.02, 0.0, 0.06), elements);
       over.material.massDamping = 0.0;
@@ -317,7 +333,7 @@ TEST(VesselContact, OneThatSleepsIsWokenByAPressAndNotByATouch) {
     const StepResult& result = rig.step(Vec3(0.003, 0.0, 0.04 - 0.0003 * i));
     duct = duct || !result.vessel[0].asleep;
     block = !result.organ[0].asleep;
-    if (block) EXPECT_GT(result.hand[0].structureForce[1], 0.0);
+    EXPECT_TRUE(!block || result.hand[0].structureForce[1] > 0.0);
   }
   EXPECT_TRUE(duct);
   EXPECT_TRUE(block);
@@ -354,7 +370,7 @@ TEST(VesselContact, WhatIsFarApartIsNotSearched) {
     surfaces.refresh(state);
     contacts.run(surfaces, bodies, state, {true, true, true}, blocks);
     if (i == 0) first = contacts.searches();
-    if (i > 0) EXPECT_EQ(contacts.searches(), 0U);
+    EXPECT_TRUE(i == 0 || contacts.searches() == 0U);
   }
   EXPECT_GT(first, 0U);
   contacts.run(surfaces, bodies, state, {false, false, false}, blocks);
