@@ -125,7 +125,8 @@ struct HandResult {
     visit(ResultField{"orientation", "", "q_WI", 1, "of the simulated instrument, w x y z"}, &HandResult::orientation);
     visit(ResultField{"jaw", "rad", "", 1, "opening angle of the jaws"}, &HandResult::jaw);
     visit(ResultField{"insertion", "m", "", 1, "distance from port to simulated tip"}, &HandResult::insertion);
-    visit(ResultField{"contact_force", "N", "f_W", 1, "force of the organs and of the other instrument on the instrument, reduced to its tip"},
+    visit(ResultField{"contact_force", "N", "f_W", 1,
+                      "force of the organs and of the other instrument on the instrument, reduced to its tip"},
           &HandResult::contactForce);
     visit(ResultField{"touching", "", "", 1, "bit s: a force acts between this instrument and structure s"},
           &HandResult::touching);
@@ -167,7 +168,8 @@ struct ContactResult {
     visit(ResultField{"iterations", "", "", 1, "sweeps used"}, &ContactResult::iterations);
     visit(ResultField{"residual", "m", "", 1, "natural residual of the last solution, largest block"},
           &ContactResult::residual);
-    visit(ResultField{"largest_depth", "m", "", 1, "deepest point of an instrument inside an organ or the other instrument; 0 outside"},
+    visit(ResultField{"largest_depth", "m", "", 1,
+                      "deepest point of an instrument inside an organ or the other instrument; 0 outside"},
           &ContactResult::maxDepth);
     visit(ResultField{"blocks", "", "", 2, "contact points and grasped points"}, &ContactResult::blocks);
     visit(ResultField{"newton_steps", "", "", 2, "used where sweeps did not converge"}, &ContactResult::newtonSteps);
@@ -179,9 +181,11 @@ struct ContactResult {
     visit(ResultField{"pinched_depth", "m", "", 2,
                       "as largest_depth, where tissue presses from two sides and leaves no way out"},
           &ContactResult::pinchedDepth);
-    visit(ResultField{"tissue_depth", "m", "", 2,
-                      "deepest overlap of organs and vessels beyond that of the reference configuration, as the step found it"},
-          &ContactResult::tissueDepth);
+    visit(
+        ResultField{
+            "tissue_depth", "m", "", 2,
+            "deepest overlap of organs and vessels beyond that of the reference configuration, as the step found it"},
+        &ContactResult::tissueDepth);
     visit(ResultField{"instruments_touch", "", "", 6, "1: a force acts between both instruments"},
           &ContactResult::instrumentsTouch);
   }

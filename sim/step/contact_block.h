@@ -20,14 +20,14 @@ struct ContactBlock {
   static constexpr std::size_t none = ~std::size_t{0};
 
   BlockKind kind = BlockKind::frictional;
-  double limit = 0.0;         ///< friction coefficient; largest force of a grasp (N)
-  double softness = 0.0;      ///< by which tissue sinks into tissue for the force at this point (m/N)
-  std::size_t hand = none;    ///< whose instrument is pushed along +direction,
-  std::size_t other = none;   ///< or which body is,
-  std::size_t body = none;    ///< and which body along -direction,
+  double limit = 0.0;            ///< friction coefficient; largest force of a grasp (N)
+  double softness = 0.0;         ///< by which tissue sinks into tissue for the force at this point (m/N)
+  std::size_t hand = none;       ///< whose instrument is pushed along +direction,
+  std::size_t other = none;      ///< or which body is,
+  std::size_t body = none;       ///< and which body along -direction,
   std::size_t otherHand = none;  ///< or whose instrument
-  std::size_t structure = 0;  ///< whose skin that is
-  std::size_t anchor = none;  ///< of a grasp: index of the grasped point
+  std::size_t structure = 0;     ///< whose skin that is
+  std::size_t anchor = none;     ///< of a grasp: index of the grasped point
   std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   SolidSolver::Impulse place, otherPlace;  ///< nodes and weights at which the bodies are pushed
   std::array<ToolRow, 3> tool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};

@@ -17,11 +17,13 @@
 namespace calot {
 
 /// Reads: simulated instruments, surfaces, velocities of the tissue. Writes: `contact.blocks` (in the order of hand,
-/// structure and contact point; grasps; instruments on each other; tissue on tissue), which bodies are awake, and the overlap of organs as found.
+/// structure and contact point; grasps; instruments on each other; tissue on tissue), which bodies are awake, and the
+/// overlap of organs as found.
 class ContactDetection {
  public:
   /// @param grasping outlives this
-  ContactDetection(const Model& model, const Grasping& grasping) : model_(model), grasping_(grasping), tissue_(model), vessels_(model) {}
+  ContactDetection(const Model& model, const Grasping& grasping)
+      : model_(model), grasping_(grasping), tissue_(model), vessels_(model) {}
 
   void invalidate() {
     tissue_.invalidate();

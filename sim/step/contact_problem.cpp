@@ -42,7 +42,8 @@ void measureGaps(const Model& model, const Bodies& bodies, const Activity& activ
   contact.trueGap.resize(contact.rows);
   for (const ContactBlock& block : contact.blocks) {
     Vec3 apart = Vec3::Zero();
-    if (block.body != ContactBlock::none && activity.awake[block.body]) apart -= h * at(block.place, bodies[block.body].freeVelocity());
+    if (block.body != ContactBlock::none && activity.awake[block.body])
+      apart -= h * at(block.place, bodies[block.body].freeVelocity());
     if (block.other != ContactBlock::none && activity.awake[block.other]) {
       apart += h * at(block.otherPlace, bodies[block.other].freeVelocity());
     }
@@ -181,9 +182,8 @@ void ContactProblemStage::assembleCouplings(ContactSystem& contact) const {
         const HandDescription& hand = model_.scene().hands[h];
         for (std::size_t i = 0; i < a.rows(); ++i) {
           for (std::size_t j = 0; j < b.rows(); ++j) {
-            w[(a.row + i) * rows + b.row + j] +=
-                (*one)[i].head<3>().dot((*two)[j].head<3>()) / hand.couplingStiffness +
-                (*one)[i][3] * (*two)[j][3] / hand.rollStiffness;
+            w[(a.row + i) * rows + b.row + j] += (*one)[i].head<3>().dot((*two)[j].head<3>()) / hand.couplingStiffness +
+                                                 (*one)[i][3] * (*two)[j][3] / hand.rollStiffness;
           }
         }
       }

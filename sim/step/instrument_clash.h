@@ -16,7 +16,7 @@ inline constexpr double instrumentFriction = 0.1;
 
 /// A point at which instruments a and b are near each other.
 struct ClashPoint {
-  Vec3 onA = Vec3::Zero();     ///< points of the axes of both capsules (m, W)
+  Vec3 onA = Vec3::Zero();  ///< points of the axes of both capsules (m, W)
   Vec3 onB = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  ///< unit, from b towards a
   double gap = 0.0;            ///< distance of the surfaces, negative: overlap (m)

@@ -26,7 +26,8 @@ void allowDepth(double allowed, double far, std::size_t from, std::vector<Surfac
                  contacts.end());
 }
 
-/// The deepest that the placed instrument stands in any structure or in the other instrument, and every point where it does.
+/// The deepest that the placed instrument stands in any structure or in the other instrument, and every point where it
+/// does.
 double PenetrationResolver::findInside(Surfaces& surfaces, const State& state, std::size_t hand, const Pose& pose) {
   const Vec3& port = model_.scene().hands[hand].port;
   inside_.clear();

@@ -192,7 +192,8 @@ void Publication::publishHand(const ContactSystem& contact, std::size_t h, State
   out.insertion = (hand.simulatedPosition - model_.scene().hands[h].port).norm();
   std::fill(out.structureForce.begin(), out.structureForce.end(), 0.0);
   for (const ContactBlock& block : contact.blocks) {
-    if (block.hand == h && !block.isGrasp() && !block.isClash()) out.structureForce[block.structure] += contact.lambda[block.row];
+    if (block.hand == h && !block.isGrasp() && !block.isClash())
+      out.structureForce[block.structure] += contact.lambda[block.row];
   }
   out.touching = 0;
   for (std::size_t s = 0; s < model_.structures().size(); ++s) {

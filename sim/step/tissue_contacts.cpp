@@ -83,7 +83,8 @@ double TissueContacts::addPair(Surfaces& surfaces, const State& state, std::size
   double depth = 0.0;
   for (const VertexContact& contact : found_) {
     if (isInverted(model_, state, pair.a, contact.vertex)) continue;
-    if (std::any_of(contact.node.begin(), contact.node.end(), [&](int n) { return isInverted(model_, state, pair.b, n); })) {
+    if (std::any_of(contact.node.begin(), contact.node.end(),
+                    [&](int n) { return isInverted(model_, state, pair.b, n); })) {
       continue;
     }
     depth = std::max(depth, -contact.gap);

@@ -16,7 +16,7 @@ namespace calot {
 struct VesselCapsule {
   Vec3 p0 = Vec3::Zero();  ///< ends of its axis, towards the vessel's start and end (m, W)
   Vec3 p1 = Vec3::Zero();
-  int node0 = 0;            ///< nodes that the ends follow; of a stump, both are the node that it hangs on
+  int node0 = 0;  ///< nodes that the ends follow; of a stump, both are the node that it hangs on
   int node1 = 0;
   std::size_t element = 0;  ///< of the branch, from 0
   bool after = false;       ///< the stump beyond a parting

@@ -16,9 +16,9 @@ namespace {
 /// By which searches reach farther than contact, so that the next ones can be left out (m). Larger: each search finds
 /// more triangles; smaller: searches are repeated after less motion. Measured on the whole operation.
 constexpr double searchMargin = 0.003;
-constexpr double rounding = 1e-9;      ///< of a motion (m)
-constexpr double wholeOrgan = 0.3;     ///< no point inside an organ is farther from its surface (m)
-constexpr unsigned pairShift = 40;     ///< of a contact's key: below, the capsules; from here up, the pair
+constexpr double rounding = 1e-9;   ///< of a motion (m)
+constexpr double wholeOrgan = 0.3;  ///< no point inside an organ is farther from its surface (m)
+constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the capsules; from here up, the pair
 /// Of a capsule, nearer to an end than this share of it, a contact is that of the end. Assumed.
 constexpr double endShare = 0.05;
 
@@ -94,13 +94,14 @@ void VesselContacts::measureRest(Vessel& vessel) {
     const OrganModel& organ = model_.organs()[o];
     std::vector<double>& offset = vessel.restOffset.emplace_back(vessel.rest.size(), 0.0);
     std::vector<bool>& tied = vessel.tied.emplace_back(vessel.rest.size(), false);
-    for (const Tie& tie : model_.ties()) {
-      if (tie.fat != Tie::none || tie.body[0] != o || tie.body[1] != vessel.body) continue;
+    const auto leaveOut = [&](int held) {
       for (std::size_t i = 0; i < tied.size(); ++i) {
         const VesselCapsule& c = vessel.rest[i];
-        const int held = tie.place[1].node[0];
         if (std::min(along.between(c.node0, held), along.between(c.node1, held)) < tiedReach) tied[i] = true;
       }
+    };
+    for (const Tie& tie : model_.ties()) {
+      if (tie.fat == Tie::none && tie.body[0] == o && tie.body[1] == vessel.body) leaveOut(tie.place[1].node[0]);
     }
     Box whole;
     for (const Vec3& p : organ.skin) whole.include(p);
@@ -112,9 +113,10 @@ void VesselContacts::measureRest(Vessel& vessel) {
       const AxisDistance axis = axisDistance(organ.surface, organ.skin, all, c.p0, c.p1, wholeOrgan);
       if (axis.found && !axis.inside) offset[i] = std::min(0.0, axis.distance - vessel.radius);
       if (!axis.inside) continue;
+      leaveOut(c.node0);
+      leaveOut(c.node1);
       for (const double s : {0.0, 0.5, 1.0}) {
-        const NearestPoint nearest =
-            nearestPoint(organ.surface, organ.skin, all, c.p0 + s * (c.p1 - c.p0), wholeOrgan);
+        const NearestPoint nearest = nearestPoint(organ.surface, organ.skin, all, c.p0 + s * (c.p1 - c.p0), wholeOrgan);
         if (!nearest.found || !nearest.inside) continue;
         offset[i] = std::min(offset[i], -std::sqrt(nearest.point.squaredDistance) - vessel.radius);
       }
@@ -149,8 +151,8 @@ void VesselContacts::follow(const Surfaces& surfaces, const Bodies& bodies, cons
     if (v.before.size() != v.now.size()) v.motion = 1e300;
     double moved = 0.0;
     for (std::size_t i = 0; i < v.now.size() && v.motion == 0.0; ++i) {
-      moved = std::max({moved, (v.now[i].p0 - v.before[i].p0).squaredNorm(),
-                        (v.now[i].p1 - v.before[i].p1).squaredNorm()});
+      moved =
+          std::max({moved, (v.now[i].p0 - v.before[i].p0).squaredNorm(), (v.now[i].p1 - v.before[i].p1).squaredNorm()});
     }
     v.motion = std::max(v.motion, std::sqrt(moved));
     if (v.before.empty()) v.before = v.now;
@@ -163,8 +165,8 @@ VesselContacts::Point VesselContacts::endOnOrgan(const Surfaces& surfaces, std::
                                                  std::span<const std::uint32_t> patches, const Vec3& end, double radius,
                                                  double reach) const {
   Point point;
-  const NearestPoint nearest = nearestPoint(surfaces.mesh(organ), surfaces.points(organ), patches, end,
-                                            capsuleSearch(radius, reach));
+  const NearestPoint nearest =
+      nearestPoint(surfaces.mesh(organ), surfaces.points(organ), patches, end, capsuleSearch(radius, reach));
   if (!nearest.found) return point;
   const double distance = std::sqrt(nearest.point.squaredDistance);
   if (!(distance > rounding)) return point;
@@ -334,8 +336,8 @@ double VesselContacts::touchVessel(double step, std::size_t one, std::size_t two
   return depth;
 }
 
-double VesselContacts::run(Surfaces& surfaces, const Bodies& bodies, const State& state,
-                           const std::vector<bool>& awake, std::vector<ContactBlock>& blocks) {
+double VesselContacts::run(Surfaces& surfaces, const Bodies& bodies, const State& state, const std::vector<bool>& awake,
+                           std::vector<ContactBlock>& blocks) {
   searches_ = 0;
   if (vessel_.empty()) return 0.0;
   follow(surfaces, bodies, state, awake);

@@ -13,8 +13,8 @@
 
 namespace calot {
 
-/// Along a vessel from where it is grown to an organ, in which it does not touch that organ: there the tie holds it (m).
-/// Larger: it passes through the organ beside its root; smaller: contact and tie pull against each other. Assumed:
+/// Along a vessel from where it is grown to an organ, in which it does not touch that organ: there the tie holds it
+/// (m). Larger: it passes through the organ beside its root; smaller: contact and tie pull against each other. Assumed:
 /// twice the length over which ends are tied.
 inline constexpr double tiedReach = 0.006;
 /// By which a vessel sinks into an organ or another vessel for the force at a contact point (m/N). Of few points, each

@@ -57,8 +57,8 @@ class InstrumentClashes final : public Checkpoint {
 
   void onStep(const recorder::StepRecord& record, const Judgement& /*judgement*/) override {
     const StepResult& result = record.result;
-    two_ = two_ || (result.hand[0].instrument != InstrumentKind::none &&
-                    result.hand[1].instrument != InstrumentKind::none);
+    two_ = two_ ||
+           (result.hand[0].instrument != InstrumentKind::none && result.hand[1].instrument != InstrumentKind::none);
     steps_ += result.contact.instrumentsTouch ? 1 : 0;
     for (const Event& event : result.events) touches_ += event.kind == EventKind::instrumentsTouched ? 1 : 0;
   }

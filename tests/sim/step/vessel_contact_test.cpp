@@ -87,8 +87,9 @@ double depthIn(const Model& model, const State& state, std::size_t organ, std::s
     const double wall = beams.branches()[static_cast<std::size_t>(e.branch)].section.outerRadius;
     for (int k = 0; k <= 8; ++k) {
       const Vec3 p = state.vessel[tree].position[static_cast<std::size_t>(e.a)] +
-                     k / 8.0 * (state.vessel[tree].position[static_cast<std::size_t>(e.b)] -
-                                state.vessel[tree].position[static_cast<std::size_t>(e.a)]);
+                     k / 8.0 *
+                         (state.vessel[tree].position[static_cast<std::size_t>(e.b)] -
+                          state.vessel[tree].position[static_cast<std::size_t>(e.a)]);
       const NearestPoint near = nearestPoint(o.surface, skin, all, p, 0.1);
       if (!near.found) continue;
       const double distance = std::sqrt(near.point.squaredDistance);
@@ -132,7 +133,8 @@ TEST(VesselContact, PressedByAnOrganItDoesNotPass) {
   for (const std::uint32_t tetrahedra : {300U, 1500U}) {
     for (const std::uint32_t elements : {20U, 60U}) {
       for (const std::uint32_t ticks : {2U, 10U, 20U}) {
-        SCOPED_TRACE(testing::Message() << tetrahedra << " tetrahedra, " << elements << " elements, " << ticks << " ms");
+        SCOPED_TRACE(testing::Message() << tetrahedra << " tetrahedra, " << elements << " elements, " << ticks
+                                        << " ms");
         const std::unique_ptr<const Model> model = test::buildModel(liftedBlock(tetrahedra, elements, ticks));
         ASSERT_TRUE(model);
         test::Rig rig(*model);
