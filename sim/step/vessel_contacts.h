@@ -13,9 +13,10 @@
 
 namespace calot {
 
-/// Along a vessel from where it is grown to an organ, in which it does not touch that organ: there the tie holds it
-/// (m). Larger: it passes through the organ beside its root; smaller: contact and tie pull against each other. Assumed:
-/// twice the length over which ends are tied.
+/// Along a vessel from where it is grown to an organ or runs into it (its axis is inside in the reference
+/// configuration), in which it does not touch that organ: there it is held (m). Larger: it passes through the organ
+/// beside its root; smaller: contact and tie pull against each other. Assumed: twice the length over which ends are
+/// tied.
 inline constexpr double tiedReach = 0.006;
 /// By which a vessel sinks into an organ or another vessel for the force at a contact point (m/N). Of few points, each
 /// carries much: ten times harder than organs on organs. Larger: visible overlap; smaller: rows that repeat each other.
