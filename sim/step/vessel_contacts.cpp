@@ -169,7 +169,7 @@ VesselContacts::Point VesselContacts::endOnOrgan(const Surfaces& surfaces, std::
       nearestPoint(surfaces.mesh(organ), surfaces.points(organ), patches, end, capsuleSearch(radius, reach));
   if (!nearest.found) return point;
   const double distance = std::sqrt(nearest.point.squaredDistance);
-  if (!(distance > rounding)) return point;
+  if (!(distance > rounding) || (nearest.inside && distance > maxAxisDepth)) return point;
   const Index3& corners = surfaces.mesh(organ).triangles()[nearest.triangle];
   point.gap = (nearest.inside ? -distance : distance) - radius;
   point.normal = (end - nearest.point.point) / (nearest.inside ? -distance : distance);
