@@ -269,24 +269,32 @@ void capsuleContacts(const ContactSurface& surface, std::span<const Vec3> positi
   Finder(surface, position, patches, {p0, p1}, radius, static_cast<std::uint64_t>(piece) << 56U, out).find(reach);
 }
 
-double minGap(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
-              const Vec3& p0, const Vec3& p1, double radius, double reach) {
+AxisDistance axisDistance(const ContactSurface& surface, std::span<const Vec3> position,
+                          std::span<const std::uint32_t> patches, const Vec3& p0, const Vec3& p1, double limit) {
   Nearest nearest;
   bool inside = false;
-  double limit = capsuleSearch(radius, std::max(reach, 0.0));
+  const double none = limit;
   forEachNear(surface, position, patches, {p0, p1}, limit, [&](std::size_t i, const SegmentTriangle& pair) {
     inside = inside || pair.crosses;
     if (nearest.found && pair.squaredDistance >= nearest.pair.squaredDistance) return;
     nearest = {true, i, pair};
     limit = std::sqrt(pair.squaredDistance) * (1.0 + 1e-12);
   });
-  if (!nearest.found) return reach;
+  if (!nearest.found) return {false, false, none};
   const double distance = std::sqrt(nearest.pair.squaredDistance);
   if (!inside && distance > onSurface) {
     const Vec3 away = nearest.pair.onSegment - nearest.pair.onTriangle;
     inside = away.dot(pseudonormal(surface, position, nearest.triangle, nearest.pair.feature)) < 0.0;
   }
-  if (!inside) return std::min(reach, distance - radius);
+  return {true, inside, distance};
+}
+
+double minGap(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
+              const Vec3& p0, const Vec3& p1, double radius, double reach) {
+  const AxisDistance nearest =
+      axisDistance(surface, position, patches, p0, p1, capsuleSearch(radius, std::max(reach, 0.0)));
+  if (!nearest.found) return reach;
+  if (!nearest.inside) return std::min(reach, nearest.distance - radius);
   std::vector<SurfaceContact> found;
   capsuleContacts(surface, position, patches, p0, p1, radius, std::max(reach, 0.0), 0, found);
   double minimum = reach;

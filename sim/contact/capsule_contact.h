@@ -54,6 +54,15 @@ void capsuleContacts(const ContactSurface& surface, std::span<const Vec3> positi
                      std::span<const std::uint32_t> patches, const Vec3& p0, const Vec3& p1, double radius,
                      double reach, std::uint32_t piece, std::vector<SurfaceContact>& out);
 
+/// Nearest the surface comes to the axis p0-p1.
+struct AxisDistance {
+  bool found = false;     ///< within the limit
+  bool inside = false;    ///< the axis crosses the surface, or lies on its inner side
+  double distance = 0.0;  ///< of axis and triangles, not signed; the limit where nothing is found (m)
+};
+AxisDistance axisDistance(const ContactSurface& surface, std::span<const Vec3> position,
+                          std::span<const std::uint32_t> patches, const Vec3& p0, const Vec3& p1, double limit);
+
 /// Smallest signed gap of the capsule over the triangles of the given patches, defined as above; at most `reach`.
 double minGap(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
               const Vec3& p0, const Vec3& p1, double radius, double reach);

@@ -112,7 +112,21 @@ struct HandState {
   }
 };
 
-/// Contact among organs: the last step's places and forces, warm start of the next problem.
+/// One instrument on the other.
+struct InstrumentTouchState {
+  bool touching = false;    ///< a touch has begun and not ended: since it began, no pause was long enough
+  std::uint64_t begun = 0;  ///< step in which it began
+  std::uint64_t last = 0;   ///< last step in which a force acted
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("touching", self.touching);
+    visit("begun", self.begun);
+    visit("last", self.last);
+  }
+};
+
+/// Contact of tissue on tissue: the last step's places and forces, warm start of the next problem.
 struct TissueContactState {
   std::vector<std::uint64_t> key;
   std::vector<double> force;  ///< N
@@ -126,11 +140,12 @@ struct TissueContactState {
 
 struct State : Tissues::States {
   /// Components that are written in every step stand before those of tissue.
-  static constexpr std::size_t tissueFrom = 5;
+  static constexpr std::size_t tissueFrom = 6;
 
   ClockState clock;
   CameraState camera;
   std::array<HandState, handCount> hand;
+  InstrumentTouchState instruments;
   TissueContactState tissue;
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
@@ -147,6 +162,7 @@ struct State : Tissues::States {
     visit("camera", self.camera);
     visit("hand.left", self.hand[0]);
     visit("hand.right", self.hand[1]);
+    visit("instruments", self.instruments);
     visit("tissue", self.tissue);
   }
 

@@ -61,6 +61,7 @@ enum class EventKind : std::uint16_t {
   clipsTowardsEnd = 43,    ///< the same on the end's side
   wallInjured = 44,        ///< cautery injured a vessel's wall, once a vessel; subject: structure; value: as vesselCut
   vesselSealed = 45,  ///< beside vesselBurned: coagulation closed the artery; subject: structure; value: as vesselCut
+  instrumentsTouched = 46,  ///< one instrument began to touch the other; value: first normal force (N)
 };
 
 /// Subject of smoke from connective tissue 0.
@@ -124,14 +125,15 @@ struct HandResult {
     visit(ResultField{"orientation", "", "q_WI", 1, "of the simulated instrument, w x y z"}, &HandResult::orientation);
     visit(ResultField{"jaw", "rad", "", 1, "opening angle of the jaws"}, &HandResult::jaw);
     visit(ResultField{"insertion", "m", "", 1, "distance from port to simulated tip"}, &HandResult::insertion);
-    visit(ResultField{"contact_force", "N", "f_W", 1, "force of the organs on the instrument, reduced to its tip"},
+    visit(ResultField{"contact_force", "N", "f_W", 1,
+                      "force of the organs and of the other instrument on the instrument, reduced to its tip"},
           &HandResult::contactForce);
     visit(ResultField{"touching", "", "", 1, "bit s: a force acts between this instrument and structure s"},
           &HandResult::touching);
     visit(ResultField{"organ_force", "N", "", 1,
                       "per structure (the organs first), sum of the magnitudes of normal forces"},
           &HandResult::structureForce);
-    visit(ResultField{"contact_torque", "N m", "", 2, "torque of the organs about the shaft's axis"},
+    visit(ResultField{"contact_torque", "N m", "", 2, "torque of the same about the shaft's axis"},
           &HandResult::contactTorque);
     visit(ResultField{"grasping", "", "", 2, "bit s: the jaws hold structure s"}, &HandResult::grasping);
     visit(ResultField{"grasp_force", "N", "", 2, "pull on what the jaws hold"}, &HandResult::graspForce);
@@ -158,6 +160,7 @@ struct ContactResult {
   double maxDepth = 0.0;
   double pinchedDepth = 0.0;
   double tissueDepth = 0.0;
+  bool instrumentsTouch = false;
 
   template <class Visit>
   static void fields(Visit&& visit) {
@@ -165,7 +168,8 @@ struct ContactResult {
     visit(ResultField{"iterations", "", "", 1, "sweeps used"}, &ContactResult::iterations);
     visit(ResultField{"residual", "m", "", 1, "natural residual of the last solution, largest block"},
           &ContactResult::residual);
-    visit(ResultField{"largest_depth", "m", "", 1, "deepest point of an instrument inside an organ; 0 outside"},
+    visit(ResultField{"largest_depth", "m", "", 1,
+                      "deepest point of an instrument inside an organ or the other instrument; 0 outside"},
           &ContactResult::maxDepth);
     visit(ResultField{"blocks", "", "", 2, "contact points and grasped points"}, &ContactResult::blocks);
     visit(ResultField{"newton_steps", "", "", 2, "used where sweeps did not converge"}, &ContactResult::newtonSteps);
@@ -177,9 +181,13 @@ struct ContactResult {
     visit(ResultField{"pinched_depth", "m", "", 2,
                       "as largest_depth, where tissue presses from two sides and leaves no way out"},
           &ContactResult::pinchedDepth);
-    visit(ResultField{"tissue_depth", "m", "", 2,
-                      "deepest overlap of organs beyond that of the reference configuration, as the step found it"},
-          &ContactResult::tissueDepth);
+    visit(
+        ResultField{
+            "tissue_depth", "m", "", 2,
+            "deepest overlap of organs and vessels beyond that of the reference configuration, as the step found it"},
+        &ContactResult::tissueDepth);
+    visit(ResultField{"instruments_touch", "", "", 6, "1: a force acts between both instruments"},
+          &ContactResult::instrumentsTouch);
   }
 };
 

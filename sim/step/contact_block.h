@@ -14,27 +14,39 @@
 
 namespace calot {
 
-/// One block of the contact problem: an instrument on a structure, an organ on an organ, or grasped tissue.
+/// One block of the contact problem: an instrument on a structure, tissue on tissue, grasped tissue, or an instrument
+/// on the other.
 struct ContactBlock {
   static constexpr std::size_t none = ~std::size_t{0};
 
   BlockKind kind = BlockKind::frictional;
-  double limit = 0.0;         ///< friction coefficient; largest force of a grasp (N)
-  std::size_t hand = none;    ///< whose instrument is pushed along +direction,
-  std::size_t other = none;   ///< or which body is,
-  std::size_t body = 0;       ///< and which body along -direction
-  std::size_t structure = 0;  ///< whose skin that is
-  std::size_t anchor = none;  ///< of a grasp: index of the grasped point
+  double limit = 0.0;            ///< friction coefficient; largest force of a grasp (N)
+  double softness = 0.0;         ///< by which tissue sinks into tissue for the force at this point (m/N)
+  std::size_t hand = none;       ///< whose instrument is pushed along +direction,
+  std::size_t other = none;      ///< or which body is,
+  std::size_t body = none;       ///< and which body along -direction,
+  std::size_t otherHand = none;  ///< or whose instrument
+  std::size_t structure = 0;     ///< whose skin that is
+  std::size_t anchor = none;     ///< of a grasp: index of the grasped point
   std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   SolidSolver::Impulse place, otherPlace;  ///< nodes and weights at which the bodies are pushed
   std::array<ToolRow, 3> tool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
+  std::array<ToolRow, 3> otherTool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};  ///< of otherHand, signed
   std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
+  Vec3 where = Vec3::Zero();    ///< of instruments on each other: the place (m, W)
   std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
   std::size_t row = 0;          ///< its first row
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
   [[nodiscard]] bool isTissueOnTissue() const { return hand == none; }
   [[nodiscard]] bool isGrasp() const { return anchor != none; }
+  /// An instrument on the other.
+  [[nodiscard]] bool isClash() const { return otherHand != none; }
+  /// Rows of a hand's instrument; null where it takes no part.
+  [[nodiscard]] const std::array<ToolRow, 3>* toolOf(std::size_t which) const {
+    if (which == none) return nullptr;
+    return which == hand ? &tool : which == otherHand ? &otherTool : nullptr;
+  }
 };
 
 /// How one instrument moved before contact, and what the virtual coupling still asks for.
@@ -47,7 +59,7 @@ struct InstrumentTravel {
 using InstrumentTravels = std::array<InstrumentTravel, handCount>;
 
 /// The contact problem of a step: gap = W lambda + free, blocks in the order of hands, structures and contact points,
-/// grasps, then organs on organs. n rows.
+/// grasps, instruments on each other, then tissue on tissue. n rows.
 struct ContactSystem {
   std::vector<ContactBlock> blocks;
   std::size_t rows = 0;

@@ -45,14 +45,14 @@ void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& 
                                               std::vector<ContactBlock>& blocks) {
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandState& hand = state.hand[h];
-    instrument_.place(model_.scene().hands[h], hand.instrument, simulatedPose(hand), hand.jaw);
+    instrument_[h].place(model_.scene().hands[h], hand.instrument, simulatedPose(hand), hand.jaw);
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
       double speed = 0.0;
       for (const Vec3& v : bodies[model_.structures()[s].body].velocity(state))
         speed = std::max(speed, v.squaredNorm());
       const double far = travels[h].reach + std::min(std::sqrt(speed) * bodies.step(), maxSlide);
       found_.clear();
-      for (const Capsule& c : instrument_.capsule) {
+      for (const Capsule& c : instrument_[h].capsule) {
         const double allowed = allowedDepth(model_, state, h, c, s);
         const std::size_t before = found_.size();
         const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, capsuleSearch(c.radius, far));
@@ -64,15 +64,42 @@ void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& 
   }
 }
 
+/// An instrument on the other: the left one is pushed along the normal, the right one against it.
+void ContactDetection::findClashes(const InstrumentTravels& travels, std::vector<ContactBlock>& blocks) {
+  clashPoints(instrument_[0], instrument_[1], travels[0].reach + travels[1].reach, clash_);
+  for (const ClashPoint& point : clash_) {
+    ContactBlock block;
+    block.kind = BlockKind::frictional;
+    block.limit = instrumentFriction;
+    block.hand = 0;
+    block.otherHand = 1;
+    block.where = 0.5 * (point.onA + point.onB);
+    block.key = point.key;
+    const Mat3 frame =
+        alongAxis(point.normal, instrument_[0].pose.orientation.toRotationMatrix().col(2)).toRotationMatrix();
+    block.direction = {point.normal, frame.col(0), frame.col(1)};
+    block.gap = {point.gap, 0.0, 0.0};
+    for (std::size_t k = 0; k < block.rows(); ++k) {
+      block.tool[k] = toolRow(instrument_[0].port, instrument_[0].pose, point.onA, block.direction[k]);
+      block.otherTool[k] = -toolRow(instrument_[1].port, instrument_[1].pose, point.onB, block.direction[k]);
+    }
+    blocks.push_back(block);
+  }
+}
+
 void ContactDetection::run(Surfaces& surfaces, Bodies& bodies, const InstrumentTravels& travels, State& state,
                            Activity& activity, ContactSystem& contact, ContactResult& result) {
   contact.blocks.clear();
   findInstrumentContacts(surfaces, bodies, travels, state, contact.blocks);
   grasping_.addBlocks(surfaces, state, contact.blocks);
+  findClashes(travels, contact.blocks);
   wakeBodies(model_, bodies, travels, contact.blocks, state, activity);
   result.tissueDepth = tissue_.run(surfaces, state, activity.awake, contact.blocks);
+  result.tissueDepth =
+      std::max(result.tissueDepth, vessels_.run(surfaces, bodies, state, activity.awake, contact.blocks));
   // What sleeps on both sides needs no force.
   std::erase_if(contact.blocks, [&](const ContactBlock& block) {
+    if (block.isClash()) return false;
     return !activity.awake[block.body] && (block.other == ContactBlock::none || !activity.awake[block.other]);
   });
 }

@@ -25,29 +25,34 @@ Vec3 at(const SolidSolver::Impulse& place, std::span<const Vec3> values) {
 void measureGaps(const Model& model, const Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
                  ContactSystem& contact) {
   const double h = bodies.step();
+  std::array<ToolRow, handCount> stretch;
+  for (std::size_t hand = 0; hand < handCount; ++hand) {
+    ToolRow& q = stretch[hand];
+    q = travels[hand].stretch;
+    const HandDescription& description = model.scene().hands[hand];
+    for (const ContactBlock& b : contact.blocks) {
+      const std::array<ToolRow, 3>* const tool = b.toolOf(hand);
+      if (tool == nullptr) continue;
+      for (std::size_t k = 0; k < b.rows(); ++k) {
+        q.head<3>() += contact.lambda[b.row + k] / description.couplingStiffness * (*tool)[k].head<3>();
+        q[3] += contact.lambda[b.row + k] / description.rollStiffness * (*tool)[k][3];
+      }
+    }
+  }
   contact.trueGap.resize(contact.rows);
   for (const ContactBlock& block : contact.blocks) {
     Vec3 apart = Vec3::Zero();
-    if (activity.awake[block.body]) apart -= h * at(block.place, bodies[block.body].freeVelocity());
+    if (block.body != ContactBlock::none && activity.awake[block.body])
+      apart -= h * at(block.place, bodies[block.body].freeVelocity());
     if (block.other != ContactBlock::none && activity.awake[block.other]) {
       apart += h * at(block.otherPlace, bodies[block.other].freeVelocity());
     }
-    ToolRow q = ToolRow::Zero();
-    if (!block.isTissueOnTissue()) {
-      const HandDescription& hand = model.scene().hands[block.hand];
-      q = travels[block.hand].stretch;
-      for (const ContactBlock& b : contact.blocks) {
-        if (b.hand != block.hand) continue;
-        for (std::size_t k = 0; k < b.rows(); ++k) {
-          q.head<3>() += contact.lambda[b.row + k] / hand.couplingStiffness * b.tool[k].head<3>();
-          q[3] += contact.lambda[b.row + k] / hand.rollStiffness * b.tool[k][3];
-        }
-      }
-    }
+    const ToolRow q = block.isTissueOnTissue() ? ToolRow(ToolRow::Zero()) : stretch[block.hand];
     for (std::size_t k = 0; k < block.rows(); ++k) {
       contact.trueGap[block.row + k] = block.gap[k] + block.direction[k].dot(apart) + block.tool[k].dot(q);
+      if (block.isClash()) contact.trueGap[block.row + k] += block.otherTool[k].dot(stretch[block.otherHand]);
     }
-    if (block.isTissueOnTissue()) contact.trueGap[block.row] += tissueSoftness * contact.lambda[block.row];
+    if (block.isTissueOnTissue()) contact.trueGap[block.row] += block.softness * contact.lambda[block.row];
   }
 }
 
@@ -168,14 +173,18 @@ void ContactProblemStage::assembleCouplings(ContactSystem& contact) const {
   std::vector<double>& w = contact.couplingCompliance;
   w.assign(rows * rows, 0.0);
   for (const ContactBlock& a : contact.blocks) {
-    if (a.isTissueOnTissue()) w[a.row * rows + a.row] = tissueSoftness;
+    if (a.isTissueOnTissue()) w[a.row * rows + a.row] = a.softness;
     for (const ContactBlock& b : contact.blocks) {
-      if (a.isTissueOnTissue() || a.hand != b.hand) continue;
-      const HandDescription& hand = model_.scene().hands[a.hand];
-      for (std::size_t i = 0; i < a.rows(); ++i) {
-        for (std::size_t j = 0; j < b.rows(); ++j) {
-          w[(a.row + i) * rows + b.row + j] += a.tool[i].head<3>().dot(b.tool[j].head<3>()) / hand.couplingStiffness +
-                                               a.tool[i][3] * b.tool[j][3] / hand.rollStiffness;
+      for (std::size_t h = 0; h < handCount; ++h) {
+        const std::array<ToolRow, 3>* const one = a.toolOf(h);
+        const std::array<ToolRow, 3>* const two = b.toolOf(h);
+        if (one == nullptr || two == nullptr) continue;
+        const HandDescription& hand = model_.scene().hands[h];
+        for (std::size_t i = 0; i < a.rows(); ++i) {
+          for (std::size_t j = 0; j < b.rows(); ++j) {
+            w[(a.row + i) * rows + b.row + j] += (*one)[i].head<3>().dot((*two)[j].head<3>()) / hand.couplingStiffness +
+                                                 (*one)[i][3] * (*two)[j][3] / hand.rollStiffness;
+          }
         }
       }
     }

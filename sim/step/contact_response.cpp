@@ -13,6 +13,7 @@ namespace {
 /// Velocity of a body at a contact point (m/s); zero without a body.
 Vec3 velocityAt(const Bodies& bodies, const State& state, const ContactBlock& block) {
   Vec3 v = Vec3::Zero();
+  if (block.body == ContactBlock::none) return v;
   const std::span<const Vec3> velocity = bodies[block.body].velocity(state);
   for (std::size_t k = 0; k < block.place.count; ++k)
     v += block.place.weight[k] * velocity[static_cast<std::size_t>(block.place.node[k])];
@@ -21,10 +22,10 @@ Vec3 velocityAt(const Bodies& bodies, const State& state, const ContactBlock& bl
 
 }  // namespace
 
-void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTravel& travel,
+void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTravels& travels,
                   const ContactSystem& contact, std::size_t hand, std::uint64_t step, ContactSet& set) {
   set.step = static_cast<std::int64_t>(step);
-  set.reference = travel.reference;
+  set.reference = travels[hand].reference;
   set.kind.clear();
   set.limit.clear();
   set.direction.clear();
@@ -33,25 +34,31 @@ void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTrav
   set.compliance.clear();
   set.lambda.clear();
   for (const ContactBlock& block : contact.blocks) {
-    if (block.hand != hand) continue;
+    const std::array<ToolRow, 3>* const tool = block.toolOf(hand);
+    if (tool == nullptr) continue;
     set.kind.push_back(block.kind);
     set.limit.push_back(block.limit);
     const Vec3 velocity = velocityAt(bodies, state, block);
     for (std::size_t k = 0; k < block.rows(); ++k) {
       const std::size_t i = block.row + k;
-      double free = contact.freeGap[i] - block.tool[k].dot(travel.stretch);
+      double free = contact.freeGap[i] - (*tool)[k].dot(travels[hand].stretch);
       for (const ContactBlock& b : contact.blocks) {
         for (std::size_t j = b.row; j < b.row + b.rows(); ++j) {
-          if (b.hand == hand) {
+          if (b.toolOf(hand) != nullptr) {
             set.compliance.push_back(contact.compliance[i * contact.rows + j]);
           } else {
             free += contact.compliance[i * contact.rows + j] * contact.lambda[j];
           }
         }
       }
-      set.direction.push_back(block.tool[k]);
+      set.direction.push_back((*tool)[k]);
       set.free.push_back(free);
-      set.rate.push_back(-block.direction[k].dot(velocity));
+      double rate = -block.direction[k].dot(velocity);
+      if (block.isClash()) {
+        const Vec3 gone = state.hand[1 - hand].simulatedPosition - travels[1 - hand].before.position;
+        rate += (*block.toolOf(1 - hand))[k].head<3>().dot(gone) / bodies.step();
+      }
+      set.rate.push_back(rate);
       set.lambda.push_back(contact.lambda[i]);
     }
   }
@@ -83,8 +90,9 @@ void ContactResponse::integrateInstrument(std::size_t hand, const InstrumentTrav
   const HandDescription& description = model_.scene().hands[hand];
   ToolRow push = ToolRow::Zero();
   for (const ContactBlock& block : contact.blocks) {
-    if (block.hand != hand) continue;
-    for (std::size_t k = 0; k < block.rows(); ++k) push += contact.lambda[block.row + k] * block.tool[k];
+    const std::array<ToolRow, 3>* const tool = block.toolOf(hand);
+    if (tool == nullptr) continue;
+    for (std::size_t k = 0; k < block.rows(); ++k) push += contact.lambda[block.row + k] * (*tool)[k];
   }
   Vec3 way = travel.stretch.head<3>() + push.head<3>() / description.couplingStiffness;
   const double size = way.norm();
@@ -103,9 +111,9 @@ void ContactResponse::run(Surfaces& surfaces, Bodies& bodies, const Activity& ac
                           ContactSets& sets, StepResult& result, StepLog& log) {
   storeWarmStart(contact, state);
   integrateTissue(surfaces, bodies, activity, state, log);
+  for (std::size_t h = 0; h < handCount; ++h) integrateInstrument(h, travels[h], contact, state, result.hand[h]);
   for (std::size_t h = 0; h < handCount; ++h) {
-    integrateInstrument(h, travels[h], contact, state, result.hand[h]);
-    reduceToHand(bodies, state, travels[h], contact, h, result.step, sets[h]);
+    reduceToHand(bodies, state, travels, contact, h, result.step, sets[h]);
   }
   surfaces.refresh(state);
   for (std::size_t h = 0; h < handCount; ++h) resolver_.run(surfaces, h, state, result.contact);

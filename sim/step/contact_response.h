@@ -36,9 +36,10 @@ class ContactResponse {
   std::vector<bool> diverged_;
 };
 
-/// The step's problem reduced to one hand. The other hand's forces, and those among organs, stay as they are.
-/// @pre bodies have moved
-void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTravel& travel,
+/// The step's problem reduced to one hand. The other hand's forces, and those among tissue, stay as they are. Where
+/// the instruments touch, the other one yields by its coupling and goes on as it moved in this step.
+/// @pre bodies and instruments have moved
+void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTravels& travels,
                   const ContactSystem& contact, std::size_t hand, std::uint64_t step, ContactSet& set);
 
 }  // namespace calot

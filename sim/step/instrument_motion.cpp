@@ -6,6 +6,7 @@
 
 #include "sim/contact/capsule_contact.h"
 #include "sim/step/hand_haptics.h"
+#include "sim/step/instrument_clash.h"
 
 namespace calot {
 
@@ -19,7 +20,7 @@ constexpr double maxJawSpeed = 5.0;
 
 /// Least gap between the placed instrument and all structures, at most `limit` (m).
 double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size_t hand, double limit) const {
-  double least = limit;
+  double least = gapBetween(instrument_, other_, limit);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (const Capsule& c : instrument_.capsule) {
       const double allowed = allowedDepth(model_, state, hand, c, s);
@@ -36,6 +37,8 @@ void InstrumentMotion::advance(Surfaces& surfaces, std::size_t hand, State& stat
   HandState& h = state.hand[hand];
   const HandDescription& description = model_.scene().hands[hand];
   const Pose real{h.realPosition, h.realOrientation};
+  const HandState& neighbour = state.hand[1 - hand];
+  other_.place(model_.scene().hands[1 - hand], neighbour.instrument, simulatedPose(neighbour), neighbour.jaw);
   double left = 0.0;
   for (int i = 0;; ++i) {
     const Pose now = simulatedPose(h);

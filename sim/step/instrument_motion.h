@@ -19,7 +19,8 @@ inline constexpr double maxSlide = 0.005;
 
 /// Conservative advancement (Mirtich 1996): the simulated instrument goes towards the real one as far as free space
 /// reaches, so that nothing is passed through on the way. What is left is the stretch of the virtual coupling; the jaws
-/// go on by a little whether there is room or not, since a hand closes them.
+/// go on by a little whether there is room or not, since a hand closes them. The other instrument bounds free space as
+/// tissue does: the left one moves first, and each stops before where the other is at that time.
 ///
 /// Reads: real poses, surfaces. Writes: simulated poses, jaws and grasps of the hands (jaws that open release before,
 /// jaws that close grasp after the motion).
@@ -36,7 +37,7 @@ class InstrumentMotion {
 
   const Model& model_;
   Grasping& grasping_;
-  PlacedInstrument instrument_;
+  PlacedInstrument instrument_, other_;
 };
 
 }  // namespace calot

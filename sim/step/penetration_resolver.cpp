@@ -26,7 +26,8 @@ void allowDepth(double allowed, double far, std::size_t from, std::vector<Surfac
                  contacts.end());
 }
 
-/// The deepest that the placed instrument stands in any structure, and every point where it does.
+/// The deepest that the placed instrument stands in any structure or in the other instrument, and every point where it
+/// does.
 double PenetrationResolver::findInside(Surfaces& surfaces, const State& state, std::size_t hand, const Pose& pose) {
   const Vec3& port = model_.scene().hands[hand].port;
   inside_.clear();
@@ -45,6 +46,11 @@ double PenetrationResolver::findInside(Surfaces& surfaces, const State& state, s
       inside_.push_back({toolRow(port, pose, contact.onAxis, contact.normal), contact.normal, contact.gap});
       depth = std::max(depth, -contact.gap);
     }
+  }
+  clashPoints(instrument_, other_, 0.0, clash_);
+  for (const ClashPoint& point : clash_) {
+    inside_.push_back({toolRow(port, pose, point.onA, point.normal), point.normal, point.gap});
+    depth = std::max(depth, -point.gap);
   }
   return depth;
 }
@@ -108,6 +114,8 @@ void PenetrationResolver::run(Surfaces& surfaces, std::size_t hand, State& state
   if (s.instrument == InstrumentKind::none) return;
   const Vec3& port = model_.scene().hands[hand].port;
   const Pose from = simulatedPose(s);
+  const HandState& neighbour = state.hand[1 - hand];
+  other_.place(model_.scene().hands[1 - hand], neighbour.instrument, simulatedPose(neighbour), neighbour.jaw);
   Outcome best = search(surfaces, state, hand, from);
   for (const double retreat : retreats) {
     if (best.depth <= toleratedDepth) break;

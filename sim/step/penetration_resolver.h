@@ -6,6 +6,7 @@
 
 #include "sim/contact/capsule_contact.h"
 #include "sim/instruments/port.h"
+#include "sim/step/instrument_clash.h"
 #include "sim/step/placed_instrument.h"
 #include "sim/step/surfaces.h"
 
@@ -24,7 +25,7 @@ class PenetrationResolver {
   void run(Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact);
 
  private:
-  /// A point at which an instrument stands inside a structure.
+  /// A point at which an instrument stands inside a structure or the other instrument.
   struct Inside {
     ToolRow row;
     Vec3 normal;
@@ -42,7 +43,8 @@ class PenetrationResolver {
   Outcome search(Surfaces& surfaces, const State& state, std::size_t hand, Pose pose);
 
   const Model& model_;
-  PlacedInstrument instrument_;
+  PlacedInstrument instrument_, other_;
+  std::vector<ClashPoint> clash_;
   std::vector<SurfaceContact> found_;
   std::vector<Inside> inside_;
 };

@@ -38,9 +38,11 @@ double currentPace(const CauteryDescription& cautery, const HandState& hand) {
   return (hand.buttons & button::coagulatePedal) != 0 ? cautery.coagulationPace : 0.0;
 }
 
-void PlacedInstrument::place(const HandDescription& hand, InstrumentKind kind, const Pose& pose, double jaw) {
-  const double length = (pose.position - hand.port).norm();
+void PlacedInstrument::place(const HandDescription& hand, InstrumentKind kind, const Pose& at, double jaw) {
+  const double length = (at.position - hand.port).norm();
   local = instrumentShape(kind, jaw, hand.shaftRadius, length);
+  pose = at;
+  port = hand.port;
   const InstrumentShape world = placed(local, pose);
   capsule.assign(world.capsules().begin(), world.capsules().end());
 }

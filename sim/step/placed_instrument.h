@@ -16,9 +16,11 @@ inline Pose simulatedPose(const HandState& hand) { return {hand.simulatedPositio
 /// The instrument's capsules at a pose.
 struct PlacedInstrument {
   InstrumentShape local;         ///< in I
+  Pose pose;                     ///< p_WI, q_WI
+  Vec3 port = Vec3::Zero();      ///< p_WP (m)
   std::vector<Capsule> capsule;  ///< in W
 
-  void place(const HandDescription& hand, InstrumentKind kind, const Pose& pose, double jaw);
+  void place(const HandDescription& hand, InstrumentKind kind, const Pose& at, double jaw);
 };
 
 /// At which a hand's hook divides tissue now, of the cutting current's pace; 0 without current.

@@ -13,6 +13,9 @@ namespace {
 
 /// Below, nothing counts as touching (N). Larger misses light touches; smaller counts rounding. Assumed.
 constexpr double minForce = 1e-6;
+/// After which instruments that touch again make a new touch (s). Larger: two blows count as one; smaller: one touch
+/// that chatters counts as many. Assumed: the hand's reaction takes longer.
+constexpr double clashPause = 0.1;
 
 /// Largest speed (m/s) and largest displacement (m) over a body's nodes.
 struct Extremes {
@@ -189,7 +192,8 @@ void Publication::publishHand(const ContactSystem& contact, std::size_t h, State
   out.insertion = (hand.simulatedPosition - model_.scene().hands[h].port).norm();
   std::fill(out.structureForce.begin(), out.structureForce.end(), 0.0);
   for (const ContactBlock& block : contact.blocks) {
-    if (block.hand == h && !block.isGrasp()) out.structureForce[block.structure] += contact.lambda[block.row];
+    if (block.hand == h && !block.isGrasp() && !block.isClash())
+      out.structureForce[block.structure] += contact.lambda[block.row];
   }
   out.touching = 0;
   for (std::size_t s = 0; s < model_.structures().size(); ++s) {
@@ -206,6 +210,27 @@ void Publication::publishHand(const ContactSystem& contact, std::size_t h, State
     }
   }
   hand.touching = out.touching;
+}
+
+/// One touch is one event: contact that is interrupted for less than clashPause goes on.
+void Publication::publishClash(const ContactSystem& contact, State& state, StepResult& result, StepLog& log) const {
+  InstrumentTouchState& touch = state.instruments;
+  const ContactBlock* strongest = nullptr;
+  for (const ContactBlock& block : contact.blocks) {
+    if (!block.isClash() || !(contact.lambda[block.row] > minForce)) continue;
+    if (strongest == nullptr || contact.lambda[block.row] > contact.lambda[strongest->row]) strongest = &block;
+  }
+  result.contact.instrumentsTouch = strongest != nullptr;
+  if (strongest == nullptr) {
+    const double pause = static_cast<double>(state.clock.step - touch.last) * model_.stepSeconds();
+    touch.touching = touch.touching && pause < clashPause;
+    return;
+  }
+  touch.last = state.clock.step;
+  if (touch.touching) return;
+  touch.touching = true;
+  touch.begun = state.clock.step;
+  log.emit(EventKind::instrumentsTouched, StepLog::noHand, 0, strongest->where, contact.lambda[strongest->row]);
 }
 
 void Publication::reportRunaway(const Bodies& bodies, const Activity& activity, const std::vector<bool>& diverged,
@@ -236,6 +261,7 @@ void Publication::run(const ContactSystem& contact, Surfaces& surfaces, Bodies& 
   publishFat(contact, bodies, activity, state, result);
   grasping_.settle(surfaces, state, activity, result, log);
   for (std::size_t h = 0; h < handCount; ++h) publishHand(contact, h, state, result.hand[h], log);
+  publishClash(contact, state, result, log);
 }
 
 }  // namespace calot

@@ -35,6 +35,7 @@ class Publication {
                   StepResult& result) const;
   void publishHand(const ContactSystem& contact, std::size_t hand, State& state, HandResult& out, StepLog& log) const;
 
+  void publishClash(const ContactSystem& contact, State& state, StepResult& result, StepLog& log) const;
   void publishConnective(const State& state, StepResult& result) const;
   [[nodiscard]] double shareLeft(const Bodies& bodies, std::size_t fat, std::size_t region) const;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sim/step/contact_problem.h"
+#include "sim/step/vessel_contacts.h"
 
 namespace calot {
 
@@ -34,11 +35,23 @@ void wakeTied(const Model& model, const Bodies& bodies, const State& state, std:
   }
 }
 
+/// Of two structures that press on each other, wakes the one that sleeps where the other moves: two that rest against
+/// each other fall asleep together.
+void wakePressed(const Model& model, const Bodies& bodies, std::uint64_t pair, State& state) {
+  const auto [a, b] = structuresOfPair(model, pair);
+  if (a >= model.structures().size() || b >= model.structures().size()) return;  // a damaged State
+  std::uint32_t& one = bodies[model.structures()[a].body].quietSteps(state);
+  std::uint32_t& two = bodies[model.structures()[b].body].quietSteps(state);
+  if (one >= quietSteps && two == 0) one = 0;
+  if (two >= quietSteps && one == 0) two = 0;
+}
+
 }  // namespace
 
 void wakeBodies(const Model& model, Bodies& bodies, const InstrumentTravels& travels,
                 std::span<const ContactBlock> blocks, State& state, Activity& activity) {
   for (const ContactBlock& block : blocks) {
+    if (block.isClash()) continue;
     const double approach = block.tool[0].dot(travels[block.hand].stretch);
     if (block.kind == BlockKind::bilateral || block.gap[0] + std::min(approach, 0.0) < openGap) {
       bodies[block.body].quietSteps(state) = 0;
@@ -46,7 +59,11 @@ void wakeBodies(const Model& model, Bodies& bodies, const InstrumentTravels& tra
   }
   for (std::size_t i = 0; i < state.tissue.key.size(); ++i) {
     const std::uint64_t pair = state.tissue.key[i] >> 40U;
-    if (!(state.tissue.force[i] > wakingForce) || pair >= model.tissuePairs().size()) continue;
+    if (!(state.tissue.force[i] > wakingForce)) continue;
+    if (pair >= model.tissuePairs().size()) {
+      wakePressed(model, bodies, pair, state);
+      continue;
+    }
     state.organ[model.tissuePairs()[pair].a].quietSteps = 0;
     state.organ[model.tissuePairs()[pair].b].quietSteps = 0;
   }

@@ -4,18 +4,15 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/step/contact_problem.h"
+
 namespace calot {
 
 namespace {
 
-/// Overlap that organs are left (m): contacts stay closed in spite of rounding. Larger shows; smaller chatters.
-/// Assumed.
-constexpr double allowedOverlap = 2e-5;
 /// An organ that moved less from rest has not folded onto itself (m). Larger misses folds; smaller tests rest shapes
 /// against themselves. Assumed: less than half of any organ's thickness.
 constexpr double foldDisplacement = 0.01;
-/// By which overlapping organs part in one step (m). Larger throws them apart; smaller lets overlaps last. Assumed.
-constexpr double maxRecovery = 0.0005;
 /// Between organs, the deepest; a coarse solid has no use for more. Larger costs time (rows cubed), smaller lets
 /// crumpled organs sink in. Measured on the whole operation.
 constexpr std::size_t maxTissueContacts = 96;
@@ -55,10 +52,8 @@ const SurfaceDisplacement& TissueContacts::displacementOf(const Surfaces& surfac
   return own;
 }
 
-/// Is the tissue that a vertex of an organ's skin is part of inverted? Outward is then inward there, and contact would
-/// hold it so.
-bool TissueContacts::isInverted(const State& state, std::size_t organ, int vertex) const {
-  const auto& node = model_.organs()[organ].embedding.anchors()[static_cast<std::size_t>(vertex)].node;
+bool isInverted(const Model& model, const State& state, std::size_t organ, int vertex) {
+  const auto& node = model.organs()[organ].embedding.anchors()[static_cast<std::size_t>(vertex)].node;
   const std::vector<Vec3>& position = state.organ[organ].position;
   const auto edge = [&](std::size_t k) -> Vec3 {
     return position[static_cast<std::size_t>(node[k])] - position[static_cast<std::size_t>(node[0])];
@@ -87,8 +82,9 @@ double TissueContacts::addPair(Surfaces& surfaces, const State& state, std::size
                   &nearTriangles_[number]);
   double depth = 0.0;
   for (const VertexContact& contact : found_) {
-    if (isInverted(state, pair.a, contact.vertex)) continue;
-    if (std::any_of(contact.node.begin(), contact.node.end(), [&](int n) { return isInverted(state, pair.b, n); })) {
+    if (isInverted(model_, state, pair.a, contact.vertex)) continue;
+    if (std::any_of(contact.node.begin(), contact.node.end(),
+                    [&](int n) { return isInverted(model_, state, pair.b, n); })) {
       continue;
     }
     depth = std::max(depth, -contact.gap);
@@ -96,6 +92,7 @@ double TissueContacts::addPair(Surfaces& surfaces, const State& state, std::size
     block.kind = BlockKind::unilateral;
     block.body = block.structure = pair.b;
     block.other = pair.a;
+    block.softness = tissueSoftness;
     block.direction[0] = contact.normal;
     block.place = surfaces.skin(pair.b).influence(contact.node, contact.weight);
     block.otherPlace = surfaces.skin(pair.a).influence({contact.vertex, contact.vertex, contact.vertex}, Vec3::UnitX());

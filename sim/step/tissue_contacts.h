@@ -12,6 +12,16 @@
 
 namespace calot {
 
+/// Overlap that tissue is left (m): contacts stay closed in spite of rounding. Larger shows; smaller chatters.
+/// Assumed.
+inline constexpr double allowedOverlap = 2e-5;
+/// By which overlapping tissue parts in one step (m). Larger throws it apart; smaller lets overlaps last. Assumed.
+inline constexpr double maxRecovery = 0.0005;
+
+/// Is the tissue that a vertex of an organ's skin is part of inverted? Outward is then inward there, and contact would
+/// hold it so.
+bool isInverted(const Model& model, const State& state, std::size_t organ, int vertex);
+
 /// Vertices of one organ against triangles of another; wet tissue on wet tissue slides without friction, so blocks are
 /// unilateral.
 class TissueContacts {
@@ -28,7 +38,6 @@ class TissueContacts {
  private:
   const SurfacePair& restOf(std::size_t pair);
   const SurfaceDisplacement& displacementOf(const Surfaces& surfaces, std::size_t organ);
-  [[nodiscard]] bool isInverted(const State& state, std::size_t organ, int vertex) const;
   double addPair(Surfaces& surfaces, const State& state, std::size_t number, std::vector<ContactBlock>& blocks);
   void keepDeepest(std::size_t first, std::vector<ContactBlock>& blocks) const;
 

@@ -162,8 +162,13 @@ void expectWithinBounds(const Model& model, const Record& record) {
       1e3 * record.deepest, 1e3 * record.told, 1e3 * record.pinched, percentile99(record.residual),
       percentile99(record.error), record.strongest, record.strongestTick, record.misses, record.residual.size(),
       record.touches, record.holds);
-  EXPECT_LE(record.deepest, 2e-4);
+  EXPECT_LE(record.deepest, 5e-5);
+  EXPECT_LE(record.told, record.deepest + 2e-5) << "what is told is what is measured";
+  EXPECT_LE(record.pinched, 1e-3);
   EXPECT_LE(percentile99(record.residual), 1e-4);
+  EXPECT_LE(percentile99(record.error), 0.02);
+  EXPECT_LE(record.strongest, model.scene().hands[0].maxForce * (1.0 + 1e-6));
+  EXPECT_LE(static_cast<double>(record.misses), 1e-3 * static_cast<double>(record.residual.size()));
   EXPECT_LE(record.strongestTick, model.scene().hands[0].maxForce * (1.0 + 1e-12));
   EXPECT_GT(record.touches, static_cast<int>(record.residual.size()) / 4) << "the run must press";
   EXPECT_GT(record.holds, 0) << "and hold";

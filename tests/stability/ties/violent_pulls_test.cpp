@@ -19,8 +19,9 @@
 namespace calot {
 namespace {
 
-constexpr double fastest = 10.0;       ///< m/s, of anything at any time
-constexpr double heldBackShare = 0.1;  ///< of the steps, at most: a limit that works oftener would be a law of motion
+constexpr double fastest = 10.0;  ///< m/s, of anything at any time
+/// Of the steps, at most: a limit that works oftener would be a law of motion.
+constexpr double heldBackShare = 0.001;
 
 SceneDescription sceneNamed(const std::string& name) {
   return recorder::loadScene(std::string(CALOT_SOURCE_DIR) + "/assets/scenes/" + name + ".json").description;
@@ -198,7 +199,7 @@ void pull(const std::string& name, std::uint64_t firstSeed, int seeds, int steps
         name.c_str(), static_cast<unsigned long long>(seed), w.maxSpeed, w.worstStep, w.speeding, w.heldBack, w.left,
         w.holds, w.clips, w.cuts, w.torn, w.misses);
     EXPECT_LE(w.maxSpeed, 1.001 * fastest) << "seed " << seed;
-    EXPECT_LT(static_cast<double>(w.heldBack), heldBackShare * steps) << "seed " << seed;
+    EXPECT_LE(static_cast<double>(w.heldBack), heldBackShare * steps) << "seed " << seed;
     // What is crumpled into itself trembles for a while.
     EXPECT_LT(w.left, 0.5) << "seed " << seed;
   }

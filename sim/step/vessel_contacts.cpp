@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/vessel_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/contact/surface_normal.h"
+#include "sim/geometry/closest_point.h"
+#include "sim/step/tissue_contacts.h"
+
+namespace calot {
+
+namespace {
+
+/// By which searches reach farther than contact, so that the next ones can be left out (m). Larger: each search finds
+/// more triangles; smaller: searches are repeated after less motion. Measured on the whole operation.
+constexpr double searchMargin = 0.003;
+constexpr double rounding = 1e-9;   ///< of a motion (m)
+constexpr double wholeOrgan = 0.3;  ///< no point inside an organ is farther from its surface (m)
+constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the capsules; from here up, the pair
+/// Of a capsule, nearer to an end than this share of it, a contact is that of the end. Assumed.
+constexpr double endShare = 0.05;
+
+double distanceOf(const Box& a, const Box& b) {
+  return (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(Vec3::Zero()).norm();
+}
+
+Box boxOf(const VesselCapsule& c) {
+  Box box;
+  box.include(c.p0);
+  box.include(c.p1);
+  return box;
+}
+
+/// Where on a capsule a contact is.
+enum class Place : std::uint8_t { start, between, end };
+
+std::uint64_t keyOf(const VesselCapsule& c, Place place) {
+  return (2 * c.element + (c.after ? 1 : 0)) * 4 + static_cast<std::uint64_t>(place);
+}
+
+double largestSpeed(std::span<const Vec3> velocity) {
+  double speed = 0.0;
+  for (const Vec3& v : velocity) speed = std::max(speed, v.squaredNorm());
+  return std::sqrt(speed);
+}
+
+}  // namespace
+
+std::uint64_t structurePairNumber(const Model& model, std::size_t a, std::size_t b) {
+  return model.tissuePairs().size() + a * maxStructures + b;
+}
+
+std::array<std::size_t, 2> structuresOfPair(const Model& model, std::uint64_t number) {
+  const std::size_t pair = number - model.tissuePairs().size();
+  return {pair / maxStructures, pair % maxStructures};
+}
+
+VesselContacts::VesselContacts(const Model& model) : model_(model) {
+  for (const VesselTree& tree : model.vesselTrees()) distances_.emplace_back(tree.beams);
+  for (std::size_t s = 0; s < model.structures().size(); ++s) {
+    const StructureModel& structure = model.structures()[s];
+    if (structure.kind != tissueId<VesselTissue>) continue;
+    Vessel& vessel = vessel_.emplace_back();
+    vessel.tree = structure.index;
+    vessel.branch = structure.branch;
+    vessel.structure = s;
+    vessel.body = structure.body;
+    const BeamModel& beams = model.vesselTrees()[vessel.tree].beams;
+    vessel.radius = beams.branches()[vessel.branch].section.outerRadius;
+    vesselCapsules(beams, restState(beams), vessel.branch, vessel.rest);
+    measureRest(vessel);
+  }
+  invalidate();
+}
+
+void VesselContacts::invalidate() {
+  for (Vessel& v : vessel_) {
+    v.before.clear();
+    v.toOrgan.assign(model_.organs().size(), {});
+    v.toVessel.assign(vessel_.size(), {});
+  }
+  organBefore_.assign(model_.organs().size(), {});
+  organMotion_.assign(model_.organs().size(), 0.0);
+  organSpeed_.assign(model_.organs().size(), 0.0);
+  wasAwake_.assign(model_.bodies(), true);
+}
+
+/// Overlaps with organs in the reference configuration, and what a tie holds.
+void VesselContacts::measureRest(Vessel& vessel) {
+  const TreeDistances& along = distances_[vessel.tree];
+  for (std::size_t o = 0; o < model_.organs().size(); ++o) {
+    const OrganModel& organ = model_.organs()[o];
+    std::vector<double>& offset = vessel.restOffset.emplace_back(vessel.rest.size(), 0.0);
+    std::vector<bool>& tied = vessel.tied.emplace_back(vessel.rest.size(), false);
+    const auto leaveOut = [&](int held) {
+      for (std::size_t i = 0; i < tied.size(); ++i) {
+        const VesselCapsule& c = vessel.rest[i];
+        if (std::min(along.between(c.node0, held), along.between(c.node1, held)) < tiedReach) tied[i] = true;
+      }
+    };
+    for (const Tie& tie : model_.ties()) {
+      if (tie.fat == Tie::none && tie.body[0] == o && tie.body[1] == vessel.body) leaveOut(tie.place[1].node[0]);
+    }
+    Box whole;
+    for (const Vec3& p : organ.skin) whole.include(p);
+    std::vector<std::uint32_t> all(organ.surface.patches().size());
+    std::iota(all.begin(), all.end(), 0U);
+    for (std::size_t i = 0; i < offset.size(); ++i) {
+      const VesselCapsule& c = vessel.rest[i];
+      if (distanceOf(boxOf(c), whole) > vessel.radius) continue;
+      const AxisDistance axis = axisDistance(organ.surface, organ.skin, all, c.p0, c.p1, wholeOrgan);
+      if (axis.found && !axis.inside) offset[i] = std::min(0.0, axis.distance - vessel.radius);
+      if (!axis.inside) continue;
+      leaveOut(c.node0);
+      leaveOut(c.node1);
+      for (const double s : {0.0, 0.5, 1.0}) {
+        const NearestPoint nearest = nearestPoint(organ.surface, organ.skin, all, c.p0 + s * (c.p1 - c.p0), wholeOrgan);
+        if (!nearest.found || !nearest.inside) continue;
+        offset[i] = std::min(offset[i], -std::sqrt(nearest.point.squaredDistance) - vessel.radius);
+      }
+      found_.clear();
+      capsuleContacts(organ.surface, organ.skin, all, c.p0, c.p1, vessel.radius, 0.0, 0, found_);
+      for (const SurfaceContact& contact : found_) offset[i] = std::min(offset[i], contact.gap);
+    }
+  }
+}
+
+/// Where vessels are, and how far organs and vessels have moved since the last run.
+void VesselContacts::follow(const Surfaces& surfaces, const Bodies& bodies, const State& state,
+                            const std::vector<bool>& awake) {
+  for (std::size_t o = 0; o < organBefore_.size(); ++o) {
+    organMotion_[o] = 0.0;
+    organSpeed_[o] = awake[o] ? largestSpeed(bodies[o].velocity(state)) : 0.0;
+    const std::vector<Vec3>& now = surfaces.points(o);
+    std::vector<Vec3>& before = organBefore_[o];
+    if (!awake[o] && !wasAwake_[o] && before.size() == now.size()) continue;
+    double moved = before.size() == now.size() ? 0.0 : 1e300;
+    for (std::size_t i = 0; i < now.size() && moved < 1e300; ++i)
+      moved = std::max(moved, (now[i] - before[i]).squaredNorm());
+    organMotion_[o] = std::sqrt(moved);
+    before = now;
+  }
+  for (Vessel& v : vessel_) {
+    v.motion = 0.0;
+    v.speed = awake[v.body] ? largestSpeed(bodies[v.body].velocity(state)) : 0.0;
+    if (!awake[v.body] && !wasAwake_[v.body] && !v.before.empty()) continue;
+    v.before.swap(v.now);
+    vesselCapsules(model_.vesselTrees()[v.tree].beams, state.vessel[v.tree], v.branch, v.now);
+    if (v.before.size() != v.now.size()) v.motion = 1e300;
+    double moved = 0.0;
+    for (std::size_t i = 0; i < v.now.size() && v.motion == 0.0; ++i) {
+      moved =
+          std::max({moved, (v.now[i].p0 - v.before[i].p0).squaredNorm(), (v.now[i].p1 - v.before[i].p1).squaredNorm()});
+    }
+    v.motion = std::max(v.motion, std::sqrt(moved));
+    if (v.before.empty()) v.before = v.now;
+  }
+  wasAwake_ = awake;
+}
+
+/// The surface's nearest point to an end of a capsule.
+VesselContacts::Point VesselContacts::endOnOrgan(const Surfaces& surfaces, std::size_t organ,
+                                                 std::span<const std::uint32_t> patches, const Vec3& end, double radius,
+                                                 double reach) const {
+  Point point;
+  const NearestPoint nearest =
+      nearestPoint(surfaces.mesh(organ), surfaces.points(organ), patches, end, capsuleSearch(radius, reach));
+  if (!nearest.found) return point;
+  const double distance = std::sqrt(nearest.point.squaredDistance);
+  if (!(distance > rounding) || (nearest.inside && distance > maxAxisDepth)) return point;
+  const Index3& corners = surfaces.mesh(organ).triangles()[nearest.triangle];
+  point.gap = (nearest.inside ? -distance : distance) - radius;
+  point.normal = (end - nearest.point.point) / (nearest.inside ? -distance : distance);
+  point.node = {corners[0], corners[1], corners[2]};
+  point.weight = nearest.point.barycentric;
+  return point;
+}
+
+double VesselContacts::touchOrgan(Surfaces& surfaces, const State& state, double step, std::size_t o, Vessel& v,
+                                  std::vector<ContactBlock>& blocks) {
+  const double reach = 2.0 * allowedOverlap + std::min((v.speed + organSpeed_[o]) * step, maxApproach);
+  const double near = capsuleSearch(v.radius, reach);
+  const std::uint64_t pair = structurePairNumber(model_, o, v.structure) << pairShift;
+  double depth = 0.0;
+  Box whole;
+  bool bounded = false;
+  const auto add = [&](const VesselCapsule& c, double share, const Point& point, double offset, Place place) {
+    const double gap = point.gap - offset;
+    if (!(gap < reach)) return;
+    if (std::any_of(point.node.begin(), point.node.end(), [&](int n) { return isInverted(model_, state, o, n); })) {
+      return;
+    }
+    depth = std::max(depth, -gap);
+    ContactBlock block;
+    block.kind = BlockKind::unilateral;
+    block.softness = vesselSoftness;
+    block.body = block.structure = o;
+    block.other = v.body;
+    block.direction[0] = point.normal;
+    block.place = surfaces.skin(o).influence(point.node, point.weight);
+    block.otherPlace = c.place(share);
+    block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
+    block.key = pair | keyOf(c, place);
+    blocks.push_back(block);
+  };
+  for (std::size_t i = 0; i < v.now.size(); ++i) {
+    const VesselCapsule& c = v.now[i];
+    Clearance& clearance = v.toOrgan[o][i];
+    if (v.tied[o][c.element]) continue;
+    if (clearance.distance > (clearance.outside ? v.radius + reach : near)) continue;
+    if (!bounded) {
+      for (const Box& patch : surfaces.bounds(o)) {
+        whole.include(patch.lower);
+        whole.include(patch.upper);
+      }
+      bounded = true;
+    }
+    const double limit = near + searchMargin;
+    if (const double away = distanceOf(boxOf(c), whole); away > limit) {
+      clearance = {away, true};
+      continue;
+    }
+    const std::span<const std::uint32_t> patches = surfaces.patchesNear(o, c.p0, c.p1, limit);
+    clearance = {limit, false};
+    if (patches.empty()) continue;
+    ++searches_;
+    const AxisDistance nearest = axisDistance(surfaces.mesh(o), surfaces.points(o), patches, c.p0, c.p1, limit);
+    clearance = {nearest.distance, nearest.found && !nearest.inside};
+    if (clearance.distance > (clearance.outside ? v.radius + reach : near)) continue;
+    const double offset = v.restOffset[o][c.element];
+    // A node is an end of two capsules, and of either's depth at rest.
+    const bool follows = i > 0 && v.now[i - 1].node1 == c.node0 && !c.after;
+    const Point first = endOnOrgan(surfaces, o, patches, c.p0, v.radius, reach);
+    add(c, 0.0, first, follows ? std::min(offset, v.restOffset[o][v.now[i - 1].element]) : offset, Place::start);
+    found_.clear();
+    capsuleContacts(surfaces.mesh(o), surfaces.points(o), patches, c.p0, c.p1, v.radius, reach, 0, found_);
+    const Point last = endOnOrgan(surfaces, o, patches, c.p1, v.radius, reach);
+    Point between;
+    between.gap = std::min(first.gap, last.gap) - allowedOverlap;
+    double share = -1.0;
+    for (const SurfaceContact& contact : found_) {
+      const double s = closestOnSegment(contact.onAxis, c.p0, c.p1);
+      if (s < endShare || s > 1.0 - endShare || !(contact.gap < between.gap)) continue;
+      between = {contact.gap, contact.normal, contact.node, contact.weight};
+      share = s;
+    }
+    if (share >= 0.0) add(c, share, between, offset, Place::between);
+    if (i + 1 == v.now.size() || v.now[i + 1].after) add(c, 1.0, last, offset, Place::end);
+  }
+  return depth;
+}
+
+bool VesselContacts::areOneWall(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) const {
+  if (a.tree != b.tree) return false;
+  const TreeDistances& along = distances_[a.tree];
+  double least = 1e300;
+  for (const int m : {a.now[i].node0, a.now[i].node1}) {
+    for (const int n : {b.now[j].node0, b.now[j].node1}) least = std::min(least, along.between(m, n));
+  }
+  return least < junctionReach * (a.radius + b.radius);
+}
+
+double VesselContacts::restOverlap(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) const {
+  const VesselCapsule& p = a.rest[a.now[i].element];
+  const VesselCapsule& q = b.rest[b.now[j].element];
+  return std::min(0.0, std::sqrt(closestSegments(p.p0, p.p1, q.p0, q.p1).squaredDistance) - a.radius - b.radius);
+}
+
+double VesselContacts::touchVessel(double step, std::size_t one, std::size_t two, std::vector<ContactBlock>& blocks) {
+  Vessel& a = vessel_[one];
+  const Vessel& b = vessel_[two];
+  const double reach = 2.0 * allowedOverlap + std::min((a.speed + b.speed) * step, maxApproach);
+  const double near = a.radius + b.radius + reach;
+  const std::uint64_t pair = structurePairNumber(model_, a.structure, b.structure) << pairShift;
+  double depth = 0.0;
+  /// The nearest of b's capsules to a segment on capsule i of a, nearer than `limit`.
+  struct Nearest {
+    SegmentSegment points;
+    std::size_t with = 0;
+    double distance = 0.0;
+    bool found = false;
+  };
+  const auto nearestTo = [&](std::size_t i, const Vec3& p0, const Vec3& p1, double limit) {
+    Nearest nearest;
+    nearest.distance = limit;
+    const Vec3 middle = 0.5 * (p0 + p1);
+    const double half = 0.5 * (p1 - p0).norm();
+    for (std::size_t j = 0; j < b.now.size(); ++j) {
+      const VesselCapsule& q = b.now[j];
+      const double far = nearest.distance + half + 0.5 * (q.p1 - q.p0).norm();
+      if ((middle - 0.5 * (q.p0 + q.p1)).squaredNorm() > far * far || areOneWall(a, i, b, j)) continue;
+      ++searches_;
+      const SegmentSegment points = closestSegments(p0, p1, q.p0, q.p1);
+      if (!(points.squaredDistance < nearest.distance * nearest.distance)) continue;
+      nearest = {points, j, std::sqrt(points.squaredDistance), true};
+    }
+    return nearest;
+  };
+  const auto add = [&](std::size_t i, double share, const Nearest& nearest, Place place) {
+    if (!nearest.found || !(nearest.distance > rounding)) return;
+    const double gap = nearest.distance - a.radius - b.radius - restOverlap(a, i, b, nearest.with);
+    if (!(gap < reach)) return;
+    depth = std::max(depth, -gap);
+    ContactBlock block;
+    block.kind = BlockKind::unilateral;
+    block.softness = vesselSoftness;
+    block.body = b.body;
+    block.structure = b.structure;
+    block.other = a.body;
+    block.direction[0] = (nearest.points.first - nearest.points.second) / nearest.distance;
+    block.place = b.now[nearest.with].place(nearest.points.t);
+    block.otherPlace = a.now[i].place(share);
+    block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
+    block.key = pair | keyOf(a.now[i], place);
+    blocks.push_back(block);
+  };
+  for (std::size_t i = 0; i < a.now.size(); ++i) {
+    const VesselCapsule& p = a.now[i];
+    Clearance& clearance = a.toVessel[two][i];
+    if (clearance.distance > near) continue;
+    const Nearest whole = nearestTo(i, p.p0, p.p1, near + searchMargin);
+    clearance.distance = whole.distance;
+    if (whole.distance > near) continue;
+    const Nearest first = nearestTo(i, p.p0, p.p0, near);
+    const Nearest last = nearestTo(i, p.p1, p.p1, near);
+    add(i, 0.0, first, Place::start);
+    const double s = whole.points.s;
+    if (s >= endShare && s <= 1.0 - endShare &&
+        whole.distance < std::min(first.distance, last.distance) - allowedOverlap) {
+      add(i, s, whole, Place::between);
+    }
+    if (i + 1 == a.now.size() || a.now[i + 1].after) add(i, 1.0, last, Place::end);
+  }
+  return depth;
+}
+
+double VesselContacts::run(Surfaces& surfaces, const Bodies& bodies, const State& state, const std::vector<bool>& awake,
+                           std::vector<ContactBlock>& blocks) {
+  searches_ = 0;
+  if (vessel_.empty()) return 0.0;
+  follow(surfaces, bodies, state, awake);
+  const auto wear = [](std::vector<Clearance>& list, std::size_t capsules, double motion) {
+    list.resize(capsules);
+    if (!(motion > 0.0)) return;
+    for (Clearance& c : list) c.distance = std::max(c.distance - motion - rounding, -1.0);
+  };
+  double depth = 0.0;
+  for (std::size_t o = 0; o < model_.organs().size(); ++o) {
+    for (Vessel& v : vessel_) {
+      wear(v.toOrgan[o], v.now.size(), v.motion + organMotion_[o]);
+      if (!awake[o] && !awake[v.body]) continue;
+      depth = std::max(depth, touchOrgan(surfaces, state, bodies.step(), o, v, blocks));
+    }
+  }
+  for (std::size_t one = 0; one < vessel_.size(); ++one) {
+    for (std::size_t two = one + 1; two < vessel_.size(); ++two) {
+      wear(vessel_[one].toVessel[two], vessel_[one].now.size(), vessel_[one].motion + vessel_[two].motion);
+      if (!awake[vessel_[one].body] && !awake[vessel_[two].body]) continue;
+      depth = std::max(depth, touchVessel(bodies.step(), one, two, blocks));
+    }
+  }
+  return depth;
+}
+
+}  // namespace calot
