@@ -30,6 +30,13 @@ struct ContactBlock {
   std::array<ToolRow, 3> tool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
   std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
   std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
+  /// Of an instrument on an organ (contact_dimples.h): the capsule's radius, its number, the place on the skin, the
+  /// size of the patch over which the mesh spreads a force there (m), and the dimple that it presses.
+  double radius = 0.0;
+  std::size_t piece = 0;
+  Vec3 foot = Vec3::Zero();
+  double spread = 0.0;
+  std::size_t dimple = none;
   std::size_t row = 0;          ///< its first row
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
@@ -46,6 +53,20 @@ struct InstrumentTravel {
 };
 using InstrumentTravels = std::array<InstrumentTravel, handCount>;
 
+/// What one capsule of an instrument presses into an organ (contact_dimples.h).
+struct Dimple {
+  std::size_t hand = 0;
+  std::uint64_t key = 0;        ///< structure and capsule
+  double radius = 0.0;          ///< of the capsule (m)
+  double modulus = 0.0;         ///< E* of the organ (Pa)
+  double share = 1.0;           ///< of the elastic dimple in that of a step
+  Vec3 before = Vec3::Zero();   ///< of the last step (m)
+  Vec3 force = Vec3::Zero();    ///< sum of its rows' (N)
+  Vec3 way = Vec3::Zero();      ///< the force's direction
+  double depth = 0.0;           ///< beyond a flat end's (m)
+  double along = 0.0, across = 0.0;  ///< derivative of that, as a vector, along and across the force (m/N)
+};
+
 /// The contact problem of a step: gap = W lambda + free, blocks in the order of hands, structures and contact points,
 /// grasps, then organs on organs. n rows.
 struct ContactSystem {
@@ -59,7 +80,12 @@ struct ContactSystem {
   std::vector<double> freeGap;             ///< gaps without any force, as the problem sees them (m)
   std::vector<double> tissueCompliance;    ///< estimate of the tissue's response, n x n (m/N)
   std::vector<double> couplingCompliance;  ///< of the virtual couplings, n x n (m/N)
-  std::vector<double> compliance;          ///< W: both, n x n (m/N)
+  std::vector<double> compliance;          ///< W: both and the dimples', n x n (m/N)
+  std::vector<Dimple> dimples;
+  std::vector<std::size_t> pressed;      ///< blocks that press dimples; m of them
+  std::vector<double> sharedDimple;      ///< K of their normals, m x m (m/N)
+  std::vector<double> dimpleGap;         ///< by which dimples open the rows, part of `trueGap` (m)
+  std::vector<double> dimpleCompliance;  ///< derivative of that of the blocks that press, m x m (m/N)
 
   /// Numbers the blocks' rows in order; lists kinds and limits.
   void numberRows();

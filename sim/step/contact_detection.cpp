@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/step/contact_dimples.h"
 #include "sim/step/instrument_motion.h"
 #include "sim/step/sleeping.h"
 
@@ -36,6 +37,15 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   block.gap = {contact.gap, 0.0, 0.0};
   for (std::size_t k = 0; k < block.rows(); ++k) {
     block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, contact.onAxis, block.direction[k]);
+  }
+  if (touched.kind == tissueId<OrganTissue>) {
+    block.piece = contact.key >> 56U;
+    block.radius = instrument_.capsule[block.piece].radius;
+    for (std::size_t k = 0; k < 3; ++k) {
+      block.foot +=
+          contact.weight[static_cast<int>(k)] * surfaces.points(structure)[static_cast<std::size_t>(contact.node[k])];
+    }
+    block.spread = meshSpread(model_.organs()[touched.index], block.place);
   }
   blocks.push_back(block);
 }

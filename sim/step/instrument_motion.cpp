@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/contact/capsule_contact.h"
+#include "sim/step/contact_dimples.h"
 #include "sim/step/hand_haptics.h"
 
 namespace calot {
@@ -22,7 +23,8 @@ double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size
   double least = limit;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (const Capsule& c : instrument_.capsule) {
-      const double allowed = allowedDepth(model_, state, hand, c, s);
+      const double allowed =
+          allowedDepth(model_, state, hand, c, s) + dimpleDepth(state.hand[hand], s, c.piece);
       const double search = capsuleSearch(c.radius, std::max(least - allowed, 0.0));
       const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, search);
       if (near.empty()) continue;

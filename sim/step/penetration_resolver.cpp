@@ -5,6 +5,7 @@
 #include <array>
 
 #include "sim/contact/contact_solver.h"
+#include "sim/step/contact_dimples.h"
 
 namespace calot {
 
@@ -37,7 +38,9 @@ double PenetrationResolver::findInside(Surfaces& surfaces, const State& state, s
       const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, capsuleSearch(c.radius, 0.0));
       const std::size_t before = found_.size();
       capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, 0.0, c.piece, found_);
-      if (const double allowed = allowedDepth(model_, state, hand, c, s); allowed > 0.0)
+      if (const double allowed =
+              allowedDepth(model_, state, hand, c, s) + dimpleDepth(state.hand[hand], s, c.piece);
+          allowed > 0.0)
         allowDepth(allowed, 0.0, before, found_);
     }
     for (const SurfaceContact& contact : found_) {
