@@ -2,6 +2,7 @@
 #include "sim/step/contact_detection.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cmath>
 
 #include "sim/step/contact_dimples.h"
@@ -35,10 +36,11 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
   block.direction = {contact.normal, frame.col(0), frame.col(1)};
   block.gap = {contact.gap, 0.0, 0.0};
+  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand], structure, contact.key >> 56U);
   for (std::size_t k = 0; k < block.rows(); ++k) {
-    block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, contact.onAxis, block.direction[k]);
+    block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
   }
-  if (touched.kind == tissueId<OrganTissue>) {
+  if (touched.kind == tissueId<OrganTissue> && !getenv("NODIMPLE")) {
     block.piece = contact.key >> 56U;
     block.radius = instrument_.capsule[block.piece].radius;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -65,8 +67,12 @@ void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& 
       for (const Capsule& c : instrument_.capsule) {
         const double allowed = allowedDepth(model_, state, h, c, s);
         const std::size_t before = found_.size();
-        const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, capsuleSearch(c.radius, far));
-        capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, far, c.piece, found_);
+        // Where its dimple is, the skin has given way: the capsule meets the mesh as much farther out.
+        const Vec3 dimple = dimpleOf(hand, s, c.piece);
+        const Vec3 p0 = c.p0 + dimple;
+        const Vec3 p1 = c.p1 + dimple;
+        const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, capsuleSearch(c.radius, far));
+        capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, p0, p1, c.radius, far, c.piece, found_);
         if (allowed > 0.0) allowDepth(allowed, far, before, found_);
       }
       for (const SurfaceContact& contact : found_) addInstrumentBlock(surfaces, state, h, s, contact, blocks);

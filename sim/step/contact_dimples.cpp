@@ -14,6 +14,9 @@ namespace {
 /// the meshes of a block of 1,100 to 20,000 tetrahedra, less that of the half-space outside the cells, at vertices,
 /// edges and faces within 5 % (docs/accuracy.md). Larger: softer contact on coarse meshes.
 constexpr double nodeSpread = 0.225;
+/// A mesh that spreads forces over less than an instrument does is too soft, which the dimple takes back; down to this
+/// share of the instrument's patch. Smaller: the rest may be unstable where a mesh is stiffer than nodeSpread says.
+constexpr double leastSpread = 0.5;
 constexpr double forgottenDepth = 1e-7;  ///< dimples that faded below are dropped (m)
 constexpr double smallForce = 1e-12;     ///< N; below, a force has no direction
 
@@ -73,18 +76,18 @@ void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& co
       }
       contact.dimpleCompliance[i * n + j] = dimple.share * slope;
     }
-    contact.dimpleGap[a.row] = dimple.share * elastic + (1.0 - dimple.share) * a.direction[0].dot(dimple.before);
+    contact.dimpleGap[a.row] = dimple.share * (elastic - a.direction[0].dot(dimple.before));
   }
 }
 
 }  // namespace
 
-double dimpleDepth(const HandState& hand, std::size_t structure, std::size_t piece) {
+Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece) {
   const std::uint64_t key = dimpleKey(structure, piece);
   for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
-    if (hand.dimpleKey[k] == key) return hand.dimple[k].norm();
+    if (hand.dimpleKey[k] == key) return hand.dimple[k];
   }
-  return 0.0;
+  return Vec3::Zero();
 }
 
 double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place) {
@@ -122,10 +125,7 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
     dimple.radius = block.radius;
     dimple.modulus = contactModulus(model.organs()[model.structures()[block.structure].index]);
     dimple.share = newShare(model, block.structure, step);
-    const HandState& hand = state.hand[block.hand];
-    for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
-      if (hand.dimpleKey[k] == key) dimple.before = hand.dimple[k];
-    }
+    dimple.before = dimpleOf(state.hand[block.hand], block.structure, block.piece);
     contact.dimples.push_back(dimple);
   }
   const std::size_t n = contact.pressed.size();
@@ -138,7 +138,7 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
       const double modulus = contact.dimples[a.dimple].modulus;
       const double squared = (a.foot - b.foot).squaredNorm();
       const double tool = 0.5 * (flatEndSpread(a.radius) + flatEndSpread(b.radius));
-      const double mesh = std::max(tool, 0.5 * (a.spread + b.spread));
+      const double mesh = std::max(leastSpread * tool, 0.5 * (a.spread + b.spread));
       const double k = a.direction[0].dot(b.direction[0]) *
                        (spreadCompliance(squared, tool, modulus) - spreadCompliance(squared, mesh, modulus));
       contact.sharedDimple[i * n + j] = contact.sharedDimple[j * n + i] = k;
@@ -169,15 +169,14 @@ void storeDimples(const Model& model, double step, const ContactSystem& contact,
   }
   for (std::size_t d = 0; d < contact.dimples.size(); ++d) {
     const Dimple& dimple = contact.dimples[d];
-    double force = 0.0;
-    Vec3 sum = Vec3::Zero();
+    // The one vector whose parts along the normals are nearest to what the rows gave way.
+    double work = 0.0;
     for (const std::size_t b : contact.pressed) {
       const ContactBlock& block = contact.blocks[b];
-      if (block.dimple != d) continue;
-      force += contact.lambda[block.row];
-      sum += contact.lambda[block.row] * contact.dimpleGap[block.row] * block.direction[0];
+      if (block.dimple == d) work += contact.lambda[block.row] * (contact.dimpleGap[block.row] + block.direction[0].dot(dimple.before));
     }
-    const Vec3 now = force > smallForce ? Vec3(sum / force) : Vec3((1.0 - dimple.share) * dimple.before);
+    const double force = dimple.force.norm();
+    const Vec3 now = force > smallForce ? Vec3(work / force * dimple.way) : Vec3((1.0 - dimple.share) * dimple.before);
     if (now.norm() < forgottenDepth) continue;
     state.hand[dimple.hand].dimpleKey.push_back(dimple.key);
     state.hand[dimple.hand].dimple.push_back(now);

@@ -21,8 +21,9 @@
 
 namespace calot {
 
-/// How deep a hand's capsule may stand in a structure because of its dimple there (m).
-double dimpleDepth(const HandState& hand, std::size_t structure, std::size_t piece);
+/// How far a structure's skin gives way to a hand's capsule beyond what the mesh shows (m): detection takes the capsule
+/// as much farther out.
+Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece);
 
 /// Of a place on an organ's skin: size of the patch over which its mesh spreads a force (m).
 double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place);

@@ -59,7 +59,10 @@ std::vector<Pressed> press(std::uint32_t tetrahedra, double x, double y, std::ui
     const int ramp = static_cast<int>(400 / ticks);
     for (int i = 0; i < 12 * ramp; ++i) {
       const double now = from + (depth - from) * std::min(1.0, (i + 1.0) / ramp);
-      result = stepper.step(state, test::ticksAt(scene, Vec3(x, y, test::blockTop - now), scene.hands[1].home));
+      std::vector<TickSamples> samples =
+          test::ticksAt(scene, Vec3(x, y, test::blockTop - now), scene.hands[1].home);
+      for (TickSamples& tick : samples) tick.hand[0].instrument = InstrumentKind::probe;
+      result = stepper.step(state, samples);
       EXPECT_EQ(result.misses & ~miss::speed, 0U);
       if (i > ramp && result.organ[0].maxSpeed < 1e-6) break;
     }
@@ -71,15 +74,17 @@ std::vector<Pressed> press(std::uint32_t tetrahedra, double x, double y, std::ui
 }
 
 TEST(SpherePress, ForceIsThatOfTheConvergedSolution) {
-  for (const std::uint32_t tetrahedra : {300U, 1200U, 4800U, 20000U}) {
+  for (const std::uint32_t tetrahedra : getenv("ONE") ? std::vector<std::uint32_t>{static_cast<std::uint32_t>(atoi(getenv("ONE")))} : std::vector<std::uint32_t>{300U, 1200U, 4800U, 20000U}) {
     for (const auto& [x, y] : {std::pair{0.0003, 0.0002}, std::pair{0.0019, 0.0017}, std::pair{0.0041, 0.0002}}) {
+      double worst = 0.0;
       std::printf("%u at (%.1f, %.1f) mm:", tetrahedra, 1e3 * x, 1e3 * y);
       for (const Pressed& p : press(tetrahedra, x, y, 10, 16, {0.001, 0.002, 0.003, 0.004, 0.005, 0.006}, 0.0)) {
         const double off = p.force / referenceAt(p.depth) - 1.0;
         std::printf("  %.2f mm %.4f N %+.1f %% (%u)", 1e3 * p.depth, p.force, 100.0 * off, p.rows);
-        EXPECT_LT(std::abs(off), 0.10);
+        worst = std::max(worst, std::abs(off));
       }
       std::printf("\n");
+      EXPECT_LT(worst, 0.10);
     }
   }
 }
