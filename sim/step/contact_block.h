@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/contact/contact_solver.h"
+#include "sim/contact/sphere_indentation.h"
 #include "sim/instruments/port.h"
 #include "sim/scene/samples.h"
 #include "sim/solid/solid.h"
@@ -35,8 +36,10 @@ struct ContactBlock {
   double radius = 0.0;
   std::size_t piece = 0;
   Vec3 foot = Vec3::Zero();
+  Vec3 smooth = Vec3::Zero();  ///< the skin's normal there, without its edges
   double spread = 0.0;
   std::size_t dimple = none;
+  double share = 0.0;  ///< of a force along the normal, in the direction in which that gives way
   std::size_t row = 0;          ///< its first row
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
@@ -59,12 +62,11 @@ struct Dimple {
   std::uint64_t key = 0;        ///< structure and capsule
   double radius = 0.0;          ///< of the capsule (m)
   double modulus = 0.0;         ///< E* of the organ (Pa)
-  double share = 1.0;           ///< of the elastic dimple in that of a step
+  double newShare = 1.0;        ///< w, of the elastic dimple in that of a step
   Vec3 before = Vec3::Zero();   ///< of the last step (m)
-  Vec3 force = Vec3::Zero();    ///< sum of its rows' (N)
-  Vec3 way = Vec3::Zero();      ///< the force's direction
-  double depth = 0.0;           ///< beyond a flat end's (m)
-  double along = 0.0, across = 0.0;  ///< derivative of that, as a vector, along and across the force (m/N)
+  Vec3 way = Vec3::Zero();      ///< in which it gives way: the skin's normal, without its edges
+  double force = 0.0;           ///< along that (N)
+  Indentation end;              ///< by how much deeper the capsule sinks in than a flat end
 };
 
 /// The contact problem of a step: gap = W lambda + free, blocks in the order of hands, structures and contact points,

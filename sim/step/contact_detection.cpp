@@ -17,6 +17,23 @@ namespace {
 constexpr unsigned structureShift = 52;
 static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
 
+/// The skin's normal at a contact point, as it varies between those at the triangle's corners (Phong 1975).
+Vec3 smoothNormal(const Surfaces& surfaces, std::size_t structure, const SurfaceContact& contact) {
+  const ContactSurface& mesh = surfaces.mesh(structure);
+  const std::vector<Vec3>& points = surfaces.points(structure);
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    Vec3 corner = Vec3::Zero();
+    for (const std::uint32_t t : mesh.trianglesAround(contact.node[static_cast<std::size_t>(k)])) {
+      const Index3& at = mesh.triangles()[t];
+      const Vec3& a = points[static_cast<std::size_t>(at[0])];
+      corner += (points[static_cast<std::size_t>(at[1])] - a).cross(points[static_cast<std::size_t>(at[2])] - a);
+    }
+    if (corner.squaredNorm() > 0.0) sum += contact.weight[k] * corner.normalized();
+  }
+  return sum.norm() > 0.1 ? Vec3(sum.normalized()) : contact.normal;
+}
+
 }  // namespace
 
 void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State& state, std::size_t hand,
@@ -47,6 +64,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
       block.foot +=
           contact.weight[static_cast<int>(k)] * surfaces.points(structure)[static_cast<std::size_t>(contact.node[k])];
     }
+    block.smooth = smoothNormal(surfaces, structure, contact);
     block.spread = meshSpread(model_.organs()[touched.index], block.place);
   }
   blocks.push_back(block);

@@ -36,47 +36,53 @@ double contactModulus(const OrganModel& organ) {
   return 4.0 * lame.mu * (lame.lambda + lame.mu) / (lame.lambda + 2.0 * lame.mu);
 }
 
-/// Of each dimple, the sum of its rows' forces.
-void sumForces(std::span<const double> lambda, ContactSystem& contact) {
-  for (Dimple& dimple : contact.dimples) dimple.force = Vec3::Zero();
-  for (const std::size_t b : contact.pressed) {
-    const ContactBlock& block = contact.blocks[b];
-    contact.dimples[block.dimple].force += lambda[block.row] * block.direction[0];
-  }
-}
-
 /// Writes the gaps, and the derivative where it is asked for.
 void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& contact) {
-  const std::size_t rows = contact.rows;
   const std::size_t n = contact.pressed.size();
-  contact.dimpleGap.assign(rows, 0.0);
+  contact.dimpleGap.assign(contact.rows, 0.0);
   if (derivative) contact.dimpleCompliance.assign(n * n, 0.0);
-  sumForces(lambda, contact);
+  for (Dimple& dimple : contact.dimples) dimple.force = 0.0;
+  for (const std::size_t b : contact.pressed) {
+    const ContactBlock& block = contact.blocks[b];
+    contact.dimples[block.dimple].force += block.share * lambda[block.row];
+  }
   for (Dimple& dimple : contact.dimples) {
-    const double force = dimple.force.norm();
-    dimple.way = force > smallForce ? Vec3(dimple.force / force) : Vec3::Zero();
-    const Indentation end = roundEnd(force, dimple.radius, dimple.modulus);
-    dimple.depth = end.depth;
-    dimple.along = end.slope;
-    dimple.across = force > smallForce ? end.depth / force : end.slope;
+    dimple.end = roundEnd(std::max(dimple.force, 0.0), dimple.radius, dimple.modulus);
   }
   for (std::size_t i = 0; i < n; ++i) {
     const ContactBlock& a = contact.blocks[contact.pressed[i]];
     const Dimple& dimple = contact.dimples[a.dimple];
-    double elastic = dimple.depth * a.direction[0].dot(dimple.way);
+    double elastic = a.share * dimple.end.depth;
     for (std::size_t j = 0; j < n; ++j) {
       const ContactBlock& b = contact.blocks[contact.pressed[j]];
-      const double shared = contact.sharedDimple[i * n + j];
-      elastic += shared * lambda[b.row];
+      double slope = contact.sharedDimple[i * n + j];
+      elastic += slope * lambda[b.row];
       if (!derivative) continue;
-      double slope = shared;
-      if (a.dimple == b.dimple) {
-        const double along = a.direction[0].dot(dimple.way) * b.direction[0].dot(dimple.way);
-        slope += dimple.along * along + dimple.across * (a.direction[0].dot(b.direction[0]) - along);
-      }
-      contact.dimpleCompliance[i * n + j] = dimple.share * slope;
+      if (a.dimple == b.dimple) slope += a.share * b.share * dimple.end.slope;
+      contact.dimpleCompliance[i * n + j] = dimple.newShare * slope;
     }
-    contact.dimpleGap[a.row] = dimple.share * (elastic - a.direction[0].dot(dimple.before));
+    contact.dimpleGap[a.row] = dimple.newShare * (elastic - a.direction[0].dot(dimple.before));
+  }
+}
+
+/// The direction in which a dimple gives way: mean of the smooth normals where the last step's forces act; where there
+/// were none, at the nearest point.
+void findWays(ContactSystem& contact) {
+  for (std::size_t d = 0; d < contact.dimples.size(); ++d) {
+    Vec3 sum = Vec3::Zero();
+    const ContactBlock* nearest = nullptr;
+    for (const std::size_t b : contact.pressed) {
+      const ContactBlock& block = contact.blocks[b];
+      if (block.dimple != d) continue;
+      sum += contact.carried[block.row] * block.smooth;
+      if (nearest == nullptr || block.gap[0] < nearest->gap[0]) nearest = &block;
+    }
+    if (!(sum.norm() > smallForce)) sum = nearest->smooth;
+    contact.dimples[d].way = sum.normalized();
+  }
+  for (const std::size_t b : contact.pressed) {
+    ContactBlock& block = contact.blocks[b];
+    block.share = block.direction[0].dot(contact.dimples[block.dimple].way);
   }
 }
 
@@ -124,10 +130,11 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
     dimple.key = key;
     dimple.radius = block.radius;
     dimple.modulus = contactModulus(model.organs()[model.structures()[block.structure].index]);
-    dimple.share = newShare(model, block.structure, step);
+    dimple.newShare = newShare(model, block.structure, step);
     dimple.before = dimpleOf(state.hand[block.hand], block.structure, block.piece);
     contact.dimples.push_back(dimple);
   }
+  findWays(contact);
   const std::size_t n = contact.pressed.size();
   contact.sharedDimple.assign(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
@@ -139,7 +146,7 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
       const double squared = (a.foot - b.foot).squaredNorm();
       const double tool = 0.5 * (flatEndSpread(a.radius) + flatEndSpread(b.radius));
       const double mesh = std::max(leastSpread * tool, 0.5 * (a.spread + b.spread));
-      const double k = a.direction[0].dot(b.direction[0]) *
+      const double k = a.share * b.share * contact.dimples[a.dimple].way.dot(contact.dimples[b.dimple].way) *
                        (spreadCompliance(squared, tool, modulus) - spreadCompliance(squared, mesh, modulus));
       contact.sharedDimple[i * n + j] = contact.sharedDimple[j * n + i] = k;
     }
@@ -169,14 +176,14 @@ void storeDimples(const Model& model, double step, const ContactSystem& contact,
   }
   for (std::size_t d = 0; d < contact.dimples.size(); ++d) {
     const Dimple& dimple = contact.dimples[d];
-    // The one vector whose parts along the normals are nearest to what the rows gave way.
     double work = 0.0;
     for (const std::size_t b : contact.pressed) {
       const ContactBlock& block = contact.blocks[b];
-      if (block.dimple == d) work += contact.lambda[block.row] * (contact.dimpleGap[block.row] + block.direction[0].dot(dimple.before));
+      if (block.dimple != d) continue;
+      work += contact.lambda[block.row] * (contact.dimpleGap[block.row] + block.direction[0].dot(dimple.before));
     }
-    const double force = dimple.force.norm();
-    const Vec3 now = force > smallForce ? Vec3(work / force * dimple.way) : Vec3((1.0 - dimple.share) * dimple.before);
+    const Vec3 now = dimple.force > smallForce ? Vec3(work / dimple.force * dimple.way)
+                                               : Vec3((1.0 - dimple.newShare) * dimple.before);
     if (now.norm() < forgottenDepth) continue;
     state.hand[dimple.hand].dimpleKey.push_back(dimple.key);
     state.hand[dimple.hand].dimple.push_back(now);
