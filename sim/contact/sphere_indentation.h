@@ -2,8 +2,8 @@
 // A rigid sphere pressed into an elastic half-space, without friction (Sneddon 1965, Int. J. Eng. Sci. 3:47, section
 // 5). With the radius of contact a = R tanh(t) and E* = E / (1 - nu^2),
 //   depth = R t tanh(t),  F = E* R^2 [(1 + tanh(t)^2) t - tanh(t)],  dF/d(depth) = 2 E* a.
-// Shallow, that is Hertz: F = 4/3 E* sqrt(R) depth^(3/2). Deep, a goes towards R, and the sphere presses as the flat end
-// of a cylinder does, F = 2 E* R depth + constant: so does a rod with a round end.
+// Shallow, that is Hertz: F = 4/3 E* sqrt(R) depth^(3/2). Deep, a goes towards R, and the sphere presses as the flat
+// end of a cylinder does, F = 2 E* R depth + constant: so does a rod with a round end.
 //
 // Green's function of the same half-space: a force F along the normal, spread over a patch of size s, moves a point at
 // the distance r along the surface by F k(r), k(r) = 1 / (pi E* sqrt(r^2 + s^2)); Boussinesq's at r >> s. With

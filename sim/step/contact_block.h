@@ -39,8 +39,8 @@ struct ContactBlock {
   Vec3 smooth = Vec3::Zero();  ///< the skin's normal there, without its edges
   double spread = 0.0;
   std::size_t dimple = none;
-  double share = 0.0;  ///< of a force along the normal, in the direction in which that gives way
-  std::size_t row = 0;          ///< its first row
+  double share = 0.0;   ///< of a force along the normal, in the direction in which that gives way
+  std::size_t row = 0;  ///< its first row
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
   [[nodiscard]] bool isTissueOnTissue() const { return hand == none; }
@@ -59,14 +59,14 @@ using InstrumentTravels = std::array<InstrumentTravel, handCount>;
 /// What one capsule of an instrument presses into an organ (contact_dimples.h).
 struct Dimple {
   std::size_t hand = 0;
-  std::uint64_t key = 0;        ///< structure and capsule
-  double radius = 0.0;          ///< of the capsule (m)
-  double modulus = 0.0;         ///< E* of the organ (Pa)
-  double newShare = 1.0;        ///< w, of the elastic dimple in that of a step
-  Vec3 before = Vec3::Zero();   ///< of the last step (m)
-  Vec3 way = Vec3::Zero();      ///< in which it gives way: the skin's normal, without its edges
-  double force = 0.0;           ///< along that (N)
-  Indentation end;              ///< by how much deeper the capsule sinks in than a flat end
+  std::uint64_t key = 0;       ///< structure and capsule
+  double radius = 0.0;         ///< of the capsule (m)
+  double modulus = 0.0;        ///< E* of the organ (Pa)
+  double newShare = 1.0;       ///< w, of the elastic dimple in that of a step
+  Vec3 before = Vec3::Zero();  ///< of the last step (m)
+  Vec3 way = Vec3::Zero();     ///< in which it gives way: the skin's normal, without its edges
+  double force = 0.0;          ///< along that (N)
+  Indentation end;             ///< by how much deeper the capsule sinks in than a flat end
 };
 
 /// The contact problem of a step: gap = W lambda + free, blocks in the order of hands, structures and contact points,

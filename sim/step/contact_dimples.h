@@ -13,7 +13,8 @@
 // capsules side by side press on each other's. The whole is the gradient of a convex function of l.
 //
 // Tissue is viscous: u + beta du/dt takes the place of u, beta the organ's stiffness damping, as in its mesh. By
-// implicit Euler, u = w u(l) + (1 - w) u_before with w = h / (h + beta), which dissipates at any step. u_before is State.
+// implicit Euler, u = w u(l) + (1 - w) u_before with w = h / (h + beta), which dissipates at any step. u_before is
+// State.
 #pragma once
 
 #include "sim/step/contact_block.h"
@@ -28,7 +29,8 @@ Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece);
 /// Of a place on an organ's skin: size of the patch over which its mesh spreads a force (m).
 double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place);
 
-/// Collects the dimples of the blocks and what does not change within a step: `contact.dimples`, `contact.sharedDimple`.
+/// Collects the dimples of the blocks and what does not change within a step: `contact.dimples`,
+/// `contact.sharedDimple`.
 /// @pre rows are numbered
 void findDimples(const Model& model, const State& state, double step, ContactSystem& contact);
 

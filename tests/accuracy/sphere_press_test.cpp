@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A probe with a round end of 2.5 mm pressed into a block, through the whole step: the force depends neither on the mesh
-// nor on the place in it nor on the step, and is that of the converged solution.
+// A probe with a round end of 2.5 mm pressed into a block, through the whole step: the force depends neither on the
+// mesh nor on the place in it nor on the step, and is that of the converged solution.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -133,8 +133,8 @@ TEST(SpherePress, ShallowForceIsThatOfHertz) {
         press.settle(k == 0 ? 0.00025 : 0.0005);
         ratio[k] = press.force / (4.0 / 3.0 * modulus * std::sqrt(0.0025) * press.tip * std::sqrt(press.tip));
       }
-      std::printf("%5u tetrahedra at (%4.1f, %4.1f) mm: %.3f of Hertz at 0.25 mm, %.3f at 0.5 mm\n", tetrahedra, 1e3 * x,
-                  1e3 * y, ratio[0], ratio[1]);
+      std::printf("%5u tetrahedra at (%4.1f, %4.1f) mm: %.3f of Hertz at 0.25 mm, %.3f at 0.5 mm\n", tetrahedra,
+                  1e3 * x, 1e3 * y, ratio[0], ratio[1]);
       EXPECT_NEAR(ratio[0], 1.0, 0.10);
       EXPECT_NEAR(ratio[1], 1.0, 0.10);
     }
