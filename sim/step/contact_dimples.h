@@ -4,13 +4,14 @@
 //
 // A force on a mesh of cells of size h acts as if it were spread over a patch of size e: the mesh is stiffer to an
 // instrument than tissue is, the more so the coarser it is. What is missing is known of the half-space that tissue is
-// near the surface (sim/contact/sphere_indentation.h). Normal rows i of a hand on an organ, with forces l and normals n
-// at the places x of the skin, open by
-//   n_i . u_i(l),  u_i = sum_j K_ij l_j n_j + g(|f|) f / |f|,
-//   K_ij = k(|x_i - x_j|; s) - k(|x_i - x_j|; e),  f = sum of l_j n_j over the rows of one capsule of the instrument,
+// near the surface (sim/contact/sphere_indentation.h). It gives way along its smooth normal N, of which the rows'
+// normals n_i have the shares p_i = n_i . N. Normal rows i of a hand on an organ, with forces l at the places x of the
+// skin, open by
+//   p_i u_i(l),  u_i = sum_j K_ij p_j l_j + g(F),
+//   K_ij = k(|x_i - x_j|; s) - k(|x_i - x_j|; e),  F = sum of p_j l_j over the rows of one capsule of the instrument,
 // k the Green's function of a load that is spread (by the instrument, s; by the mesh, e), and g by how much deeper a
 // round end sinks in than a flat one. So the rows of a capsule share one dimple, however many the mesh makes, and
-// capsules side by side press on each other's. The whole is the gradient of a convex function of l.
+// capsules side by side press on each other's.
 //
 // Tissue is viscous: u + beta du/dt takes the place of u, beta the organ's stiffness damping, as in its mesh. By
 // implicit Euler, u = w u(l) + (1 - w) u_before with w = h / (h + beta), which dissipates at any step. u_before is
