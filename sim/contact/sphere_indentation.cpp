@@ -8,7 +8,7 @@ namespace calot {
 namespace {
 
 /// Radius of contact at no force, in radii. Larger: light touches are too firm; smaller: Newton steps. Assumed.
-constexpr double flattened = 0.05;
+constexpr double flattened = 0.03;
 constexpr double shallow = 0.1;  ///< below this t, powers of t instead of differences of nearly equal numbers
 
 double hyperbolicTangent(double t) {

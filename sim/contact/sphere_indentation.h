@@ -23,7 +23,7 @@ struct Indentation {
 
 /// By how much deeper a sphere sinks in than the flat end of a cylinder of its radius would under the same force:
 /// R/2 [tanh(t) - (1 - tanh(t))^2 t]. Rises from 0 to R/2, the slower the larger the force. The sphere's apex counts as
-/// flattened by 2.5 thousandths of its radius, so that the slope at no force is finite.
+/// flattened by a thousandth of its radius, so that the slope at no force is finite.
 /// @param force N, not negative @param radius m @param modulus E* (Pa)
 Indentation roundEnd(double force, double radius, double modulus);
 
