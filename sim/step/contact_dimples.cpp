@@ -17,6 +17,10 @@ constexpr double nodeSpread = 0.225;
 /// A mesh that spreads forces over less than an instrument does is too soft, which the dimple takes back; down to this
 /// share of the instrument's patch. Smaller: the rest may be unstable where a mesh is stiffer than nodeSpread says.
 constexpr double leastSpread = 0.5;
+/// Down to here a dimple follows the half-space; deeper, tissue counts as pressed together, and the dimple goes at most
+/// `lastDepth` further (m). Larger: thin instruments sink through organs; smaller: deep presses are too firm. Assumed.
+constexpr double elasticDepth = 0.006;
+constexpr double lastDepth = 0.002;
 constexpr double forgottenDepth = 1e-7;  ///< dimples that faded below are dropped (m)
 constexpr double smallForce = 1e-12;     ///< N; below, a force has no direction
 
@@ -36,11 +40,18 @@ double contactModulus(const OrganModel& organ) {
   return 4.0 * lame.mu * (lame.lambda + lame.mu) / (lame.lambda + 2.0 * lame.mu);
 }
 
+/// A half-space's dimple as it is in tissue of finite thickness, with its derivative.
+Indentation bounded(double depth) {
+  if (depth <= elasticDepth) return {depth, 1.0};
+  const double beyond = (depth - elasticDepth) / lastDepth;
+  return {elasticDepth + lastDepth * beyond / (1.0 + beyond), 1.0 / ((1.0 + beyond) * (1.0 + beyond))};
+}
+
 /// Writes the gaps, and the derivative where it is asked for.
 void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& contact) {
   const std::size_t n = contact.pressed.size();
   contact.dimpleGap.assign(contact.rows, 0.0);
-  if (derivative) contact.dimpleCompliance.assign(n * n, 0.0);
+  if (derivative) contact.dimpleCompliance.assign(n * n, 1.0);
   for (Dimple& dimple : contact.dimples) dimple.force = 0.0;
   for (const std::size_t b : contact.pressed) {
     const ContactBlock& block = contact.blocks[b];
@@ -59,9 +70,17 @@ void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& co
       elastic += slope * lambda[b.row];
       if (!derivative) continue;
       if (a.dimple == b.dimple) slope += a.share * b.share * dimple.end.slope;
-      contact.dimpleCompliance[i * n + j] = dimple.newShare * slope;
+      contact.dimpleCompliance[i * n + j] *= dimple.newShare * slope;
     }
-    contact.dimpleGap[a.row] = dimple.newShare * (elastic - a.direction[0].dot(dimple.before));
+    const Indentation finite = bounded(elastic);
+    contact.dimpleGap[a.row] = dimple.newShare * (finite.depth - a.direction[0].dot(dimple.before));
+    if (!derivative || finite.slope == 1.0) continue;
+    // Symmetric: the rows of one dimple are about equally deep.
+    const double share = std::sqrt(finite.slope);
+    for (std::size_t j = 0; j < n; ++j) {
+      contact.dimpleCompliance[i * n + j] *= share;
+      contact.dimpleCompliance[j * n + i] *= share;
+    }
   }
 }
 
