@@ -56,7 +56,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   for (std::size_t k = 0; k < block.rows(); ++k) {
     block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
   }
-  if (touched.kind == tissueId<OrganTissue>) {
+  if (touched.kind == tissueId<OrganTissue> && model_.scene().solver.dimples) {
     block.piece = contact.key >> 56U;
     block.radius = instrument_.capsule[block.piece].radius;
     for (std::size_t k = 0; k < 3; ++k) {
