@@ -52,7 +52,8 @@ std::optional<KeyAction> mountOf(int key) {
   return std::nullopt;
 }
 
-/// "1 2 3 4", "5 6 7 8" and "grasper, hook, clip applier, scissors". Keys are digits, whose codes are their letters.
+/// "1 2 3 4 9", "5 6 7 8 0" and "grasper, hook, clip applier, scissors, probe". Keys are digits, whose codes are their
+/// letters.
 struct InstrumentHelp {
   std::string driven, other, names;
 };

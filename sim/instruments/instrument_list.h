@@ -8,4 +8,5 @@
   ENTRY(grasper, 1)              \
   ENTRY(hook, 2)                 \
   ENTRY(clipApplier, 3)          \
-  ENTRY(scissors, 4)
+  ENTRY(scissors, 4)             \
+  ENTRY(probe, 5)

@@ -157,6 +157,9 @@ struct SolverDescription {
   std::uint32_t contactPasses = 3;       ///< at most so often is it posed anew with the gaps that its forces left
   std::uint32_t contactIterations = 100;
   bool sleeping = true;  ///< untouched organs at rest are not solved
+  /// Organs give way within their cells, too (sim/step/contact_dimples.h). No field: scenes cannot do without; tests of
+  /// the mesh alone can.
+  bool dimples = true;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -184,6 +184,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     if (hand.burning != noStructure && hand.burning >= burnable) return false;
     if (hand.touchingSince.size() != model.structures().size()) return false;
     if (hand.contactKey.size() != hand.contactForce.size()) return false;
+    if (hand.dimpleKey.size() != hand.dimple.size()) return false;
     const std::size_t held = hand.graspNode.size();
     if (hand.graspWeight.size() != held || hand.graspPlace.size() != held || hand.graspForce.size() != held)
       return false;

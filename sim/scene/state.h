@@ -63,6 +63,8 @@ struct HandState {
   std::vector<std::uint64_t> touchingSince;  ///< per structure: step in which the touch began
   std::vector<std::uint64_t> contactKey;     ///< the last step's contacts: where,
   std::vector<Vec3> contactForce;            ///< its normal and tangential parts (N); warm start of the next problem
+  std::vector<std::uint64_t> dimpleKey;      ///< dimples that its capsules press: where (structure and capsule),
+  std::vector<Vec3> dimple;                  ///< and how far the skin gave way beyond what its mesh shows (m)
   std::uint32_t grasped = noStructure;       ///< structure that the jaws hold
   bool jawsOpened = false;  ///< since they last closed: only then do they grasp, clip or cut when they close
   std::uint32_t clips = 0;  ///< left in the clip applier
@@ -97,6 +99,8 @@ struct HandState {
     visit("touchingSince", self.touchingSince);
     visit("contactKey", self.contactKey);
     visit("contactForce", self.contactForce);
+    visit("dimpleKey", self.dimpleKey);
+    visit("dimple", self.dimple);
     visit("grasped", self.grasped);
     visit("jawsOpened", self.jawsOpened);
     visit("clips", self.clips);

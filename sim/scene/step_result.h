@@ -117,8 +117,9 @@ struct HandResult {
 
   template <class Visit>
   static void fields(Visit&& visit) {
-    visit(ResultField{"instrument", "", "", 1, "mounted: 0 none, 1 grasper, 2 hook, 3 clip applier, 4 scissors"},
-          &HandResult::instrument);
+    visit(
+        ResultField{"instrument", "", "", 1, "mounted: 0 none, 1 grasper, 2 hook, 3 clip applier, 4 scissors, 5 probe"},
+        &HandResult::instrument);
     visit(ResultField{"tip_real", "m", "p_WI", 1, "tip where the operator holds it, after port and workspace"},
           &HandResult::tipReal);
     visit(ResultField{"tip_simulated", "m", "p_WI", 1, "tip where contact lets it be"}, &HandResult::tipSimulated);

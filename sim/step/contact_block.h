@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/contact/contact_solver.h"
+#include "sim/contact/sphere_indentation.h"
 #include "sim/instruments/port.h"
 #include "sim/scene/samples.h"
 #include "sim/solid/solid.h"
@@ -35,7 +36,16 @@ struct ContactBlock {
   std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
   Vec3 where = Vec3::Zero();    ///< of instruments on each other: the place (m, W)
   std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
-  std::size_t row = 0;          ///< its first row
+  /// Of an instrument on an organ (contact_dimples.h): the capsule's radius, its number, the place on the skin, the
+  /// size of the patch over which the mesh spreads a force there (m), and the dimple that it presses.
+  double radius = 0.0;
+  std::size_t piece = 0;
+  Vec3 foot = Vec3::Zero();
+  Vec3 smooth = Vec3::Zero();  ///< the skin's normal there, without its edges
+  double spread = 0.0;
+  std::size_t dimple = none;
+  double share = 0.0;   ///< of a force along the normal, in the direction in which that gives way
+  std::size_t row = 0;  ///< its first row
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
   [[nodiscard]] bool isTissueOnTissue() const { return hand == none; }
@@ -58,6 +68,19 @@ struct InstrumentTravel {
 };
 using InstrumentTravels = std::array<InstrumentTravel, handCount>;
 
+/// What one capsule of an instrument presses into an organ (contact_dimples.h).
+struct Dimple {
+  std::size_t hand = 0;
+  std::uint64_t key = 0;       ///< structure and capsule
+  double radius = 0.0;         ///< of the capsule (m)
+  double modulus = 0.0;        ///< E* of the organ (Pa)
+  double newShare = 1.0;       ///< w, of the elastic dimple in that of a step
+  Vec3 before = Vec3::Zero();  ///< of the last step (m)
+  Vec3 way = Vec3::Zero();     ///< in which it gives way: the skin's normal, without its edges
+  double force = 0.0;          ///< along that (N)
+  Indentation end;             ///< by how much deeper the capsule sinks in than a flat end
+};
+
 /// The contact problem of a step: gap = W lambda + free, blocks in the order of hands, structures and contact points,
 /// grasps, instruments on each other, then tissue on tissue. n rows.
 struct ContactSystem {
@@ -71,7 +94,12 @@ struct ContactSystem {
   std::vector<double> freeGap;             ///< gaps without any force, as the problem sees them (m)
   std::vector<double> tissueCompliance;    ///< estimate of the tissue's response, n x n (m/N)
   std::vector<double> couplingCompliance;  ///< of the virtual couplings, n x n (m/N)
-  std::vector<double> compliance;          ///< W: both, n x n (m/N)
+  std::vector<double> compliance;          ///< W: both and the dimples', n x n (m/N)
+  std::vector<Dimple> dimples;
+  std::vector<std::size_t> pressed;      ///< blocks that press dimples; m of them
+  std::vector<double> sharedDimple;      ///< K of their normals, m x m (m/N)
+  std::vector<double> dimpleGap;         ///< by which dimples open the rows, part of `trueGap` (m)
+  std::vector<double> dimpleCompliance;  ///< derivative of that of the blocks that press, m x m (m/N)
 
   /// Numbers the blocks' rows in order; lists kinds and limits.
   void numberRows();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/step/contact_dimples.h"
 #include "sim/step/instrument_motion.h"
 #include "sim/step/sleeping.h"
 
@@ -14,6 +15,23 @@ namespace {
 /// A contact block's key has its structure in the bits from here up to the four of the instrument's part.
 constexpr unsigned structureShift = 52;
 static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
+
+/// The skin's normal at a contact point, as it varies between those at the triangle's corners (Phong 1975).
+Vec3 smoothNormal(const Surfaces& surfaces, std::size_t structure, const SurfaceContact& contact) {
+  const ContactSurface& mesh = surfaces.mesh(structure);
+  const std::vector<Vec3>& points = surfaces.points(structure);
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    Vec3 corner = Vec3::Zero();
+    for (const std::uint32_t t : mesh.trianglesAround(contact.node[static_cast<std::size_t>(k)])) {
+      const Index3& at = mesh.triangles()[t];
+      const Vec3& a = points[static_cast<std::size_t>(at[0])];
+      corner += (points[static_cast<std::size_t>(at[1])] - a).cross(points[static_cast<std::size_t>(at[2])] - a);
+    }
+    if (corner.squaredNorm() > 0.0) sum += contact.weight[k] * corner.normalized();
+  }
+  return sum.norm() > 0.1 ? Vec3(sum.normalized()) : contact.normal;
+}
 
 }  // namespace
 
@@ -34,8 +52,19 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
   block.direction = {contact.normal, frame.col(0), frame.col(1)};
   block.gap = {contact.gap, 0.0, 0.0};
+  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand], structure, contact.key >> 56U);
   for (std::size_t k = 0; k < block.rows(); ++k) {
-    block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, contact.onAxis, block.direction[k]);
+    block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
+  }
+  if (touched.kind == tissueId<OrganTissue> && model_.scene().solver.dimples) {
+    block.piece = contact.key >> 56U;
+    block.radius = instrument_.capsule[block.piece].radius;
+    for (std::size_t k = 0; k < 3; ++k) {
+      block.foot +=
+          contact.weight[static_cast<int>(k)] * surfaces.points(structure)[static_cast<std::size_t>(contact.node[k])];
+    }
+    block.smooth = smoothNormal(surfaces, structure, contact);
+    block.spread = meshSpread(model_.organs()[touched.index], block.place);
   }
   blocks.push_back(block);
 }
@@ -55,8 +84,12 @@ void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& 
       for (const Capsule& c : instrument_[h].capsule) {
         const double allowed = allowedDepth(model_, state, h, c, s);
         const std::size_t before = found_.size();
-        const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, capsuleSearch(c.radius, far));
-        capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, far, c.piece, found_);
+        // Where its dimple is, the skin has given way: the capsule meets the mesh as much farther out.
+        const Vec3 dimple = dimpleOf(hand, s, c.piece);
+        const Vec3 p0 = c.p0 + dimple;
+        const Vec3 p1 = c.p1 + dimple;
+        const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, capsuleSearch(c.radius, far));
+        capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, p0, p1, c.radius, far, c.piece, found_);
         if (allowed > 0.0) allowDepth(allowed, far, before, found_);
       }
       for (const SurfaceContact& contact : found_) addInstrumentBlock(surfaces, state, h, s, contact, blocks);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/step/contact_dimples.h"
+
 namespace calot {
 
 namespace {
@@ -54,6 +56,12 @@ void measureGaps(const Model& model, const Bodies& bodies, const Activity& activ
     }
     if (block.isTissueOnTissue()) contact.trueGap[block.row] += block.softness * contact.lambda[block.row];
   }
+  if (contact.pressed.empty()) return;
+  evaluateDimpleGaps(contact.lambda, contact);
+  for (const std::size_t b : contact.pressed) {
+    const std::size_t row = contact.blocks[b].row;
+    contact.trueGap[row] += contact.dimpleGap[row];
+  }
 }
 
 void sumCompliances(ContactSystem& contact) {
@@ -63,6 +71,15 @@ void sumCompliances(ContactSystem& contact) {
     contact.compliance[i] = contact.tissueCompliance[i] + contact.couplingCompliance[i];
   }
   for (std::size_t i = 0; i < rows; ++i) contact.compliance[i * rows + i] *= 1.0 + skinShare;
+  const std::size_t n = contact.pressed.size();
+  if (n == 0) return;
+  evaluateDimples(contact.lambda, contact);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      contact.compliance[contact.blocks[contact.pressed[i]].row * rows + contact.blocks[contact.pressed[j]].row] +=
+          contact.dimpleCompliance[i * n + j];
+    }
+  }
 }
 
 /// Drops blocks that stay open and carry no force. @return the largest violation (m)
@@ -193,8 +210,10 @@ void ContactProblemStage::assembleCouplings(ContactSystem& contact) const {
 
 double ContactProblemStage::run(Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
                                 const State& state, ContactSystem& contact) {
+  findDimples(model_, state, bodies.step(), contact);
   measureGaps(model_, bodies, activity, travels, contact);
   const double violation = dropOpenBlocks(contact);
+  findDimples(model_, state, bodies.step(), contact);
   assembleTissue(bodies, partsOf(bodies, activity, state, contact), contact);
   assembleCouplings(contact);
   sumCompliances(contact);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/step/contact_dimples.h"
 #include "sim/step/instrument_motion.h"
 #include "sim/step/warm_start.h"
 
@@ -110,6 +111,7 @@ void ContactResponse::run(Surfaces& surfaces, Bodies& bodies, const Activity& ac
                           const InstrumentTravels& travels, const ContactSystem& contact, State& state,
                           ContactSets& sets, StepResult& result, StepLog& log) {
   storeWarmStart(contact, state);
+  storeDimples(model_, bodies.step(), contact, state);
   integrateTissue(surfaces, bodies, activity, state, log);
   for (std::size_t h = 0; h < handCount; ++h) integrateInstrument(h, travels[h], contact, state, result.hand[h]);
   for (std::size_t h = 0; h < handCount; ++h) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "sim/step/contact_problem.h"
 
@@ -13,6 +14,7 @@ namespace {
 /// Tissue that responds by more than this multiple of what W predicts: a change of forces is taken back in part. Larger
 /// lets the iteration diverge on soft folds; smaller costs solves. Assumed.
 constexpr double maxSurprise = 2.0;
+constexpr int maxDimpleSteps = 5;  ///< of Newton's method on the dimples, in each pass
 constexpr double minShare = 1e-3;  ///< tissue that responds by less than this share: rounding, not a response
 
 }  // namespace
@@ -84,6 +86,7 @@ std::array<double, 2> ContactSolution::measureResponse(Bodies& bodies, const Act
       coupled += contact.couplingCompliance[i * rows + j] * change_[j];
     }
     response_[i] = contact.trueGap[i] - gapBefore_[i] - coupled;
+    if (!contact.pressed.empty()) response_[i] -= contact.dimpleGap[i] - dimpleBefore_[i];
     measured += change_[i] * response_[i];
     predicted += change_[i] * expected_[i];
   }
@@ -116,7 +119,10 @@ void ContactSolution::updateComplianceEstimate(Bodies& bodies, const Activity& a
     predicted = again[1];
   }
   contact.carried = contact.lambda;
-  if (!(predicted > 0.0) || !(measured > minShare * predicted)) return;
+  if (!(predicted > 0.0) || !(measured > minShare * predicted)) {
+    if (!contact.pressed.empty()) sumCompliances(contact);
+    return;
+  }
   for (std::size_t i = 0; i < rows; ++i) {
     for (std::size_t j = 0; j < rows; ++j) {
       contact.tissueCompliance[i * rows + j] +=
@@ -124,6 +130,45 @@ void ContactSolution::updateComplianceEstimate(Bodies& bodies, const Activity& a
     }
   }
   sumCompliances(contact);
+}
+
+/// Forces for the present free gaps. Dimples are not linear in the forces: their compliance is taken anew at those that
+/// come out (Newton's method) until it fits them.
+void ContactSolution::solve(const ContactProblem& problem, ContactSystem& contact, ContactResult& result) {
+  const SolverDescription& scene = model_.scene().solver;
+  const std::size_t m = contact.pressed.size();
+  for (int step = 0;; ++step) {
+    forces_ = contact.lambda;
+    const ContactReport report =
+        solver_.solve(problem, contact.lambda, gap_, scene.contactTolerance, scene.contactIterations);
+    result.iterations += report.sweeps;
+    result.newtonSteps += report.newtonSteps;
+    result.residual = report.residual;
+    if (m == 0) return;
+    expected_.assign(m, 0.0);
+    for (std::size_t i = 0; i < m; ++i) {
+      expected_[i] = contact.dimpleGap[contact.blocks[contact.pressed[i]].row];
+      for (std::size_t j = 0; j < m; ++j) {
+        const std::size_t row = contact.blocks[contact.pressed[j]].row;
+        expected_[i] += contact.dimpleCompliance[i * m + j] * (contact.lambda[row] - forces_[row]);
+      }
+    }
+    sumCompliances(contact);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < m; ++i) {
+      const std::size_t row = contact.blocks[contact.pressed[i]].row;
+      const double off = contact.dimpleGap[row] - expected_[i];
+      gap_[row] += off;
+      worst = std::max(worst, std::abs(off));
+    }
+    contact.freeGap = gap_;
+    for (std::size_t j = 0; j < contact.rows; ++j) {
+      for (std::size_t i = 0; i < contact.rows; ++i) {
+        contact.freeGap[i] -= contact.compliance[j * contact.rows + i] * contact.lambda[j];
+      }
+    }
+    if (worst <= scene.contactTolerance || step == maxDimpleSteps) return;
+  }
 }
 
 void ContactSolution::run(Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
@@ -143,12 +188,9 @@ void ContactSolution::run(Bodies& bodies, const Activity& activity, const Instru
     for (std::size_t i = 0; i < rows; ++i) contact.freeGap[i] = contact.trueGap[i] - gap_[i];
     result.error = naturalResidual(problem, contact.lambda, contact.trueGap);
     if (result.passes == scene.contactPasses || (result.passes > 0 && result.error <= scene.contactTolerance)) break;
-    const ContactReport report =
-        solver_.solve(problem, contact.lambda, gap_, scene.contactTolerance, scene.contactIterations);
+    dimpleBefore_ = contact.dimpleGap;
+    solve(problem, contact, result);
     ++result.passes;
-    result.iterations += report.sweeps;
-    result.newtonSteps += report.newtonSteps;
-    result.residual = report.residual;
     updateComplianceEstimate(bodies, activity, travels, contact, log);
   }
   if (result.residual > scene.contactTolerance) {

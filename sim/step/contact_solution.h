@@ -23,6 +23,7 @@ class ContactSolution {
            ContactResult& result, StepLog& log);
 
  private:
+  void solve(const ContactProblem& problem, ContactSystem& contact, ContactResult& result);
   void gatherImpulses(Bodies& bodies, const ContactSystem& contact, std::size_t which);
   void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
   void applyToOrgans(Bodies& bodies, const Activity& activity, const ContactSystem& contact, std::size_t group,
@@ -36,7 +37,7 @@ class ContactSolution {
   const Model& model_;
   ContactSolver solver_;
   std::vector<double> gap_, change_;
-  std::vector<double> gapBefore_, expected_, response_;
+  std::vector<double> gapBefore_, dimpleBefore_, forces_, expected_, response_;
   std::vector<Vec3> nodal_;
 };
 

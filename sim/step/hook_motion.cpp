@@ -9,6 +9,8 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     HookSweep& sweep = sweeps[hand];
     sweep.electrode.clear();
+    sweep.piece.clear();
+    sweep.hand = hand;
     const HandState& h = state.hand[hand];
     const CauteryDescription& cautery = model.scene().cautery;
     sweep.pace = currentPace(cautery, h);
@@ -25,6 +27,7 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
       const Capsule& to = after.capsules()[k];
       if (to.part != Capsule::Part::electrode) continue;
       sweep.electrode.push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
+      sweep.piece.push_back(to.piece);
     }
   }
 }

@@ -17,6 +17,8 @@ struct HookSweep {
   std::vector<MovingCapsule> electrode;  ///< what carries current; empty: no current
   double pace = 1.0;                     ///< at which it divides tissue, of that of the cutting current
   double charring = 1.0;                 ///< char in the same time, of that by the coagulating current
+  std::vector<std::uint8_t> piece;       ///< number of each capsule of the electrode
+  std::size_t hand = 0;                  ///< that holds it
 
   [[nodiscard]] bool energised() const { return !electrode.empty(); }
 };

@@ -9,6 +9,7 @@
 
 #include "sim/geometry/closest_point.h"
 #include "sim/geometry/triangle_cells.h"
+#include "sim/step/contact_dimples.h"
 
 namespace calot {
 
@@ -202,6 +203,15 @@ void HookTouchSearch::touchFat(const HookSweep& sweep, std::size_t structure, co
   out.area += area;
 }
 
+void HookTouchSearch::takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state) {
+  met_ = sweep;
+  for (std::size_t k = 0; k < met_.electrode.size(); ++k) {
+    const Vec3 dimple = dimpleOf(state.hand[sweep.hand], structure, met_.piece[k]);
+    for (Vec3& end : met_.electrode[k].before) end += dimple;
+    for (Vec3& end : met_.electrode[k].now) end += dimple;
+  }
+}
+
 void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, Surfaces& surfaces, const State& state,
                           HookTouches& out) {
   out.strand.resize(model_.connective().size());
@@ -214,7 +224,10 @@ void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, Surfaces& surf
   touchConnective(sweep, bodies.step(), state, out);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const TissueId kind = model_.structures()[s].kind;
-    if (kind == tissueId<OrganTissue>) touchOrgan(sweep, s, bodies, surfaces, state, out);
+    if (kind == tissueId<OrganTissue>) {
+      takeOutOfDimples(sweep, s, state);
+      touchOrgan(met_, s, bodies, surfaces, state, out);
+    }
     if (kind == tissueId<VesselTissue>) touchVessel(sweep, s, bodies, state, out);
     if (kind == tissueId<FatTissue>) touchFat(sweep, s, bodies, surfaces, state, out);
   }

@@ -59,7 +59,11 @@ class HookTouchSearch {
   void findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
                      const State& state);
 
+  /// The electrode as an organ's mesh meets it: out of the dimples that it presses (contact_dimples.h).
+  void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state);
+
   const Model& model_;
+  HookSweep met_;
   std::vector<std::uint32_t> triangle_;
 };
 

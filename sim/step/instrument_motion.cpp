@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/contact/capsule_contact.h"
+#include "sim/step/contact_dimples.h"
 #include "sim/step/hand_haptics.h"
 #include "sim/step/instrument_clash.h"
 
@@ -24,10 +25,13 @@ double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (const Capsule& c : instrument_.capsule) {
       const double allowed = allowedDepth(model_, state, hand, c, s);
+      const Vec3 dimple = dimpleOf(state.hand[hand], s, c.piece);
+      const Vec3 p0 = c.p0 + dimple;
+      const Vec3 p1 = c.p1 + dimple;
       const double search = capsuleSearch(c.radius, std::max(least - allowed, 0.0));
-      const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, search);
+      const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, search);
       if (near.empty()) continue;
-      least = allowed + minGap(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, least - allowed);
+      least = allowed + minGap(surfaces.mesh(s), surfaces.points(s), near, p0, p1, c.radius, least - allowed);
     }
   }
   return least;

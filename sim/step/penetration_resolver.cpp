@@ -5,6 +5,7 @@
 #include <array>
 
 #include "sim/contact/contact_solver.h"
+#include "sim/step/contact_dimples.h"
 
 namespace calot {
 
@@ -35,9 +36,12 @@ double PenetrationResolver::findInside(Surfaces& surfaces, const State& state, s
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     found_.clear();
     for (const Capsule& c : instrument_.capsule) {
-      const std::span<const std::uint32_t> near = surfaces.patchesNear(s, c.p0, c.p1, capsuleSearch(c.radius, 0.0));
+      const Vec3 dimple = dimpleOf(state.hand[hand], s, c.piece);
+      const Vec3 p0 = c.p0 + dimple;
+      const Vec3 p1 = c.p1 + dimple;
+      const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, capsuleSearch(c.radius, 0.0));
       const std::size_t before = found_.size();
-      capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, c.p0, c.p1, c.radius, 0.0, c.piece, found_);
+      capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, p0, p1, c.radius, 0.0, c.piece, found_);
       if (const double allowed = allowedDepth(model_, state, hand, c, s); allowed > 0.0)
         allowDepth(allowed, 0.0, before, found_);
     }

@@ -24,6 +24,7 @@ SceneDescription tight(SceneDescription scene) {
   scene.solver.contactIterations = 1000;
   scene.solver.contactPasses = 100;
   scene.solver.sleeping = false;
+  scene.solver.dimples = false;  // of the mesh alone
   return scene;
 }
 

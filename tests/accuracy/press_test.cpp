@@ -29,8 +29,8 @@ StepResult press(const Model& model, State& state, Stepper& stepper, const Vec3&
     EXPECT_EQ(result.misses, 0U);
     if (down == 1.0 && i > 60 && result.organ[0].maxSpeed < 1e-6) break;
   }
-  // Times the damping of 0.02 s that is half a micrometre: nothing beside millimetres of indentation.
-  EXPECT_LT(result.organ[0].maxSpeed, 2e-5) << "m/s";
+  // Times the damping of 0.02 s that is two micrometres: nothing beside millimetres of indentation.
+  EXPECT_LT(result.organ[0].maxSpeed, 1e-4) << "m/s";
   return result;
 }
 
@@ -108,11 +108,9 @@ TEST(Press, AnObliqueInstrumentFeelsTheFacesNormal) {
   EXPECT_LT(angle, 8.0) << "degrees from the normal; the shaft stands at 45";
 }
 
-/// Displacement elements are too stiff: finer meshes yield more, by less and less.
-TEST(Press, FinerMeshesAreSofter) {
-  double previous = 1e300;
-  double previousDrop = 1e300;
-  std::string forces;
+/// The force is that of the tissue, not of the cells: on coarse meshes and fine ones it is the same.
+TEST(Press, ForceDoesNotDependOnTheMesh) {
+  std::vector<double> force;
   for (const std::uint32_t tetrahedra : {300U, 1200U, 4800U}) {
     SceneDescription scene = test::blockScene(tetrahedra, 16);
     scene.hands[0].port = Vec3(0.0011, 0.0023, 0.13);
@@ -121,18 +119,12 @@ TEST(Press, FinerMeshesAreSofter) {
     SerialExecutor executor;
     State state = initialState(*model, 1);
     Stepper stepper(*model, executor);
-    const double force =
-        press(*model, state, stepper, Vec3(0.0011, 0.0023, test::blockTop - 0.004), away).hand[0].contactForce[2];
-    forces += std::to_string(force);
-    forces += " N ";
-    EXPECT_LT(force, previous) << forces;
-    if (previous < 1e299) {
-      EXPECT_LT(previous - force, previousDrop) << forces;
-      previousDrop = previous - force;
-    }
-    previous = force;
+    force.push_back(
+        press(*model, state, stepper, Vec3(0.0011, 0.0023, test::blockTop - 0.004), away).hand[0].contactForce[2]);
   }
-  std::printf("press of 4 mm: %s\n", forces.c_str());
+  std::printf("press of 4 mm: %.4f N, %.4f N, %.4f N\n", force[0], force[1], force[2]);
+  EXPECT_NEAR(force[0], force[2], 0.10 * force[2]);
+  EXPECT_NEAR(force[1], force[2], 0.10 * force[2]);
 }
 
 /// With a coupling that hardly yields, the force of a given displacement is proportional to Young's modulus.

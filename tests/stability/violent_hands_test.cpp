@@ -132,6 +132,7 @@ Record shake(const Model& model, std::uint64_t seed, int steps, int measureEvery
       record.holds += result.hand[h].grasping != 0 ? 1 : 0;
       if (step % measureEvery != 0) continue;
       const double depth = test::instrumentDepth(model, loop.rig.state, h);
+      EXPECT_LT(test::deepestDimple(loop.rig.state.hand[h]), 0.00801) << "dimples are bounded";
       // In a pinch an instrument may have no way out; then the step must tell how deep it is. Jaws that hold tissue are
       // left out of the measure, the rest of their instrument is not.
       double& kept = result.contact.pinchedDepth > 0.0 ? record.pinched : record.deepest;

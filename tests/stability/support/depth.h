@@ -9,13 +9,22 @@
 
 #include "sim/geometry/surface_distance.h"
 #include "sim/instruments/instrument_shape.h"
+#include "sim/step/contact_dimples.h"
 #include "sim/step/stepper.h"
 
 namespace calot::test {
 
 inline Vec3 tipAxis(const Pose& pose) { return pose.orientation * Vec3::UnitZ(); }
 
-/// Depth of the deepest point of an instrument (m), 0 outside. Jaws that hold this organ are not counted against it.
+/// The deepest dimple that a hand presses (m).
+inline double deepestDimple(const HandState& hand) {
+  double deepest = 0.0;
+  for (const Vec3& dimple : hand.dimple) deepest = std::max(deepest, dimple.norm());
+  return deepest;
+}
+
+/// Depth of the deepest point of an instrument (m) beyond the dimples that it presses, 0 outside. Jaws that hold this
+/// organ are not counted against it.
 inline double instrumentDepth(const Model& model, const State& state, std::size_t hand) {
   const HandState& h = state.hand[hand];
   const HandDescription& description = model.scene().hands[hand];
@@ -36,7 +45,7 @@ inline double instrumentDepth(const Model& model, const State& state, std::size_
       if (jaw && h.grasped == o) continue;
       const int pieces = 1 + static_cast<int>((c.p1 - c.p0).norm() / 0.001);
       for (int k = 0; k <= pieces; ++k) {
-        const Vec3 p = c.p0 + (static_cast<double>(k) / pieces) * (c.p1 - c.p0);
+        const Vec3 p = c.p0 + (static_cast<double>(k) / pieces) * (c.p1 - c.p0) + dimpleOf(h, o, c.piece);
         const Vec3 out = (bounds.lower - p).cwiseMax(p - bounds.upper);
         if (out.maxCoeff() < c.radius) point.emplace_back(p, c.radius);
       }
