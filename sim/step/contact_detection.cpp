@@ -58,7 +58,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   }
   if (touched.kind == tissueId<OrganTissue> && model_.scene().solver.dimples) {
     block.piece = contact.key >> 56U;
-    block.radius = instrument_.capsule[block.piece].radius;
+    block.radius = instrument_[hand].capsule[block.piece].radius;
     for (std::size_t k = 0; k < 3; ++k) {
       block.foot +=
           contact.weight[static_cast<int>(k)] * surfaces.points(structure)[static_cast<std::size_t>(contact.node[k])];
