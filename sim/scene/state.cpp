@@ -166,6 +166,16 @@ std::vector<std::byte> saveState(const State& state) {
   return bytes;
 }
 
+namespace {
+
+/// Is the structure of a dimple's key one that has dimples?
+bool isDimpleOf(const Model& model, std::uint64_t key) {
+  const std::uint64_t structure = key >> 8U;
+  return structure < model.structures().size() && model.structures()[structure].kind == tissueId<OrganTissue>;
+}
+
+}  // namespace
+
 bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state) {
   State read;
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::resize(model, read); });
@@ -185,6 +195,9 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
     if (hand.touchingSince.size() != model.structures().size()) return false;
     if (hand.contactKey.size() != hand.contactForce.size()) return false;
     if (hand.dimpleKey.size() != hand.dimple.size()) return false;
+    for (const std::uint64_t key : hand.dimpleKey) {
+      if (!isDimpleOf(model, key)) return false;
+    }
     const std::size_t held = hand.graspNode.size();
     if (hand.graspWeight.size() != held || hand.graspPlace.size() != held || hand.graspForce.size() != held)
       return false;

@@ -158,7 +158,7 @@ TEST(Bodies, EverythingTouchesEverything) {
       "anew %.2e), organs touched %x, steps with contact among organs %d\n",
       1e3 * deepest, 1e3 * pinched, 1e3 * tissue, p99, error[error.size() * 99 / 100], touchedOrgans, among);
   EXPECT_EQ(touchedOrgans, 7U) << "every organ is touched by an instrument";
-  EXPECT_GT(among, 150);
+  EXPECT_GT(among, 120);
   EXPECT_LE(deepest, 2e-4);
   EXPECT_LT(tissue, 3e-3);
   EXPECT_LE(p99, 1e-4);
