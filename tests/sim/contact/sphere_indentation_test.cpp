@@ -11,7 +11,7 @@ namespace {
 constexpr double endRadius = 0.0025;
 constexpr double modulus = 6000.0;
 
-/// Sneddon's depth for a force, by halving the endRadius of contact.
+/// Sneddon's depth for a force, by halving intervals of the radius of contact.
 double sneddon(double force) {
   double low = 0.0;
   double high = 40.0;
