@@ -137,17 +137,23 @@ std::vector<Vec3> forcesOf(const SolidModel& model, const std::vector<Vec3>& pos
   return out;
 }
 
+/// The nodes at rest, each moved at random within a cube of this edge (m).
+std::vector<Vec3> strainedShape(const SolidModel& model, double edge, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Vec3> shape = model.rest();
+  for (Vec3& p : shape) {
+    const double x = random.uniform();
+    const double y = random.uniform();
+    p += edge * (Vec3(x, y, random.uniform()) - Vec3::Constant(0.5));
+  }
+  return shape;
+}
+
 /// Turned as a whole, strained or not, its forces are the same, turned.
 TEST_P(PreloadedBar, ForcesTurnWithTheBody) {
   SolidModel model = bar(GetParam(), 5e3, 0.45);
   model.preload(solveWeight(model, Vec3(1.0, -9.0, -3.0)));
-  Random random(5);
-  std::vector<Vec3> strained = model.rest();
-  for (Vec3& p : strained) {
-    const double x = random.uniform();
-    const double y = random.uniform();
-    p += 4e-4 * (Vec3(x, y, random.uniform()) - Vec3::Constant(0.5));
-  }
+  const std::vector<Vec3> strained = strainedShape(model, 4e-4, 5);
   for (const std::vector<Vec3>& shape : {model.rest(), strained}) {
     const std::vector<Vec3> before = forcesOf(model, shape);
     double largest = 0.0;
@@ -166,13 +172,7 @@ TEST_P(PreloadedBar, ForcesTurnWithTheBody) {
 TEST_P(PreloadedBar, LoadsHaveNoResultant) {
   SolidModel model = bar(GetParam(), 5e3, 0.45);
   model.preload(solveWeight(model, Vec3(1.0, -9.0, -3.0)));
-  Random random(6);
-  std::vector<Vec3> strained = model.rest();
-  for (Vec3& p : strained) {
-    const double x = random.uniform();
-    const double y = random.uniform();
-    p += 2e-3 * (Vec3(x, y, random.uniform()) - Vec3::Constant(0.5));
-  }
+  const std::vector<Vec3> strained = strainedShape(model, 2e-3, 6);
   for (const bool isStrained : {false, true}) {
     const std::vector<Vec3>& shape = isStrained ? strained : model.rest();
     const std::vector<Vec3> force = forcesOf(model, shape);
