@@ -13,29 +13,14 @@
 namespace calot {
 namespace {
 
-constexpr double gap = 0.002;
 const Vec3 down(0.0, 0.0, 9.81);  ///< the block is the ceiling
 
 /// A pad that hangs from a block by strands.
 SceneDescription hangingPad() {
-  SceneDescription scene = test::blockScene(400, 8);
+  SceneDescription scene = test::padOnBlockScene();
   scene.name = "pad under a ceiling";
   scene.gravity = down;
-  OrganDescription pad;
-  pad.name = "pad";
-  pad.appearance = "gallbladder";
-  pad.surface = test::boxSurface(Vec3(-0.015, -0.015, test::blockTop + gap), Vec3(0.015, 0.015, test::blockTop + 0.014),
-                                 {6, 6, 3});
-  pad.tetrahedra = 150;
-  pad.material.massDamping = 0.0;
-  scene.organs.push_back(pad);
-  ConnectiveDescription bed;
-  bed.name = "bed";
-  bed.first = "pad";
-  bed.second = "block";
-  bed.reach = 0.003;
-  bed.strands = 200;
-  scene.connective = {bed};
+  scene.organs.back().material.massDamping = 0.0;
   scene.hands[0].home = Vec3(-0.1, 0.0, 0.1);
   scene.hands[1].home = Vec3(0.1, 0.0, 0.1);
   return scene;

@@ -12,27 +12,10 @@
 namespace calot {
 namespace {
 
-constexpr double gap = 0.002;
-
 /// A flat pad over the block, tied to its top over its whole lower face.
 SceneDescription connectedPads() {
-  SceneDescription scene = test::blockScene(400, 8);
-  scene.name = "pad on a block";
-  OrganDescription pad;
-  pad.name = "pad";
-  pad.appearance = "gallbladder";
-  pad.surface = test::boxSurface(Vec3(-0.015, -0.015, test::blockTop + gap), Vec3(0.015, 0.015, test::blockTop + 0.014),
-                                 {6, 6, 3});
-  pad.tetrahedra = 150;
-  pad.material.massDamping = 2.0;
-  scene.organs.push_back(pad);
-  ConnectiveDescription bed;
-  bed.name = "bed";
-  bed.first = "pad";
-  bed.second = "block";
-  bed.reach = 0.003;
-  bed.strands = 200;
-  scene.connective = {bed};
+  SceneDescription scene = test::padOnBlockScene();
+  scene.organs.back().material.massDamping = 2.0;
   scene.hands[0].home = Vec3(-0.012, 0.0, 0.05);
   scene.hands[1].home = Vec3(0.04, 0.0, 0.05);
   scene.hands[1].instrument = InstrumentKind::hook;

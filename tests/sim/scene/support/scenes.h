@@ -98,6 +98,27 @@ inline SceneDescription blockScene(std::uint32_t tetrahedra = 700, int squares =
   return scene;
 }
 
+/// The same with a flat pad above, "pad", tied to the block's top over its whole lower face, `padGap` away.
+inline constexpr double padGap = 0.002;  // m
+inline SceneDescription padOnBlockScene() {
+  SceneDescription scene = blockScene(400, 8);
+  scene.name = "pad on a block";
+  OrganDescription pad;
+  pad.name = "pad";
+  pad.appearance = "gallbladder";
+  pad.surface = boxSurface(Vec3(-0.015, -0.015, blockTop + padGap), Vec3(0.015, 0.015, blockTop + 0.014), {6, 6, 3});
+  pad.tetrahedra = 150;
+  scene.organs.push_back(pad);
+  ConnectiveDescription bed;
+  bed.name = "bed";
+  bed.first = "pad";
+  bed.second = "block";
+  bed.reach = 0.003;
+  bed.strands = 200;
+  scene.connective = {bed};
+  return scene;
+}
+
 /// The block, and a ball far enough beside it not to be reached by who touches the block.
 inline SceneDescription blockAndBallScene() {
   SceneDescription scene = blockScene();
