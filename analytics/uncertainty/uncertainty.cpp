@@ -101,7 +101,8 @@ std::vector<ValueInterval> estimateUncertainty(const SceneDescription& scene, co
     throw Error(ErrorKind::refused, fmt::format("{}: its organs' meshes cannot be made finer", scene.name));
   varied.finerMesh = std::move(runs[finerMesh].values);
   varied.smallerStep = std::move(runs[smallerStep].values);
-  varied.stepRatio = static_cast<double>(scene.ticksPerStep) / static_cast<double>(scene.ticksPerStep / 2);
+  const auto halvedTicks = scene.ticksPerStep / 2;  // whole: an odd step is not halved exactly
+  varied.stepRatio = static_cast<double>(scene.ticksPerStep) / static_cast<double>(halvedTicks);
   for (std::size_t i = designBegin; i < runs.size(); ++i) varied.design.push_back(std::move(runs[i].values));
   return intervalsOf(values, varied);
 }

@@ -22,7 +22,9 @@ void addStiffness(const BeamModel& model, double factor, std::span<const int> ro
     const int b = row[static_cast<std::size_t>(e.b)];
     const auto add = [&](int node, int turn, int other, int otherTurn, const Mat3& block) {
       if (node < 0 || other < 0) return;
-      matrix.add(static_cast<std::size_t>(node + turn), static_cast<std::size_t>(other + otherTurn), factor * block);
+      const int at = node + turn;
+      const int with = other + otherTurn;
+      matrix.add(static_cast<std::size_t>(at), static_cast<std::size_t>(with), factor * block);
     };
     add(a, 0, a, 0, axial);
     add(a, 1, a, 0, -k.stretch * gat);
