@@ -21,8 +21,6 @@ constexpr double volumeAim = 0.002;
 /// differs from the surface.
 constexpr double maxOffset = 0.75;
 
-double cubeRoot(double x) { return exponential(logarithm(x) / 3.0); }
-
 /// Signed distances on the lattice. Far from the surface only the sign matters: along a row, the last distance minus
 /// the distance travelled bounds the next from below. Signs come from winding numbers, since imported surfaces may
 /// intersect themselves, which invalidates pseudonormals. Neighbours whose distances add up to more than their spacing

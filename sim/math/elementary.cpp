@@ -167,6 +167,8 @@ double logarithm(double x) {
   return leading.sum - ((correction - scale * ln2Parts[1]) - leading.error);
 }
 
+double cubeRoot(double x) { return exponential(logarithm(x) / 3.0); }
+
 double arctangent2(double y, double x) {
   if (x != x || y != y) return notANumber;
   double ax = std::abs(x), ay = std::abs(y);

@@ -18,6 +18,9 @@ double exponential(double x);
 /// Natural logarithm of x > 0, including subnormals; NaN for x < 0, -infinity at 0. At most 1.1 ulp.
 double logarithm(double x);
 
+/// x^(1/3) for x > 0; NaN for x < 0, 0 at 0. At most 2e-15 of it for 1e-12 <= x <= 1e12.
+double cubeRoot(double x);
+
 /// Angle of (x, y) in (-pi, pi]; 0 at the origin. The sign of a zero is ignored. At most 2 ulp.
 double arctangent2(double y, double x);
 

@@ -128,8 +128,11 @@ void ContactDetection::run(Surfaces& surfaces, Bodies& bodies, const InstrumentT
   findClashes(travels, contact.blocks);
   wakeBodies(model_, bodies, travels, contact.blocks, state, activity);
   result.tissueDepth = tissue_.run(surfaces, state, activity.awake, contact.blocks);
+  travel_.follow(surfaces, bodies, state, activity.awake);
+  result.tissueDepth = std::max(result.tissueDepth,
+                                vessels_.run(surfaces, travel_, state, bodies.step(), activity.awake, contact.blocks));
   result.tissueDepth =
-      std::max(result.tissueDepth, vessels_.run(surfaces, bodies, state, activity.awake, contact.blocks));
+      std::max(result.tissueDepth, fat_.run(surfaces, bodies, travel_, state, activity.awake, contact.blocks));
   // What sleeps on both sides needs no force.
   std::erase_if(contact.blocks, [&](const ContactBlock& block) {
     if (block.isClash()) return false;

@@ -7,11 +7,13 @@
 
 #include "sim/contact/capsule_contact.h"
 #include "sim/step/contact_block.h"
+#include "sim/step/fat_contacts.h"
 #include "sim/step/grasping.h"
 #include "sim/step/instrument_clash.h"
 #include "sim/step/placed_instrument.h"
 #include "sim/step/surfaces.h"
 #include "sim/step/tissue_contacts.h"
+#include "sim/step/tissue_travel.h"
 #include "sim/step/vessel_contacts.h"
 
 namespace calot {
@@ -23,11 +25,18 @@ class ContactDetection {
  public:
   /// @param grasping outlives this
   ContactDetection(const Model& model, const Grasping& grasping)
-      : model_(model), grasping_(grasping), tissue_(model), vessels_(model) {}
+      : model_(model),
+        grasping_(grasping),
+        tissue_(model),
+        travel_(model),
+        vessels_(model, travel_),
+        fat_(model, travel_) {}
 
   void invalidate() {
     tissue_.invalidate();
+    travel_.invalidate();
     vessels_.invalidate();
+    fat_.invalidate();
   }
   void precompute() { tissue_.precompute(); }
   /// @pre surfaces are current
@@ -45,7 +54,9 @@ class ContactDetection {
   const Model& model_;
   const Grasping& grasping_;
   TissueContacts tissue_;
+  TissueTravel travel_;
   VesselContacts vessels_;
+  FatContacts fat_;
   std::array<PlacedInstrument, handCount> instrument_;
   std::vector<SurfaceContact> found_;
   std::vector<ClashPoint> clash_;

@@ -117,22 +117,20 @@ double TissueContacts::run(Surfaces& surfaces, const State& state, const std::ve
     if (pair.a == pair.b && state.organ[pair.a].maxDisplacement < foldDisplacement) continue;
     depth = std::max(depth, addPair(surfaces, state, i, blocks));
   }
-  keepDeepest(first, blocks);
+  keepDeepest(first, maxTissueContacts, gap_, blocks);
   return depth;
 }
 
-/// Of the blocks from `first` on, keeps those of the smallest gaps, in their order. Where an organ is crumpled,
-/// hundreds of its vertices are inside of it: more rows than its nodes can respond to.
-void TissueContacts::keepDeepest(std::size_t first, std::vector<ContactBlock>& blocks) const {
-  if (blocks.size() - first <= maxTissueContacts) return;
+void keepDeepest(std::size_t first, std::size_t limit, std::span<const double> gap, std::vector<ContactBlock>& blocks) {
+  if (blocks.size() - first <= limit) return;
   std::vector<std::pair<double, std::uint64_t>> rank;
-  for (std::size_t b = first; b < blocks.size(); ++b) rank.emplace_back(gap_[b - first], blocks[b].key);
-  const auto last = rank.begin() + static_cast<std::ptrdiff_t>(maxTissueContacts);
+  for (std::size_t b = first; b < blocks.size(); ++b) rank.emplace_back(gap[b - first], blocks[b].key);
+  const auto last = rank.begin() + static_cast<std::ptrdiff_t>(limit);
   std::nth_element(rank.begin(), last, rank.end());
-  const std::pair<double, std::uint64_t> limit = *last;
+  const std::pair<double, std::uint64_t> deepest = *last;
   std::size_t kept = first;
   for (std::size_t b = first; b < blocks.size(); ++b) {
-    if (!(std::pair(gap_[b - first], blocks[b].key) < limit)) continue;
+    if (!(std::pair(gap[b - first], blocks[b].key) < deepest)) continue;
     if (kept != b) blocks[kept] = blocks[b];
     ++kept;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sim/contact/near_triangles.h"
@@ -22,6 +23,11 @@ inline constexpr double maxRecovery = 0.0005;
 /// hold it so.
 bool isInverted(const Model& model, const State& state, std::size_t organ, int vertex);
 
+/// Of the blocks from `first` on, keeps `limit` of the smallest gaps, in their order. Where tissue is crumpled,
+/// hundreds of its points are inside of it: more rows than its nodes can respond to. @param gap of those blocks, as
+/// found (m)
+void keepDeepest(std::size_t first, std::size_t limit, std::span<const double> gap, std::vector<ContactBlock>& blocks);
+
 /// Vertices of one organ against triangles of another; wet tissue on wet tissue slides without friction, so blocks are
 /// unilateral.
 class TissueContacts {
@@ -39,7 +45,6 @@ class TissueContacts {
   const SurfacePair& restOf(std::size_t pair);
   const SurfaceDisplacement& displacementOf(const Surfaces& surfaces, std::size_t organ);
   double addPair(Surfaces& surfaces, const State& state, std::size_t number, std::vector<ContactBlock>& blocks);
-  void keepDeepest(std::size_t first, std::vector<ContactBlock>& blocks) const;
 
   const Model& model_;
   std::vector<std::unique_ptr<const SurfacePair>> selfRest_;  ///< per organ; empty until it folds

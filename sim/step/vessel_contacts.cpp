@@ -22,10 +22,6 @@ constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the capsules
 /// Of a capsule, nearer to an end than this share of it, a contact is that of the end. Assumed.
 constexpr double endShare = 0.05;
 
-double distanceOf(const Box& a, const Box& b) {
-  return (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(Vec3::Zero()).norm();
-}
-
 Box boxOf(const VesselCapsule& c) {
   Box box;
   box.include(c.p0);
@@ -40,12 +36,6 @@ std::uint64_t keyOf(const VesselCapsule& c, Place place) {
   return (2 * c.element + (c.after ? 1 : 0)) * 4 + static_cast<std::uint64_t>(place);
 }
 
-double largestSpeed(std::span<const Vec3> velocity) {
-  double speed = 0.0;
-  for (const Vec3& v : velocity) speed = std::max(speed, v.squaredNorm());
-  return std::sqrt(speed);
-}
-
 }  // namespace
 
 std::uint64_t structurePairNumber(const Model& model, std::size_t a, std::size_t b) {
@@ -57,43 +47,26 @@ std::array<std::size_t, 2> structuresOfPair(const Model& model, std::uint64_t nu
   return {pair / maxStructures, pair % maxStructures};
 }
 
-VesselContacts::VesselContacts(const Model& model) : model_(model) {
+VesselContacts::VesselContacts(const Model& model, const TissueTravel& travel) : model_(model) {
   for (const VesselTree& tree : model.vesselTrees()) distances_.emplace_back(tree.beams);
-  for (std::size_t s = 0; s < model.structures().size(); ++s) {
-    const StructureModel& structure = model.structures()[s];
-    if (structure.kind != tissueId<VesselTissue>) continue;
-    Vessel& vessel = vessel_.emplace_back();
-    vessel.tree = structure.index;
-    vessel.branch = structure.branch;
-    vessel.structure = s;
-    vessel.body = structure.body;
-    const BeamModel& beams = model.vesselTrees()[vessel.tree].beams;
-    vessel.radius = beams.branches()[vessel.branch].section.outerRadius;
-    vesselCapsules(beams, restState(beams), vessel.branch, vessel.rest);
-    measureRest(vessel);
-  }
+  for (const Vessel& vessel : travel.vessels()) measureRest(vessel, nearby_.emplace_back());
   invalidate();
 }
 
 void VesselContacts::invalidate() {
-  for (Vessel& v : vessel_) {
-    v.before.clear();
-    v.toOrgan.assign(model_.organs().size(), {});
-    v.toVessel.assign(vessel_.size(), {});
+  for (Nearby& n : nearby_) {
+    n.toOrgan.assign(model_.organs().size(), {});
+    n.toVessel.assign(nearby_.size(), {});
   }
-  organBefore_.assign(model_.organs().size(), {});
-  organMotion_.assign(model_.organs().size(), 0.0);
-  organSpeed_.assign(model_.organs().size(), 0.0);
-  wasAwake_.assign(model_.bodies(), true);
 }
 
 /// Overlaps with organs in the reference configuration, and what a tie holds.
-void VesselContacts::measureRest(Vessel& vessel) {
+void VesselContacts::measureRest(const Vessel& vessel, Nearby& nearby) {
   const TreeDistances& along = distances_[vessel.tree];
   for (std::size_t o = 0; o < model_.organs().size(); ++o) {
     const OrganModel& organ = model_.organs()[o];
-    std::vector<double>& offset = vessel.restOffset.emplace_back(vessel.rest.size(), 0.0);
-    std::vector<bool>& tied = vessel.tied.emplace_back(vessel.rest.size(), false);
+    std::vector<double>& offset = nearby.restOffset.emplace_back(vessel.rest.size(), 0.0);
+    std::vector<bool>& tied = nearby.tied.emplace_back(vessel.rest.size(), false);
     const auto leaveOut = [&](int held) {
       for (std::size_t i = 0; i < tied.size(); ++i) {
         const VesselCapsule& c = vessel.rest[i];
@@ -127,39 +100,6 @@ void VesselContacts::measureRest(Vessel& vessel) {
   }
 }
 
-/// Where vessels are, and how far organs and vessels have moved since the last run.
-void VesselContacts::follow(const Surfaces& surfaces, const Bodies& bodies, const State& state,
-                            const std::vector<bool>& awake) {
-  for (std::size_t o = 0; o < organBefore_.size(); ++o) {
-    organMotion_[o] = 0.0;
-    organSpeed_[o] = awake[o] ? largestSpeed(bodies[o].velocity(state)) : 0.0;
-    const std::vector<Vec3>& now = surfaces.points(o);
-    std::vector<Vec3>& before = organBefore_[o];
-    if (!awake[o] && !wasAwake_[o] && before.size() == now.size()) continue;
-    double moved = before.size() == now.size() ? 0.0 : 1e300;
-    for (std::size_t i = 0; i < now.size() && moved < 1e300; ++i)
-      moved = std::max(moved, (now[i] - before[i]).squaredNorm());
-    organMotion_[o] = std::sqrt(moved);
-    before = now;
-  }
-  for (Vessel& v : vessel_) {
-    v.motion = 0.0;
-    v.speed = awake[v.body] ? largestSpeed(bodies[v.body].velocity(state)) : 0.0;
-    if (!awake[v.body] && !wasAwake_[v.body] && !v.before.empty()) continue;
-    v.before.swap(v.now);
-    vesselCapsules(model_.vesselTrees()[v.tree].beams, state.vessel[v.tree], v.branch, v.now);
-    if (v.before.size() != v.now.size()) v.motion = 1e300;
-    double moved = 0.0;
-    for (std::size_t i = 0; i < v.now.size() && v.motion == 0.0; ++i) {
-      moved =
-          std::max({moved, (v.now[i].p0 - v.before[i].p0).squaredNorm(), (v.now[i].p1 - v.before[i].p1).squaredNorm()});
-    }
-    v.motion = std::max(v.motion, std::sqrt(moved));
-    if (v.before.empty()) v.before = v.now;
-  }
-  wasAwake_ = awake;
-}
-
 /// The surface's nearest point to an end of a capsule.
 VesselContacts::Point VesselContacts::endOnOrgan(const Surfaces& surfaces, std::size_t organ,
                                                  std::span<const std::uint32_t> patches, const Vec3& end, double radius,
@@ -178,9 +118,11 @@ VesselContacts::Point VesselContacts::endOnOrgan(const Surfaces& surfaces, std::
   return point;
 }
 
-double VesselContacts::touchOrgan(Surfaces& surfaces, const State& state, double step, std::size_t o, Vessel& v,
-                                  std::vector<ContactBlock>& blocks) {
-  const double reach = 2.0 * allowedOverlap + std::min((v.speed + organSpeed_[o]) * step, maxApproach);
+double VesselContacts::touchOrgan(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
+                                  std::size_t o, std::size_t vessel, std::vector<ContactBlock>& blocks) {
+  const Vessel& v = travel.vessels()[vessel];
+  Nearby& nearby = nearby_[vessel];
+  const double reach = 2.0 * allowedOverlap + std::min((v.speed + travel.organSpeed(o)) * step, maxApproach);
   const double near = capsuleSearch(v.radius, reach);
   const std::uint64_t pair = structurePairNumber(model_, o, v.structure) << pairShift;
   double depth = 0.0;
@@ -207,8 +149,8 @@ double VesselContacts::touchOrgan(Surfaces& surfaces, const State& state, double
   };
   for (std::size_t i = 0; i < v.now.size(); ++i) {
     const VesselCapsule& c = v.now[i];
-    Clearance& clearance = v.toOrgan[o][i];
-    if (v.tied[o][c.element]) continue;
+    Clearance& clearance = nearby.toOrgan[o][i];
+    if (nearby.tied[o][c.element]) continue;
     if (clearance.distance > (clearance.outside ? v.radius + reach : near)) continue;
     if (!bounded) {
       for (const Box& patch : surfaces.bounds(o)) {
@@ -229,11 +171,11 @@ double VesselContacts::touchOrgan(Surfaces& surfaces, const State& state, double
     const AxisDistance nearest = axisDistance(surfaces.mesh(o), surfaces.points(o), patches, c.p0, c.p1, limit);
     clearance = {nearest.distance, nearest.found && !nearest.inside};
     if (clearance.distance > (clearance.outside ? v.radius + reach : near)) continue;
-    const double offset = v.restOffset[o][c.element];
+    const double offset = nearby.restOffset[o][c.element];
     // A node is an end of two capsules, and of either's depth at rest.
     const bool follows = i > 0 && v.now[i - 1].node1 == c.node0 && !c.after;
     const Point first = endOnOrgan(surfaces, o, patches, c.p0, v.radius, reach);
-    add(c, 0.0, first, follows ? std::min(offset, v.restOffset[o][v.now[i - 1].element]) : offset, Place::start);
+    add(c, 0.0, first, follows ? std::min(offset, nearby.restOffset[o][v.now[i - 1].element]) : offset, Place::start);
     found_.clear();
     capsuleContacts(surfaces.mesh(o), surfaces.points(o), patches, c.p0, c.p1, v.radius, reach, 0, found_);
     const Point last = endOnOrgan(surfaces, o, patches, c.p1, v.radius, reach);
@@ -262,15 +204,16 @@ bool VesselContacts::areOneWall(const Vessel& a, std::size_t i, const Vessel& b,
   return least < junctionReach * (a.radius + b.radius);
 }
 
-double VesselContacts::restOverlap(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) const {
+double VesselContacts::restOverlap(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) {
   const VesselCapsule& p = a.rest[a.now[i].element];
   const VesselCapsule& q = b.rest[b.now[j].element];
   return std::min(0.0, std::sqrt(closestSegments(p.p0, p.p1, q.p0, q.p1).squaredDistance) - a.radius - b.radius);
 }
 
-double VesselContacts::touchVessel(double step, std::size_t one, std::size_t two, std::vector<ContactBlock>& blocks) {
-  Vessel& a = vessel_[one];
-  const Vessel& b = vessel_[two];
+double VesselContacts::touchVessel(const TissueTravel& travel, double step, std::size_t one, std::size_t two,
+                                   std::vector<ContactBlock>& blocks) {
+  const Vessel& a = travel.vessels()[one];
+  const Vessel& b = travel.vessels()[two];
   const double reach = 2.0 * allowedOverlap + std::min((a.speed + b.speed) * step, maxApproach);
   const double near = a.radius + b.radius + reach;
   const std::uint64_t pair = structurePairNumber(model_, a.structure, b.structure) << pairShift;
@@ -318,7 +261,7 @@ double VesselContacts::touchVessel(double step, std::size_t one, std::size_t two
   };
   for (std::size_t i = 0; i < a.now.size(); ++i) {
     const VesselCapsule& p = a.now[i];
-    Clearance& clearance = a.toVessel[two][i];
+    Clearance& clearance = nearby_[one].toVessel[two][i];
     if (clearance.distance > near) continue;
     const Nearest whole = nearestTo(i, p.p0, p.p1, near + searchMargin);
     clearance.distance = whole.distance;
@@ -336,29 +279,28 @@ double VesselContacts::touchVessel(double step, std::size_t one, std::size_t two
   return depth;
 }
 
-double VesselContacts::run(Surfaces& surfaces, const Bodies& bodies, const State& state, const std::vector<bool>& awake,
-                           std::vector<ContactBlock>& blocks) {
+double VesselContacts::run(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
+                           const std::vector<bool>& awake, std::vector<ContactBlock>& blocks) {
   searches_ = 0;
-  if (vessel_.empty()) return 0.0;
-  follow(surfaces, bodies, state, awake);
   const auto wear = [](std::vector<Clearance>& list, std::size_t capsules, double motion) {
     list.resize(capsules);
     if (!(motion > 0.0)) return;
     for (Clearance& c : list) c.distance = std::max(c.distance - motion - rounding, -1.0);
   };
+  const std::span<const Vessel> vessels = travel.vessels();
   double depth = 0.0;
   for (std::size_t o = 0; o < model_.organs().size(); ++o) {
-    for (Vessel& v : vessel_) {
-      wear(v.toOrgan[o], v.now.size(), v.motion + organMotion_[o]);
-      if (!awake[o] && !awake[v.body]) continue;
-      depth = std::max(depth, touchOrgan(surfaces, state, bodies.step(), o, v, blocks));
+    for (std::size_t v = 0; v < vessels.size(); ++v) {
+      wear(nearby_[v].toOrgan[o], vessels[v].now.size(), vessels[v].motion + travel.organMotion(o));
+      if (!awake[o] && !awake[vessels[v].body]) continue;
+      depth = std::max(depth, touchOrgan(surfaces, travel, state, step, o, v, blocks));
     }
   }
-  for (std::size_t one = 0; one < vessel_.size(); ++one) {
-    for (std::size_t two = one + 1; two < vessel_.size(); ++two) {
-      wear(vessel_[one].toVessel[two], vessel_[one].now.size(), vessel_[one].motion + vessel_[two].motion);
-      if (!awake[vessel_[one].body] && !awake[vessel_[two].body]) continue;
-      depth = std::max(depth, touchVessel(bodies.step(), one, two, blocks));
+  for (std::size_t one = 0; one < vessels.size(); ++one) {
+    for (std::size_t two = one + 1; two < vessels.size(); ++two) {
+      wear(nearby_[one].toVessel[two], vessels[one].now.size(), vessels[one].motion + vessels[two].motion);
+      if (!awake[vessels[one].body] && !awake[vessels[two].body]) continue;
+      depth = std::max(depth, touchVessel(travel, step, one, two, blocks));
     }
   }
   return depth;

@@ -9,6 +9,7 @@
 #include "sim/step/bodies.h"
 #include "sim/step/contact_block.h"
 #include "sim/step/surfaces.h"
+#include "sim/step/tissue_travel.h"
 #include "sim/step/vessel_capsules.h"
 
 namespace calot {
@@ -22,9 +23,6 @@ inline constexpr double tiedReach = 0.006;
 /// carries much: ten times harder than organs on organs. Larger: visible overlap; smaller: rows that repeat each other.
 /// Assumed.
 inline constexpr double vesselSoftness = 1e-4;
-/// As far ahead as contact is sought for what comes fast (m). Larger: rows that stay open; smaller: passes through.
-/// Assumed: what the fastest vessel goes in half a step.
-inline constexpr double maxApproach = 0.05;
 /// Vessels of one tree touch each other only farther apart along the tree than this many times the sum of their radii:
 /// at their junction they are one wall. Larger: they pass through each other beside it; smaller: a bent junction pushes
 /// itself apart. Assumed.
@@ -42,13 +40,14 @@ inline constexpr double junctionReach = 4.0;
 /// have moved since; while that is out of reach, no triangle is. This changes no result, so it is no part of State.
 class VesselContacts {
  public:
-  explicit VesselContacts(const Model& model);
+  /// @param travel of the same model
+  VesselContacts(const Model& model, const TissueTravel& travel);
 
   void invalidate();
   /// Adds the blocks of pairs of which one is awake. @return deepest overlap beyond that at rest (m)
-  /// @pre surfaces are current
-  double run(Surfaces& surfaces, const Bodies& bodies, const State& state, const std::vector<bool>& awake,
-             std::vector<ContactBlock>& blocks);
+  /// @pre surfaces are current; the travel has followed each step since the last run or invalidate()
+  double run(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
+             const std::vector<bool>& awake, std::vector<ContactBlock>& blocks);
 
   /// Searches among triangles or capsules in the last run().
   [[nodiscard]] std::size_t searches() const { return searches_; }
@@ -59,14 +58,8 @@ class VesselContacts {
     double distance = -1.0;  ///< of the axis from the other surface or axis (m); negative: unknown
     bool outside = false;    ///< surely
   };
-  struct Vessel {
-    std::size_t tree = 0, branch = 0, structure = 0, body = 0;
-    double radius = 0.0;
-    std::vector<VesselCapsule> rest;
-    std::vector<VesselCapsule> now;
-    std::vector<VesselCapsule> before;  ///< as `now` in the last run
-    double motion = 0.0;                ///< largest of any end since the last run (m)
-    double speed = 0.0;                 ///< largest of its tree's nodes (m/s)
+  /// What is known of one vessel's contacts.
+  struct Nearby {
     // Per organ:
     std::vector<std::vector<double>> restOffset;  ///< per element: gap at rest where they overlap, or 0 (m)
     std::vector<std::vector<bool>> tied;          ///< per element
@@ -74,6 +67,7 @@ class VesselContacts {
     // Per vessel:
     std::vector<std::vector<Clearance>> toVessel;
   };
+  using Vessel = TissueTravel::Vessel;
 
   /// A point of an organ's surface near a vessel.
   struct Point {
@@ -83,22 +77,19 @@ class VesselContacts {
     Vec3 weight = Vec3::Zero();
   };
 
-  void measureRest(Vessel& vessel);
-  void follow(const Surfaces& surfaces, const Bodies& bodies, const State& state, const std::vector<bool>& awake);
+  void measureRest(const Vessel& vessel, Nearby& nearby);
   [[nodiscard]] Point endOnOrgan(const Surfaces& surfaces, std::size_t organ, std::span<const std::uint32_t> patches,
                                  const Vec3& end, double radius, double reach) const;
-  double touchOrgan(Surfaces& surfaces, const State& state, double step, std::size_t organ, Vessel& vessel,
-                    std::vector<ContactBlock>& blocks);
-  double touchVessel(double step, std::size_t one, std::size_t two, std::vector<ContactBlock>& blocks);
+  double touchOrgan(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step, std::size_t organ,
+                    std::size_t vessel, std::vector<ContactBlock>& blocks);
+  double touchVessel(const TissueTravel& travel, double step, std::size_t one, std::size_t two,
+                     std::vector<ContactBlock>& blocks);
   [[nodiscard]] bool areOneWall(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) const;
-  [[nodiscard]] double restOverlap(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) const;
+  [[nodiscard]] static double restOverlap(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j);
 
   const Model& model_;
   std::vector<TreeDistances> distances_;  ///< per tree
-  std::vector<Vessel> vessel_;            ///< in the order of structures
-  std::vector<std::vector<Vec3>> organBefore_;
-  std::vector<double> organMotion_, organSpeed_;
-  std::vector<bool> wasAwake_;
+  std::vector<Nearby> nearby_;            ///< per vessel, in TissueTravel's order
   std::vector<SurfaceContact> found_;
   std::size_t searches_ = 0;
 };

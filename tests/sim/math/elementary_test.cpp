@@ -156,6 +156,18 @@ TEST_F(Elementary, LogarithmStaysWithinItsBound) {
   worst.expectWithin(1.1);
 }
 
+TEST_F(Elementary, CubeRootStaysWithinItsBound) {
+  double worst = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    const double x = std::pow(10.0, uniform(-12.0, 12.0));
+    const long double exact = std::cbrt(static_cast<long double>(x));
+    worst = std::max(worst, static_cast<double>(std::abs(calot::cubeRoot(x) - exact) / exact));
+  }
+  EXPECT_LT(worst, 2e-15);
+  EXPECT_EQ(calot::cubeRoot(0.0), 0.0);
+  EXPECT_TRUE(std::isnan(calot::cubeRoot(-1.0)));
+}
+
 TEST_F(Elementary, LogarithmAtItsEnds) {
   EXPECT_EQ(calot::logarithm(1.0), 0.0);
   EXPECT_EQ(calot::logarithm(0.0), -infinity);

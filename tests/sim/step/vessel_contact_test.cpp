@@ -352,7 +352,8 @@ TEST(VesselContact, WhatIsFarApartIsNotSearched) {
   Surfaces surfaces(*model, bodies, nullptr);
   State state = initialState(*model, 1);
   bodies.beginStep(state);
-  VesselContacts contacts(*model);
+  TissueTravel travel(*model);
+  VesselContacts contacts(*model, travel);
   std::vector<ContactBlock> blocks;
   for (int i = 0; i < 20; ++i) {  // both move about, 25 mm over the block
     for (BeamState& v : state.vessel) {
@@ -360,7 +361,8 @@ TEST(VesselContact, WhatIsFarApartIsNotSearched) {
     }
     surfaces.invalidate();
     surfaces.refresh(state);
-    contacts.run(surfaces, bodies, state, {true, true, true}, blocks);
+    travel.follow(surfaces, bodies, state, {true, true, true});
+    contacts.run(surfaces, travel, state, bodies.step(), {true, true, true}, blocks);
     EXPECT_EQ(contacts.searches(), 0U);
     EXPECT_TRUE(blocks.empty());
   }
@@ -370,12 +372,14 @@ TEST(VesselContact, WhatIsFarApartIsNotSearched) {
   for (int i = 0; i < 10; ++i) {
     surfaces.invalidate();
     surfaces.refresh(state);
-    contacts.run(surfaces, bodies, state, {true, true, true}, blocks);
+    travel.follow(surfaces, bodies, state, {true, true, true});
+    contacts.run(surfaces, travel, state, bodies.step(), {true, true, true}, blocks);
     if (i == 0) first = contacts.searches();
     EXPECT_TRUE(i == 0 || contacts.searches() == 0U);
   }
   EXPECT_GT(first, 0U);
-  contacts.run(surfaces, bodies, state, {false, false, false}, blocks);
+  travel.follow(surfaces, bodies, state, {false, false, false});
+  contacts.run(surfaces, travel, state, bodies.step(), {false, false, false}, blocks);
   EXPECT_EQ(contacts.searches(), 0U) << "what sleeps";
   EXPECT_TRUE(blocks.empty());
 }
