@@ -11,8 +11,10 @@
 namespace calot {
 namespace {
 
+/// Up to 50 ms the largest force is that of a step of 1 ms; longer ones miss the deepest moment.
 /// A hand presses 6 mm deep within 0.2 s, slides, lets go, and the block is left alone for 3 s.
 TEST(AnyStep, PressedAndLetGo) {
+  double finest = 0.0;  // force with steps of 1 ms (N)
   for (const std::uint32_t ticks : {1U, 5U, 20U, 50U, 100U}) {
     SceneDescription scene = test::blockScene(300, 8);
     scene.ticksPerStep = ticks;
@@ -41,9 +43,11 @@ TEST(AnyStep, PressedAndLetGo) {
     }
     std::printf("steps of %u ms: at most %.3f N, %.3f mm deep, %d of %d missed a tolerance; %.2e mm from rest\n", ticks,
                 force, 1e3 * depth, missed, steps, 1e3 * loop.rig.state.organ[0].maxDisplacement);
-    EXPECT_GT(force, 0.05);
-    EXPECT_LT(depth, 2e-4);
-    EXPECT_LT(loop.rig.state.organ[0].maxDisplacement, 1e-4);
+    if (ticks == 1) finest = force;
+    EXPECT_NEAR(force, finest, (ticks <= 50 ? 0.05 : 0.3) * finest);
+    EXPECT_LT(depth, 2e-5);
+    EXPECT_EQ(missed, 0);
+    EXPECT_LT(loop.rig.state.organ[0].maxDisplacement, 2e-6) << "it is back at rest";
   }
 }
 

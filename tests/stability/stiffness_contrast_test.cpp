@@ -91,8 +91,9 @@ TEST(StiffnessContrast, InContact) {
     const Course course = press(*model, loop, test::blockTop + 0.012);
     print(softBelow ? "stiff plate on soft block" : "soft plate on stiff block", course);
     EXPECT_GT(course.touched, 0.9);
-    EXPECT_LT(course.deepest, 3e-3);
-    EXPECT_LT(course.lastSpeed, 0.1) << "what lies on another organ without friction goes on trembling, and no more";
+    EXPECT_LT(course.deepest, softBelow ? 1.2e-3 : 0.7e-3);
+    EXPECT_LT(course.lastSpeed, 0.05) << "what lies on another organ without friction goes on trembling, and no more";
+    EXPECT_EQ(course.solverMisses + course.contactMisses + course.speedMisses, 0);
   }
 }
 
@@ -111,7 +112,8 @@ TEST(StiffnessContrast, GrownTogether) {
     test::Loop loop(*model);
     const Course course = press(*model, loop, test::blockTop + 0.013);
     print(softBelow ? "stiff plate grown to soft block" : "soft plate grown to stiff block", course);
-    EXPECT_LT(course.lastSpeed, 0.02);
+    EXPECT_LT(course.lastSpeed, 5e-4);
+    EXPECT_EQ(course.solverMisses + course.contactMisses + course.speedMisses, 0);
     for (const SolidState& organ : loop.rig.state.organ) EXPECT_LT(organ.maxDisplacement, 1e-3);
   }
 }
