@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/solid/point_coupling.h"
+#include "sim/solid/system_coupling.h"
 #include "sim/solid/row_lanes.h"
 #include "sim/solid/sweeps.h"
 

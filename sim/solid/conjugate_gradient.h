@@ -19,7 +19,7 @@
 namespace calot {
 
 class CoarseLattice;
-class PointCoupling;
+class SystemCoupling;
 
 namespace sweeps {
 struct Slices;
@@ -69,10 +69,10 @@ class ConjugateGradient {
     std::span<const float> b;
     std::span<float> x;
   };
-  /// A coupling between two parts.
+  /// A coupling between two parts, or within one: then both are the same.
   struct Coupled {
     std::size_t first, second;  ///< of the parts
-    PointCoupling& by;
+    SystemCoupling& by;
   };
 
   /// Solves the system of all parts and their couplings as one: parts are preconditioned each by its own sweeps (and

@@ -15,11 +15,11 @@ struct RowShare {
   double weight;
 };
 
-/// Rows of a point's nodes with their weights; fixed nodes have none.
-void rowsOf(const SolidModel& model, const MaterialPoint& point, std::vector<RowShare>& out) {
+/// Rows of a point's nodes with their weights; fixed nodes and those of carved cubes alone have none.
+void rowsOf(const SolidSystem& system, const MaterialPoint& point, std::vector<RowShare>& out) {
   out.clear();
   for (std::size_t k = 0; k < point.count; ++k) {
-    const int row = model.system().row(static_cast<std::size_t>(point.node[k]));
+    const int row = system.row(static_cast<std::size_t>(point.node[k]));
     if (row >= 0 && point.weight[k] != 0.0) out.push_back({static_cast<std::size_t>(row), point.weight[k]});
   }
 }
@@ -37,7 +37,7 @@ std::uint32_t placeIn(const std::vector<T>& sorted, const T& value) {
 
 }  // namespace
 
-PointCoupling::PointCoupling(const SolidModel& first, const SolidModel& second,
+PointCoupling::PointCoupling(const SolidSystem& first, const SolidSystem& second,
                              std::span<const std::array<MaterialPoint, 2>> points) {
   std::vector<std::pair<std::size_t, std::size_t>> blocks;
   std::vector<RowShare> p;

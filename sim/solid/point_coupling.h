@@ -12,21 +12,22 @@
 
 #include "sim/math/vectors.h"
 #include "sim/solid/solid.h"
+#include "sim/solid/system_coupling.h"
 
 namespace calot {
 
-class PointCoupling {
+class PointCoupling final : public SystemCoupling {
  public:
-  /// Structure of the blocks. @param points per damper: in the first solid, in the second
-  /// @pre the systems of both solids' steps are their models' (no carved cubes)
-  PointCoupling(const SolidModel& first, const SolidModel& second,
+  /// Structure of the blocks. @param first, second the systems of the solids' steps @param points per damper: in the
+  /// first solid, in the second
+  PointCoupling(const SolidSystem& first, const SolidSystem& second,
                 std::span<const std::array<MaterialPoint, 2>> points);
 
   /// Values of a step. @param damper per damper (N s/m) @param step h (s)
   void assemble(std::span<const double> damper, double step);
 
   /// Adds the blocks' part of the product with the present search directions, both ways.
-  void addTo(ConjugateGradient& first, ConjugateGradient& second);
+  void addTo(ConjugateGradient& first, ConjugateGradient& second) override;
 
  private:
   /// Rows of one solid that any block has, with direction and product.

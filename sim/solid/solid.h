@@ -17,7 +17,7 @@
 
 namespace calot {
 
-class PointCoupling;
+class SystemCoupling;
 
 /// A material point of a solid: the corners of its element and their weights.
 struct MaterialPoint {
@@ -93,16 +93,21 @@ class SolidSolver {
   /// The first half of applyImpulses(): takes the impulses, without a solve. @param impulse per node, or empty: none
   void takeImpulses(std::span<const Vec3> impulse);
 
-  /// A coupling of two of the solids of solveJoined(), by their numbers.
+  /// A coupling of two of the solids of solveJoined(), by their numbers, or of one with itself.
   struct Coupled {
     std::size_t first, second;
-    PointCoupling& by;
+    SystemCoupling& by;
   };
   /// Solves what assembleUnconstrained() or takeImpulses() of each has set up, as one linear system with the couplings,
   /// and adds the solution to each freeVelocity(). Without couplings and of one solid, this is the second half of
   /// solveUnconstrained() and of applyImpulses().
   static SolveReport solveJoined(std::span<SolidSolver* const> solids, std::span<const Coupled> couplings,
                                  const Settings& settings);
+
+  /// The system of this step: of the whole solid, or of the remaining cubes. @pre assembleUnconstrained()
+  [[nodiscard]] const SolidSystem& system() const { return *system_; }
+  /// Changes whenever system() does.
+  [[nodiscard]] std::uint64_t systemVersion() const { return systemVersion_; }
 
   /// Velocities at the end of the step: unconstrained motion plus what applyImpulses() has added so far.
   [[nodiscard]] const std::vector<Vec3>& freeVelocity() const { return freeVelocity_; }
@@ -144,6 +149,7 @@ class SolidSolver {
 
   const SolidSystem* system_ = nullptr;  ///< of this step: the model's, or part_
   SolidSystem part_;                     ///< of the remaining cubes
+  std::uint64_t systemVersion_ = 0;
   std::vector<std::uint8_t> present_;    ///< per cube: is it in part_?
   std::vector<ElementResult> element_;
   std::vector<HexahedronResult> hexahedron_;

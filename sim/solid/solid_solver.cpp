@@ -55,6 +55,7 @@ inline Vec3 SolidSolver::cornerForce(const SolidModel& model, const SolidSystem:
 /// Chooses the whole system or that of the remaining cubes.
 void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> fill) {
   if (std::find(fill.begin(), fill.end(), 0.0) == fill.end()) {
+    if (system_ != &model.system()) ++systemVersion_;
     system_ = &model.system();
     return;
   }
@@ -65,6 +66,7 @@ void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> 
   std::transform(fill.begin(), fill.end(), present_.begin(), isThere);
   part_ = SolidSystem(model.system(), present_);
   system_ = &part_;
+  ++systemVersion_;
 }
 
 void SolidSolver::assemble(const SolidModel& model, const SolidState& state, const Settings& settings,

@@ -31,7 +31,6 @@ Bodies::Bodies(const Model& model, Executor& executor) : model_(model) {
     organ_.push_back(organ.get());
     body_.push_back(std::move(organ));
   }
-  joined_ = std::make_unique<JoinedOrgans>(model, organ_, settings_, responseSettings_);
   for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {
     auto vessels = std::make_unique<VesselBody>(model, t, settings_.step);
     vessel_.push_back(vessels.get());
@@ -42,11 +41,12 @@ Bodies::Bodies(const Model& model, Executor& executor) : model_(model) {
     fat_.push_back(fat.get());
     body_.push_back(std::move(fat));
   }
+  joined_ = std::make_unique<JoinedSolids>(model, organ_, vessel_, fat_, settings_, responseSettings_);
   sortTies();
 }
 
 /// Vessels that are grown to an organ are solved together with it (a tree that is grown to several organs, with the
-/// first); all other ties are springs that each side feels by itself.
+/// first); fat is solved together with what it is tied to (JoinedSolids). Every other tie is a spring on both sides.
 void Bodies::sortTies() {
   std::vector<std::size_t> organOf(body_.size(), Tie::none);  // of vessel trees
   std::vector<std::vector<std::size_t>> grown(organs());
@@ -96,6 +96,12 @@ void Bodies::precompute() {
 
 void Bodies::beginStep(const State& state) {
   for (FatMotion* fat : fat_) fat->beginStep(state);
+}
+
+void Bodies::pullGrown(std::span<const std::size_t> members) {
+  for (TieCoupling& c : coupling_) {
+    if (std::find(members.begin(), members.end(), c.organ()) != members.end()) c.pull(body_, vessel_);
+  }
 }
 
 double Bodies::shareLeft(const Tie& tie) const {

@@ -9,7 +9,7 @@
 #include "sim/math/executor.h"
 #include "sim/step/body.h"
 #include "sim/step/fat_motion.h"
-#include "sim/step/joined_organs.h"
+#include "sim/step/joined_solids.h"
 #include "sim/step/step_log.h"
 #include "sim/step/tie_coupling.h"
 #include "sim/step/vessel_body.h"
@@ -35,10 +35,10 @@ class Bodies {
 
   [[nodiscard]] std::size_t organs() const { return model_.organs().size(); }
   [[nodiscard]] std::size_t firstFat() const { return organs() + vessel_.size(); }
-  [[nodiscard]] OrganBody& organ(std::size_t index) { return *organ_[index]; }
-  /// Organs as connective tissue ties them in this step.
-  [[nodiscard]] JoinedOrgans& joined() { return *joined_; }
+  /// Organs and fat as they are tied to one another in this step.
+  [[nodiscard]] JoinedSolids& joined() { return *joined_; }
   [[nodiscard]] const VesselBody& vessel(std::size_t tree) const { return *vessel_[tree]; }
+  [[nodiscard]] std::span<VesselBody* const> vessels() const { return vessel_; }
   [[nodiscard]] FatMotion& fat(std::size_t index) { return *fat_[index]; }
   [[nodiscard]] const FatMotion& fat(std::size_t index) const { return *fat_[index]; }
   [[nodiscard]] std::size_t fatCount() const { return fat_.size(); }
@@ -49,6 +49,9 @@ class Bodies {
   }
   /// Vessels solved together with the organ that they are grown to.
   [[nodiscard]] std::vector<TieCoupling>& couplings() { return coupling_; }
+
+  /// Pulls the vessels that are grown to these bodies. @pre those were solved
+  void pullGrown(std::span<const std::size_t> members);
 
   /// Share of a tie's stiffness that is left: ties of fat fade as the fat is carved.
   [[nodiscard]] double shareLeft(const Tie& tie) const;
@@ -68,7 +71,7 @@ class Bodies {
   SolidSolver::Settings settings_, responseSettings_;
   std::vector<std::unique_ptr<Body>> body_;
   std::vector<OrganBody*> organ_;
-  std::unique_ptr<JoinedOrgans> joined_;
+  std::unique_ptr<JoinedSolids> joined_;
   std::vector<VesselBody*> vessel_;
   std::vector<FatMotion*> fat_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> springs_;

@@ -39,15 +39,9 @@ class Body {
   [[nodiscard]] virtual std::span<const Vec3> velocity(const State& state) const = 0;
   [[nodiscard]] virtual std::uint32_t& quietSteps(State& state) const = 0;
 
-  /// Free motion of a step under gravity, forces on the nodes (N; may be empty), springs to other bodies and loads that
-  /// were linearised elsewhere.
-  virtual SolveReport solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                         std::span<const TieLoad> ties, const Surroundings& loads) = 0;
-  /// Velocities that the step ends with, as far as they are known. @pre solveUnconstrained() of this step
+  /// Velocities that the step ends with, as far as they are known. @pre its free motion was solved
   [[nodiscard]] virtual std::span<const Vec3> freeVelocity() const = 0;
-  /// Adds the answer to impulses on the nodes (N s). @pre solveUnconstrained() of this step
-  virtual SolveReport applyImpulses(std::span<const Vec3> impulse) = 0;
-  /// Works out what block() needs for these nodes. @pre solveUnconstrained() of this step
+  /// Works out what block() needs for these nodes. @pre its free motion was solved
   virtual void precomputeCompliance(std::span<const int> nodes) = 0;
   /// Works out ahead, besides, what the first step would have to.
   virtual void precompute() {}

@@ -34,40 +34,34 @@ void ContactSolution::reportMiss(const Bodies& bodies, std::size_t which, const 
   log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(which), Vec3::Zero(), report.residual);
 }
 
-void ContactSolution::applyToOrgans(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
-                                    std::size_t group, StepLog& log) {
-  const std::vector<std::size_t>& organs = bodies.joined().groups()[group];
-  if (!activity.awake[organs[0]]) return;  // then all sleep
+void ContactSolution::applyToGroup(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
+                                   std::size_t group, StepLog& log) {
+  const std::vector<std::size_t>& members = bodies.joined().groups()[group];
+  if (!activity.awake[members[0]]) return;  // then all sleep
   bool pushed = false;
-  for (const std::size_t o : organs) {
-    gatherImpulses(bodies, contact, o);
+  for (const std::size_t b : members) {
+    gatherImpulses(bodies, contact, b);
     pushed = pushed || !nodal_.empty();
-    bodies.organ(o).solver().takeImpulses(nodal_);
+    bodies.joined().solid(b).solver().takeImpulses(nodal_);
   }
   if (!pushed) return;
   const SolveReport report = bodies.joined().applyImpulses(group);
-  for (TieCoupling& c : bodies.couplings()) {
-    if (std::find(organs.begin(), organs.end(), c.organ()) != organs.end()) c.pull(bodies.all());
-  }
-  reportMiss(bodies, organs[0], report, log);
+  bodies.pullGrown(members);
+  reportMiss(bodies, members[0], report, log);
 }
 
-/// Lets the bodies follow a change of forces, all rows at once: vessels, then organs with what is grown to them and
-/// tied to them, then fat.
+/// Lets the bodies follow a change of forces, all rows at once: vessels, then organs and fat with what is tied to them.
 void ContactSolution::applyContactImpulses(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
                                            StepLog& log) {
-  const auto apply = [&](std::size_t from, std::size_t end) {
-    for (std::size_t b = from; b < end; ++b) {
-      if (!activity.awake[b]) continue;
-      gatherImpulses(bodies, contact, b);
-      if (!nodal_.empty()) reportMiss(bodies, b, bodies[b].applyImpulses(nodal_), log);
-    }
-  };
-  apply(bodies.organs(), bodies.firstFat());
-  for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
-    applyToOrgans(bodies, activity, contact, group, log);
+  for (std::size_t tree = 0; tree < bodies.vessels().size(); ++tree) {
+    const std::size_t which = bodies.organs() + tree;
+    if (!activity.awake[which]) continue;
+    gatherImpulses(bodies, contact, which);
+    if (!nodal_.empty()) bodies.vessels()[tree]->applyImpulses(nodal_);
   }
-  apply(bodies.firstFat(), bodies.size());
+  for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
+    applyToGroup(bodies, activity, contact, group, log);
+  }
 }
 
 /// Gaps after change_ was applied, `response_` of the tissue and what W predicted. @return s.y and s.W s for the change

@@ -26,8 +26,8 @@ class ContactSolution {
   void solve(const ContactProblem& problem, ContactSystem& contact, ContactResult& result);
   void gatherImpulses(Bodies& bodies, const ContactSystem& contact, std::size_t which);
   void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
-  void applyToOrgans(Bodies& bodies, const Activity& activity, const ContactSystem& contact, std::size_t group,
-                     StepLog& log);
+  void applyToGroup(Bodies& bodies, const Activity& activity, const ContactSystem& contact, std::size_t group,
+                    StepLog& log);
   void applyContactImpulses(Bodies& bodies, const Activity& activity, const ContactSystem& contact, StepLog& log);
   std::array<double, 2> measureResponse(Bodies& bodies, const Activity& activity, const InstrumentTravels& travels,
                                         ContactSystem& contact);

@@ -4,31 +4,12 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sim/step/organ_body.h"
-
 namespace calot {
-
-namespace {
-
-/// Fat is held all over by what it hangs on, so that a coarser solution errs no more than the rotations do that are
-/// taken as they were (docs/simulation.md). It is hardly ever so still that a tolerance of speed would spare an
-/// iteration, and with one corners of nearly empty cubes, which weigh next to nothing, go on trembling and
-/// keep it awake.
-constexpr double coarser = 10.0;
-
-SolidSolver::Settings coarsened(SolidSolver::Settings settings) {
-  settings.tolerance *= coarser;
-  settings.speedTolerance = 0.0;
-  return settings;
-}
-
-}  // namespace
 
 FatMotion::FatMotion(const Model& model, std::size_t fat, const SolidSolver::Settings& settings,
                      const SolidSolver::Settings& responses, Executor& executor)
     : index_(fat),
-      settings_(coarsened(settings)),
-      responses_(responses),
+      settings_(settings),
       executor_(executor),
       fat_(*model.fat()[fat]),
       rest_(model.fat()[fat]->solid(), responses, executor,
@@ -54,16 +35,12 @@ std::span<const Vec3> FatMotion::position(const State& state) const { return sta
 std::span<const Vec3> FatMotion::velocity(const State& state) const { return state.fat[index_].solid.velocity; }
 std::uint32_t& FatMotion::quietSteps(State& state) const { return state.fat[index_].solid.quietSteps; }
 
-SolveReport FatMotion::solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                          std::span<const TieLoad> ties, const Surroundings& loads) {
+void FatMotion::assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
+                                      std::span<const TieLoad> ties, const Surroundings& loads) {
   load_.assign(loads.attachments.begin(), loads.attachments.end());
   addAttachments(ties, settings_.step, position(state), load_);
-  return solver_.solveUnconstrained(fat_.model().solid(), state.fat[index_].solid, gravity, force, settings_, executor_,
-                                    {load_, fat_.fill(), loads.joints});
-}
-
-SolveReport FatMotion::applyImpulses(std::span<const Vec3> impulse) {
-  return solver_.applyImpulses(impulse, responses_);
+  solver_.assembleUnconstrained(fat_.model().solid(), state.fat[index_].solid, gravity, force, settings_, executor_,
+                                {load_, fat_.fill(), loads.joints});
 }
 
 Mat3 FatMotion::rotation(const State& state, int node) const { return fat_.rotation(state.fat[index_], node); }

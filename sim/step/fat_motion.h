@@ -6,11 +6,11 @@
 
 #include "sim/fat/fat_body.h"
 #include "sim/solid/rest_compliance.h"
-#include "sim/step/body.h"
+#include "sim/step/solid_body.h"
 
 namespace calot {
 
-class FatMotion final : public Body {
+class FatMotion final : public SolidBody {
  public:
   FatMotion(const Model& model, std::size_t fat, const SolidSolver::Settings& settings,
             const SolidSolver::Settings& responses, Executor& executor);
@@ -26,10 +26,8 @@ class FatMotion final : public Body {
   [[nodiscard]] std::span<const Vec3> position(const State& state) const override;
   [[nodiscard]] std::span<const Vec3> velocity(const State& state) const override;
   [[nodiscard]] std::uint32_t& quietSteps(State& state) const override;
-  SolveReport solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                 std::span<const TieLoad> ties, const Surroundings& loads) override;
-  [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
-  SolveReport applyImpulses(std::span<const Vec3> impulse) override;
+  void assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
+                             std::span<const TieLoad> ties, const Surroundings& loads) override;
   void precomputeCompliance(std::span<const int> nodes) override { rest_.precomputeCompliance(nodes); }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return rest_.block(a, b); }
@@ -37,18 +35,16 @@ class FatMotion final : public Body {
     rest_.blocks(a, b, out);
   }
   bool advance(State& state) override;
-  [[nodiscard]] double heldBack() const override { return solver_.heldBack(); }
   void stop(State& state) const override;
 
  private:
   friend class FatSkin;
   std::size_t index_;
-  SolidSolver::Settings settings_, responses_;
+  SolidSolver::Settings settings_;
   Executor& executor_;
   FatBody fat_;
   bool stale_ = true;
   bool changed_ = true;  ///< the surface, since its skin followed
-  SolidSolver solver_;
   RestCompliance rest_;
   std::vector<Attachment> load_;
 };

@@ -10,7 +10,6 @@ OrganBody::OrganBody(const Model& model, std::size_t organ, const SolidSolver::S
     : organ_(organ),
       solid_(model.organs()[organ].solid),
       settings_(settings),
-      responses_(responses),
       executor_(executor),
       rest_(solid_, responses, executor) {}
 
@@ -30,23 +29,12 @@ void addAttachments(std::span<const TieLoad> ties, double step, std::span<const 
   }
 }
 
-SolveReport OrganBody::solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                          std::span<const TieLoad> ties, const Surroundings& loads) {
-  assembleUnconstrained(state, gravity, force, ties, loads);
-  SolidSolver* solver = &solver_;
-  return SolidSolver::solveJoined({&solver, 1}, {}, settings_);
-}
-
 void OrganBody::assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
                                       std::span<const TieLoad> ties, const Surroundings& loads) {
   load_.assign(loads.attachments.begin(), loads.attachments.end());
   addAttachments(ties, settings_.step, position(state), load_);
   solver_.assembleUnconstrained(solid_, state.organ[organ_], gravity, force, settings_, executor_,
                                 {load_, {}, loads.joints});
-}
-
-SolveReport OrganBody::applyImpulses(std::span<const Vec3> impulse) {
-  return solver_.applyImpulses(impulse, responses_);
 }
 
 Mat3 OrganBody::rotation(const State& state, int node) const {

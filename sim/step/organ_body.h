@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "sim/solid/rest_compliance.h"
-#include "sim/step/body.h"
+#include "sim/step/solid_body.h"
 
 namespace calot {
 
-class OrganBody final : public Body {
+class OrganBody final : public SolidBody {
  public:
   OrganBody(const Model& model, std::size_t organ, const SolidSolver::Settings& settings,
             const SolidSolver::Settings& responses, Executor& executor);
@@ -18,14 +18,8 @@ class OrganBody final : public Body {
   [[nodiscard]] std::span<const Vec3> position(const State& state) const override;
   [[nodiscard]] std::span<const Vec3> velocity(const State& state) const override;
   [[nodiscard]] std::uint32_t& quietSteps(State& state) const override;
-  SolveReport solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                 std::span<const TieLoad> ties, const Surroundings& loads) override;
-  [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
-  SolveReport applyImpulses(std::span<const Vec3> impulse) override;
-  /// Assembles the step's system, which is then solved by solver() alone or joined with others.
   void assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                             std::span<const TieLoad> ties, const Surroundings& loads);
-  [[nodiscard]] SolidSolver& solver() { return solver_; }
+                             std::span<const TieLoad> ties, const Surroundings& loads) override;
   void precomputeCompliance(std::span<const int> nodes) override { rest_.precomputeCompliance(nodes); }
   void precompute() override { solver_.precompute(solid_, settings_, executor_); }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;
@@ -34,15 +28,13 @@ class OrganBody final : public Body {
     rest_.blocks(a, b, out);
   }
   bool advance(State& state) override;
-  [[nodiscard]] double heldBack() const override { return solver_.heldBack(); }
   void stop(State& state) const override;
 
  private:
   std::size_t organ_;
   const SolidModel& solid_;
-  SolidSolver::Settings settings_, responses_;
+  SolidSolver::Settings settings_;
   Executor& executor_;
-  SolidSolver solver_;
   RestCompliance rest_;
   std::vector<Attachment> load_;
 };
@@ -60,9 +52,5 @@ class OrganSkin final : public Skin {
   std::size_t organ_;
   const OrganModel& model_;
 };
-
-/// Springs to other bodies as a solid takes them.
-void addAttachments(std::span<const TieLoad> ties, double step, std::span<const Vec3> position,
-                    std::vector<Attachment>& out);
 
 }  // namespace calot

@@ -51,6 +51,7 @@ TieCoupling::TieCoupling(const Model& model, std::size_t organ, std::vector<std:
   vesselSeen_.resize(tie_.size());
   force_.resize(tie_.size());
   change_.resize(tie_.size());
+  more_.resize(tie_.size());
 }
 
 bool TieCoupling::joins(std::size_t body) const {
@@ -99,31 +100,36 @@ void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body
   for (std::size_t i = 0; i < n; ++i) joint_.force[i] = applied(i, change_);
 }
 
-void TieCoupling::pull(std::span<const std::unique_ptr<Body>> body) {
+void TieCoupling::pull(std::span<const std::unique_ptr<Body>> body, std::span<VesselBody* const> vessels) {
   // force = D (V - ...) as the organ has it now; the vessels get what it changed by.
   for (std::size_t i = 0; i < tie_.size(); ++i) change_[i] = tie(i).place[0].of(body[organ_]->freeVelocity());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const Vec3 force = applied(i, change_) - joint_.force[i];
-    vesselSeen_[i] = force - force_[i];  // for a moment: what is new
+    more_[i] = force - force_[i];
     force_[i] = force;
   }
   std::size_t i = 0;
   while (i < tie_.size()) {
-    const std::size_t vessel = vesselOf(i);
-    impulse_.assign(body[vessel]->nodes(), Vec3::Zero());
-    for (; i < tie_.size() && vesselOf(i) == vessel; ++i) {
-      impulse_[static_cast<std::size_t>(nodeOf(i))] += step_ * vesselSeen_[i];
+    VesselBody& vessel = *vessels[vesselOf(i) - model_.organs().size()];
+    const std::size_t first = i;
+    impulse_.assign(vessel.nodes(), Vec3::Zero());
+    for (; i < tie_.size() && vesselOf(i) == vesselOf(first); ++i) {
+      impulse_[static_cast<std::size_t>(nodeOf(i))] += step_ * more_[i];
     }
-    body[vessel]->applyImpulses(impulse_);
-  }
-  for (i = 0; i < tie_.size(); ++i) {
-    vesselSeen_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
+    // The organ knows of this response, not of what else the vessels were pushed by.
+    for (std::size_t k = first; k < i; ++k)
+      vesselSeen_[k] -= vessel.freeVelocity()[static_cast<std::size_t>(nodeOf(k))];
+    vessel.applyImpulses(impulse_);
+    for (std::size_t k = first; k < i; ++k)
+      vesselSeen_[k] += vessel.freeVelocity()[static_cast<std::size_t>(nodeOf(k))];
   }
 }
 
 void TieCoupling::passOn(std::span<const std::unique_ptr<Body>> body, std::vector<Vec3>& impulse) {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
-    change_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))] - vesselSeen_[i];
+    const Vec3& now = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
+    change_[i] = now - vesselSeen_[i];
+    vesselSeen_[i] = now;
   }
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const Vec3 more = applied(i, change_);

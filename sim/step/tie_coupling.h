@@ -18,6 +18,7 @@
 #include "sim/math/linear.h"
 #include "sim/scene/model.h"
 #include "sim/step/body.h"
+#include "sim/step/vessel_body.h"
 
 namespace calot {
 
@@ -33,8 +34,8 @@ class TieCoupling {
   void begin(const State& state, std::span<const std::unique_ptr<Body>> body);
   /// What the organ feels. @pre begin()
   [[nodiscard]] const JointAttachment& joint() const { return joint_; }
-  /// Pulls the vessels, once the organ has moved. @pre solveUnconstrained() of the organ
-  void pull(std::span<const std::unique_ptr<Body>> body);
+  /// Pulls the vessels, once the organ has moved. @pre the organ was solved
+  void pull(std::span<const std::unique_ptr<Body>> body, std::span<VesselBody* const> vessels);
 
   /// Impulses on the organ's nodes by which it feels what vessels were pushed since; then the organ has to be pushed,
   /// and pull() called.
@@ -74,7 +75,7 @@ class TieCoupling {
   JointAttachment joint_;
   std::vector<Vec3> ahead_;       ///< g k / d (m/s)
   std::vector<Vec3> vesselSeen_;  ///< velocities that the organ knows of
-  std::vector<Vec3> force_, change_;
+  std::vector<Vec3> force_, change_, more_;
   std::vector<Vec3> impulse_;
 };
 

@@ -64,7 +64,7 @@ void UnconstrainedMotion::gatherLoads(Bodies& bodies, const ContactSystem& conta
   attachments_.clear();
   joints_.clear();
   gatherTies(bodies, activity, state, which);
-  if (which >= bodies.organs()) return;
+  if (which >= bodies.organs()) return;  // strands, retractions and grown vessels are organs' alone
   bodies.joined().addAttachments(which, attachments_);
   gatherRetractions(bodies, state, which);
   for (TieCoupling& c : bodies.couplings()) {
@@ -80,43 +80,42 @@ void UnconstrainedMotion::reportMiss(const Bodies& bodies, std::size_t which, co
   log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(which), Vec3::Zero(), report.residual);
 }
 
-/// Vessels or fat.
-void UnconstrainedMotion::solveBody(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
-                                    std::size_t which, State& state, StepResult& result, StepLog& log) {
-  SolveReport report;
+void UnconstrainedMotion::solveVessels(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
+                                       std::size_t tree, State& state, StepLog& log) {
+  const std::size_t which = bodies.organs() + tree;
   if (activity.awake[which]) {
     gatherLoads(bodies, contact, activity, state, which);
-    report =
-        bodies[which].solveUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_, {attachments_, {}, joints_});
-    reportMiss(bodies, which, report, log);
+    reportMiss(bodies, which,
+               bodies.vessels()[tree]->solveUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_), log);
   }
   solved_[which] = true;
-  if (which < bodies.firstFat()) return;
-  FatResult& out = result.fat[which - bodies.firstFat()];
-  out.residual = report.residual;
-  out.iterations = report.iterations;
 }
 
-void UnconstrainedMotion::solveOrgans(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
-                                      std::size_t group, State& state, StepResult& result, StepLog& log) {
-  const std::vector<std::size_t>& organs = bodies.joined().groups()[group];
+/// Organs and fat, and the vessels that they pull.
+void UnconstrainedMotion::solveGroup(Bodies& bodies, const ContactSystem& contact, const Activity& activity,
+                                     std::size_t group, State& state, StepResult& result, StepLog& log) {
+  const std::vector<std::size_t>& members = bodies.joined().groups()[group];
   SolveReport report;
-  if (activity.awake[organs[0]]) {  // then all are
-    for (const std::size_t o : organs) {
-      gatherLoads(bodies, contact, activity, state, o);
-      bodies.organ(o).assembleUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_,
-                                            {attachments_, {}, joints_});
+  if (activity.awake[members[0]]) {  // then all are
+    for (const std::size_t b : members) {
+      gatherLoads(bodies, contact, activity, state, b);
+      bodies.joined().solid(b).assembleUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_,
+                                                     {attachments_, {}, joints_});
     }
     report = bodies.joined().solveUnconstrained(group);
-    for (TieCoupling& c : bodies.couplings()) {
-      if (std::find(organs.begin(), organs.end(), c.organ()) != organs.end()) c.pull(bodies.all());
-    }
-    reportMiss(bodies, organs[0], report, log);
+    bodies.pullGrown(members);
+    reportMiss(bodies, members[0], report, log);
   }
-  for (const std::size_t o : organs) {
-    solved_[o] = true;
-    OrganResult& out = result.organ[o];
-    out.asleep = !activity.awake[o];
+  for (const std::size_t b : members) {
+    solved_[b] = true;
+    if (b >= bodies.firstFat()) {
+      FatResult& out = result.fat[b - bodies.firstFat()];
+      out.residual = report.residual;
+      out.iterations = report.iterations;
+      continue;
+    }
+    OrganResult& out = result.organ[b];
+    out.asleep = !activity.awake[b];
     out.residual = report.residual;
     out.iterations = report.iterations;
   }
@@ -125,15 +124,13 @@ void UnconstrainedMotion::solveOrgans(Bodies& bodies, const ContactSystem& conta
 void UnconstrainedMotion::run(Bodies& bodies, const ContactSystem& contact, const Activity& activity, State& state,
                               StepResult& result, StepLog& log) {
   std::fill(solved_.begin(), solved_.end(), false);
-  bodies.joined().linearise(state, activity.awake);
-  const auto solve = [&](std::size_t from, std::size_t end) {
-    for (std::size_t b = from; b < end; ++b) solveBody(bodies, contact, activity, b, state, result, log);
-  };
-  solve(bodies.organs(), bodies.firstFat());
-  for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
-    solveOrgans(bodies, contact, activity, group, state, result, log);
+  for (std::size_t tree = 0; tree < bodies.vessels().size(); ++tree) {
+    solveVessels(bodies, contact, activity, tree, state, log);
   }
-  solve(bodies.firstFat(), bodies.size());
+  bodies.joined().linearise(state, activity.awake);
+  for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
+    solveGroup(bodies, contact, activity, group, state, result, log);
+  }
 }
 
 }  // namespace calot

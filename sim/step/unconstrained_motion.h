@@ -23,10 +23,10 @@ class UnconstrainedMotion {
            StepLog& log);
 
  private:
-  void solveBody(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t which,
-                 State& state, StepResult& result, StepLog& log);
-  void solveOrgans(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t group,
-                   State& state, StepResult& result, StepLog& log);
+  void solveVessels(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t tree,
+                    State& state, StepLog& log);
+  void solveGroup(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t group,
+                  State& state, StepResult& result, StepLog& log);
   void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
   void gatherLoads(Bodies& bodies, const ContactSystem& contact, const Activity& activity, const State& state,
                    std::size_t which);

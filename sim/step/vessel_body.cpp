@@ -2,7 +2,6 @@
 #include "sim/step/vessel_body.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace calot {
 
@@ -14,8 +13,7 @@ std::span<const Vec3> VesselBody::velocity(const State& state) const { return st
 std::uint32_t& VesselBody::quietSteps(State& state) const { return state.vessel[tree_].quietSteps; }
 
 SolveReport VesselBody::solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                           std::span<const TieLoad> ties, [[maybe_unused]] const Surroundings& loads) {
-  assert(loads.attachments.empty() && loads.joints.empty());
+                                           std::span<const TieLoad> ties) {
   attachment_.clear();
   for (const TieLoad& tie : ties) {
     attachment_.push_back({tie.place.node[0], tie.stiffness, tie.damping, tie.target, tie.velocity});
@@ -24,13 +22,6 @@ SolveReport VesselBody::solveUnconstrained(State& state, const Vec3& gravity, st
   report.converged = solver_.solveUnconstrained(beams_, state.vessel[tree_], {gravity, force, {}, attachment_}, step_);
   report.residual = report.converged ? 0.0 : 1.0;
   report.iterations = 1;
-  return report;
-}
-
-SolveReport VesselBody::applyImpulses(std::span<const Vec3> impulse) {
-  solver_.applyImpulses(beams_, impulse);
-  SolveReport report;
-  report.converged = true;
   return report;
 }
 

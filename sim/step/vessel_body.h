@@ -19,10 +19,14 @@ class VesselBody final : public Body {
   [[nodiscard]] std::span<const Vec3> position(const State& state) const override;
   [[nodiscard]] std::span<const Vec3> velocity(const State& state) const override;
   [[nodiscard]] std::uint32_t& quietSteps(State& state) const override;
+  /// Free motion of a step under gravity, forces on the nodes (N; may be empty) and springs to other bodies.
   SolveReport solveUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                 std::span<const TieLoad> ties, const Surroundings& loads) override;
+                                 std::span<const TieLoad> ties);
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
-  SolveReport applyImpulses(std::span<const Vec3> impulse) override;
+  /// Adds the answer to impulses on the nodes (N s). @pre solveUnconstrained() of this step
+  void applyImpulses(std::span<const Vec3> impulse) { solver_.applyImpulses(beams_, impulse); }
+  /// That answer alone, which is added to nothing.
+  void respond(std::span<const Vec3> impulse, std::vector<Vec3>& out) { solver_.respond(beams_, impulse, out); }
   void precomputeCompliance(std::span<const int> nodes) override { solver_.precomputeCompliance(beams_, nodes); }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return solver_.block(a, b); }

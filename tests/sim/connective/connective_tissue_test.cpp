@@ -69,7 +69,7 @@ struct Pair {
         a(restState(upperSolid)),
         b(restState(lowerSolid)),
         state(intactState(tissue)),
-        coupling(upperSolid, lowerSolid, ends()) {}
+        coupling(upperSolid.system(), lowerSolid.system(), ends()) {}
 
   /// One step of both blocks as one system. @param load per node of the upper one (N) @param springs on it
   void step(double h, std::span<const Vec3> load, std::span<const Attachment> springs = {}) {

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/step/joined_solids.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace calot {
+
+JoinedSolids::JoinedSolids(const Model& model, std::vector<OrganBody*> organs, std::vector<VesselBody*> vessels,
+                           std::vector<FatMotion*> fat, const SolidSolver::Settings& settings,
+                           const SolidSolver::Settings& responses)
+    : model_(model),
+      organ_(std::move(organs)),
+      vessel_(std::move(vessels)),
+      fat_(std::move(fat)),
+      settings_(settings),
+      responses_(responses) {
+  solid_.assign(organ_.begin(), organ_.end());
+  solid_.insert(solid_.end(), fat_.begin(), fat_.end());
+  first_.resize(solid_.size());
+  for (const ConnectiveModel& tie : model.connective()) {
+    std::vector<std::array<MaterialPoint, 2>> points;
+    for (const Strand& strand : tie.tissue.strands()) points.push_back({strand.a, strand.b});
+    tissue_.emplace_back().coupling = std::make_unique<PointCoupling>(model.organs()[tie.a].solid.system(),
+                                                                      model.organs()[tie.b].solid.system(), points);
+  }
+  for (std::size_t f = 0; f < fat_.size(); ++f) {
+    for (std::size_t o = 0; o < organ_.size(); ++o) {
+      FatTies ties;
+      ties.organ = o;
+      ties.fat = f;
+      for (std::size_t t = 0; t < model.ties().size(); ++t) {
+        const Tie& tie = model.ties()[t];
+        if (tie.fat != f || tie.body[0] != o) continue;
+        ties.tie.push_back(t);
+        ties.place.push_back(tie.place);
+      }
+      ties.damper.resize(ties.tie.size());
+      if (!ties.tie.empty()) fatTies_.push_back(std::move(ties));
+    }
+    for (std::size_t v = 0; v < vessel_.size(); ++v) {
+      auto reaction = std::make_unique<VesselReaction>(model, f, v);
+      if (reaction->exists()) reaction_.push_back(std::move(reaction));
+    }
+  }
+}
+
+void JoinedSolids::join(std::size_t a, std::size_t b) {
+  const std::size_t kept = std::min(first_[numberOf(a)], first_[numberOf(b)]);
+  const std::size_t merged = std::max(first_[numberOf(a)], first_[numberOf(b)]);
+  std::replace(first_.begin(), first_.end(), merged, kept);
+}
+
+void JoinedSolids::lineariseTissues(const State& state, const std::vector<bool>& awake) {
+  for (std::size_t c = 0; c < tissue_.size(); ++c) {
+    const ConnectiveModel& tie = model_.connective()[c];
+    const SolidState& a = state.organ[tie.a];
+    const SolidState& b = state.organ[tie.b];
+    Tissue& tissue = tissue_[c];
+    tissue.holds = false;
+    if (!awake[tie.a]) continue;  // organs that strands tie are awake together
+    calot::linearise(tie.tissue, state.connective[c], {a.position, a.velocity, a.rotation},
+                     {b.position, b.velocity, b.rotation}, settings_.step, tissue.loads);
+    tissue.holds = !tissue.loads.onA.empty();
+    if (!tissue.holds) continue;
+    tissue.coupling->assemble(tissue.loads.damper, settings_.step);
+    join(tie.a, tie.b);
+  }
+}
+
+void JoinedSolids::lineariseFatTies(const State& state, const std::vector<bool>& awake) {
+  for (FatTies& ties : fatTies_) {
+    ties.holds = false;
+    if (!awake[ties.organ]) continue;  // what ties hold together is awake together
+    for (std::size_t i = 0; i < ties.tie.size(); ++i) {
+      const Tie& tie = model_.ties()[ties.tie[i]];
+      ties.damper[i] = fat_[ties.fat]->fat().tieShare(tie.fatTie) * (settings_.step * tie.stiffness + tie.damping);
+      ties.holds = ties.holds || ties.damper[i] > 0.0;
+    }
+    if (ties.holds) join(ties.organ, firstFat() + ties.fat);
+  }
+  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
+    reaction->linearise(state, awake[firstFat() + reaction->fat()], *fat_[reaction->fat()], settings_.step);
+  }
+}
+
+void JoinedSolids::linearise(const State& state, const std::vector<bool>& awake) {
+  for (std::size_t s = 0; s < first_.size(); ++s) first_[s] = s < organ_.size() ? s : s + vessel_.size();
+  lineariseTissues(state, awake);
+  lineariseFatTies(state, awake);
+  std::size_t groups = 0;
+  const auto bodyOf = [&](std::size_t s) { return s < organ_.size() ? s : s + vessel_.size(); };
+  for (std::size_t s = 0; s < first_.size(); ++s) {
+    if (first_[s] != bodyOf(s)) continue;
+    if (group_.size() == groups) group_.emplace_back();
+    std::vector<std::size_t>& group = group_[groups++];
+    group.clear();
+    for (std::size_t other = s; other < first_.size(); ++other) {
+      if (first_[other] == first_[s]) group.push_back(bodyOf(other));
+    }
+  }
+  group_.resize(groups);
+}
+
+void JoinedSolids::addAttachments(std::size_t organ, std::vector<Attachment>& out) const {
+  for (std::size_t c = 0; c < tissue_.size(); ++c) {
+    const ConnectiveModel& tie = model_.connective()[c];
+    const ConnectiveLoads& loads = tissue_[c].loads;
+    if (!tissue_[c].holds) continue;
+    if (tie.a == organ) out.insert(out.end(), loads.onA.begin(), loads.onA.end());
+    if (tie.b == organ) out.insert(out.end(), loads.onB.begin(), loads.onB.end());
+  }
+}
+
+/// The organs of a group, with the strands between them, for a solve.
+void JoinedSolids::collectOrgans(std::size_t group) {
+  const std::vector<std::size_t>& bodies = group_[group];
+  const auto number = [&](std::size_t body) {
+    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), body) - bodies.begin());
+  };
+  solver_.clear();
+  coupled_.clear();
+  for (const std::size_t b : bodies) {
+    if (b < organ_.size()) solver_.push_back(&organ_[b]->solver());
+  }
+  for (std::size_t c = 0; c < tissue_.size(); ++c) {
+    const ConnectiveModel& tie = model_.connective()[c];
+    if (!tissue_[c].holds || first_[tie.a] != bodies[0]) continue;
+    coupled_.push_back({number(tie.a), number(tie.b), *tissue_[c].coupling});
+  }
+}
+
+SolveReport JoinedSolids::solveUnconstrained(std::size_t group) {
+  const std::vector<std::size_t>& bodies = group_[group];
+  collectOrgans(group);
+  const std::size_t organs = solver_.size();
+  std::vector<std::size_t> fatHere;
+  for (const std::size_t b : bodies) {
+    if (b < organ_.size()) continue;
+    fatHere.push_back(b - firstFat());
+    solver_.push_back(&fat_[fatHere.back()]->solver());
+  }
+  const auto numberOfFat = [&](std::size_t fat) {
+    return organs + static_cast<std::size_t>(std::find(fatHere.begin(), fatHere.end(), fat) - fatHere.begin());
+  };
+  for (FatTies& ties : fatTies_) {
+    if (!ties.holds || first_[ties.organ] != bodies[0]) continue;
+    SolidSolver& fat = fat_[ties.fat]->solver();
+    if (ties.coupling == nullptr || ties.version != fat.systemVersion()) {
+      ties.coupling = std::make_unique<PointCoupling>(organ_[ties.organ]->solver().system(), fat.system(), ties.place);
+      ties.version = fat.systemVersion();
+    }
+    ties.coupling->assemble(ties.damper, settings_.step);
+    const auto organ = static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), ties.organ) - bodies.begin());
+    coupled_.push_back({organ, numberOfFat(ties.fat), *ties.coupling});
+  }
+  const auto isHere = [&](const VesselReaction& reaction) {
+    return reaction.holds() && first_[organ_.size() + reaction.fat()] == bodies[0];
+  };
+  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
+    if (!isHere(*reaction)) continue;
+    reaction->assemble(*fat_[reaction->fat()], *vessel_[reaction->tree()]);
+    coupled_.push_back({numberOfFat(reaction->fat()), numberOfFat(reaction->fat()), *reaction});
+  }
+  const SolveReport report = SolidSolver::solveJoined(solver_, coupled_, settings_);
+  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
+    if (isHere(*reaction)) reaction->pull(*fat_[reaction->fat()], *vessel_[reaction->tree()]);
+  }
+  return report;
+}
+
+SolveReport JoinedSolids::applyImpulses(std::size_t group) {
+  collectOrgans(group);
+  SolveReport worst;
+  if (!solver_.empty()) worst = SolidSolver::solveJoined(solver_, coupled_, responses_);
+  for (const std::size_t b : group_[group]) {
+    if (b < organ_.size()) continue;
+    SolidSolver* fat = &fat_[b - firstFat()]->solver();
+    const SolveReport report = SolidSolver::solveJoined({&fat, 1}, {}, responses_);
+    worst.iterations = std::max(worst.iterations, report.iterations);
+    worst.residual = std::max(worst.residual, report.residual);
+    worst.converged = worst.converged && report.converged;
+  }
+  return worst;
+}
+
+}  // namespace calot

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vessels as the fat around them feels them: eliminated from the linear system of both. Internal to this folder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/solid/system_coupling.h"
+#include "sim/step/fat_motion.h"
+#include "sim/step/vessel_body.h"
+
+namespace calot {
+
+/// The ties between a body of fat and a tree of vessels. With A_v the vessels' matrix (exactly factorised, with the
+/// ties' dampers d = h k + c on its diagonal), N the nodes of the ties and P their places in the fat, what vessels
+/// answer to fat is
+///   -(h d P)^T N A_v^-1 N^T (h d P)
+/// in the fat's matrix: the system of both, solved by elimination (a Schur complement). Each product with it costs one
+/// substitution in A_v. Forces of the ties on both sides are equal and opposite.
+class VesselReaction final : public SystemCoupling {
+ public:
+  VesselReaction(const Model& model, std::size_t fat, std::size_t tree);
+
+  [[nodiscard]] std::size_t fat() const { return fat_; }
+  [[nodiscard]] std::size_t tree() const { return tree_; }
+  /// Is there any such tie?
+  [[nodiscard]] bool exists() const { return !tie_.empty(); }
+  /// Does any still hold? @pre linearise() of this step
+  [[nodiscard]] bool holds() const { return holds_; }
+
+  /// Takes the ties as they are left. @param awake otherwise nothing of it holds
+  void linearise(const State& state, bool awake, const FatMotion& fat, double step);
+  /// @pre linearise(); the fat's system of this step is assembled
+  void assemble(FatMotion& fat, VesselBody& vessel);
+  void addTo(ConjugateGradient& first, ConjugateGradient& second) override;
+
+  /// Lets the vessels follow the fat. @pre the fat was solved
+  void pull(const FatMotion& fat, VesselBody& vessel);
+
+ private:
+  /// A tie that holds, in terms of the fat's rows.
+  struct Row {
+    std::array<std::uint32_t, 8> row{};
+    std::array<double, 8> weight{};
+    std::size_t count = 0;
+    std::size_t tie = 0;  ///< in tie_
+  };
+
+  [[nodiscard]] std::size_t nodeOf(std::size_t i) const;
+  [[nodiscard]] const MaterialPoint& placeOf(std::size_t i) const;
+
+  const Model& model_;
+  std::size_t fat_, tree_;
+  std::vector<std::size_t> tie_;  ///< of the model
+  bool holds_ = false;
+  std::vector<double> weight_;  ///< h d (kg)
+  std::vector<Vec3> fatSeen_;   ///< velocity at the tie that the vessels know of (m/s)
+  std::vector<Row> row_;
+  VesselBody* vessel_ = nullptr;  ///< of assemble()
+  std::vector<Vec3> push_, answer_;
+};
+
+}  // namespace calot
