@@ -9,15 +9,15 @@ namespace calot {
 
 namespace {
 
-/// Radius of the ring, in those of the capsule. Larger: edges of organs get more of what presses beside them; smaller:
-/// deep presses are too soft on fine meshes and too firm beside a coarse one's vertices. Measured (docs/accuracy.md).
-constexpr double ringRadius = 1.5;
-/// Directions of the ring's points: the corners of a regular pentagon. Fewer: their places in the cells show.
-constexpr std::array<std::array<double, 2>, 5> ringPoint{{{1.0, 0.0},
-                                                          {0.30901699437494745, 0.9510565162951535},
-                                                          {-0.8090169943749475, 0.5877852522924731},
-                                                          {-0.8090169943749475, -0.5877852522924731},
-                                                          {0.30901699437494745, -0.9510565162951535}}};
+/// Radius of the ring, in those of the capsule, and how many of its points the contact point counts as. A larger ring
+/// or a lighter centre: sheets as thin as the tool are pierced by fast ones; the opposite: deep presses are too soft on
+/// fine meshes and too firm beside a coarse one's vertices. Measured (docs/accuracy.md).
+constexpr double ringRadius = 1.4;
+constexpr double centrePoints = 2.0;
+/// Directions of the ring's points: the corners of a regular hexagon. Fewer: their places in the cells show.
+constexpr double sine = 0.8660254037844386;  // of 60 degrees
+constexpr std::array<std::array<double, 2>, 6> ringPoint{
+    {{1.0, 0.0}, {0.5, sine}, {-0.5, sine}, {-1.0, 0.0}, {-0.5, -sine}, {0.5, -sine}}};
 constexpr int maxWalk = 16;  ///< triangles between a contact point and one of its ring; beyond, it stays behind
 
 struct SkinPoint {
@@ -114,15 +114,16 @@ SolidSolver::Impulse pressedPatch(const OrganModel& organ, const Skin& skin, con
   const Vec3 centre = pointAt(organ.skin, node, weight);
   const std::array<Vec3, 2> along = alongPlane(smoothNormal(organ.surface, organ.skin, node, weight));
   const SkinPoint start{triangleOf(organ.surface, node), weight};
-  SolidSolver::Impulse patch;
-  double taken = 0.0;
+  SolidSolver::Impulse patch = skin.influence(node, weight);
+  for (std::size_t k = 0; k < patch.count; ++k) patch.weight[k] *= centrePoints;
+  double points = centrePoints;
   for (const std::array<double, 2>& p : ringPoint) {
     const Vec3 target = centre + ringRadius * radius * (p[0] * along[0] + p[1] * along[1]);
     const SkinPoint at = walkTo(target, organ.surface, organ.skin, start);
     const Index3& t = organ.surface.triangles()[at.triangle];
-    if (addPlace(patch, skin.influence({t[0], t[1], t[2]}, at.weight))) taken += 1.0;
+    if (addPlace(patch, skin.influence({t[0], t[1], t[2]}, at.weight))) points += 1.0;
   }
-  for (std::size_t k = 0; k < patch.count; ++k) patch.weight[k] /= taken;
+  for (std::size_t k = 0; k < patch.count; ++k) patch.weight[k] /= points;
   return patch;
 }
 

@@ -2,9 +2,9 @@
 // The patch of an organ's skin that takes the force of an instrument's capsule. Internal to this folder.
 //
 // A force on the corners of one triangle pulls a node down by more than its cell where cells are as small as the tip,
-// and into a cone where they are larger: neither is linear any more. So the force goes to a ring of points about the
-// contact point. How deep the skin gives way there under such a load follows from the nodes' weights as everywhere
-// (meshSpread()), and the dimple is what a round end sinks in beyond that.
+// and into a cone where they are larger: neither is linear any more. So a part of the force goes to a ring of points
+// about the contact point. How the skin gives way under such a load follows from the nodes' weights (meshSpread()); the
+// dimple is what a round end sinks in beyond that.
 #pragma once
 
 #include <array>
