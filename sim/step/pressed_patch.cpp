@@ -15,9 +15,12 @@ namespace {
 constexpr double ringRadius = 1.4;
 constexpr double centrePoints = 2.0;
 /// Directions of the ring's points: the corners of a regular hexagon. Fewer: their places in the cells show.
-constexpr double sine = 0.8660254037844386;  // of 60 degrees
-constexpr std::array<std::array<double, 2>, 6> ringPoint{
-    {{1.0, 0.0}, {0.5, sine}, {-0.5, sine}, {-1.0, 0.0}, {-0.5, -sine}, {0.5, -sine}}};
+constexpr std::array<std::array<double, 2>, 6> ringPoint{{{1.0, 0.0},
+                                                          {0.5, 0.8660254037844386},
+                                                          {-0.5, 0.8660254037844386},
+                                                          {-1.0, 0.0},
+                                                          {-0.5, -0.8660254037844386},
+                                                          {0.5, -0.8660254037844386}}};
 constexpr int maxWalk = 16;  ///< triangles between a contact point and one of its ring; beyond, it stays behind
 
 struct SkinPoint {
