@@ -84,14 +84,14 @@ std::array<Vec3, 2> alongPlane(const Vec3& n) {
 
 /// Adds a place's share to another. @return false: it has no room, nothing was added
 bool addPlace(SolidSolver::Impulse& place, const SolidSolver::Impulse& more) {
-  SolidSolver::Impulse sum = place;
+  const auto end = place.node.begin() + static_cast<std::ptrdiff_t>(place.count);
+  std::size_t room = SolidSolver::Impulse::maxNodes - place.count;
   for (std::size_t k = 0; k < more.count; ++k) {
-    const auto end = sum.node.begin() + static_cast<std::ptrdiff_t>(sum.count);
-    if (sum.count == SolidSolver::Impulse::maxNodes && std::find(sum.node.begin(), end, more.node[k]) == end)
-      return false;
-    addShare(sum, more.node[k], more.weight[k]);
+    if (std::find(place.node.begin(), end, more.node[k]) != end) continue;
+    if (room == 0) return false;
+    --room;
   }
-  place = sum;
+  for (std::size_t k = 0; k < more.count; ++k) addShare(place, more.node[k], more.weight[k]);
   return true;
 }
 
