@@ -119,7 +119,7 @@ class SolidSolver {
   /// Velocity responses to up to eight impulses, each distributed over nodes: response[k] belongs to impulse[k].
   /// @pre solveUnconstrained() of this step was called.
   struct Impulse {
-    static constexpr std::size_t maxNodes = 24;  ///< a triangle whose corners lie in three cubes
+    static constexpr std::size_t maxNodes = 40;  ///< 24: a triangle whose corners lie in three cubes; pressedPatch()
     std::array<int, maxNodes> node{};
     std::array<double, maxNodes> weight{};  ///< share of each node
     std::size_t count = 0;                  ///< number of nodes used

@@ -6,6 +6,7 @@
 
 #include "sim/step/contact_dimples.h"
 #include "sim/step/instrument_motion.h"
+#include "sim/step/pressed_patch.h"
 #include "sim/step/sleeping.h"
 
 namespace calot {
@@ -15,23 +16,6 @@ namespace {
 /// A contact block's key has its structure in the bits from here up to the four of the instrument's part.
 constexpr unsigned structureShift = 52;
 static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
-
-/// The skin's normal at a contact point, as it varies between those at the triangle's corners (Phong 1975).
-Vec3 smoothNormal(const Surfaces& surfaces, std::size_t structure, const SurfaceContact& contact) {
-  const ContactSurface& mesh = surfaces.mesh(structure);
-  const std::vector<Vec3>& points = surfaces.points(structure);
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    Vec3 corner = Vec3::Zero();
-    for (const std::uint32_t t : mesh.trianglesAround(contact.node[static_cast<std::size_t>(k)])) {
-      const Index3& at = mesh.triangles()[t];
-      const Vec3& a = points[static_cast<std::size_t>(at[0])];
-      corner += (points[static_cast<std::size_t>(at[1])] - a).cross(points[static_cast<std::size_t>(at[2])] - a);
-    }
-    if (corner.squaredNorm() > 0.0) sum += contact.weight[k] * corner.normalized();
-  }
-  return sum.norm() > 0.1 ? Vec3(sum.normalized()) : contact.normal;
-}
 
 }  // namespace
 
@@ -57,14 +41,18 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
     block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
   }
   if (touched.kind == tissueId<OrganTissue> && model_.scene().solver.dimples) {
+    const OrganModel& organ = model_.organs()[touched.index];
+    const std::vector<Vec3>& points = surfaces.points(structure);
     block.piece = contact.key >> 56U;
     block.radius = instrument_[hand].capsule[block.piece].radius;
     for (std::size_t k = 0; k < 3; ++k) {
-      block.foot +=
-          contact.weight[static_cast<int>(k)] * surfaces.points(structure)[static_cast<std::size_t>(contact.node[k])];
+      block.foot += contact.weight[static_cast<int>(k)] * points[static_cast<std::size_t>(contact.node[k])];
     }
-    block.smooth = smoothNormal(surfaces, structure, contact);
-    block.spread = meshSpread(model_.organs()[touched.index], block.place);
+    block.smooth = smoothNormal(organ.surface, points, contact.node, contact.weight);
+    if (block.smooth.isZero()) block.smooth = contact.normal;
+    const SolidSolver::Impulse centre = block.place;
+    block.place = pressedPatch(organ, surfaces.skin(structure), contact.node, contact.weight, block.radius);
+    block.spread = meshSpread(organ, centre, block.place);
   }
   blocks.push_back(block);
 }

@@ -10,13 +10,11 @@ namespace calot {
 
 namespace {
 
-/// Size of the patch over which a node of the lattice spreads a force, in edges of its cells: gives the compliance of
-/// the meshes of a block of 1,100 to 20,000 tetrahedra, less that of the half-space outside the cells, at vertices,
-/// edges and faces within 5 % (docs/accuracy.md). Larger: softer contact on coarse meshes.
-constexpr double nodeSpread = 0.225;
-/// A mesh that spreads forces over less than an instrument does is too soft, which the dimple takes back; down to this
-/// share of the instrument's patch. Smaller: the rest may be unstable where a mesh is stiffer than nodeSpread says.
-constexpr double leastSpread = 0.5;
+/// Size of the patch over which a node of the lattice spreads a force, in edges of its cells. 0.225 gives the
+/// compliance of the meshes of a block of 1,100 to 20,000 tetrahedra, less that of the half-space outside the cells, at
+/// vertices, edges and faces within 5 %; this is best down to 6 mm (docs/accuracy.md). Larger: softer contact on coarse
+/// meshes.
+constexpr double nodeSpread = 0.235;
 /// Down to here a dimple follows the half-space; deeper, tissue counts as pressed together, and the dimple goes at most
 /// `lastDepth` further (m). Larger: thin instruments sink through organs; smaller: deep presses are too firm. Assumed.
 constexpr double elasticDepth = 0.006;
@@ -115,16 +113,15 @@ Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece) {
   return Vec3::Zero();
 }
 
-double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place) {
+double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place, const SolidSolver::Impulse& force) {
   const double spread = nodeSpread * organ.cellSize;
   const std::vector<Vec3>& rest = organ.solid.rest();
   double inverse = 0.0;
   for (std::size_t a = 0; a < place.count; ++a) {
-    inverse += place.weight[a] * place.weight[a] / spread;
     const Vec3& at = rest[static_cast<std::size_t>(place.node[a])];
-    for (std::size_t b = 0; b < a; ++b) {
-      const double squared = (rest[static_cast<std::size_t>(place.node[b])] - at).squaredNorm();
-      inverse += 2.0 * place.weight[a] * place.weight[b] / std::sqrt(squared + spread * spread);
+    for (std::size_t b = 0; b < force.count; ++b) {
+      const double squared = (rest[static_cast<std::size_t>(force.node[b])] - at).squaredNorm();
+      inverse += place.weight[a] * force.weight[b] / std::sqrt(squared + spread * spread);
     }
   }
   return 1.0 / inverse;
@@ -164,7 +161,7 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
       const double modulus = contact.dimples[a.dimple].modulus;
       const double squared = (a.foot - b.foot).squaredNorm();
       const double tool = 0.5 * (flatEndSpread(a.radius) + flatEndSpread(b.radius));
-      const double mesh = std::max(leastSpread * tool, 0.5 * (a.spread + b.spread));
+      const double mesh = std::max(tool, 0.5 * (a.spread + b.spread));
       const double k = a.share * b.share * contact.dimples[a.dimple].way.dot(contact.dimples[b.dimple].way) *
                        (spreadCompliance(squared, tool, modulus) - spreadCompliance(squared, mesh, modulus));
       contact.sharedDimple[i * n + j] = contact.sharedDimple[j * n + i] = k;

@@ -27,8 +27,9 @@ namespace calot {
 /// as much farther out.
 Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece);
 
-/// Of a place on an organ's skin: size of the patch over which its mesh spreads a force (m).
-double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place);
+/// Size of the patch over which an organ's mesh spreads a force that its nodes take, as seen from a place on its skin
+/// (m).
+double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place, const SolidSolver::Impulse& force);
 
 /// Collects the dimples of the blocks and what does not change within a step: `contact.dimples`,
 /// `contact.sharedDimple`.

@@ -96,13 +96,13 @@ class Press {
 constexpr std::array<std::array<double, 2>, 4> places{
     {{0.0003, 0.0002}, {0.0019, 0.0017}, {0.0041, 0.0002}, {-0.0071, 0.0049}}};
 
-/// Largest deviation over depths from 1 mm to `deepest` and all places.
-double worstOf(std::uint32_t tetrahedra, int deepest) {
+/// Largest deviation over depths from 1 to 6 mm and all places.
+double worstOf(std::uint32_t tetrahedra) {
   double worst = 0.0;
   for (const auto& [x, y] : places) {
     Press press(tetrahedra, x, y);
     std::printf("%5u tetrahedra at (%4.1f, %4.1f) mm:", tetrahedra, 1e3 * x, 1e3 * y);
-    for (int mm = 1; mm <= deepest; ++mm) {
+    for (int mm = 1; mm <= 6; ++mm) {
       const double off = press.settle(1e-3 * mm);
       std::printf("  %.4f N %+5.1f %%", press.force, 100.0 * off);
       worst = std::max(worst, std::abs(off));
@@ -113,21 +113,15 @@ double worstOf(std::uint32_t tetrahedra, int deepest) {
 }
 
 TEST(SpherePress, ForceIsThatOfTheConvergedSolution) {
-  for (const std::uint32_t tetrahedra : {300U, 1200U, 4800U}) EXPECT_LT(worstOf(tetrahedra, 4), 0.10) << tetrahedra;
+  for (const std::uint32_t tetrahedra : {300U, 1200U, 4800U, 20000U}) {
+    EXPECT_LT(worstOf(tetrahedra), 0.10) << tetrahedra;
+  }
 }
-
-/// A vertex beside the tip sinks in so far that the mesh is no longer linear: 14 % at 6 mm.
-TEST(SpherePress, DeepForceIsNearThatOfTheConvergedSolution) {
-  for (const std::uint32_t tetrahedra : {300U, 1200U, 4800U}) EXPECT_LT(worstOf(tetrahedra, 6), 0.15) << tetrahedra;
-}
-
-/// Cells no larger than the tip: some places are 17 % too soft.
-TEST(SpherePress, FineMeshesAreNearIt) { EXPECT_LT(worstOf(20000, 4), 0.18); }
 
 /// F = 4/3 E* sqrt(R) d^(3/2) (Johnson 1985, 4.22); the block's bottom adds 3 % at 0.5 mm.
 TEST(SpherePress, ShallowForceIsThatOfHertz) {
   const double modulus = 5000.0 / (1.0 - 0.45 * 0.45);
-  for (const std::uint32_t tetrahedra : {300U, 1200U, 4800U}) {
+  for (const std::uint32_t tetrahedra : {300U, 1200U, 4800U, 20000U}) {
     for (const auto& [x, y] : places) {
       Press press(tetrahedra, x, y);
       double ratio[2] = {};
