@@ -100,7 +100,9 @@ void Bodies::beginStep(const State& state) {
 
 void Bodies::pullGrown(std::span<const std::size_t> members) {
   for (TieCoupling& c : coupling_) {
-    if (std::find(members.begin(), members.end(), c.organ()) != members.end()) c.pull(body_, vessel_);
+    if (std::find(members.begin(), members.end(), c.organ()) != members.end()) {
+      c.pull(body_[c.organ()]->freeVelocity(), vessel_);
+    }
   }
 }
 

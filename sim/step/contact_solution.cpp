@@ -24,7 +24,7 @@ void ContactSolution::gatherImpulses(Bodies& bodies, const ContactSystem& contac
   nodal_.clear();
   addNodalForces(contact.blocks, which, bodies[which].nodes(), change_, bodies.step(), nodal_);
   for (TieCoupling& c : bodies.couplings()) {
-    if (c.organ() == which) c.passOn(bodies.all(), nodal_);
+    if (c.organ() == which) c.passOn(bodies.vessels(), nodal_);
   }
 }
 

@@ -68,7 +68,14 @@ void JoinedSolids::lineariseTissues(const State& state, const std::vector<bool>&
   }
 }
 
-void JoinedSolids::lineariseFatTies(const State& state, const std::vector<bool>& awake) {
+TieCoupling* JoinedSolids::grownOf(std::span<TieCoupling> grown, std::size_t tree) const {
+  for (TieCoupling& c : grown) {
+    if (c.joins(organ_.size() + tree)) return &c;
+  }
+  return nullptr;
+}
+
+void JoinedSolids::lineariseFatTies(const State& state, const std::vector<bool>& awake, std::span<TieCoupling> grown) {
   for (FatTies& ties : fatTies_) {
     ties.holds = false;
     if (!awake[ties.organ]) continue;  // what ties hold together is awake together
@@ -81,13 +88,15 @@ void JoinedSolids::lineariseFatTies(const State& state, const std::vector<bool>&
   }
   for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
     reaction->linearise(state, awake[firstFat() + reaction->fat()], *fat_[reaction->fat()], settings_.step);
+    const TieCoupling* const tie = grownOf(grown, reaction->tree());
+    if (reaction->holds() && tie != nullptr) join(tie->organ(), firstFat() + reaction->fat());
   }
 }
 
-void JoinedSolids::linearise(const State& state, const std::vector<bool>& awake) {
+void JoinedSolids::linearise(const State& state, const std::vector<bool>& awake, std::span<TieCoupling> grown) {
   for (std::size_t s = 0; s < first_.size(); ++s) first_[s] = s < organ_.size() ? s : s + vessel_.size();
   lineariseTissues(state, awake);
-  lineariseFatTies(state, awake);
+  lineariseFatTies(state, awake, grown);
   std::size_t groups = 0;
   const auto bodyOf = [&](std::size_t s) { return s < organ_.size() ? s : s + vessel_.size(); };
   for (std::size_t s = 0; s < first_.size(); ++s) {
@@ -130,7 +139,7 @@ void JoinedSolids::collectOrgans(std::size_t group) {
   }
 }
 
-SolveReport JoinedSolids::solveUnconstrained(std::size_t group) {
+SolveReport JoinedSolids::solveUnconstrained(std::size_t group, std::span<TieCoupling> grown) {
   const std::vector<std::size_t>& bodies = group_[group];
   collectOrgans(group);
   const std::size_t organs = solver_.size();
@@ -140,6 +149,9 @@ SolveReport JoinedSolids::solveUnconstrained(std::size_t group) {
     fatHere.push_back(b - firstFat());
     solver_.push_back(&fat_[fatHere.back()]->solver());
   }
+  const auto numberOfOrgan = [&](std::size_t organ) {  // organs are first
+    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), organ) - bodies.begin());
+  };
   const auto numberOfFat = [&](std::size_t fat) {
     return organs + static_cast<std::size_t>(std::find(fatHere.begin(), fatHere.end(), fat) - fatHere.begin());
   };
@@ -151,16 +163,18 @@ SolveReport JoinedSolids::solveUnconstrained(std::size_t group) {
       ties.version = fat.systemVersion();
     }
     ties.coupling->assemble(ties.damper, settings_.step);
-    const auto organ = static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), ties.organ) - bodies.begin());
-    coupled_.push_back({organ, numberOfFat(ties.fat), *ties.coupling});
+    coupled_.push_back({numberOfOrgan(ties.organ), numberOfFat(ties.fat), *ties.coupling});
   }
   const auto isHere = [&](const VesselReaction& reaction) {
     return reaction.holds() && first_[organ_.size() + reaction.fat()] == bodies[0];
   };
   for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
     if (!isHere(*reaction)) continue;
-    reaction->assemble(*fat_[reaction->fat()], *vessel_[reaction->tree()]);
-    coupled_.push_back({numberOfFat(reaction->fat()), numberOfFat(reaction->fat()), *reaction});
+    TieCoupling* const tie = grownOf(grown, reaction->tree());
+    const std::size_t fat = numberOfFat(reaction->fat());
+    reaction->assemble(*fat_[reaction->fat()], *vessel_[reaction->tree()], tie,
+                       tie != nullptr ? &organ_[tie->organ()]->solver().system() : nullptr);
+    coupled_.push_back({tie != nullptr ? numberOfOrgan(tie->organ()) : fat, fat, *reaction});
   }
   const SolveReport report = SolidSolver::solveJoined(solver_, coupled_, settings_);
   for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {

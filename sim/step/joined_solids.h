@@ -33,7 +33,8 @@ class JoinedSolids {
 
   /// Groups organs and fat by what holds them together, and linearises strands and ties over the step. Those of
   /// sleeping bodies are left out. @param awake per body @pre solveUnconstrained() of the vessels that are awake
-  void linearise(const State& state, const std::vector<bool>& awake);
+  /// @param grown vessels on organs
+  void linearise(const State& state, const std::vector<bool>& awake, std::span<TieCoupling> grown);
 
   /// Bodies (organs and fat, by their numbers among all) that are solved together, ascending; groups by their first.
   /// What nothing ties is a group of its own. @pre linearise()
@@ -43,9 +44,9 @@ class JoinedSolids {
   /// Appends the attachments by which an organ feels its strands. @pre linearise()
   void addAttachments(std::size_t organ, std::vector<Attachment>& out) const;
 
-  /// Solves the motion of a group, which pulls the vessels in its fat. @pre SolidBody::assembleUnconstrained() of each
-  /// of its solids
-  SolveReport solveUnconstrained(std::size_t group);
+  /// Solves the motion of a group, which pulls the vessels in its fat. @param grown vessels on organs @pre
+  /// SolidBody::assembleUnconstrained() of each of its solids
+  SolveReport solveUnconstrained(std::size_t group, std::span<TieCoupling> grown);
   /// Solves the response to impulses: of organs together; fat by itself, with its ties as dampers to what stays. The
   /// other side feels that in the next step. @pre SolidSolver::takeImpulses() of each of its solids
   SolveReport applyImpulses(std::size_t group);
@@ -74,7 +75,9 @@ class JoinedSolids {
     return body < organ_.size() ? body : body - vessel_.size();
   }
   void lineariseTissues(const State& state, const std::vector<bool>& awake);
-  void lineariseFatTies(const State& state, const std::vector<bool>& awake);
+  void lineariseFatTies(const State& state, const std::vector<bool>& awake, std::span<TieCoupling> grown);
+  /// How a tree of vessels is grown to an organ, or null.
+  [[nodiscard]] TieCoupling* grownOf(std::span<TieCoupling> grown, std::size_t tree) const;
   void join(std::size_t a, std::size_t b);
   void collectOrgans(std::size_t group);
 

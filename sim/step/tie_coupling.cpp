@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sim/math/dense.h"
+#include "sim/solid/conjugate_gradient.h"
 
 namespace calot {
 
@@ -36,7 +37,11 @@ Mat3 blockOf(std::span<const double> matrix, std::size_t n, std::size_t i, std::
 }  // namespace
 
 TieCoupling::TieCoupling(const Model& model, std::size_t organ, std::vector<std::size_t> ties, double step)
-    : model_(model), organ_(organ), tie_(std::move(ties)), step_(step) {
+    : model_(model),
+      organ_(organ),
+      organNodes_(model.organs()[organ].solid.nodes()),
+      tie_(std::move(ties)),
+      step_(step) {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const MaterialPoint& place = tie(i).place[0];
     assert(tie(i).body[0] == organ_ && tie(i).place[1].count == 1);
@@ -80,7 +85,8 @@ Vec3 TieCoupling::applied(std::size_t i, std::span<const Vec3> velocity) const {
   return sum;
 }
 
-void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body>> body) {
+void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body>> body,
+                        std::span<VesselBody* const> vessels) {
   const std::size_t n = tie_.size();
   for (std::size_t i = 0; i < n; ++i) body[vesselOf(i)]->precomputeCompliance(std::array{nodeOf(i)});
   rigidity(body, joint_.damper);
@@ -98,11 +104,30 @@ void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body
     force_[i].setZero();
   }
   for (std::size_t i = 0; i < n; ++i) joint_.force[i] = applied(i, change_);
+  pull(body[organ_]->velocity(state), vessels);
 }
 
-void TieCoupling::pull(std::span<const std::unique_ptr<Body>> body, std::span<VesselBody* const> vessels) {
-  // force = D (V - ...) as the organ has it now; the vessels get what it changed by.
-  for (std::size_t i = 0; i < tie_.size(); ++i) change_[i] = tie(i).place[0].of(body[organ_]->freeVelocity());
+/// What vessels were pushed by since is part of what the organ feels from here on.
+void TieCoupling::takeUp(std::span<VesselBody* const> vessels) {
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    const Vec3& now = velocityOf(i, vessels);
+    change_[i] = now - vesselSeen_[i];
+    vesselSeen_[i] = now;
+  }
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    more_[i] = applied(i, change_);
+    joint_.force[i] += more_[i];
+  }
+}
+
+const Vec3& TieCoupling::velocityOf(std::size_t i, std::span<VesselBody* const> vessels) const {
+  return vessels[vesselOf(i) - model_.organs().size()]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
+}
+
+void TieCoupling::pull(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels) {
+  takeUp(vessels);
+  // force = D (V - ...) as the organ moves now; the vessels get what it changed by.
+  for (std::size_t i = 0; i < tie_.size(); ++i) change_[i] = tie(i).place[0].of(organVelocity);
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const Vec3 force = applied(i, change_) - joint_.force[i];
     more_[i] = force - force_[i];
@@ -116,29 +141,51 @@ void TieCoupling::pull(std::span<const std::unique_ptr<Body>> body, std::span<Ve
     for (; i < tie_.size() && vesselOf(i) == vesselOf(first); ++i) {
       impulse_[static_cast<std::size_t>(nodeOf(i))] += step_ * more_[i];
     }
-    // The organ knows of this response, not of what else the vessels were pushed by.
-    for (std::size_t k = first; k < i; ++k)
-      vesselSeen_[k] -= vessel.freeVelocity()[static_cast<std::size_t>(nodeOf(k))];
     vessel.applyImpulses(impulse_);
-    for (std::size_t k = first; k < i; ++k)
-      vesselSeen_[k] += vessel.freeVelocity()[static_cast<std::size_t>(nodeOf(k))];
+    for (std::size_t k = first; k < i; ++k) vesselSeen_[k] = velocityOf(k, vessels);
   }
 }
 
-void TieCoupling::passOn(std::span<const std::unique_ptr<Body>> body, std::vector<Vec3>& impulse) {
+void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel,
+                        const VesselBody& beams, std::vector<Vec3>& answer) {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
-    const Vec3& now = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
-    change_[i] = now - vesselSeen_[i];
-    vesselSeen_[i] = now;
-  }
-  for (std::size_t i = 0; i < tie_.size(); ++i) {
-    const Vec3 more = applied(i, change_);
-    if (more.isZero(0.0)) continue;
-    joint_.force[i] += more;
-    if (impulse.empty()) impulse.assign(body[organ_]->nodes(), Vec3::Zero());
+    change_[i].setZero();
+    more_[i].setZero();
+    if (vesselOf(i) != vessel) continue;
+    change_[i] = answer[static_cast<std::size_t>(nodeOf(i))];
     const MaterialPoint& place = tie(i).place[0];
     for (std::size_t k = 0; k < place.count; ++k) {
-      impulse[static_cast<std::size_t>(place.node[k])] += (step_ * place.weight[k]) * more;
+      const int row = organ.row(static_cast<std::size_t>(place.node[k]));
+      if (row < 0) continue;
+      const std::array<float, 3> d = gradient.directionAt(static_cast<std::size_t>(row));
+      more_[i] +=
+          place.weight[k] * Vec3(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]));
+    }
+  }
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    if (vesselOf(i) != vessel) continue;
+    const Vec3 back = step_ * applied(i, change_);
+    const Vec3 push = step_ * applied(i, more_) - back;
+    for (std::size_t n = 0; n < answer.size(); ++n) answer[n] += beams.block(static_cast<int>(n), nodeOf(i)) * push;
+    const MaterialPoint& place = tie(i).place[0];
+    for (std::size_t k = 0; k < place.count; ++k) {
+      const int row = organ.row(static_cast<std::size_t>(place.node[k]));
+      if (row < 0) continue;
+      const Vec3 share = -place.weight[k] * back;
+      gradient.addToProduct(static_cast<std::size_t>(row),
+                            {static_cast<float>(share[0]), static_cast<float>(share[1]), static_cast<float>(share[2])});
+    }
+  }
+}
+
+void TieCoupling::passOn(std::span<VesselBody* const> vessels, std::vector<Vec3>& impulse) {
+  takeUp(vessels);
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    if (more_[i].isZero(0.0)) continue;
+    const MaterialPoint& place = tie(i).place[0];
+    if (impulse.empty()) impulse.assign(organNodes_, Vec3::Zero());
+    for (std::size_t k = 0; k < place.count; ++k) {
+      impulse[static_cast<std::size_t>(place.node[k])] += (step_ * place.weight[k]) * more_[i];
     }
   }
 }

@@ -30,16 +30,22 @@ class TieCoupling {
   [[nodiscard]] std::size_t organ() const { return organ_; }
   [[nodiscard]] bool joins(std::size_t body) const;
 
-  /// Gathers the vessels' contact-free velocities. @pre solveUnconstrained() of all vessels that it joins
-  void begin(const State& state, std::span<const std::unique_ptr<Body>> body);
+  /// Gathers the vessels' contact-free velocities, and pulls them as if the organ went on as it did.
+  /// @pre solveUnconstrained() of all vessels that it joins
+  void begin(const State& state, std::span<const std::unique_ptr<Body>> body, std::span<VesselBody* const> vessels);
   /// What the organ feels. @pre begin()
   [[nodiscard]] const JointAttachment& joint() const { return joint_; }
-  /// Pulls the vessels, once the organ has moved. @pre the organ was solved
-  void pull(std::span<const std::unique_ptr<Body>> body, std::span<VesselBody* const> vessels);
+  /// Pulls the vessels, with these velocities of the organ's nodes. @pre begin()
+  void pull(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels);
+  /// Of the product of the matrix of organ, vessels and what else pulls these, with the present search direction: how
+  /// the organ's ties change a vessel's response, and what the organ feels of it. @param vessel its body's number
+  /// @param answer of its nodes to the other pulls, without the ties @pre begin()
+  void react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel, const VesselBody& beams,
+             std::vector<Vec3>& answer);
 
   /// Impulses on the organ's nodes by which it feels what vessels were pushed since; then the organ has to be pushed,
   /// and pull() called.
-  void passOn(std::span<const std::unique_ptr<Body>> body, std::vector<Vec3>& impulse);
+  void passOn(std::span<VesselBody* const> vessels, std::vector<Vec3>& impulse);
 
   /// Compliance used by the contact solver: (1 / d + h (C of vessels + C of the organ))^-1, on the organ's compliance
   /// of contact.
@@ -63,10 +69,12 @@ class TieCoupling {
   [[nodiscard]] std::size_t vesselOf(std::size_t i) const { return tie(i).body[1]; }
   [[nodiscard]] int nodeOf(std::size_t i) const { return tie(i).place[1].node[0]; }
   [[nodiscard]] Vec3 applied(std::size_t i, std::span<const Vec3> velocity) const;
+  [[nodiscard]] const Vec3& velocityOf(std::size_t i, std::span<VesselBody* const> vessels) const;
+  void takeUp(std::span<VesselBody* const> vessels);
   void rigidity(std::span<const std::unique_ptr<Body>> body, std::vector<double>& out) const;
 
   const Model& model_;
-  std::size_t organ_;
+  std::size_t organ_, organNodes_;
   std::vector<std::size_t> tie_;
   double step_;
   std::vector<int> organNode_;  ///< distinct nodes of the organ at the ties, ascending

@@ -69,7 +69,6 @@ void UnconstrainedMotion::gatherLoads(Bodies& bodies, const ContactSystem& conta
   gatherRetractions(bodies, state, which);
   for (TieCoupling& c : bodies.couplings()) {
     if (c.organ() != which) continue;
-    c.begin(state, bodies.all());
     joints_.push_back(c.joint());
   }
 }
@@ -102,7 +101,7 @@ void UnconstrainedMotion::solveGroup(Bodies& bodies, const ContactSystem& contac
       bodies.joined().solid(b).assembleUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_,
                                                      {attachments_, {}, joints_});
     }
-    report = bodies.joined().solveUnconstrained(group);
+    report = bodies.joined().solveUnconstrained(group, bodies.couplings());
     bodies.pullGrown(members);
     reportMiss(bodies, members[0], report, log);
   }
@@ -127,7 +126,10 @@ void UnconstrainedMotion::run(Bodies& bodies, const ContactSystem& contact, cons
   for (std::size_t tree = 0; tree < bodies.vessels().size(); ++tree) {
     solveVessels(bodies, contact, activity, tree, state, log);
   }
-  bodies.joined().linearise(state, activity.awake);
+  for (TieCoupling& c : bodies.couplings()) {
+    if (activity.awake[c.organ()]) c.begin(state, bodies.all(), bodies.vessels());
+  }
+  bodies.joined().linearise(state, activity.awake, bodies.couplings());
   for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
     solveGroup(bodies, contact, activity, group, state, result, log);
   }

@@ -3,6 +3,10 @@
 
 #include "sim/step/vessel_reaction.h"
 
+#include <algorithm>
+#include <array>
+#include <tuple>
+
 #include "sim/solid/conjugate_gradient.h"
 
 namespace calot {
@@ -14,7 +18,7 @@ VesselReaction::VesselReaction(const Model& model, std::size_t fat, std::size_t 
     if (tie.fat == fat && tie.body[0] == model.organs().size() + tree) tie_.push_back(t);
   }
   weight_.assign(tie_.size(), 0.0);
-  fatSeen_.assign(tie_.size(), Vec3::Zero());
+  seen_.assign(tie_.size(), Vec3::Zero());
 }
 
 std::size_t VesselReaction::nodeOf(std::size_t i) const {
@@ -31,54 +35,66 @@ void VesselReaction::linearise(const State& state, bool awake, const FatMotion& 
     weight_[i] = step * (fat.fat().tieShare(tie.fatTie) * (step * tie.stiffness + tie.damping));
     if (!(weight_[i] > 0.0)) continue;
     holds_ = true;
-    fatSeen_[i] = placeOf(i).of(fat.velocity(state));
+    seen_[i] = placeOf(i).of(fat.velocity(state));
   }
 }
 
-void VesselReaction::assemble(FatMotion& fat, VesselBody& vessel) {
+void VesselReaction::assemble(FatMotion& fat, VesselBody& vessel, TieCoupling* grown, const SolidSystem* organ) {
   vessel_ = &vessel;
-  row_.clear();
+  grown_ = grown;
+  organ_ = organ;
+  const SolidSystem& system = fat.solver().system();
+  share_.clear();
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (!(weight_[i] > 0.0)) continue;
     const MaterialPoint& place = placeOf(i);
-    Row row;
-    row.tie = i;
     for (std::size_t k = 0; k < place.count; ++k) {
-      const int r = fat.solver().system().row(static_cast<std::size_t>(place.node[k]));
-      if (r < 0 || place.weight[k] == 0.0) continue;
-      row.row[row.count] = static_cast<std::uint32_t>(r);
-      row.weight[row.count++] = place.weight[k];
+      const int row = system.row(static_cast<std::size_t>(place.node[k]));
+      if (row < 0 || place.weight[k] == 0.0) continue;
+      share_.push_back(
+          {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(nodeOf(i)), weight_[i] * place.weight[k]});
     }
-    row_.push_back(row);
   }
+  std::stable_sort(share_.begin(), share_.end(),
+                   [](const Share& a, const Share& b) { return std::tie(a.row, a.node) < std::tie(b.row, b.node); });
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < share_.size(); ++k) {
+    if (kept > 0 && share_[kept - 1].row == share_[k].row && share_[kept - 1].node == share_[k].node) {
+      share_[kept - 1].weight += share_[k].weight;
+    } else {
+      share_[kept++] = share_[k];
+    }
+  }
+  share_.resize(kept);
 }
 
-void VesselReaction::addTo(ConjugateGradient& first, ConjugateGradient& /*second*/) {
+void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
   push_.assign(vessel_->nodes(), Vec3::Zero());
-  for (const Row& row : row_) {
-    Vec3 along = Vec3::Zero();
-    for (std::size_t k = 0; k < row.count; ++k) {
-      const std::array<float, 3> d = first.directionAt(row.row[k]);
-      along += row.weight[k] * Vec3(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]));
+  Vec3 along = Vec3::Zero();
+  for (std::size_t k = 0; k < share_.size(); ++k) {
+    if (k == 0 || share_[k].row != share_[k - 1].row) {
+      const std::array<float, 3> d = fat.directionAt(share_[k].row);
+      along = Vec3(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]));
     }
-    push_[nodeOf(row.tie)] += weight_[row.tie] * along;
+    push_[share_[k].node] += share_[k].weight * along;
   }
   vessel_->respond(push_, answer_);
-  for (const Row& row : row_) {
-    const Vec3 back = -weight_[row.tie] * answer_[nodeOf(row.tie)];
-    for (std::size_t k = 0; k < row.count; ++k) {
-      const Vec3 share = row.weight[k] * back;
-      first.addToProduct(row.row[k], {static_cast<float>(share[0]), static_cast<float>(share[1]),  //
-                                      static_cast<float>(share[2])});
-    }
+  if (grown_ != nullptr) grown_->react(*organ_, organ, model_.organs().size() + tree_, *vessel_, answer_);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < share_.size(); ++k) {
+    sum -= share_[k].weight * answer_[share_[k].node];
+    if (k + 1 < share_.size() && share_[k + 1].row == share_[k].row) continue;
+    fat.addToProduct(share_[k].row,
+                     {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])});
+    sum.setZero();
   }
 }
 
 void VesselReaction::pull(const FatMotion& fat, VesselBody& vessel) {
   push_.assign(vessel.nodes(), Vec3::Zero());
-  for (const Row& row : row_) {
-    const Vec3 change = placeOf(row.tie).of(fat.freeVelocity()) - fatSeen_[row.tie];
-    push_[nodeOf(row.tie)] += weight_[row.tie] * change;
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    if (!(weight_[i] > 0.0)) continue;
+    push_[nodeOf(i)] += weight_[i] * (placeOf(i).of(fat.freeVelocity()) - seen_[i]);
   }
   vessel.applyImpulses(push_);
 }

@@ -2,13 +2,13 @@
 // Vessels as the fat around them feels them: eliminated from the linear system of both. Internal to this folder.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sim/solid/system_coupling.h"
 #include "sim/step/fat_motion.h"
+#include "sim/step/tie_coupling.h"
 #include "sim/step/vessel_body.h"
 
 namespace calot {
@@ -18,7 +18,7 @@ namespace calot {
 /// answer to fat is
 ///   -(h d P)^T N A_v^-1 N^T (h d P)
 /// in the fat's matrix: the system of both, solved by elimination (a Schur complement). Each product with it costs one
-/// substitution in A_v. Forces of the ties on both sides are equal and opposite.
+/// substitution in A_v. Vessels that are grown to an organ couple it to the fat besides (TieCoupling::react()).
 class VesselReaction final : public SystemCoupling {
  public:
   VesselReaction(const Model& model, std::size_t fat, std::size_t tree);
@@ -32,20 +32,20 @@ class VesselReaction final : public SystemCoupling {
 
   /// Takes the ties as they are left. @param awake otherwise nothing of it holds
   void linearise(const State& state, bool awake, const FatMotion& fat, double step);
-  /// @pre linearise(); the fat's system of this step is assembled
-  void assemble(FatMotion& fat, VesselBody& vessel);
-  void addTo(ConjugateGradient& first, ConjugateGradient& second) override;
+  /// @param grown how the vessels are grown to an organ, or null @param organ its system of this step
+  /// @pre linearise(); the fat's system of this step is assembled, the vessels are solved
+  void assemble(FatMotion& fat, VesselBody& vessel, TieCoupling* grown, const SolidSystem* organ);
+  /// @param organ to which the vessels are grown; if to none, the fat again
+  void addTo(ConjugateGradient& organ, ConjugateGradient& fat) override;
 
   /// Lets the vessels follow the fat. @pre the fat was solved
   void pull(const FatMotion& fat, VesselBody& vessel);
 
  private:
-  /// A tie that holds, in terms of the fat's rows.
-  struct Row {
-    std::array<std::uint32_t, 8> row{};
-    std::array<double, 8> weight{};
-    std::size_t count = 0;
-    std::size_t tie = 0;  ///< in tie_
+  /// By how much a row of the fat's system takes part in the force on a node: h d w, summed over ties (kg).
+  struct Share {
+    std::uint32_t row, node;
+    double weight;
   };
 
   [[nodiscard]] std::size_t nodeOf(std::size_t i) const;
@@ -55,10 +55,12 @@ class VesselReaction final : public SystemCoupling {
   std::size_t fat_, tree_;
   std::vector<std::size_t> tie_;  ///< of the model
   bool holds_ = false;
-  std::vector<double> weight_;  ///< h d (kg)
-  std::vector<Vec3> fatSeen_;   ///< velocity at the tie that the vessels know of (m/s)
-  std::vector<Row> row_;
-  VesselBody* vessel_ = nullptr;  ///< of assemble()
+  std::vector<double> weight_;          ///< h d (kg)
+  std::vector<Vec3> seen_;              ///< velocity at the tie that the vessels know of (m/s)
+  std::vector<Share> share_;            ///< by rows, then nodes
+  VesselBody* vessel_ = nullptr;        ///< of assemble()
+  TieCoupling* grown_ = nullptr;        ///< how they are grown to an organ, or null
+  const SolidSystem* organ_ = nullptr;  ///< of that
   std::vector<Vec3> push_, answer_;
 };
 
