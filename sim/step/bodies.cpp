@@ -98,14 +98,6 @@ void Bodies::beginStep(const State& state) {
   for (FatMotion* fat : fat_) fat->beginStep(state);
 }
 
-void Bodies::pullGrown(std::span<const std::size_t> members) {
-  for (TieCoupling& c : coupling_) {
-    if (std::find(members.begin(), members.end(), c.organ()) != members.end()) {
-      c.pull(body_[c.organ()]->freeVelocity(), vessel_);
-    }
-  }
-}
-
 double Bodies::shareLeft(const Tie& tie) const {
   return tie.fat == Tie::none ? 1.0 : fat_[tie.fat]->fat().tieShare(tie.fatTie);
 }

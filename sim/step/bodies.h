@@ -50,9 +50,6 @@ class Bodies {
   /// Vessels solved together with the organ that they are grown to.
   [[nodiscard]] std::vector<TieCoupling>& couplings() { return coupling_; }
 
-  /// Pulls the vessels that are grown to these bodies. @pre those were solved
-  void pullGrown(std::span<const std::size_t> members);
-
   /// Share of a tie's stiffness that is left: ties of fat fade as the fat is carved.
   [[nodiscard]] double shareLeft(const Tie& tie) const;
   [[nodiscard]] std::size_t firstStructure(std::size_t which) const;

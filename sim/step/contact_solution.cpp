@@ -24,8 +24,9 @@ void ContactSolution::gatherImpulses(Bodies& bodies, const ContactSystem& contac
   nodal_.clear();
   addNodalForces(contact.blocks, which, bodies[which].nodes(), change_, bodies.step(), nodal_);
   for (TieCoupling& c : bodies.couplings()) {
-    if (c.organ() == which) c.passOn(bodies.vessels(), nodal_);
+    if (c.organ() == which) c.passOn(bodies[which].freeVelocity(), bodies.vessels(), nodal_);
   }
+  if (which >= bodies.firstFat()) bodies.joined().passOn(which, nodal_);
 }
 
 void ContactSolution::reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log) {
@@ -45,8 +46,7 @@ void ContactSolution::applyToGroup(Bodies& bodies, const Activity& activity, con
     bodies.joined().solid(b).solver().takeImpulses(nodal_);
   }
   if (!pushed) return;
-  const SolveReport report = bodies.joined().applyImpulses(group);
-  bodies.pullGrown(members);
+  const SolveReport report = bodies.joined().applyImpulses(group, bodies.couplings());
   reportMiss(bodies, members[0], report, log);
 }
 

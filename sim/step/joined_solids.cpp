@@ -121,81 +121,68 @@ void JoinedSolids::addAttachments(std::size_t organ, std::vector<Attachment>& ou
   }
 }
 
-/// The organs of a group, with the strands between them, for a solve.
-void JoinedSolids::collectOrgans(std::size_t group) {
-  const std::vector<std::size_t>& bodies = group_[group];
-  const auto number = [&](std::size_t body) {
-    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), body) - bodies.begin());
-  };
-  solver_.clear();
-  coupled_.clear();
-  for (const std::size_t b : bodies) {
-    if (b < organ_.size()) solver_.push_back(&organ_[b]->solver());
-  }
-  for (std::size_t c = 0; c < tissue_.size(); ++c) {
-    const ConnectiveModel& tie = model_.connective()[c];
-    if (!tissue_[c].holds || first_[tie.a] != bodies[0]) continue;
-    coupled_.push_back({number(tie.a), number(tie.b), *tissue_[c].coupling});
+void JoinedSolids::passOn(std::size_t body, std::vector<Vec3>& impulse) {
+  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
+    if (!reaction->holds() || firstFat() + reaction->fat() != body) continue;
+    reaction->passOn(*fat_[reaction->fat()], *vessel_[reaction->tree()], impulse);
   }
 }
 
 SolveReport JoinedSolids::solveUnconstrained(std::size_t group, std::span<TieCoupling> grown) {
-  const std::vector<std::size_t>& bodies = group_[group];
-  collectOrgans(group);
-  const std::size_t organs = solver_.size();
-  std::vector<std::size_t> fatHere;
-  for (const std::size_t b : bodies) {
-    if (b < organ_.size()) continue;
-    fatHere.push_back(b - firstFat());
-    solver_.push_back(&fat_[fatHere.back()]->solver());
-  }
-  const auto numberOfOrgan = [&](std::size_t organ) {  // organs are first
-    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), organ) - bodies.begin());
-  };
-  const auto numberOfFat = [&](std::size_t fat) {
-    return organs + static_cast<std::size_t>(std::find(fatHere.begin(), fatHere.end(), fat) - fatHere.begin());
-  };
+  const std::size_t first = group_[group][0];
   for (FatTies& ties : fatTies_) {
-    if (!ties.holds || first_[ties.organ] != bodies[0]) continue;
+    if (!ties.holds || first_[ties.organ] != first) continue;
     SolidSolver& fat = fat_[ties.fat]->solver();
     if (ties.coupling == nullptr || ties.version != fat.systemVersion()) {
       ties.coupling = std::make_unique<PointCoupling>(organ_[ties.organ]->solver().system(), fat.system(), ties.place);
       ties.version = fat.systemVersion();
     }
     ties.coupling->assemble(ties.damper, settings_.step);
-    coupled_.push_back({numberOfOrgan(ties.organ), numberOfFat(ties.fat), *ties.coupling});
   }
-  const auto isHere = [&](const VesselReaction& reaction) {
-    return reaction.holds() && first_[organ_.size() + reaction.fat()] == bodies[0];
-  };
   for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
-    if (!isHere(*reaction)) continue;
+    if (!isOf(*reaction, first)) continue;
     TieCoupling* const tie = grownOf(grown, reaction->tree());
-    const std::size_t fat = numberOfFat(reaction->fat());
     reaction->assemble(*fat_[reaction->fat()], *vessel_[reaction->tree()], tie,
                        tie != nullptr ? &organ_[tie->organ()]->solver().system() : nullptr);
-    coupled_.push_back({tie != nullptr ? numberOfOrgan(tie->organ()) : fat, fat, *reaction});
   }
-  const SolveReport report = SolidSolver::solveJoined(solver_, coupled_, settings_);
-  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
-    if (isHere(*reaction)) reaction->pull(*fat_[reaction->fat()], *vessel_[reaction->tree()]);
-  }
-  return report;
+  return solve(group, grown, settings_);
 }
 
-SolveReport JoinedSolids::applyImpulses(std::size_t group) {
-  collectOrgans(group);
-  SolveReport worst;
-  if (!solver_.empty()) worst = SolidSolver::solveJoined(solver_, coupled_, responses_);
-  for (const std::size_t b : group_[group]) {
-    if (b < organ_.size()) continue;
-    SolidSolver* fat = &fat_[b - firstFat()]->solver();
-    const SolveReport report = SolidSolver::solveJoined({&fat, 1}, {}, responses_);
-    worst.iterations = std::max(worst.iterations, report.iterations);
-    worst.residual = std::max(worst.residual, report.residual);
-    worst.converged = worst.converged && report.converged;
+SolveReport JoinedSolids::solve(std::size_t group, std::span<TieCoupling> grown,
+                                const SolidSolver::Settings& settings) {
+  const std::vector<std::size_t>& bodies = group_[group];
+  const auto number = [&](std::size_t body) {
+    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), body) - bodies.begin());
+  };
+  solver_.clear();
+  coupled_.clear();
+  for (const std::size_t b : bodies) solver_.push_back(&solid(b).solver());
+  for (std::size_t c = 0; c < tissue_.size(); ++c) {
+    const ConnectiveModel& tie = model_.connective()[c];
+    if (!tissue_[c].holds || first_[tie.a] != bodies[0]) continue;
+    coupled_.push_back({number(tie.a), number(tie.b), *tissue_[c].coupling});
   }
-  return worst;
+  for (const FatTies& ties : fatTies_) {
+    if (!ties.holds || first_[ties.organ] != bodies[0]) continue;
+    coupled_.push_back({number(ties.organ), number(firstFat() + ties.fat), *ties.coupling});
+  }
+  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
+    if (!isOf(*reaction, bodies[0])) continue;
+    const TieCoupling* const tie = grownOf(grown, reaction->tree());
+    const std::size_t fat = number(firstFat() + reaction->fat());
+    coupled_.push_back({tie != nullptr ? number(tie->organ()) : fat, fat, *reaction});
+  }
+  const SolveReport report = SolidSolver::solveJoined(solver_, coupled_, settings);
+  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
+    if (isOf(*reaction, bodies[0])) reaction->pull(*fat_[reaction->fat()], *vessel_[reaction->tree()]);
+  }
+  for (TieCoupling& tie : grown) {
+    if (number(tie.organ()) < bodies.size()) tie.pull(organ_[tie.organ()]->freeVelocity(), vessel_);
+  }
+  for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
+    if (isOf(*reaction, bodies[0])) reaction->see(*vessel_[reaction->tree()]);
+  }
+  return report;
 }
 
 }  // namespace calot

@@ -44,12 +44,14 @@ class JoinedSolids {
   /// Appends the attachments by which an organ feels its strands. @pre linearise()
   void addAttachments(std::size_t organ, std::vector<Attachment>& out) const;
 
-  /// Solves the motion of a group, which pulls the vessels in its fat. @param grown vessels on organs @pre
-  /// SolidBody::assembleUnconstrained() of each of its solids
+  /// Solves the motion of a group, which pulls the vessels that are tied to it. @param grown vessels on organs
+  /// @pre SolidBody::assembleUnconstrained() of each of its solids
   SolveReport solveUnconstrained(std::size_t group, std::span<TieCoupling> grown);
-  /// Solves the response to impulses: of organs together; fat by itself, with its ties as dampers to what stays. The
-  /// other side feels that in the next step. @pre SolidSolver::takeImpulses() of each of its solids
-  SolveReport applyImpulses(std::size_t group);
+  /// Impulses on fat by which it feels what the vessels in it were pushed since. @pre TieCoupling::passOn() of the
+  /// group
+  void passOn(std::size_t body, std::vector<Vec3>& impulse);
+  /// Solves the response to impulses, likewise. @pre SolidSolver::takeImpulses() of each of its solids
+  SolveReport applyImpulses(std::size_t group, std::span<TieCoupling> grown) { return solve(group, grown, responses_); }
 
  private:
   /// A connective tissue's part in the system of its group.
@@ -79,7 +81,11 @@ class JoinedSolids {
   /// How a tree of vessels is grown to an organ, or null.
   [[nodiscard]] TieCoupling* grownOf(std::span<TieCoupling> grown, std::size_t tree) const;
   void join(std::size_t a, std::size_t b);
-  void collectOrgans(std::size_t group);
+  /// Does a reaction hold in the group that begins with this body?
+  [[nodiscard]] bool isOf(const VesselReaction& reaction, std::size_t first) const {
+    return reaction.holds() && first_[organ_.size() + reaction.fat()] == first;
+  }
+  SolveReport solve(std::size_t group, std::span<TieCoupling> grown, const SolidSolver::Settings& settings);
 
   const Model& model_;
   std::vector<OrganBody*> organ_;

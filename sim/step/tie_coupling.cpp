@@ -178,7 +178,8 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
   }
 }
 
-void TieCoupling::passOn(std::span<VesselBody* const> vessels, std::vector<Vec3>& impulse) {
+void TieCoupling::passOn(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels,
+                         std::vector<Vec3>& impulse) {
   takeUp(vessels);
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (more_[i].isZero(0.0)) continue;
@@ -188,6 +189,7 @@ void TieCoupling::passOn(std::span<VesselBody* const> vessels, std::vector<Vec3>
       impulse[static_cast<std::size_t>(place.node[k])] += (step_ * place.weight[k]) * more_[i];
     }
   }
+  pull(organVelocity, vessels);
 }
 
 void TieCoupling::stiffen(const State& state, std::span<const std::unique_ptr<Body>> body) {

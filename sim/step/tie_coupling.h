@@ -43,9 +43,9 @@ class TieCoupling {
   void react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel, const VesselBody& beams,
              std::vector<Vec3>& answer);
 
-  /// Impulses on the organ's nodes by which it feels what vessels were pushed since; then the organ has to be pushed,
-  /// and pull() called.
-  void passOn(std::span<VesselBody* const> vessels, std::vector<Vec3>& impulse);
+  /// Impulses on the organ's nodes by which it feels what vessels were pushed since; holds these, with these velocities
+  /// of the organ's nodes. Then the organ has to be pushed, and pull() called.
+  void passOn(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels, std::vector<Vec3>& impulse);
 
   /// Compliance used by the contact solver: (1 / d + h (C of vessels + C of the organ))^-1, on the organ's compliance
   /// of contact.

@@ -102,7 +102,6 @@ void UnconstrainedMotion::solveGroup(Bodies& bodies, const ContactSystem& contac
                                                      {attachments_, {}, joints_});
     }
     report = bodies.joined().solveUnconstrained(group, bodies.couplings());
-    bodies.pullGrown(members);
     reportMiss(bodies, members[0], report, log);
   }
   for (const std::size_t b : members) {

@@ -18,7 +18,7 @@ VesselReaction::VesselReaction(const Model& model, std::size_t fat, std::size_t 
     if (tie.fat == fat && tie.body[0] == model.organs().size() + tree) tie_.push_back(t);
   }
   weight_.assign(tie_.size(), 0.0);
-  seen_.assign(tie_.size(), Vec3::Zero());
+  fatSeen_.assign(tie_.size(), Vec3::Zero());
 }
 
 std::size_t VesselReaction::nodeOf(std::size_t i) const {
@@ -35,7 +35,7 @@ void VesselReaction::linearise(const State& state, bool awake, const FatMotion& 
     weight_[i] = step * (fat.fat().tieShare(tie.fatTie) * (step * tie.stiffness + tie.damping));
     if (!(weight_[i] > 0.0)) continue;
     holds_ = true;
-    seen_[i] = placeOf(i).of(fat.velocity(state));
+    fatSeen_[i] = placeOf(i).of(fat.velocity(state));
   }
 }
 
@@ -94,9 +94,29 @@ void VesselReaction::pull(const FatMotion& fat, VesselBody& vessel) {
   push_.assign(vessel.nodes(), Vec3::Zero());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (!(weight_[i] > 0.0)) continue;
-    push_[nodeOf(i)] += weight_[i] * (placeOf(i).of(fat.freeVelocity()) - seen_[i]);
+    const Vec3 now = placeOf(i).of(fat.freeVelocity());
+    push_[nodeOf(i)] += weight_[i] * (now - fatSeen_[i]);
+    fatSeen_[i] = now;
   }
   vessel.applyImpulses(push_);
+}
+
+void VesselReaction::see(const VesselBody& vessel) {
+  vesselSeen_.assign(vessel.freeVelocity().begin(), vessel.freeVelocity().end());
+}
+
+void VesselReaction::passOn(const FatMotion& fat, const VesselBody& vessel, std::vector<Vec3>& impulse) {
+  for (std::size_t i = 0; i < tie_.size(); ++i) {
+    if (!(weight_[i] > 0.0)) continue;
+    const Vec3 change = weight_[i] * (vessel.freeVelocity()[nodeOf(i)] - vesselSeen_[nodeOf(i)]);
+    if (change.isZero(0.0)) continue;
+    if (impulse.empty()) impulse.assign(fat.nodes(), Vec3::Zero());
+    const MaterialPoint& place = placeOf(i);
+    for (std::size_t k = 0; k < place.count; ++k) {
+      impulse[static_cast<std::size_t>(place.node[k])] += place.weight[k] * change;
+    }
+  }
+  see(vessel);
 }
 
 }  // namespace calot

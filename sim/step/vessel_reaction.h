@@ -40,6 +40,10 @@ class VesselReaction final : public SystemCoupling {
 
   /// Lets the vessels follow the fat. @pre the fat was solved
   void pull(const FatMotion& fat, VesselBody& vessel);
+  /// The fat knows how the vessels move now.
+  void see(const VesselBody& vessel);
+  /// Adds the impulses on the fat's nodes by which it feels what vessels were pushed since. @pre see()
+  void passOn(const FatMotion& fat, const VesselBody& vessel, std::vector<Vec3>& impulse);
 
  private:
   /// By how much a row of the fat's system takes part in the force on a node: h d w, summed over ties (kg).
@@ -56,7 +60,8 @@ class VesselReaction final : public SystemCoupling {
   std::vector<std::size_t> tie_;  ///< of the model
   bool holds_ = false;
   std::vector<double> weight_;          ///< h d (kg)
-  std::vector<Vec3> seen_;              ///< velocity at the tie that the vessels know of (m/s)
+  std::vector<Vec3> fatSeen_;           ///< velocity at the tie that the vessels know of (m/s)
+  std::vector<Vec3> vesselSeen_;        ///< per node: its velocity that the fat knows of (m/s)
   std::vector<Share> share_;            ///< by rows, then nodes
   VesselBody* vessel_ = nullptr;        ///< of assemble()
   TieCoupling* grown_ = nullptr;        ///< how they are grown to an organ, or null
