@@ -147,7 +147,7 @@ void TieCoupling::pull(std::span<const Vec3> organVelocity, std::span<VesselBody
 }
 
 void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel,
-                        const VesselBody& beams, std::vector<Vec3>& answer) {
+                        const VesselBody& beams, std::span<const std::uint32_t> nodes, std::vector<Vec3>& answer) {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     change_[i].setZero();
     more_[i].setZero();
@@ -166,7 +166,7 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
     if (vesselOf(i) != vessel) continue;
     const Vec3 back = step_ * applied(i, change_);
     const Vec3 push = step_ * applied(i, more_) - back;
-    for (std::size_t n = 0; n < answer.size(); ++n) answer[n] += beams.block(static_cast<int>(n), nodeOf(i)) * push;
+    for (const std::uint32_t n : nodes) answer[n] += beams.block(static_cast<int>(n), nodeOf(i)) * push;
     const MaterialPoint& place = tie(i).place[0];
     for (std::size_t k = 0; k < place.count; ++k) {
       const int row = organ.row(static_cast<std::size_t>(place.node[k]));

@@ -40,8 +40,9 @@ class TieCoupling {
   /// Of the product of the matrix of organ, vessels and what else pulls these, with the present search direction: how
   /// the organ's ties change a vessel's response, and what the organ feels of it. @param vessel its body's number
   /// @param answer of its nodes to the other pulls, without the ties @pre begin()
+  /// @param nodes whose answers are asked for
   void react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel, const VesselBody& beams,
-             std::vector<Vec3>& answer);
+             std::span<const std::uint32_t> nodes, std::vector<Vec3>& answer);
 
   /// Impulses on the organ's nodes by which it feels what vessels were pushed since; holds these, with these velocities
   /// of the organ's nodes. Then the organ has to be pushed, and pull() called.

@@ -44,54 +44,71 @@ void VesselReaction::assemble(FatMotion& fat, VesselBody& vessel, TieCoupling* g
   grown_ = grown;
   organ_ = organ;
   const SolidSystem& system = fat.solver().system();
-  share_.clear();
+  std::vector<Share> share;
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (!(weight_[i] > 0.0)) continue;
     const MaterialPoint& place = placeOf(i);
     for (std::size_t k = 0; k < place.count; ++k) {
       const int row = system.row(static_cast<std::size_t>(place.node[k]));
       if (row < 0 || place.weight[k] == 0.0) continue;
-      share_.push_back(
-          {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(nodeOf(i)), weight_[i] * place.weight[k]});
+      share.push_back(
+          {static_cast<std::size_t>(row), static_cast<std::uint32_t>(nodeOf(i)), weight_[i] * place.weight[k]});
     }
   }
-  std::stable_sort(share_.begin(), share_.end(),
-                   [](const Share& a, const Share& b) { return std::tie(a.row, a.node) < std::tie(b.row, b.node); });
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < share_.size(); ++k) {
-    if (kept > 0 && share_[kept - 1].row == share_[k].row && share_[kept - 1].node == share_[k].node) {
-      share_[kept - 1].weight += share_[k].weight;
-    } else {
-      share_[kept++] = share_[k];
+  std::stable_sort(share.begin(), share.end(),
+                   [](const Share& x, const Share& y) { return std::tie(x.row, x.node) < std::tie(y.row, y.node); });
+  row_.clear();
+  start_.clear();
+  node_.clear();
+  shareOf_.clear();
+  touched_.clear();
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    const bool sameRow = k > 0 && share[k].row == share[k - 1].row;
+    if (sameRow && share[k].node == share[k - 1].node) {
+      shareOf_.back() += static_cast<float>(share[k].weight);
+      continue;
     }
+    if (!sameRow) {
+      row_.push_back(share[k].row);
+      start_.push_back(node_.size());
+    }
+    node_.push_back(share[k].node);
+    shareOf_.push_back(static_cast<float>(share[k].weight));
+    touched_.push_back(share[k].node);
   }
-  share_.resize(kept);
+  start_.push_back(node_.size());
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  coarsePush_.resize(vessel.nodes());
+  push_.assign(vessel.nodes(), Vec3::Zero());
 }
 
 void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
-  push_.assign(vessel_->nodes(), Vec3::Zero());
-  Vec3 along = Vec3::Zero();
-  for (std::size_t k = 0; k < share_.size(); ++k) {
-    if (k == 0 || share_[k].row != share_[k - 1].row) {
-      const std::array<float, 3> d = fat.directionAt(share_[k].row);
-      along = Vec3(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]));
-    }
-    push_[share_[k].node] += share_[k].weight * along;
+  for (const std::uint32_t n : touched_) coarsePush_[n] = FourFloats{};
+  for (std::size_t r = 0; r < row_.size(); ++r) {
+    const std::array<float, 3> d = fat.directionAt(row_[r]);
+    const FourFloats along{d[0], d[1], d[2], 0.0F};
+    for (std::size_t k = start_[r]; k < start_[r + 1]; ++k) coarsePush_[node_[k]] += shareOf_[k] * along;
+  }
+  for (const std::uint32_t n : touched_) {
+    const FourFloats& p = coarsePush_[n];
+    push_[n] = Vec3(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
   }
   vessel_->respond(push_, answer_);
-  if (grown_ != nullptr) grown_->react(*organ_, organ, model_.organs().size() + tree_, *vessel_, answer_);
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < share_.size(); ++k) {
-    sum -= share_[k].weight * answer_[share_[k].node];
-    if (k + 1 < share_.size() && share_[k + 1].row == share_[k].row) continue;
-    fat.addToProduct(share_[k].row,
-                     {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])});
-    sum.setZero();
+  if (grown_ != nullptr) grown_->react(*organ_, organ, model_.organs().size() + tree_, *vessel_, touched_, answer_);
+  for (const std::uint32_t n : touched_) {
+    coarsePush_[n] = FourFloats{static_cast<float>(answer_[n][0]), static_cast<float>(answer_[n][1]),
+                                static_cast<float>(answer_[n][2]), 0.0F};
+  }
+  for (std::size_t r = 0; r < row_.size(); ++r) {
+    FourFloats sum{};
+    for (std::size_t k = start_[r]; k < start_[r + 1]; ++k) sum -= shareOf_[k] * coarsePush_[node_[k]];
+    fat.addToProduct(row_[r], {sum[0], sum[1], sum[2]});
   }
 }
 
 void VesselReaction::pull(const FatMotion& fat, VesselBody& vessel) {
-  push_.assign(vessel.nodes(), Vec3::Zero());
+  for (const std::uint32_t n : touched_) push_[n].setZero();
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (!(weight_[i] > 0.0)) continue;
     const Vec3 now = placeOf(i).of(fat.freeVelocity());

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/math/vectors.h"
 #include "sim/solid/system_coupling.h"
 #include "sim/step/fat_motion.h"
 #include "sim/step/tie_coupling.h"
@@ -46,9 +47,10 @@ class VesselReaction final : public SystemCoupling {
   void passOn(const FatMotion& fat, const VesselBody& vessel, std::vector<Vec3>& impulse);
 
  private:
-  /// By how much a row of the fat's system takes part in the force on a node: h d w, summed over ties (kg).
+  /// By how much a row of the fat's system takes part in the force on a node: h d w of one tie (kg).
   struct Share {
-    std::uint32_t row, node;
+    std::size_t row;
+    std::uint32_t node;
     double weight;
   };
 
@@ -59,14 +61,19 @@ class VesselReaction final : public SystemCoupling {
   std::size_t fat_, tree_;
   std::vector<std::size_t> tie_;  ///< of the model
   bool holds_ = false;
-  std::vector<double> weight_;          ///< h d (kg)
-  std::vector<Vec3> fatSeen_;           ///< velocity at the tie that the vessels know of (m/s)
-  std::vector<Vec3> vesselSeen_;        ///< per node: its velocity that the fat knows of (m/s)
-  std::vector<Share> share_;            ///< by rows, then nodes
-  VesselBody* vessel_ = nullptr;        ///< of assemble()
-  TieCoupling* grown_ = nullptr;        ///< how they are grown to an organ, or null
-  const SolidSystem* organ_ = nullptr;  ///< of that
-  std::vector<Vec3> push_, answer_;
+  std::vector<double> weight_;    ///< h d (kg)
+  std::vector<Vec3> fatSeen_;     ///< velocity at the tie that the vessels know of (m/s)
+  std::vector<Vec3> vesselSeen_;  ///< per node: its velocity that the fat knows of (m/s)
+  // h d P, summed over ties: by rows of the fat's system, then nodes.
+  std::vector<std::size_t> row_, start_;  ///< rows; where their shares begin, and the end
+  std::vector<std::uint32_t> node_;       ///< per share
+  std::vector<float> shareOf_;            ///< per share (kg)
+  std::vector<std::uint32_t> touched_;    ///< nodes with any share, ascending
+  VesselBody* vessel_ = nullptr;          ///< of assemble()
+  TieCoupling* grown_ = nullptr;          ///< how they are grown to an organ, or null
+  const SolidSystem* organ_ = nullptr;    ///< of that
+  std::vector<FourFloats> coarsePush_;
+  std::vector<Vec3> push_, answer_;  ///< `push_` is zero where nothing is touched
 };
 
 }  // namespace calot
