@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/solid/system_coupling.h"
 #include "sim/solid/row_lanes.h"
 #include "sim/solid/sweeps.h"
+#include "sim/solid/system_coupling.h"
 
 namespace calot {
 

@@ -150,7 +150,7 @@ class SolidSolver {
   const SolidSystem* system_ = nullptr;  ///< of this step: the model's, or part_
   SolidSystem part_;                     ///< of the remaining cubes
   std::uint64_t systemVersion_ = 0;
-  std::vector<std::uint8_t> present_;    ///< per cube: is it in part_?
+  std::vector<std::uint8_t> present_;  ///< per cube: is it in part_?
   std::vector<ElementResult> element_;
   std::vector<HexahedronResult> hexahedron_;
   std::vector<double> mass_;  ///< of the nodes, if cubes are not full
