@@ -152,7 +152,7 @@ struct SolverDescription {
   double speedTolerance = 1e-6;     ///< an error whose energy is that of a body at this speed ends a solve, too (m/s)
   std::uint32_t iterations = 200;   ///< cap of the linear solve
   double responseTolerance = 1e-3;  ///< relative residual of the solves that carry out changes of contact forces
-  double responseSpeedTolerance = 1e-5;  ///< as speedTolerance, of those (m/s)
+  double responseSpeedTolerance = 3e-6;  ///< as speedTolerance, of those (m/s)
   double contactTolerance = 1e-8;        ///< residual of the contact problem (m)
   std::uint32_t contactPasses = 3;       ///< at most so often is it posed anew with the gaps that its forces left
   std::uint32_t contactIterations = 100;

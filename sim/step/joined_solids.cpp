@@ -145,7 +145,10 @@ SolveReport JoinedSolids::solveUnconstrained(std::size_t group, std::span<TieCou
     reaction->assemble(*fat_[reaction->fat()], *vessel_[reaction->tree()], tie,
                        tie != nullptr ? &organ_[tie->organ()]->solver().system() : nullptr);
   }
-  return solve(group, grown, settings_);
+  SolidSolver::Settings settings = settings_;
+  // Corners of nearly empty cubes weigh next to nothing: with a tolerance of speed they go on trembling.
+  if (group_[group].back() >= firstFat()) settings.speedTolerance = 0.0;
+  return solve(group, grown, settings);
 }
 
 SolveReport JoinedSolids::solve(std::size_t group, std::span<TieCoupling> grown,
