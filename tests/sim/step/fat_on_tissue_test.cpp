@@ -144,7 +144,7 @@ TEST(FatOnTissue, PressedOnAnOrganItDoesNotPass) {
   }
 }
 
-/// With a slab of ten times its mass behind it.
+/// With a heavier slab behind it.
 TEST(FatOnTissue, ThrownAtAnOrganItDoesNotPass) {
   for (const std::uint32_t ticks : {2U, 10U, 20U}) {
     for (const double speed : {0.1, 0.5, 1.0}) {
