@@ -94,11 +94,10 @@ void JoinedSolids::lineariseFatTies(const State& state, const std::vector<bool>&
 }
 
 void JoinedSolids::linearise(const State& state, const std::vector<bool>& awake, std::span<TieCoupling> grown) {
-  for (std::size_t s = 0; s < first_.size(); ++s) first_[s] = s < organ_.size() ? s : s + vessel_.size();
+  for (std::size_t s = 0; s < first_.size(); ++s) first_[s] = bodyOf(s);
   lineariseTissues(state, awake);
   lineariseFatTies(state, awake, grown);
   std::size_t groups = 0;
-  const auto bodyOf = [&](std::size_t s) { return s < organ_.size() ? s : s + vessel_.size(); };
   for (std::size_t s = 0; s < first_.size(); ++s) {
     if (first_[s] != bodyOf(s)) continue;
     if (group_.size() == groups) group_.emplace_back();

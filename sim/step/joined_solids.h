@@ -76,6 +76,9 @@ class JoinedSolids {
   [[nodiscard]] std::size_t numberOf(std::size_t body) const {
     return body < organ_.size() ? body : body - vessel_.size();
   }
+  [[nodiscard]] std::size_t bodyOf(std::size_t number) const {
+    return number < organ_.size() ? number : number + vessel_.size();
+  }
   void lineariseTissues(const State& state, const std::vector<bool>& awake);
   void lineariseFatTies(const State& state, const std::vector<bool>& awake, std::span<TieCoupling> grown);
   /// How a tree of vessels is grown to an organ, or null.
