@@ -6,6 +6,15 @@
 
 namespace calot {
 
+namespace {
+
+/// With fat no tolerance of speed ends a solve (solveUnconstrained()), and its relative tolerance is by this larger.
+/// Larger: motion of fat is less exact; smaller: slower, with no figure of a grade nearer to its limit
+/// (docs/accuracy.md).
+constexpr double fatToleranceFactor = 10.0;
+
+}  // namespace
+
 JoinedSolids::JoinedSolids(const Model& model, std::vector<OrganBody*> organs, std::vector<VesselBody*> vessels,
                            std::vector<FatMotion*> fat, const SolidSolver::Settings& settings,
                            const SolidSolver::Settings& responses)
@@ -146,7 +155,10 @@ SolveReport JoinedSolids::solveUnconstrained(std::size_t group, std::span<TieCou
   }
   SolidSolver::Settings settings = settings_;
   // Corners of nearly empty cubes weigh next to nothing: with a tolerance of speed they go on trembling.
-  if (group_[group].back() >= firstFat()) settings.speedTolerance = 0.0;
+  if (group_[group].back() >= firstFat()) {
+    settings.speedTolerance = 0.0;
+    settings.tolerance *= fatToleranceFactor;
+  }
   return solve(group, grown, settings);
 }
 

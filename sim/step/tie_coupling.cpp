@@ -147,12 +147,11 @@ void TieCoupling::pull(std::span<const Vec3> organVelocity, std::span<VesselBody
 }
 
 void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel,
-                        const VesselBody& beams, std::span<const std::uint32_t> nodes, std::vector<Vec3>& answer) {
+                        std::span<const Vec3> answer, std::vector<Vec3>& push) {
+  push.assign(tie_.size(), Vec3::Zero());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
-    change_[i].setZero();
     more_[i].setZero();
     if (vesselOf(i) != vessel) continue;
-    change_[i] = answer[static_cast<std::size_t>(nodeOf(i))];
     const MaterialPoint& place = tie(i).place[0];
     for (std::size_t k = 0; k < place.count; ++k) {
       const int row = organ.row(static_cast<std::size_t>(place.node[k]));
@@ -164,9 +163,8 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
   }
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (vesselOf(i) != vessel) continue;
-    const Vec3 back = step_ * applied(i, change_);
-    const Vec3 push = step_ * applied(i, more_) - back;
-    for (const std::uint32_t n : nodes) answer[n] += beams.block(static_cast<int>(n), nodeOf(i)) * push;
+    const Vec3 back = step_ * applied(i, answer);
+    push[i] = step_ * applied(i, more_) - back;
     const MaterialPoint& place = tie(i).place[0];
     for (std::size_t k = 0; k < place.count; ++k) {
       const int row = organ.row(static_cast<std::size_t>(place.node[k]));

@@ -37,12 +37,16 @@ class TieCoupling {
   [[nodiscard]] const JointAttachment& joint() const { return joint_; }
   /// Pulls the vessels, with these velocities of the organ's nodes. @pre begin()
   void pull(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels);
+  [[nodiscard]] std::size_t size() const { return tie_.size(); }
+  /// Node of the vessel's body at which a tie holds. @return -1: it holds another body
+  [[nodiscard]] int nodeOf(std::size_t tie, std::size_t vessel) const {
+    return vesselOf(tie) == vessel ? nodeOf(tie) : -1;
+  }
   /// Of the product of the matrix of organ, vessels and what else pulls these, with the present search direction: how
-  /// the organ's ties change a vessel's response, and what the organ feels of it. @param vessel its body's number
-  /// @param answer of its nodes to the other pulls, without the ties @pre begin()
-  /// @param nodes whose answers are asked for
-  void react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel, const VesselBody& beams,
-             std::span<const std::uint32_t> nodes, std::vector<Vec3>& answer);
+  /// the organ's ties push a vessel, and what the organ feels of it. @param vessel its body's number @param answer to
+  /// the other pulls, without the ties, where each tie of this vessel holds @param push per tie @pre begin()
+  void react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel, std::span<const Vec3> answer,
+             std::vector<Vec3>& push);
 
   /// Impulses on the organ's nodes by which it feels what vessels were pushed since; holds these, with these velocities
   /// of the organ's nodes. Then the organ has to be pushed, and pull() called.

@@ -25,8 +25,9 @@ class VesselBody final : public Body {
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
   /// Adds the answer to impulses on the nodes (N s). @pre solveUnconstrained() of this step
   void applyImpulses(std::span<const Vec3> impulse) { solver_.applyImpulses(beams_, impulse); }
-  /// That answer alone, which is added to nothing.
-  void respond(std::span<const Vec3> impulse, std::vector<Vec3>& out) { solver_.respond(beams_, impulse, out); }
+  [[nodiscard]] const BeamModel& model() const { return beams_; }
+  /// @pre solveUnconstrained() of this step
+  [[nodiscard]] const BeamSolver& solver() const { return solver_; }
   void precomputeCompliance(std::span<const int> nodes) override { solver_.precomputeCompliance(beams_, nodes); }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override;
   [[nodiscard]] Mat3 block(int a, int b) const override { return solver_.block(a, b); }

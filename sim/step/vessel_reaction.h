@@ -11,6 +11,7 @@
 #include "sim/step/fat_motion.h"
 #include "sim/step/tie_coupling.h"
 #include "sim/step/vessel_body.h"
+#include "sim/vessel/tree_response.h"
 
 namespace calot {
 
@@ -19,7 +20,7 @@ namespace calot {
 /// answer to fat is
 ///   -(h d P)^T N A_v^-1 N^T (h d P)
 /// in the fat's matrix: the system of both, solved by elimination (a Schur complement). Each product with it costs one
-/// substitution in A_v. Vessels that are grown to an organ couple it to the fat besides (TieCoupling::react()).
+/// pass over the vessels (TreeResponse). Vessels that are grown to an organ couple it to the fat besides (TieCoupling::react()).
 class VesselReaction final : public SystemCoupling {
  public:
   VesselReaction(const Model& model, std::size_t fat, std::size_t tree);
@@ -56,6 +57,9 @@ class VesselReaction final : public SystemCoupling {
 
   [[nodiscard]] std::size_t nodeOf(std::size_t i) const;
   [[nodiscard]] const MaterialPoint& placeOf(std::size_t i) const;
+  void sumShares(const SolidSystem& fat, const TieCoupling* grown);
+  void findReach(const VesselBody& vessel);
+  void addGrown(ConjugateGradient& organ);
 
   const Model& model_;
   std::size_t fat_, tree_;
@@ -66,14 +70,20 @@ class VesselReaction final : public SystemCoupling {
   std::vector<Vec3> vesselSeen_;  ///< per node: its velocity that the fat knows of (m/s)
   // h d P, summed over ties: by rows of the fat's system, then nodes.
   std::vector<std::size_t> row_, start_;  ///< rows; where their shares begin, and the end
-  std::vector<std::uint32_t> node_;       ///< per share
+  std::vector<std::uint32_t> node_;       ///< per share: number in `touched_`
   std::vector<float> shareOf_;            ///< per share (kg)
-  std::vector<std::uint32_t> touched_;    ///< nodes with any share, ascending
-  VesselBody* vessel_ = nullptr;          ///< of assemble()
+  std::vector<std::uint32_t> touched_;    ///< nodes with any share, and those grown to an organ, ascending
+  std::vector<double> summed_;            ///< weights of which those are the sums
+  std::uint64_t version_ = 0;             ///< of the fat's system for which they are
   TieCoupling* grown_ = nullptr;          ///< how they are grown to an organ, or null
   const SolidSystem* organ_ = nullptr;    ///< of that
-  std::vector<FourFloats> coarsePush_;
-  std::vector<Vec3> push_, answer_;  ///< `push_` is zero where nothing is touched
+  TreeResponse response_;
+  std::vector<FourFloats> moved_;  ///< pushes, then answers, of `touched_`
+  // Of ties of `grown_`: the nodes that they hold, in `touched_`, or none; how `touched_` answer, by columns.
+  std::vector<std::uint32_t> held_;
+  std::vector<FourFloats> reach_;
+  std::vector<Vec3> heldAnswer_, heldPush_;
+  std::vector<Vec3> push_;  ///< of pull(), per node
 };
 
 }  // namespace calot

@@ -149,24 +149,13 @@ void BeamSolver::solveInto(const BeamModel& model) {
   }
 }
 
-void BeamSolver::takeImpulses(const BeamModel& model, std::span<const Vec3> impulse) {
+void BeamSolver::applyImpulses(const BeamModel& model, std::span<const Vec3> impulse) {
   assert(impulse.size() == right_.size());
   for (std::size_t n = 0; n < right_.size(); ++n) {
     right_[n].fill(0.0);
     if (!model.fixed(n)) add(right_[n], 0, 1.0, impulse[n]);
   }
-}
-
-void BeamSolver::applyImpulses(const BeamModel& model, std::span<const Vec3> impulse) {
-  takeImpulses(model, impulse);
   solveInto(model);
-}
-
-void BeamSolver::respond(const BeamModel& model, std::span<const Vec3> impulse, std::vector<Vec3>& out) {
-  takeImpulses(model, impulse);
-  tree_.solve(model.parents(), right_);
-  out.resize(right_.size());
-  for (std::size_t n = 0; n < right_.size(); ++n) out[n] = Vec3(right_[n][0], right_[n][1], right_[n][2]);
 }
 
 void BeamSolver::precomputeCompliance(const BeamModel& model, std::span<const int> nodes) {

@@ -63,8 +63,8 @@ class BeamSolver {
   /// Adds the response to impulses on the nodes. @pre solveUnconstrained() of this step was called. @param impulse
   /// per node (N s)
   void applyImpulses(const BeamModel& model, std::span<const Vec3> impulse);
-  /// The nodes' response alone, which is added to nothing.
-  void respond(const BeamModel& model, std::span<const Vec3> impulse, std::vector<Vec3>& out);
+  /// The matrix of this step, factorised. @pre solveUnconstrained() of this step was called
+  [[nodiscard]] const BlockTree& matrix() const { return tree_; }
 
   /// Computes the columns that block() needs for impulses on these nodes, each once per step. @pre
   /// solveUnconstrained() of this step
@@ -87,7 +87,6 @@ class BeamSolver {
   void assembleNodes(const BeamModel& model, const BeamState& state, const BeamLoads& loads);
   void assembleElement(const BeamModel& model, const BeamState& state, std::size_t index);
   void solveInto(const BeamModel& model);
-  void takeImpulses(const BeamModel& model, std::span<const Vec3> impulse);
   bool limitPieces(const BeamModel& model, const BeamState& state);
 
   double step_ = 0.0;

@@ -184,6 +184,15 @@ void BlockTree::solve(std::span<const int> parent, std::span<Vector6> x) const {
   }
 }
 
+void BlockTree::eliminate(std::size_t node, Block6& inverse, Block6& gain) const {
+  inverse.fill(0.0);
+  for (std::size_t i = 0; i < 6; ++i) inverse[7 * i] = 1.0;
+  forward<6>(diagonal_[node], inverse.data());
+  backward<6>(diagonal_[node], inverse.data());
+  gain = coupling_[node];
+  backward<6>(diagonal_[node], gain.data());
+}
+
 void BlockTree::columns(std::span<const int> parent, std::size_t node, std::span<double> out) {
   columnsOf(diagonal_.data(), coupling_.data(), parent, node, work_.data(), out.data());
 }

@@ -42,6 +42,9 @@ class BlockTree {
   /// Solves in place. @pre factor(); x.size() is the number of nodes
   void solve(std::span<const int> parent, std::span<Vector6> x) const;
 
+  /// A_i'^-1 and A_i'^-1 B_i, with A_i' what elimination of a node's children left of its A_i. @pre factor()
+  void eliminate(std::size_t node, Block6& inverse, Block6& gain) const;
+
   /// Translations of all nodes for unit right-hand sides on the three translations of one node: out[9 a + 3 i + k] is
   /// component i at node a for direction k. @pre factor(). @param out 9 numbers for each node
   void columns(std::span<const int> parent, std::size_t node, std::span<double> out);
