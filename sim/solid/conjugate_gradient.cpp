@@ -100,20 +100,6 @@ double ConjugateGradient::update(const Part& part, float alpha) {
   return sumOf(dot);
 }
 
-std::array<float, 3> ConjugateGradient::directionAt(std::size_t row) const {
-  if (pairs_) {
-    const float* p = pq_.data() + row * rows::pairStride;
-    return {p[0], p[1], p[2]};
-  }
-  const float* t = t_.data() + laneOffset(row);
-  return {t[0], t[laneCount], t[2 * laneCount]};
-}
-
-void ConjugateGradient::addToProduct(std::size_t row, const std::array<float, 3>& value) {
-  float* to = pairs_ ? uw_.data() + row * rows::pairStride + rowStride : u_.data() + row * rowStride;
-  for (std::size_t i = 0; i < 3; ++i) to[i] += value[i];
-}
-
 SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::span<const Coupled> couplings,
                                            const SolveGoal& goal) {
   const auto sumOver = [&](auto&& of) {

@@ -14,7 +14,9 @@
 #include <span>
 #include <vector>
 
+#include "sim/math/vectors.h"
 #include "sim/solid/block_matrix.h"
+#include "sim/solid/row_lanes.h"
 
 namespace calot {
 
@@ -81,9 +83,19 @@ class ConjugateGradient {
   static SolveReport solveJoined(std::span<const Part> parts, std::span<const Coupled> couplings,
                                  const SolveGoal& goal);
 
-  /// Search direction of the present iteration at a row, and what is added to the product there: of couplings.
-  [[nodiscard]] std::array<float, 3> directionAt(std::size_t row) const;
-  void addToProduct(std::size_t row, const std::array<float, 3>& value);
+  /// Search direction of the present iteration at a row; the last number is zero.
+  [[nodiscard]] FourFloats directionAt(std::size_t row) const {
+    if (pairs_) {
+      const float* p = pq_.data() + row * rows::pairStride;
+      return FourFloats{p[0], p[1], p[2], 0.0F};
+    }
+    const float* t = t_.data() + laneOffset(row);
+    return FourFloats{t[0], t[laneCount], t[2 * laneCount], 0.0F};
+  }
+  /// Adds to the product there what a coupling contributes. @param value its last number is zero
+  void addToProduct(std::size_t row, const FourFloats& value) {
+    rows::addTo(pairs_ ? uw_.data() + row * rows::pairStride + rowStride : u_.data() + row * rowStride, value);
+  }
 
   /// Eight right-hand sides at once: component i of row r of vector k stands at 24 r + 8 i + k. Zero ones stay zero at
   /// no extra cost. The solution of one does not depend on the others.

@@ -90,14 +90,13 @@ void PointCoupling::assemble(std::span<const double> damper, double step) {
 
 void PointCoupling::Side::gather(const ConjugateGradient& from) {
   for (std::size_t r = 0; r < row.size(); ++r) {
-    const std::array<float, 3> d = from.directionAt(row[r]);
-    direction[r] = FourFloats{d[0], d[1], d[2], 0.0F};
+    direction[r] = from.directionAt(row[r]);
     product[r] = FourFloats{};
   }
 }
 
 void PointCoupling::Side::scatter(ConjugateGradient& to) const {
-  for (std::size_t r = 0; r < row.size(); ++r) to.addToProduct(row[r], {product[r][0], product[r][1], product[r][2]});
+  for (std::size_t r = 0; r < row.size(); ++r) to.addToProduct(row[r], product[r]);
 }
 
 void PointCoupling::addTo(ConjugateGradient& first, ConjugateGradient& second) {

@@ -156,7 +156,7 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
     for (std::size_t k = 0; k < place.count; ++k) {
       const int row = organ.row(static_cast<std::size_t>(place.node[k]));
       if (row < 0) continue;
-      const std::array<float, 3> d = gradient.directionAt(static_cast<std::size_t>(row));
+      const FourFloats d = gradient.directionAt(static_cast<std::size_t>(row));
       more_[i] +=
           place.weight[k] * Vec3(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]));
     }
@@ -170,8 +170,9 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
       const int row = organ.row(static_cast<std::size_t>(place.node[k]));
       if (row < 0) continue;
       const Vec3 share = -place.weight[k] * back;
-      gradient.addToProduct(static_cast<std::size_t>(row),
-                            {static_cast<float>(share[0]), static_cast<float>(share[1]), static_cast<float>(share[2])});
+      gradient.addToProduct(
+          static_cast<std::size_t>(row),
+          FourFloats{static_cast<float>(share[0]), static_cast<float>(share[1]), static_cast<float>(share[2]), 0.0F});
     }
   }
 }

@@ -129,8 +129,7 @@ void VesselReaction::findReach(const VesselBody& vessel) {
 void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
   moved_.assign(touched_.size(), FourFloats{});
   for (std::size_t r = 0; r < row_.size(); ++r) {
-    const std::array<float, 3> d = fat.directionAt(row_[r]);
-    const FourFloats along{d[0], d[1], d[2], 0.0F};
+    const FourFloats along = fat.directionAt(row_[r]);
     for (std::size_t k = start_[r]; k < start_[r + 1]; ++k) moved_[node_[k]] += shareOf_[k] * along;
   }
   response_.solve(moved_);
@@ -138,7 +137,7 @@ void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
   for (std::size_t r = 0; r < row_.size(); ++r) {
     FourFloats sum{};
     for (std::size_t k = start_[r]; k < start_[r + 1]; ++k) sum -= shareOf_[k] * moved_[node_[k]];
-    fat.addToProduct(row_[r], {sum[0], sum[1], sum[2]});
+    fat.addToProduct(row_[r], sum);
   }
 }
 
