@@ -53,12 +53,13 @@ void ConjugateGradient::clear(std::size_t size) {
   for (std::vector<float>* v : {&r_, &z_, &p_, &t_, &s_}) v->assign(size, 0.0F);
 }
 
-void ConjugateGradient::begin(const Part& part) {
+void ConjugateGradient::begin(const Part& part, bool goesOn) {
   const BlockMatrix& matrix = part.matrix;
   pairs_ = part.lattice != nullptr;
+  if (goesOn) std::swap(left_, r_);
   clear(matrix.vectorSize());
   std::fill(part.x.begin(), part.x.end(), 0.0F);
-  if (pairs_) return beginPairs(part);
+  if (pairs_) return beginPairs(part, goesOn);
   sRows_.assign(matrix.rows() * rowStride, 0.0F);
   u_.resize(matrix.rows() * rowStride);
   for (std::size_t row = 0; row < matrix.rows(); ++row) {
@@ -68,6 +69,12 @@ void ConjugateGradient::begin(const Part& part) {
   }
   Eight dot{};
   sweeps::forward(slicesOf(matrix, part.values), u_.data(), r_.data(), sRows_.data(), p_.data(), t_.data(), dot.data());
+  if (goesOn) startFrom(left_);
+}
+
+/// r += what was left.
+void ConjugateGradient::startFrom(const std::vector<float>& left) {
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] += left[i];
 }
 
 void ConjugateGradient::backward(const Part& part, float beta) {
@@ -107,7 +114,7 @@ SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::spa
     for (const Part& part : parts) sum += of(part);
     return sum;
   };
-  for (const Part& part : parts) part.gradient.begin(part);
+  for (const Part& part : parts) part.gradient.begin(part, goal.goesOn);
   // With a lattice r is the residual itself, which the update subtracts from zero.
   const double start =
       sumOver([](const Part& part) { return part.gradient.update(part, part.gradient.pairs_ ? -1.0F : 0.0F); });
@@ -132,6 +139,7 @@ SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::spa
     ++report.iterations;
   }
   report.residual = std::sqrt(std::max(0.0, size) / from);
+  report.left = std::sqrt(std::max(0.0, size));
   report.converged = size <= target;
   return report;
 }

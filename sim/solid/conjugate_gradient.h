@@ -32,6 +32,7 @@ struct SolveReport {
   /// |r| / |b| by the recursion, in the norm of the preconditioner's inverse, maximum over the right-hand sides; close
   /// to the relative error in the energy norm. If |b|^2 is below SolveGoal::from(), relative to the root of that.
   double residual = 0.0;
+  double left = 0.0;  ///< |r|
   bool converged = true;
 };
 
@@ -40,6 +41,7 @@ struct SolveGoal {
   double tolerance = 1e-4;
   std::uint32_t cap = 200;  ///< of iterations
   double absolute = 0.0;    ///< absolute tolerance (kg^1/2 m/s, for b in N s)
+  bool goesOn = false;      ///< is what the last solve left open part of b? @pre the matrix is the same
 
   /// Square of the smallest |b| that the relative tolerance applies to.
   [[nodiscard]] double from() const { return absolute > 0.0 ? (absolute / tolerance) * (absolute / tolerance) : 0.0; }
@@ -104,12 +106,12 @@ class ConjugateGradient {
 
  private:
   /// One iteration in pieces. The sums of forward() and update() over all parts are p.Ap and r.z of the whole.
-  void begin(const Part& part);
+  void begin(const Part& part, bool goesOn);
   void backward(const Part& part, float beta);
   [[nodiscard]] double forward(const Part& part);
   [[nodiscard]] double update(const Part& part, float alpha);
   // The same with a lattice: lattice_gradient.cpp.
-  void beginPairs(const Part& part);
+  void beginPairs(const Part& part, bool goesOn);
   void backwardPairs(const Part& part, float beta);
   [[nodiscard]] double forwardPairs(const Part& part);
   [[nodiscard]] double updatePairs(const Part& part, float alpha);
@@ -117,12 +119,13 @@ class ConjugateGradient {
   [[nodiscard]] static double sumOf(const std::array<double, laneCount>& lanes);
   /// Zeroes the work vectors.
   void clear(std::size_t size);
+  void startFrom(const std::vector<float>& left);
   [[nodiscard]] sweeps::Slices slicesOf(const BlockMatrix& matrix, std::span<const float> values) const;
   void addExtraMany();
 
   std::vector<float> inverse_;  ///< 3x3 inverse diagonal blocks: per slice 9 x 8 lanes
   std::vector<ExtraBlock> extra_;
-  std::vector<float> r_, z_, p_, t_, s_;
+  std::vector<float> r_, z_, p_, t_, s_, left_;
   std::vector<float> u_, sRows_;            ///< by rows: u, and for a single right-hand side a copy of s
   std::vector<float> q_, y_, c_, uw_, pq_;  ///< with a lattice: lattice_gradient.cpp
   bool pairs_ = false;                      ///< does the present solve have a lattice?

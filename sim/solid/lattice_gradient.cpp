@@ -16,9 +16,14 @@
 namespace calot {
 
 /// q = b, s = K^-1 b.
-void ConjugateGradient::beginPairs(const Part& part) {
+void ConjugateGradient::beginPairs(const Part& part, bool goesOn) {
   const std::size_t size = part.matrix.vectorSize();
-  for (std::vector<float>* v : {&q_, &y_, &c_}) v->assign(size, 0.0F);
+  for (std::vector<float>* v : {&q_, &c_}) v->assign(size, 0.0F);
+  if (goesOn) {
+    startFrom(left_);  // y goes with it
+  } else {
+    y_.assign(size, 0.0F);
+  }
   for (std::vector<float>* v : {&uw_, &pq_}) v->assign(part.matrix.rows() * rows::pairStride, 0.0F);
   for (std::size_t row = 0; row < part.matrix.rows(); ++row) {
     for (std::size_t i = 0; i < 3; ++i) {

@@ -75,6 +75,7 @@ class SolidSolver {
     bool lattice = true;  ///< where CoarseLattice::isWorthwhile()
     /// Absolute tolerance: the error's energy is that of the whole solid moving at this speed (m/s).
     double speedTolerance = 0.0;
+    bool goesOn = false;  ///< SolveGoal::goesOn
   };
 
   /// Precomputes the coarse lattice of a large model, which its first step would otherwise do.

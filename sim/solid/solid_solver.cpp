@@ -110,7 +110,7 @@ SolveReport SolidSolver::solveJoined(std::span<SolidSolver* const> solids, std::
     smooth = smooth && lattice != nullptr;
   }
   for (const Coupled& c : couplings) coupled.push_back({c.first, c.second, c.by});
-  SolveGoal goal{settings.tolerance, settings.cap, settings.speedTolerance * std::sqrt(mass)};
+  SolveGoal goal{settings.tolerance, settings.cap, settings.speedTolerance * std::sqrt(mass), settings.goesOn};
   if (smooth) {
     goal.tolerance *= smoothErrorFactor;
     goal.absolute *= smoothErrorFactor;

@@ -48,8 +48,8 @@ void ContactSolution::applyToGroup(Bodies& bodies, const Activity& activity, con
     pushed = pushed || !nodal_.empty();
     bodies.joined().solid(b).solver().takeImpulses(nodal_);
   }
-  if (!pushed) return;
-  const SolveReport report = bodies.joined().applyImpulses(group, bodies.couplings());
+  if (!pushed && !bodies.joined().isOpen(group)) return;
+  const SolveReport report = bodies.joined().applyImpulses(group, bodies.couplings(), loose_);
   reportMiss(bodies, members[0], report, log);
 }
 
@@ -177,6 +177,8 @@ void ContactSolution::run(Bodies& bodies, const Activity& activity, const Instru
   contact.freeGap.resize(rows);
   gap_.resize(rows);
   change_.resize(rows);
+  loose_ = false;
+  if (rows == 0) applyContactImpulses(bodies, activity, contact, log);  // what free motion left open
   const ContactProblem problem{contact.kinds, contact.limits, contact.compliance, contact.freeGap};
   for (result.passes = 0; rows > 0;) {
     // Free gaps that give back the true ones under the present forces.
@@ -184,10 +186,12 @@ void ContactSolution::run(Bodies& bodies, const Activity& activity, const Instru
     evaluateGaps(problem, contact.lambda, gap_);
     for (std::size_t i = 0; i < rows; ++i) contact.freeGap[i] = contact.trueGap[i] - gap_[i];
     result.error = naturalResidual(problem, contact.lambda, contact.trueGap);
-    if (result.passes == scene.contactPasses || (result.passes > 0 && result.error <= std::max(closedGap, scene.contactTolerance))) break;
+    const bool closed = result.error <= std::max(closedGap, scene.contactTolerance);
+    if (result.passes == scene.contactPasses || (closed && result.passes > 1)) break;
     dimpleBefore_ = contact.dimpleGap;
     solve(problem, contact, result);
     ++result.passes;
+    loose_ = result.passes == 1 && scene.contactPasses > 1;  // another follows
     updateComplianceEstimate(bodies, activity, travels, contact, log);
   }
   if (result.residual > scene.contactTolerance) {

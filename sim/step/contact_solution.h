@@ -36,6 +36,7 @@ class ContactSolution {
 
   const Model& model_;
   ContactSolver solver_;
+  bool loose_ = false;  ///< does another pass go on from the present one's solves?
   std::vector<double> gap_, change_;
   std::vector<double> gapBefore_, dimpleBefore_, forces_, expected_, response_;
   std::vector<Vec3> nodal_;

@@ -12,6 +12,9 @@ namespace {
 /// Larger: motion of fat is less exact; smaller: slower, with no figure of a grade nearer to its limit
 /// (docs/accuracy.md).
 constexpr double fatToleranceFactor = 10.0;
+/// Tolerance of speed of solves that others of the same step go on from, over that of responses. Larger: contact takes
+/// more passes; smaller: solves do what the next ones do again. Measured on the whole operation.
+constexpr double looseFactor = 3.0;
 
 }  // namespace
 
@@ -117,6 +120,7 @@ void JoinedSolids::linearise(const State& state, const std::vector<bool>& awake,
     }
   }
   group_.resize(groups);
+  open_.assign(groups, false);
 }
 
 void JoinedSolids::addAttachments(std::size_t organ, std::vector<Attachment>& out) const {
@@ -136,7 +140,7 @@ void JoinedSolids::passOn(std::size_t body, std::vector<Vec3>& impulse) {
   }
 }
 
-SolveReport JoinedSolids::solveUnconstrained(std::size_t group, std::span<TieCoupling> grown) {
+SolveReport JoinedSolids::solveUnconstrained(std::size_t group, std::span<TieCoupling> grown, bool loose) {
   const std::size_t first = group_[group][0];
   for (FatTies& ties : fatTies_) {
     if (!ties.holds || first_[ties.organ] != first) continue;
@@ -159,6 +163,16 @@ SolveReport JoinedSolids::solveUnconstrained(std::size_t group, std::span<TieCou
     settings.speedTolerance = 0.0;
     settings.tolerance *= fatToleranceFactor;
   }
+  if (loose) settings.speedTolerance = std::max(settings.speedTolerance, looseFactor * responses_.speedTolerance);
+  open_[group] = loose;
+  return solve(group, grown, settings);
+}
+
+SolveReport JoinedSolids::applyImpulses(std::size_t group, std::span<TieCoupling> grown, bool loose) {
+  SolidSolver::Settings settings = responses_;
+  settings.goesOn = true;
+  if (loose) settings.speedTolerance *= looseFactor;
+  open_[group] = loose;
   return solve(group, grown, settings);
 }
 

@@ -45,13 +45,17 @@ class JoinedSolids {
   void addAttachments(std::size_t organ, std::vector<Attachment>& out) const;
 
   /// Solves the motion of a group, which pulls the vessels that are tied to it. @param grown vessels on organs
+  /// @param loose applyImpulses() will follow, and solve what this leaves open
   /// @pre SolidBody::assembleUnconstrained() of each of its solids
-  SolveReport solveUnconstrained(std::size_t group, std::span<TieCoupling> grown);
+  SolveReport solveUnconstrained(std::size_t group, std::span<TieCoupling> grown, bool loose);
   /// Impulses on fat by which it feels what the vessels in it were pushed since. @pre TieCoupling::passOn() of the
   /// group
   void passOn(std::size_t body, std::vector<Vec3>& impulse);
-  /// Solves the response to impulses, likewise. @pre SolidSolver::takeImpulses() of each of its solids
-  SolveReport applyImpulses(std::size_t group, std::span<TieCoupling> grown) { return solve(group, grown, responses_); }
+  /// Solves the response to impulses and to what the last solve left open, likewise. @pre SolidSolver::takeImpulses()
+  /// of each of its solids
+  SolveReport applyImpulses(std::size_t group, std::span<TieCoupling> grown, bool loose);
+  /// Has another solve to follow?
+  [[nodiscard]] bool isOpen(std::size_t group) const { return open_[group]; }
 
  private:
   /// A connective tissue's part in the system of its group.
@@ -101,6 +105,7 @@ class JoinedSolids {
   std::vector<std::unique_ptr<VesselReaction>> reaction_;  ///< per fat and tree
   std::vector<std::size_t> first_;                         ///< per solid: the first body of its group
   std::vector<std::vector<std::size_t>> group_;
+  std::vector<bool> open_;  ///< per group: was the last solve a loose one?
   std::vector<SolidSolver*> solver_;
   std::vector<SolidSolver::Coupled> coupled_;
 };

@@ -101,7 +101,7 @@ void UnconstrainedMotion::solveGroup(Bodies& bodies, const ContactSystem& contac
       bodies.joined().solid(b).assembleUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_,
                                                      {attachments_, {}, joints_});
     }
-    report = bodies.joined().solveUnconstrained(group, bodies.couplings());
+    report = bodies.joined().solveUnconstrained(group, bodies.couplings(), contact.rows > 0);
     reportMiss(bodies, members[0], report, log);
   }
   for (const std::size_t b : members) {
