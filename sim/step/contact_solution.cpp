@@ -15,9 +15,9 @@ namespace {
 /// lets the iteration diverge on soft folds; smaller costs solves. Assumed.
 constexpr double maxSurprise = 2.0;
 constexpr int maxDimpleSteps = 5;  ///< of Newton's method on the dimples, in each pass
-/// Gaps that are left by less need no further pass (m): the next step closes them. At the stiffness of organs under a
-/// tip half a millinewton. Larger: forces tremble; smaller costs solves. Measured on the whole operation.
-constexpr double closedGap = 1e-6;
+/// Gaps that are open or closed within this need no further pass (m): the next step closes them. At the stiffness of organs under a
+/// tip a millinewton. Larger: forces tremble; smaller costs solves. Measured on the whole operation.
+constexpr double closedGap = 2e-6;
 constexpr double minShare = 1e-3;  ///< tissue that responds by less than this share: rounding, not a response
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "sim/vessel/tree_response.h"
 
+#include "sim/math/lanes.h"
+
 namespace calot {
 
 void TreeResponse::prepare(const BlockTree& tree, std::span<const int> parent, std::span<const std::uint32_t> touched) {
@@ -22,19 +24,13 @@ void TreeResponse::prepare(const BlockTree& tree, std::span<const int> parent, s
     Node& node = node_.emplace_back();
     node.parent = parent[n] < 0 ? -1 : number_[static_cast<std::size_t>(parent[n])];
     tree.eliminate(n, inverse, gain);
+    const auto placeOf = [](std::size_t component) { return component < 3 ? component : component + 1; };
     for (std::size_t k = 0; k < 6; ++k) {
-      for (std::size_t half = 0; half < 2; ++half) {
-        FourFloats column{};
-        FourFloats row{};
-        FourFloats across{};
-        for (std::size_t i = 0; i < 3; ++i) {
-          column[i] = static_cast<float>(inverse[6 * (3 * half + i) + k]);
-          row[i] = static_cast<float>(gain[6 * k + 3 * half + i]);
-          across[i] = static_cast<float>(gain[6 * (3 * half + i) + k]);
-        }
-        node.inverse[k][half] = column;
-        node.up[k][half] = row;
-        node.down[k][half] = across;
+      node.inverse[k] = node.up[k] = node.down[k] = Motion{};
+      for (std::size_t i = 0; i < 6; ++i) {
+        node.inverse[k][placeOf(i)] = static_cast<float>(inverse[6 * i + k]);
+        node.up[k][placeOf(i)] = static_cast<float>(gain[6 * k + i]);
+        node.down[k][placeOf(i)] = static_cast<float>(gain[6 * i + k]);
       }
     }
   }
@@ -44,35 +40,42 @@ void TreeResponse::prepare(const BlockTree& tree, std::span<const int> parent, s
 }
 
 /// Sum of x's six numbers times the columns.
-CALOT_INLINE TreeResponse::Pair TreeResponse::sumOf(const std::array<Pair, 6>& columns, const Pair& x) {
-  Pair sum;
-  for (std::size_t half = 0; half < 2; ++half) {
-    const FourFloats moved = (x[0][0] * columns[0][half] + x[0][1] * columns[1][half]) + x[0][2] * columns[2][half];
-    const FourFloats turned = (x[1][0] * columns[3][half] + x[1][1] * columns[4][half]) + x[1][2] * columns[5][half];
-    sum[half] = moved + turned;
+CALOT_INLINE void TreeResponse::sumOf(const Columns& columns, const Motion& x, EightFloats& sum) {
+  EightFloats column[6];
+  for (std::size_t k = 0; k < 6; ++k) readVector(columns[k].data(), column[k]);
+  const EightFloats moved = (x[0] * column[0] + x[1] * column[1]) + x[2] * column[2];
+  const EightFloats turned = (x[4] * column[3] + x[5] * column[4]) + x[6] * column[5];
+  sum = moved + turned;
+}
+
+CALOT_LANE_KERNEL void TreeResponse::solveNodes(std::span<const Node> node, std::span<Motion> x) {
+  EightFloats own;
+  EightFloats sum;
+  for (std::size_t i = node.size(); i-- > 0;) {
+    const Motion y = x[i];
+    sumOf(node[i].inverse, y, own);
+    writeVector(own, x[i].data());
+    if (node[i].parent < 0) continue;
+    Motion& above = x[static_cast<std::size_t>(node[i].parent)];
+    sumOf(node[i].up, y, sum);
+    readVector(above.data(), own);
+    own -= sum;
+    writeVector(own, above.data());
   }
-  return sum;
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    if (node[i].parent < 0) continue;
+    sumOf(node[i].down, x[static_cast<std::size_t>(node[i].parent)], sum);
+    readVector(x[i].data(), own);
+    own -= sum;
+    writeVector(own, x[i].data());
+  }
 }
 
 void TreeResponse::solve(std::span<FourFloats> push) {
-  for (Pair& x : x_) x = Pair{};
-  for (std::size_t k = 0; k < touched_.size(); ++k) x_[touched_[k]][0] = push[k];
-  for (std::size_t i = node_.size(); i-- > 0;) {
-    const Node& node = node_[i];
-    const Pair y = x_[i];
-    x_[i] = sumOf(node.inverse, y);
-    if (node.parent < 0) continue;
-    Pair& above = x_[static_cast<std::size_t>(node.parent)];
-    const Pair passed = sumOf(node.up, y);
-    for (std::size_t half = 0; half < 2; ++half) above[half] -= passed[half];
-  }
-  for (std::size_t i = 0; i < node_.size(); ++i) {
-    const Node& node = node_[i];
-    if (node.parent < 0) continue;
-    const Pair followed = sumOf(node.down, x_[static_cast<std::size_t>(node.parent)]);
-    for (std::size_t half = 0; half < 2; ++half) x_[i][half] -= followed[half];
-  }
-  for (std::size_t k = 0; k < touched_.size(); ++k) push[k] = x_[touched_[k]][0];
+  for (Motion& x : x_) x.fill(0.0F);
+  for (std::size_t k = 0; k < touched_.size(); ++k) writeVector(push[k], x_[touched_[k]].data());
+  solveNodes(node_, x_);
+  for (std::size_t k = 0; k < touched_.size(); ++k) readVector(x_[touched_[k]].data(), push[k]);
 }
 
 }  // namespace calot

@@ -27,21 +27,23 @@ class TreeResponse {
   void solve(std::span<FourFloats> push);
 
  private:
-  /// Translation and rotation.
-  using Pair = std::array<FourFloats, 2>;
+  /// Translation, padding, rotation, padding.
+  using Motion = std::array<float, 8>;
+  using Columns = std::array<Motion, 6>;
   struct Node {
-    std::array<Pair, 6> inverse;  ///< columns of A_i'^-1
-    std::array<Pair, 6> up;       ///< rows of G_i
-    std::array<Pair, 6> down;     ///< columns of G_i
-    std::int32_t parent = -1;     ///< among those that take part
+    Columns inverse;           ///< columns of A_i'^-1
+    Columns up;                ///< rows of G_i
+    Columns down;              ///< columns of G_i
+    std::int32_t parent = -1;  ///< among those that take part
   };
 
-  static Pair sumOf(const std::array<Pair, 6>& columns, const Pair& x);
+  static void sumOf(const Columns& columns, const Motion& x, EightFloats& sum);
+  static void solveNodes(std::span<const Node> node, std::span<Motion> x);
 
   std::vector<Node> node_;
   std::vector<std::int32_t> number_;    ///< per node of the tree: among those that take part, or -1
   std::vector<std::uint32_t> touched_;  ///< among those that take part
-  std::vector<Pair> x_;
+  std::vector<Motion> x_;
 };
 
 }  // namespace calot
