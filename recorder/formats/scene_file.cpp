@@ -146,6 +146,7 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
     solver.read("responseSpeedTolerance", scene.solver.responseSpeedTolerance);
     solver.read("contactTolerance", scene.solver.contactTolerance);
     solver.read("contactPasses", scene.solver.contactPasses);
+    solver.read("gapTolerance", scene.solver.gapTolerance);
     solver.read("contactIterations", scene.solver.contactIterations);
     solver.read("sleeping", scene.solver.sleeping);
   }

@@ -155,6 +155,7 @@ struct SolverDescription {
   double responseSpeedTolerance = 3e-6;  ///< as speedTolerance, of those (m/s)
   double contactTolerance = 1e-8;        ///< residual of the contact problem (m)
   std::uint32_t contactPasses = 3;       ///< at most so often is it posed anew with the gaps that its forces left
+  double gapTolerance = 2e-6;            ///< not any more where these are this small (m)
   std::uint32_t contactIterations = 100;
   bool sleeping = true;  ///< untouched organs at rest are not solved
   /// Organs give way within their cells, too (sim/step/contact_dimples.h). No field: scenes cannot do without; tests of
@@ -170,6 +171,7 @@ struct SolverDescription {
     visit("responseSpeedTolerance", self.responseSpeedTolerance);
     visit("contactTolerance", self.contactTolerance);
     visit("contactPasses", self.contactPasses);
+    visit("gapTolerance", self.gapTolerance);
     visit("contactIterations", self.contactIterations);
     visit("sleeping", self.sleeping);
   }

@@ -15,9 +15,6 @@ namespace {
 /// lets the iteration diverge on soft folds; smaller costs solves. Assumed.
 constexpr double maxSurprise = 2.0;
 constexpr int maxDimpleSteps = 5;  ///< of Newton's method on the dimples, in each pass
-/// Gaps that are open or closed within this need no further pass (m): the next step closes them. At the stiffness of organs under a
-/// tip a millinewton. Larger: forces tremble; smaller costs solves. Measured on the whole operation.
-constexpr double closedGap = 2e-6;
 constexpr double minShare = 1e-3;  ///< tissue that responds by less than this share: rounding, not a response
 
 }  // namespace
@@ -93,7 +90,8 @@ std::array<double, 2> ContactSolution::measureResponse(Bodies& bodies, const Act
 /// Applies the change s from `carried` to `lambda` and measures the tissue's response y. Where y is W s, nothing else
 /// happens. Where s.y is more than twice s.W s, going on like that would lead away from the solution: the change is
 /// taken back to the share for which the response is as large as predicted. Then W is corrected so that it gives this
-/// response (BFGS; Nocedal and Wright 2006, 6.19), which leaves it symmetric and positive:
+/// response (BFGS; Nocedal and Wright 2006, 6.19), which leaves it symmetric and positive. Of a change that moves gaps by
+/// less than their tolerance nothing is learned: in its response is what the solves before had left open, too.
 ///   W += y y^T / (y.s) - W s s^T W / (s.W s).
 void ContactSolution::updateComplianceEstimate(Bodies& bodies, const Activity& activity,
                                                const InstrumentTravels& travels, ContactSystem& contact, StepLog& log) {
@@ -103,6 +101,8 @@ void ContactSolution::updateComplianceEstimate(Bodies& bodies, const Activity& a
   for (std::size_t i = 0; i < rows; ++i) change_[i] = contact.lambda[i] - contact.carried[i];
   applyContactImpulses(bodies, activity, contact, log);
   auto [measured, predicted] = measureResponse(bodies, activity, travels, contact);
+  const auto isSmall = [&](double gap) { return !(std::abs(gap) > model_.scene().solver.gapTolerance); };
+  if (std::all_of(expected_.begin(), expected_.end(), isSmall)) predicted = 0.0;
   if (predicted > 0.0 && measured > maxSurprise * predicted) {
     const double back = predicted / measured - 1.0;
     for (std::size_t i = 0; i < rows; ++i) change_[i] *= back;
@@ -186,7 +186,8 @@ void ContactSolution::run(Bodies& bodies, const Activity& activity, const Instru
     evaluateGaps(problem, contact.lambda, gap_);
     for (std::size_t i = 0; i < rows; ++i) contact.freeGap[i] = contact.trueGap[i] - gap_[i];
     result.error = naturalResidual(problem, contact.lambda, contact.trueGap);
-    const bool closed = result.error <= std::max(closedGap, scene.contactTolerance);
+    const bool closed =
+        result.error <= std::max(scene.gapTolerance, scene.contactTolerance) && result.residual <= scene.contactTolerance;
     if (result.passes == scene.contactPasses || (closed && result.passes > 1)) break;
     dimpleBefore_ = contact.dimpleGap;
     solve(problem, contact, result);

@@ -21,6 +21,7 @@ SceneDescription tight(SceneDescription scene) {
   scene.solver.iterations = 2000;
   scene.solver.responseTolerance = 1e-6;
   scene.solver.contactTolerance = 1e-10;
+  scene.solver.gapTolerance = 0.0;
   scene.solver.contactIterations = 1000;
   scene.solver.contactPasses = 100;
   scene.solver.sleeping = false;

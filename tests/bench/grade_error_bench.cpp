@@ -67,6 +67,9 @@ SceneDescription dividedScene(const SceneDescription& scene, const Division& div
   SceneDescription divided = analytics::redivided(scene, division.ticksPerStep, division.elements);
   divided.solver.tolerance *= division.tolerance;
   divided.solver.speedTolerance *= division.tolerance;
+  divided.solver.responseTolerance *= division.tolerance;
+  divided.solver.responseSpeedTolerance *= division.tolerance;
+  divided.solver.gapTolerance *= division.tolerance;
   return divided;
 }
 

@@ -177,6 +177,7 @@ TEST(Bodies, ASymmetricGraspStaysSymmetric) {
   scene.solver.speedTolerance = scene.solver.responseSpeedTolerance = 0.0;
   scene.solver.responseTolerance = 1e-5;
   scene.solver.contactTolerance = 1e-10;
+  scene.solver.gapTolerance = 0.0;
   scene.solver.contactIterations = 1000;
   scene.solver.iterations = 1000;
   for (HandDescription& hand : scene.hands) hand.instrument = InstrumentKind::hook;

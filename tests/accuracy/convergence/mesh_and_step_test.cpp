@@ -134,11 +134,13 @@ TEST_P(MeshAndStepHeavy, OfAWholeAttempt) {
   expectSameMotion(runs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, MeshAndStepHeavy, testing::Values("dissect-bed", "carve-fat"), [](const auto& which) {
-  std::string name = which.param;
-  name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Scenes, MeshAndStepHeavy, 
+                         testing::Values("dissect-bed", "carve-fat", "clip-and-cut", "cholecystectomy"),
+                         [](const auto& which) {
+                           std::string name = which.param;
+                           name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace calot::analytics

@@ -363,6 +363,7 @@ TEST(SceneFile, defaultsAreTheSchemas) {
   EXPECT_EQ(s.solver.tolerance, of("solver", "tolerance").get<double>());
   EXPECT_EQ(s.solver.iterations, of("solver", "iterations").get<std::uint32_t>());
   EXPECT_EQ(s.solver.contactTolerance, of("solver", "contactTolerance").get<double>());
+  EXPECT_EQ(s.solver.gapTolerance, of("solver", "gapTolerance").get<double>());
   EXPECT_EQ(s.solver.contactIterations, of("solver", "contactIterations").get<std::uint32_t>());
   EXPECT_EQ(s.solver.sleeping, of("solver", "sleeping").get<bool>());
 }
