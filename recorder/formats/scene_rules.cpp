@@ -108,8 +108,8 @@ std::vector<ObjectRule> makeRules() {
        {openBelow(optional("tolerance", 0, 0.1)), optional("speedTolerance", 0, 0.001),
         optional("iterations", 1, 100000), openBelow(optional("responseTolerance", 0, 0.1)),
         optional("responseSpeedTolerance", 0, 0.001), openBelow(optional("contactTolerance", 0, 0.001)),
-        optional("contactPasses", 1, 100), optional("gapTolerance", 0, 0.001),
-        optional("contactIterations", 1, 100000), optional("sleeping")}},
+        optional("contactPasses", 1, 100), optional("gapTolerance", 0, 0.001), optional("contactIterations", 1, 100000),
+        optional("sleeping")}},
   };
 }
 

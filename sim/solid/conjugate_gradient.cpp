@@ -139,7 +139,6 @@ SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::spa
     ++report.iterations;
   }
   report.residual = std::sqrt(std::max(0.0, size) / from);
-  report.left = std::sqrt(std::max(0.0, size));
   report.converged = size <= target;
   return report;
 }

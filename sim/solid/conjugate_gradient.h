@@ -32,7 +32,6 @@ struct SolveReport {
   /// |r| / |b| by the recursion, in the norm of the preconditioner's inverse, maximum over the right-hand sides; close
   /// to the relative error in the energy norm. If |b|^2 is below SolveGoal::from(), relative to the root of that.
   double residual = 0.0;
-  double left = 0.0;  ///< |r|
   bool converged = true;
 };
 

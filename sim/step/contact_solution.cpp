@@ -90,8 +90,8 @@ std::array<double, 2> ContactSolution::measureResponse(Bodies& bodies, const Act
 /// Applies the change s from `carried` to `lambda` and measures the tissue's response y. Where y is W s, nothing else
 /// happens. Where s.y is more than twice s.W s, going on like that would lead away from the solution: the change is
 /// taken back to the share for which the response is as large as predicted. Then W is corrected so that it gives this
-/// response (BFGS; Nocedal and Wright 2006, 6.19), which leaves it symmetric and positive. Of a change that moves gaps by
-/// less than their tolerance nothing is learned: in its response is what the solves before had left open, too.
+/// response (BFGS; Nocedal and Wright 2006, 6.19), which leaves it symmetric and positive. Of a change that moves gaps
+/// by less than their tolerance nothing is learned: in its response is what the solves before had left open, too.
 ///   W += y y^T / (y.s) - W s s^T W / (s.W s).
 void ContactSolution::updateComplianceEstimate(Bodies& bodies, const Activity& activity,
                                                const InstrumentTravels& travels, ContactSystem& contact, StepLog& log) {
@@ -186,8 +186,8 @@ void ContactSolution::run(Bodies& bodies, const Activity& activity, const Instru
     evaluateGaps(problem, contact.lambda, gap_);
     for (std::size_t i = 0; i < rows; ++i) contact.freeGap[i] = contact.trueGap[i] - gap_[i];
     result.error = naturalResidual(problem, contact.lambda, contact.trueGap);
-    const bool closed =
-        result.error <= std::max(scene.gapTolerance, scene.contactTolerance) && result.residual <= scene.contactTolerance;
+    const bool closed = result.error <= std::max(scene.gapTolerance, scene.contactTolerance) &&
+                        result.residual <= scene.contactTolerance;
     if (result.passes == scene.contactPasses || (closed && result.passes > 1)) break;
     dimpleBefore_ = contact.dimpleGap;
     solve(problem, contact, result);

@@ -20,7 +20,8 @@ namespace calot {
 /// answer to fat is
 ///   -(h d P)^T N A_v^-1 N^T (h d P)
 /// in the fat's matrix: the system of both, solved by elimination (a Schur complement). Each product with it costs one
-/// pass over the vessels (TreeResponse). Vessels that are grown to an organ couple it to the fat besides (TieCoupling::react()).
+/// pass over the vessels (TreeResponse). Vessels that are grown to an organ couple it to the fat besides
+/// (TieCoupling::react()).
 class VesselReaction final : public SystemCoupling {
  public:
   VesselReaction(const Model& model, std::size_t fat, std::size_t tree);

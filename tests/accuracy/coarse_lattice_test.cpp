@@ -88,6 +88,38 @@ TEST(CoarseLattice, SolvesWhatSweepsAloneSolve) {
   EXPECT_TRUE(sweeps.converged && lattice.converged);
 }
 
+/// A loose solve and one that goes on from it are together a tight one.
+TEST(CoarseLattice, GoesOnFromWhatWasLeftOpen) {
+  const SolidModel model = boxModel(18, 10, 10);
+  SerialExecutor executor;
+  const auto velocities = [&](double tolerance, bool goOn) {
+    SolidSolver solver;
+    SolidState state = restState(model);
+    EXPECT_TRUE(
+        solver.solveUnconstrained(model, state, Vec3(0.0, gravity, 0.0), {}, settingsOf(tolerance, true), executor)
+            .converged);
+    SolidSolver::Settings more = settingsOf(1e-5, true);
+    more.goesOn = true;
+    if (goOn) {
+      EXPECT_TRUE(solver.applyImpulses({}, more).converged);
+    }
+    return solver.freeVelocity();
+  };
+  const auto differs = [&](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    double off = 0.0;
+    double size = 0.0;
+    for (std::size_t n = 0; n < a.size(); ++n) {
+      off += (a[n] - b[n]).squaredNorm();
+      size += b[n].squaredNorm();
+    }
+    return std::sqrt(off / size);
+  };
+  const std::vector<Vec3> exact = velocities(1e-7, false);
+  const double loose = differs(velocities(1e-2, false), exact);
+  EXPECT_GT(loose, 1e-4);
+  EXPECT_LT(differs(velocities(1e-2, true), exact), 0.01 * loose);
+}
+
 /// Nine times the elements: sweeps alone take twice the iterations.
 TEST(CoarseLattice, IterationsDoNotGrowWithTheSolid) {
   const Hung small = hang(boxModel(18, 10, 10), 4, settingsOf(1e-3, true));

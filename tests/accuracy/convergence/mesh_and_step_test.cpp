@@ -134,7 +134,7 @@ TEST_P(MeshAndStepHeavy, OfAWholeAttempt) {
   expectSameMotion(runs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, MeshAndStepHeavy, 
+INSTANTIATE_TEST_SUITE_P(Scenes, MeshAndStepHeavy,
                          testing::Values("dissect-bed", "carve-fat", "clip-and-cut", "cholecystectomy"),
                          [](const auto& which) {
                            std::string name = which.param;

@@ -413,6 +413,35 @@ TEST(ConjugateGradient, EndsWhereWhatIsLeftIsNotWorthAnIteration) {
   EXPECT_FALSE(cg.solve(system.matrix, system.values, system.packed(b), x, {1e-5, 1, 1e-4 * size}).converged);
 }
 
+/// A loose solve and one that goes on from it are together one of both loads to the second's tolerance.
+TEST(ConjugateGradient, GoesOnFromWhatWasLeftOpen) {
+  SCOPED_TRACE("seed 36");
+  Random random(36);
+  const System system = randomSystem(60, 120, random);
+  const Eigen::VectorXd first = system.randomVector(random);
+  const Eigen::VectorXd second = 0.1 * system.randomVector(random);
+  const Eigen::MatrixXd m = system.preconditioner();
+  const auto sizeOf = [&](const Eigen::VectorXd& v) { return std::sqrt(v.dot(m.ldlt().solve(v))); };
+  ConjugateGradient cg;
+  cg.precompute(system.matrix, system.values);
+  std::vector<float> x(system.matrix.vectorSize());
+  const auto solved = [&](const Eigen::VectorXd& b, double tolerance, bool goesOn) {
+    SolveGoal goal{1e-9, 1000, tolerance * sizeOf(first)};
+    goal.goesOn = goesOn;
+    EXPECT_TRUE(cg.solve(system.matrix, system.values, system.packed(b), x, goal).converged);
+    return system.unpacked(x);
+  };
+  const Eigen::VectorXd loose = solved(first, 0.1, false);
+  const double open = sizeOf(first - system.whole() * loose);
+  EXPECT_GT(open, 0.01 * sizeOf(first)) << "something is left to go on from";
+  const Eigen::VectorXd whole = loose + solved(second, 1e-5, true);
+  EXPECT_LT(sizeOf(first + second - system.whole() * whole), 3e-5 * sizeOf(first));
+  const Eigen::VectorXd nothingMore = whole + solved(Eigen::VectorXd::Zero(second.size()), 1e-6, true);
+  EXPECT_LT(sizeOf(first + second - system.whole() * nothingMore), 5e-6 * sizeOf(first)) << "without another load";
+  const Eigen::VectorXd afresh = solved(second, 1e-6, false);
+  EXPECT_LT(sizeOf(second - system.whole() * afresh), 5e-6 * sizeOf(first)) << "another solve starts from nothing";
+}
+
 TEST(ConjugateGradient, BlocksThatTheStructureHasNoPlaceFor) {
   SCOPED_TRACE("seed 37");
   Random random(37);
