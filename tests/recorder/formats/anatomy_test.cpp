@@ -267,7 +267,7 @@ TEST(Anatomy, TheFatFillsEnoughCubes) {
       }
     }
   }
-  EXPECT_GE(cubes.size(), 600U);
+  EXPECT_GE(cubes.size(), 400U);
   EXPECT_NEAR(inside * fat.cellSize * fat.cellSize * fat.cellSize, signedVolume(mesh), 0.02 * signedVolume(mesh));
 }
 
