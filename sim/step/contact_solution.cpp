@@ -178,7 +178,7 @@ void ContactSolution::run(Bodies& bodies, const Activity& activity, const Instru
   gap_.resize(rows);
   change_.resize(rows);
   loose_ = false;
-  if (rows == 0) applyContactImpulses(bodies, activity, contact, log);  // what free motion left open
+  if (rows == 0 && bodies.joined().isAnyOpen()) applyContactImpulses(bodies, activity, contact, log);
   const ContactProblem problem{contact.kinds, contact.limits, contact.compliance, contact.freeGap};
   for (result.passes = 0; rows > 0;) {
     // Free gaps that give back the true ones under the present forces.

@@ -8,6 +8,7 @@
 // own sweeps.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -56,6 +57,7 @@ class JoinedSolids {
   SolveReport applyImpulses(std::size_t group, std::span<TieCoupling> grown, bool loose);
   /// Has another solve to follow?
   [[nodiscard]] bool isOpen(std::size_t group) const { return open_[group]; }
+  [[nodiscard]] bool isAnyOpen() const { return std::find(open_.begin(), open_.end(), true) != open_.end(); }
 
  private:
   /// A connective tissue's part in the system of its group.
