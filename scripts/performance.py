@@ -112,8 +112,8 @@ def diagram(run, out):
     axes.set_xlabel("CPU time of a step (ms)")
     axes.set_ylabel("error of the solver (relative)")
     axes.grid(True, which="major", alpha=0.3)
-    figure.legend(loc="outside upper center", ncols=2)
-    figure.savefig(out, metadata={"Date": None})
+    figure.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=2)
+    figure.savefig(out, bbox_inches="tight", metadata={"Date": None})
     return True
 
 
@@ -149,15 +149,15 @@ def grade_diagram(run, out):
                        label="the scene's default" if panel is axes.flat[0] else None)
         panel.axhline(10, color="black", linewidth=0.6, linestyle=":")
         panel.set_title(f"{scene}: {name}", fontsize=8)
-        panel.set_ylim(bottom=0)
+        panel.set_ylim(0, min(100, 110 * max(p[4] for p in data)))  # beyond 100 %: another attempt
         panel.tick_params(labelsize=7)
         panel.grid(True, which="major", alpha=0.3)
     for panel in list(axes.flat)[len(points):]:
         panel.set_visible(False)
     figure.supxlabel("CPU time for 10 ms of the attempt (ms)")
     figure.supylabel("error against the extrapolated limit (%)")
-    figure.legend(loc="outside upper center", ncols=6, fontsize=8)
-    figure.savefig(out, metadata={"Date": None})
+    figure.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=6, fontsize=8)
+    figure.savefig(out, bbox_inches="tight", metadata={"Date": None})
     return True
 
 

@@ -58,12 +58,12 @@ ValueInterval intervalOf(const CheckpointValue& of, const VariedValues& varied) 
   interval.constantsSpread = std::sqrt(variance);
   const double half = std::sqrt(interval.stepEffect * interval.stepEffect + interval.meshEffect * interval.meshEffect +
                                 coverageFactor * coverageFactor * variance);
-  double lower = std::min(v, interval.limit() - half);
+  double lower = std::min(v, interval.limit()) - half;
   const bool neverBelowZero = v >= 0.0 && *smallerStep >= 0.0 && *finerMesh >= 0.0 &&
                               std::all_of(design.begin(), design.end(), [](double d) { return d >= 0.0; });
   if (neverBelowZero) lower = std::max(0.0, lower);
   interval.lower = lower;
-  interval.upper = std::max(v, interval.limit() + half);
+  interval.upper = std::max(v, interval.limit()) + half;
   interval.runs = std::move(design);
   return interval;
 }

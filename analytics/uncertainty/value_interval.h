@@ -57,10 +57,11 @@ struct VariedValues {
 ///
 /// With errors of first order in the step and in the elements' size, the value in steps shorter by r lies
 /// (v_r - v) r / (r - 1) from the value in steps of length zero (Richardson); likewise for the mesh. With these effects
-/// D_h and D_m and the spread s, the interval is v + D_h + D_m +- sqrt(D_h^2 + D_m^2 + (2 s)^2), widened to hold v: an
-/// extrapolated difference is taken to be uncertain by itself, since order one is assumed and not shown. s^2 is the sum
-/// over the design's factors of E^2 / 3, E half the difference between the mean with the factor raised and lowered: the
-/// variance of a constant that is anywhere within the change alike. It stays above zero where no value is below.
+/// D_h and D_m and the spread s, the interval reaches from v to v + D_h + D_m and beyond both by sqrt(D_h^2 + D_m^2 +
+/// (2 s)^2): an extrapolated difference is taken to be uncertain by itself, in size and sign, since order one is
+/// assumed and not shown. s^2 is the sum over the design's factors of E^2 / 3, E half the difference between the mean
+/// with the factor raised and lowered: the variance of a constant that is anywhere within the change alike. It stays
+/// above zero where no value is below.
 std::vector<ValueInterval> intervalsOf(const std::vector<CheckpointValue>& values, const VariedValues& varied);
 
 }  // namespace calot::analytics

@@ -87,6 +87,13 @@ Graded graded(const SceneDescription& scene, const Division& division, const rec
   return out;
 }
 
+/// What is left to the limit after the last refinement. @param last its change @param before that of the one before
+/// @param ratio of the lengths
+double remainder(double last, double before, double ratio) {
+  const bool converges = last * before > 0.0 && std::abs(last) < std::abs(before);
+  return converges ? last / (ratio - 1.0) : 0.0;
+}
+
 void grade(benchmark::State& bench, const std::string& name, double seconds) {
   const SceneDescription scene = recorder::loadScene(std::string(CALOT_ASSETS "/scenes/") + name + ".json").description;
   recorder::AttemptInputs inputs;
@@ -108,8 +115,10 @@ void grade(benchmark::State& bench, const std::string& name, double seconds) {
       const auto found = values.find(figure);
       return found == values.end() ? std::nan("") : found->second;
     };
-    // First order in step and size: the last halving of the step, and the last doubling of the elements, once more.
-    const double step = value - of(longerStep), mesh = (value - of(coarserMesh)) / (std::cbrt(2.0) - 1.0);
+    // First order in step and size, where the last halving of the step and doubling of the elements changed less than
+    // the one before: else the finest run is the best there is.
+    const double step = remainder(value - of(longerStep), of({2.0, 10, 1.0}) - of({2.0, 20, 1.0}), 2.0);
+    const double mesh = remainder(value - of(coarserMesh), of(coarserMesh) - of({1.0, 5, 1.0}), std::cbrt(2.0));
     const double limit = value + step + mesh;
     if (!std::isfinite(limit) || !(std::abs(limit) > 0.0)) continue;
     for (const Division& division : divisions) {

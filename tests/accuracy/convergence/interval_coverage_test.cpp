@@ -34,7 +34,7 @@ bool isAsked(const std::string& name) { return !name.starts_with("phase-") && na
 /// The interval that step and mesh alone make.
 std::pair<double, double> ofNumerics(const ValueInterval& i) {
   const double half = std::hypot(i.stepEffect, i.meshEffect);
-  return {std::min(i.value, i.limit() - half), std::max(i.value, i.limit() + half)};
+  return {std::min(i.value, i.limit()) - half, std::max(i.value, i.limit()) + half};
 }
 
 Coverage coverage(const std::string& scene, double seconds) {
