@@ -13,10 +13,13 @@ namespace {
 
 constexpr int maxPasses = 6;              ///< of one search; more find nothing better (measured on folds)
 constexpr double toleratedDepth = 2e-5;   ///< m; deeper is worth another pass
-constexpr double maxDisplacement = 0.02;  ///< of a tip, by all passes of one step (m): the first may lead astray
+constexpr double maxDisplacement = 0.02;  ///< of a tip, by all passes of one search (m): the first may lead astray
+/// The longest way out over the depth: tissue that presses from two sides a tenth of a millimetre too close is no
+/// reason to leave its fold. Assumed; measured on folds.
+constexpr double wayForDepth = 10.0;
 constexpr double pinchedCosine = -0.25;   ///< normals that face each other more than this press from two sides
 /// Along the shaft (m), where the nearest way out fails. Assumed.
-constexpr std::array<double, 3> retreats{0.005, 0.01, 0.02};
+constexpr std::array<double, 6> retreats{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
 
 }  // namespace
 
@@ -93,20 +96,22 @@ PenetrationResolver::Outcome PenetrationResolver::search(Surfaces& surfaces, con
   const HandDescription& description = model_.scene().hands[hand];
   Outcome best{pose, 1e300, false};
   double gone = 0.0;
+  double mayGo = maxDisplacement;
   for (int pass = 0;; ++pass) {
     instrument_.place(description, s.instrument, pose, s.jaw);
     const double depth = findInside(surfaces, state, hand, pose);
+    if (pass == 0) mayGo = std::min(mayGo, wayForDepth * depth);
     if (depth < best.depth) {
       best = {pose, depth, false};
       for (const Inside& a : inside_) {
         for (const Inside& b : inside_) best.pinched = best.pinched || a.normal.dot(b.normal) < pinchedCosine;
       }
     }
-    if (depth <= toleratedDepth || pass >= maxPasses || gone >= maxDisplacement) return best;
+    if (depth <= toleratedDepth || pass >= maxPasses || gone >= mayGo) return best;
     const ToolRow q = minWayOut();
     Vec3 way = q.head<3>();
     const double size = way.norm();
-    const double limit = std::min(maxDisplacement - gone, 3.0 * depth);
+    const double limit = std::min(mayGo - gone, 3.0 * depth);
     if (size > limit) way *= limit / size;
     gone += std::min(size, limit);
     pose = movedTool(description.port, pose, way, std::clamp(q[3], -0.2, 0.2));
@@ -121,8 +126,9 @@ void PenetrationResolver::run(Surfaces& surfaces, std::size_t hand, State& state
   const HandState& neighbour = state.hand[1 - hand];
   other_.place(model_.scene().hands[1 - hand], neighbour.instrument, simulatedPose(neighbour), neighbour.jaw);
   Outcome best = search(surfaces, state, hand, from);
+  const double longest = wayForDepth * best.depth;
   for (const double retreat : retreats) {
-    if (best.depth <= toleratedDepth) break;
+    if (best.depth <= toleratedDepth || retreat > longest) break;
     const Vec3 back = from.orientation * Vec3(0.0, 0.0, -retreat);
     const Outcome other = search(surfaces, state, hand, movedTool(port, from, back, 0.0));
     if (other.depth < best.depth) best = other;

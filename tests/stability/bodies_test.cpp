@@ -164,6 +164,49 @@ TEST(Bodies, EverythingTouchesEverything) {
   EXPECT_LE(p99, 1e-4);
 }
 
+/// A tip between two organs that press on it from both sides stays there: what is a tenth of a millimetre too deep is no
+/// reason to leave the fold by centimetres.
+TEST(Bodies, ATipInAFoldStaysThere) {
+  SceneDescription scene = test::padOnBlockScene();
+  scene.hands[0].port = Vec3(-0.12, 0.0, 0.09);
+  scene.hands[0].home = Vec3(-0.04, 0.0, 0.03);
+  for (HandDescription& hand : scene.hands) hand.instrument = InstrumentKind::hook;
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  for (const double amplitude : {0.001, 0.003, 0.006}) {
+    test::Loop loop(*model);
+    const Vec3 before(-0.022, 0.0, test::blockTop + 0.5 * test::padGap);
+    const auto sample = [&](double t) {
+      TickSamples tick = loop.resting();
+      const double arrive = std::min(1.0, t / 0.5);
+      const double push = std::clamp((t - 0.5) / 1.0, 0.0, 1.0);
+      tick.hand[0].position = (1.0 - arrive) * scene.hands[0].home + arrive * before + Vec3(0.015 * push, 0.0, 0.0) +
+                              amplitude * push * Vec3(std::sin(13.0 * t), std::sin(7.0 * t), std::sin(10.0 * t));
+      return tick;
+    };
+    double largest = 0.0;
+    double deepest = 0.0;
+    int pinches = 0;
+    Vec3 last = loop.rig.state.hand[0].simulatedPosition;
+    Vec3 lastReal = last;
+    for (int step = 0; step < 500; ++step) {
+      const StepResult& result = loop.step(sample, [] {});
+      ASSERT_TRUE(test::allFinite(loop.rig.state)) << "step " << step;
+      const Vec3& tip = result.hand[0].tipSimulated;
+      if (step > 0) largest = std::max(largest, (tip - last).norm() - (result.hand[0].tipReal - lastReal).norm());
+      last = tip;
+      lastReal = result.hand[0].tipReal;
+      pinches += result.contact.pinchedDepth > 0.0 ? 1 : 0;
+      deepest = std::max(deepest, std::max(result.contact.maxDepth, result.contact.pinchedDepth));
+    }
+    std::printf("fold, %.0f mm: tip ahead of its hand by %.3f mm a step, %.3f mm deep, pinched in %d steps\n",
+                1e3 * amplitude, 1e3 * largest, 1e3 * deepest, pinches);
+    EXPECT_LT(largest, 0.003);
+    EXPECT_LT(deepest, 1e-3);
+    EXPECT_GT(pinches, 20) << "it must be pressed from both sides";
+  }
+}
+
 /// Two instruments that squeeze a block from both sides, mirrored: forces are mirrored, and cancel along the squeeze.
 TEST(Bodies, ASymmetricGraspStaysSymmetric) {
   SceneDescription scene = test::blockScene(900, 12);
