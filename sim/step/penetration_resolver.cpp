@@ -17,7 +17,7 @@ constexpr double maxDisplacement = 0.02;  ///< of a tip, by all passes of one se
 /// The longest way out over the depth: tissue that presses from two sides a tenth of a millimetre too close is no
 /// reason to leave its fold. Assumed; measured on folds.
 constexpr double wayForDepth = 10.0;
-constexpr double pinchedCosine = -0.25;   ///< normals that face each other more than this press from two sides
+constexpr double pinchedCosine = -0.25;  ///< normals that face each other more than this press from two sides
 /// Along the shaft (m), where the nearest way out fails. Assumed.
 constexpr std::array<double, 6> retreats{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
 

@@ -164,8 +164,8 @@ TEST(Bodies, EverythingTouchesEverything) {
   EXPECT_LE(p99, 1e-4);
 }
 
-/// A tip between two organs that press on it from both sides stays there: what is a tenth of a millimetre too deep is no
-/// reason to leave the fold by centimetres.
+/// A tip between two organs that press on it from both sides stays there: what is a tenth of a millimetre too deep is
+/// no reason to leave the fold by centimetres.
 TEST(Bodies, ATipInAFoldStaysThere) {
   SceneDescription scene = test::padOnBlockScene();
   scene.hands[0].port = Vec3(-0.12, 0.0, 0.09);
