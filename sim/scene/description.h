@@ -156,8 +156,8 @@ struct SolverDescription {
   double contactTolerance = 1e-8;        ///< residual of the contact problem (m)
   std::uint32_t contactPasses = 3;       ///< at most so often is it posed anew with the gaps that its forces left
   double gapTolerance = 2e-6;            ///< not any more where these are this small (m)
-  std::uint32_t contactIterations = 100;
-  bool sleeping = true;  ///< untouched organs at rest are not solved
+  std::uint32_t contactIterations = 25;  ///< sweeps, before Newton's method takes over
+  bool sleeping = true;                  ///< untouched organs at rest are not solved
   /// Organs give way within their cells, too (sim/step/contact_dimples.h). No field: scenes cannot do without; tests of
   /// the mesh alone can.
   bool dimples = true;

@@ -19,7 +19,7 @@ constexpr double maxDisplacement = 0.02;  ///< of a tip, by all passes of one se
 constexpr double wayForDepth = 10.0;
 constexpr double pinchedCosine = -0.25;  ///< normals that face each other more than this press from two sides
 /// Along the shaft (m), where the nearest way out fails. Assumed.
-constexpr std::array<double, 6> retreats{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
+constexpr std::array<double, 4> retreats{0.002, 0.005, 0.01, 0.02};
 
 }  // namespace
 
