@@ -94,6 +94,8 @@ Verdict verdictOf(recorder::ReplayVerdict verdict) {
       return Verdict::damaged;
     case recorder::ReplayVerdict::undecided:
       return Verdict::notCheckableHere;
+    case recorder::ReplayVerdict::consistent:  // of a part: no assessment asks for one
+      break;
   }
   return Verdict::notChecked;
 }

@@ -163,10 +163,12 @@ Regrade regrade(const std::string& path, const std::vector<std::filesystem::path
   const std::size_t batch = std::size_t{4} * pool.threadCount();
   for (std::size_t begin = 0; begin < works.size(); begin += batch) {
     const std::size_t count = std::min(batch, works.size() - begin);
+    // Where recordings are fewer than threads, each has several.
+    const auto each = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / count));
     const auto assess = [&](std::size_t i) {
       Work& work = works[begin + i];
       try {
-        work.assessment = assessRecording(work.result->file, 1);
+        work.assessment = assessRecording(work.result->file, each);
       } catch (...) {
         work.failure = std::current_exception();
       }

@@ -52,6 +52,7 @@ void writeJunit(const std::filesystem::path& file, const std::vector<ReplayRepor
     const std::string body = escaped(r.message);
     switch (r.verdict) {
       case ReplayVerdict::exact:
+      case ReplayVerdict::consistent:
         xml += "/>\n";
         continue;
       case ReplayVerdict::diverged:

@@ -5,85 +5,17 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <thread>
 
-#include "recorder/compare.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/recording/layout.h"
+#include "recorder/segments.h"
+#include "recorder/step_comparison.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {
 
 namespace {
-
-/// Keeps the newest record's parts that the comparison needs.
-class Comparer final : public Observer {
- public:
-  Comparer(Recording& recording, const Model& model)
-      : recording_(recording),
-        model_(model),
-        compareResult_(recording.header()),
-        minimal_(isMinimal(recording.header())) {}
-
-  void onStep(const StepRecord& record) override {
-    if (first_) {
-      if (!resolved_) resolveAtKeyframe(record);
-      return;
-    }
-    const RecordedStep& recorded = recording_.step(record.step);
-    if (minimal_ && forceDigest(record.ticks) != recorded.forces)
-      first_ = Divergence{record.step, {}, "force", "digest of the step's forces", ""};
-    for (std::size_t i = 0; !minimal_ && i < record.ticks.size() && !first_; ++i) {
-      first_ = compareTick(record.step, record.step * record.ticks.size() + i, recorded.ticks[i], record.ticks[i]);
-    }
-    if (!first_) first_ = compareDigest(record.step, recording_.header().layout, recorded.digest, record.digest);
-    if (!first_) first_ = compareResult_(recorded.result, record.result);
-    if (first_) {
-      resolved_ = minimal_ || !first_->detail.empty();
-      if (!resolved_) resolveAtKeyframe(record);
-      return;
-    }
-    if (const auto index = keyframeAt(record.step)) {
-      first_ = compareKeyframe(model_, recording_.keyframe(*index), record.keyframe());
-      resolved_ = true;
-    }
-  }
-  void onEnd(Outcome /*outcome*/) override {}
-
-  [[nodiscard]] const std::optional<Divergence>& first() const { return first_; }
-  /// Nothing more can be learned by going on.
-  [[nodiscard]] bool done() const { return first_ && resolved_; }
-  /// The recording itself cannot be followed any further.
-  void fail(Divergence divergence) {
-    if (!first_) first_ = std::move(divergence);
-    resolved_ = true;
-  }
-
- private:
-  std::optional<std::size_t> keyframeAt(std::uint64_t step) {
-    const auto index = recording_.keyframeAtOrBefore(step);
-    return index && recording_.keyframeSteps()[*index] == step ? index : std::nullopt;
-  }
-
-  /// Digests say which field differs, not where: the next keyframe holds the values.
-  void resolveAtKeyframe(const StepRecord& record) {
-    const auto index = keyframeAt(record.step);
-    if (!index) return;
-    resolved_ = true;
-    if (const auto d = compareKeyframe(model_, recording_.keyframe(*index), record.keyframe())) {
-      first_->detail = record.step == first_->step
-                           ? fmt::format("{} {}", d->field, d->detail)
-                           : fmt::format("at the next keyframe, step {}: {} {}", record.step, d->field, d->detail);
-    }
-  }
-
-  Recording& recording_;
-  const Model& model_;
-  ResultComparison compareResult_;
-  bool minimal_;  ///< no forces, no keyframes
-  std::optional<Divergence> first_;
-  bool resolved_ = false;
-};
 
 class MissCount final : public Observer {
  public:
@@ -102,6 +34,29 @@ std::optional<Divergence> runOnce(Recording& recording, const Model& model, cons
   return first;
 }
 
+/// @throws Error (invalid) where they are not there.
+std::vector<Segment> partOf(const Recording& recording, const std::vector<Segment>& all,
+                            const std::pair<std::size_t, std::size_t>& part) {
+  if (part.first > part.second || part.second >= all.size()) {
+    throw Error(
+        ErrorKind::invalid, Where{recording.path().string()},
+        fmt::format("it has segments 0 to {}: there are none from {} to {}", all.size() - 1, part.first, part.second));
+  }
+  const auto at = [&](std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
+  return {at(part.first), at(part.second) + 1};
+}
+
+/// Tells observers of the recorded steps, which were proven equal to those that re-simulation gives.
+void passOn(Recording& recording, const std::vector<Observer*>& observers) {
+  if (observers.empty()) return;
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    const RecordedStep& step = recording.step(n);
+    const StepRecord record{n, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}};
+    for (Observer* observer : observers) observer->onStep(record);
+  }
+  for (Observer* observer : observers) observer->onEnd(recording.outcome());
+}
+
 }  // namespace
 
 void rerun(Session& session, const RecordedStep& recorded) {
@@ -118,11 +73,11 @@ void rerun(Session& session, const RecordedStep& recorded) {
 
 std::optional<Divergence> follow(Recording& recording, Session& session, std::uint64_t end,
                                  const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
-  Comparer comparer(recording, session.model());
+  StepComparison comparer(recording, session.model());
   session.join(comparer);
   struct Joined {
     Session& session;
-    Comparer& comparer;
+    StepComparison& comparer;
     ~Joined() { session.leave(comparer); }
   } const joined{session, comparer};
   while (session.steps() < end && !comparer.done()) {
@@ -177,14 +132,28 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
     return;
   }
   std::vector<Observer*> observers = settings.observers ? settings.observers(header, *model) : std::vector<Observer*>{};
-  MissCount count;
-  observers.push_back(&count);
-  report.divergence = runOnce(recording, *model, settings, observers);
-  report.misses = count.misses;
-  if (report.divergence) {
-    ReplaySettings again = settings;
-    again.progress = nullptr;
-    report.reproducible = runOnce(recording, *model, again, {}) == report.divergence;
+  std::vector<Segment> segments = segmentsOf(recording);
+  if (settings.part) segments = partOf(recording, segments, *settings.part);
+  const unsigned threads = settings.threads == 0 ? std::thread::hardware_concurrency() : settings.threads;
+  // Recorded results stand for those that were computed only if they have all of today's fields.
+  const bool inSegments =
+      settings.part || (threads > 1 && segments.size() > 1 && header.stepResultVersion == stepResultVersion);
+  if (inSegments) {
+    const SegmentsVerdict verdict = verifySegments(recording.path(), *model, segments, threads, settings.progress);
+    report.divergence = verdict.divergence;
+    report.reproducible = verdict.reproducible;
+    report.misses = verdict.misses;
+    if (!report.divergence && !settings.part) passOn(recording, observers);
+  } else {
+    MissCount count;
+    observers.push_back(&count);
+    report.divergence = runOnce(recording, *model, settings, observers);
+    report.misses = count.misses;
+    if (report.divergence) {
+      ReplaySettings again = settings;
+      again.progress = nullptr;
+      report.reproducible = runOnce(recording, *model, again, {}) == report.divergence;
+    }
   }
   if (report.divergence) {
     report.message = describe(*report.divergence) +
@@ -193,11 +162,15 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
     if (!chain.intact) report.message += fmt::format("; content chain broken: {}", chain.what);
   } else if (!chain.intact) {
     report.message = fmt::format("content chain broken: {} (the re-simulation agrees)", chain.what);
+  } else if (settings.part) {
+    report.message =
+        fmt::format("segments {} to {} consistent (steps {} to {}); the rest was not looked at", settings.part->first,
+                    settings.part->second, segments.front().first, segments.back().end - 1);
   } else {
     report.message = "bit-exact";
   }
   const bool differs = report.divergence || !chain.intact;
-  report.verdict = differs ? ReplayVerdict::diverged : ReplayVerdict::exact;
+  report.verdict = differs ? ReplayVerdict::diverged : settings.part ? ReplayVerdict::consistent : ReplayVerdict::exact;
   if (otherVersion && chain.intact) {
     report.verdict = ReplayVerdict::undecided;
     report.message += fmt::format("; recorded with simulation version {}, this build has {}", header.simulationVersion,
@@ -210,6 +183,7 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
 std::optional<ErrorKind> ReplayReport::fault() const {
   switch (verdict) {
     case ReplayVerdict::exact:
+    case ReplayVerdict::consistent:
       break;
     case ReplayVerdict::diverged:
       return ErrorKind::refused;

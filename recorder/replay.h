@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recorder/errors.h"
@@ -28,7 +29,13 @@ struct Divergence {
   bool operator==(const Divergence&) const = default;
 };
 
-enum class ReplayVerdict : std::uint8_t { exact, diverged, damaged, undecided };
+enum class ReplayVerdict : std::uint8_t {
+  exact,
+  diverged,
+  damaged,
+  undecided,
+  consistent,  ///< a part was asked for, and it follows from the keyframe before it; the rest was not looked at
+};
 
 struct ReplayReport {
   std::filesystem::path path;
@@ -54,9 +61,15 @@ struct ReplayReport {
 };
 
 struct ReplaySettings {
+  /// How many segments between keyframes are verified at a time; 0: one a processor. Where there is but one, threads of
+  /// the simulation.
   unsigned threads = 1;
+  /// Numbers of the first and last segment to be verified; none: all.
+  std::optional<std::pair<std::size_t, std::size_t>> part;
   bool anyway = false;  ///< re-simulate a recording of another simulation version too
-  /// Makes observers of the re-simulation once header and model are known; they see every step that was computed.
+  /// Makes observers of the re-simulation once header and model are known. On one thread they see every step as it is
+  /// computed. On several they see, in order, the recorded steps after all were proven equal to the computed ones, and
+  /// none where they were not; there is no `keyframe` and no `view` then.
   std::function<std::vector<Observer*>(const AttemptHeader&, const Model&)> observers;
   std::function<void(std::uint64_t step, std::uint64_t of)> progress;
 };

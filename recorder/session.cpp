@@ -21,13 +21,13 @@ TickOutcome Session::tick(const TickSamples& samples, const std::optional<std::a
   TickOutcome outcome;
   for (std::size_t h = 0; h < handCount; ++h) {
     const std::int64_t named = sets ? (*sets)[h] : newest_;
-    if (named < oldest_ || named > newest_) {
-      throw std::out_of_range("contact set of step " + std::to_string(named) + " is not at hand in step " +
-                              std::to_string(steps()));
-    }
     if (named < named_[h]) {
       throw std::out_of_range("contact set of step " + std::to_string(named) + " is named after that of step " +
                               std::to_string(named_[h]) + " in step " + std::to_string(steps()));
+    }
+    if (named < oldest_ || named > newest_) {
+      throw std::out_of_range("contact set of step " + std::to_string(named) + " is not at hand in step " +
+                              std::to_string(steps()));
     }
     named_[h] = named;
     takeSample(model_, h, samples.hand[h], haptic_[h]);
@@ -83,7 +83,7 @@ Keyframe Session::keyframe() const {
   return frame;
 }
 
-bool Session::restore(const Keyframe& keyframe) {
+bool Session::restore(const Keyframe& keyframe, const std::optional<std::array<std::int64_t, handCount>>& named) {
   State state;
   if (!restoreState(model_, keyframe.state, state) || state.clock.step != keyframe.step + 1) return false;
   HapticStates haptic;
@@ -109,6 +109,7 @@ bool Session::restore(const Keyframe& keyframe) {
   oldest_ = oldest;
   newest_ = newest;
   named_.fill(oldest);
+  if (named) named_ = *named;
   for (std::size_t i = 0; i < sets.size(); ++i) setsOf(oldest + static_cast<std::int64_t>(i)) = std::move(sets[i]);
   stepper_.invalidate();
   return true;

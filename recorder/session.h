@@ -68,7 +68,10 @@ class Session {
   [[nodiscard]] Keyframe keyframe() const;
 
   /// Goes on from a keyframe. @returns false, leaving all as it was, when its bytes do not fit the model.
-  bool restore(const Keyframe& keyframe);
+  /// @param named the contact sets that the last tick before used; none: the oldest that the keyframe has, which a hand
+  /// that lagged less than the other has left behind
+  bool restore(const Keyframe& keyframe,
+               const std::optional<std::array<std::int64_t, handCount>>& named = std::nullopt);
 
   /// Haptic states after the last tick, and the newest contact sets: what a haptic thread begins with.
   [[nodiscard]] const HapticStates& haptics() const { return haptic_; }

@@ -23,6 +23,13 @@ struct StepMisses {
     contact += (misses & miss::contact) != 0 ? 1U : 0U;
     heldBack += (misses & miss::speed) != 0 ? 1U : 0U;
   }
+  void add(const StepMisses& other) {
+    steps += other.steps;
+    any += other.any;
+    solver += other.solver;
+    contact += other.contact;
+    heldBack += other.heldBack;
+  }
   bool operator==(const StepMisses&) const = default;
 };
 

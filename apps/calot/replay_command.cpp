@@ -22,11 +22,14 @@ namespace {
 struct ReplayOptions {
   std::vector<std::string> files;
   std::string junit;
+  std::vector<std::size_t> segments;  ///< first and last; empty: all
   unsigned threads = 1, jobs = 1;
   bool anyway = false, json = false;
 };
 
 int replay(const ReplayOptions& o) {
+  if (!o.segments.empty() && o.files.size() > 1)
+    throw Error(ErrorKind::invalid, "--segments are those of one recording: name one");
   if (!o.junit.empty()) recorder::refuseOutput(o.junit, true);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
@@ -40,6 +43,7 @@ int replay(const ReplayOptions& o) {
       recorder::ReplaySettings settings;
       settings.threads = o.threads;
       settings.anyway = o.anyway;
+      if (!o.segments.empty()) settings.part.emplace(o.segments.front(), o.segments.back());
       if (single) settings.progress = [&](std::uint64_t step, std::uint64_t of) { progress.show(step, of); };
       try {
         reports[i] = recorder::replayRecording(o.files[i], settings);
@@ -82,12 +86,15 @@ void addReplay(CLI::App& app, Run& run) {
   auto o = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay", "Re-simulates recordings and compares every digest and force.");
   command->add_option("recordings", o->files, "recordings")->required();
-  command->add_option("--threads", o->threads, "of each simulation; 0: all")
+  command
+      ->add_option("--threads", o->threads,
+                   "segments between keyframes that are verified at a time, of each recording; 0: one a processor")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();
   command->add_option("--jobs", o->jobs, "recordings at a time; 0: one a processor")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();
+  command->add_option("--segments", o->segments, "verify these alone, FIRST LAST, numbered from 0")->expected(2);
   command->add_option("--junit", o->junit, "write the result as JUnit XML");
   command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
   command->add_flag("--json", o->json, "print the result as JSON");

@@ -20,6 +20,8 @@ const char* verdictName(recorder::ReplayVerdict verdict) {
       return "damaged";
     case recorder::ReplayVerdict::undecided:
       return "undecided";
+    case recorder::ReplayVerdict::consistent:
+      return "consistent";
   }
   return "";
 }
@@ -32,6 +34,10 @@ void printReport(const recorder::ReplayReport& r) {
                r.complete ? "" : ", incomplete", r.seconds, r.steps,
                r.wallSeconds > 0.0 ? r.seconds / r.wallSeconds : 0.0);
     if (r.misses.any > 0) fmt::print("{}: {}\n", r.path.string(), describe(r.misses));
+    return;
+  }
+  if (r.verdict == recorder::ReplayVerdict::consistent) {
+    fmt::print("{}: {}\n", r.path.string(), r.message);
     return;
   }
   fmt::print(stderr, "calot: {}: {}\n", r.path.string(), advised(r.message, r.remedies));

@@ -9,7 +9,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double settle = 0.5;  // at home before the start, at rest after the end (s)
+constexpr double atHome = 0.5;  // at home before the start, at rest after the end (s)
 
 }  // namespace
 
@@ -60,13 +60,13 @@ bool OperationSource::next(std::uint64_t tick, TickSamples& out) {
   const double time = static_cast<double>(tick) * tickLength;
   if (gaveUp_ && !working_.done()) return false;
   if (working_.done() && hand_[worker].idle(time)) {
-    if (endAt_ < 0.0) endAt_ = time + settle;
+    if (endAt_ < 0.0) endAt_ = time + atHome;
     if (time >= endAt_) return false;
   }
   if (sight_ && time >= decideAt_ && idleIn(0.0, time)) decide(time);
   const PerformerProfile::Perception& p = profile_.perception;
   const double ahead = working_.stirs() ? 0.0 : profile_.operation.anticipation * p.reactionTime;
-  if (time >= settle && idleIn(ahead, time) && !wantsToLook_ && !sight_ && !working_.done()) {
+  if (time >= atHome && idleIn(ahead, time) && !wantsToLook_ && !sight_ && !working_.done()) {
     wantsToLook_ = true;
     decideAt_ = time + std::clamp(p.reactionTime + p.reactionSpread * random_.normal(), 0.15, 0.6);
   }

@@ -8,67 +8,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "recorder/attempt.h"
-#include "recorder/formats/scene_file.h"
-#include "recorder/live/worker_pool.h"
-#include "recorder/recording/writer.h"
-#include "recorder/sources/performer_source.h"
+#include "recorder/session.h"
 #include "recorder/state_fields.h"
+#include "tests/recorder/support/lying_recording.h"
 
 namespace calot::recorder {
 namespace {
-
-const std::filesystem::path assets = std::filesystem::path(CALOT_SOURCE_DIR) / "assets";
-
-/// Stands between the loop and the writer and tells it something else: a recording whose chain is intact but whose
-/// content the simulation does not give.
-class Liar final : public Observer {
- public:
-  enum class About { force, digest, volume, keyframe };
-  Liar(Observer& writer, About about, std::uint64_t step) : writer_(writer), about_(about), step_(step) {}
-
-  /// Index of a field among the digests, liver being the first organ.
-  static std::size_t placeOf(const std::string& name) {
-    const Model::Built built = Model::build(loadScene(assets / "scenes" / "touch-liver.json").description);
-    const DigestLayout& layout = built.model->layout();
-    std::size_t place = 0;
-    while (layout.fields[place].name != name) ++place;
-    return place;
-  }
-  void onStep(const StepRecord& record) override {
-    if (record.step != step_) return writer_.onStep(record);
-    std::vector<TickOutcome> ticks(record.ticks.begin(), record.ticks.end());
-    StepResult result = record.result;
-    StateDigest digest = record.digest;
-    std::function<Keyframe()> keyframe = record.keyframe;
-    switch (about_) {
-      case About::force:
-        ticks[4].hand[1].force[2] += 1e-9;
-        break;
-      case About::digest:
-        digest.component[State::tissueFrom] ^= 1U;
-        digest.field[placeOf("organ.liver/position")] ^= 1U;
-        break;
-      case About::volume:
-        result.organ[0].volume *= 1.0 + 1e-15;
-        break;
-      case About::keyframe:
-        keyframe = [&] {
-          Keyframe k = record.keyframe();
-          k.state[200] ^= std::byte{1};
-          return k;
-        };
-        break;
-    }
-    writer_.onStep({record.step, record.samples, ticks, result, digest, record.lateness, keyframe, record.view});
-  }
-  void onEnd(Outcome outcome) override { writer_.onEnd(outcome); }
-
- private:
-  Observer& writer_;
-  About about_;
-  std::uint64_t step_;
-};
 
 class Replay : public ::testing::Test {
  protected:
@@ -77,29 +22,9 @@ class Replay : public ::testing::Test {
   }
   ~Replay() override { std::filesystem::remove_all(folder_); }
 
-  /// Two seconds of a performer, on coarser organs than the scene's own.
-  std::filesystem::path record(const std::string& name, std::optional<std::pair<Liar::About, std::uint64_t>> lie = {}) {
+  std::filesystem::path record(const std::string& name, const std::optional<test::Lie>& lie = {}) {
     const std::filesystem::path file = folder_ / name;
-    std::vector<Asset> files = loadScene(assets / "scenes" / "touch-liver.json").assets;
-    std::string text(reinterpret_cast<const char*>(files[0].bytes.data()), files[0].bytes.size());
-    text.replace(text.find("1489"), 4, "300");
-    files[0].bytes.assign(reinterpret_cast<const std::byte*>(text.data()),
-                          reinterpret_cast<const std::byte*>(text.data()) + text.size());
-    const LoadedScene scene = sceneFromAssets(files);
-    const Model::Built built = Model::build(scene.description);
-    EXPECT_TRUE(built.model) << built.error;
-    PerformerSource source(loadPerformer(assets / "performers" / "skilled.json"), scene.description, 3);
-    AttemptSettings settings;
-    settings.seed = 3;
-    RecordingWriter writer(file, makeHeader(*built.model, scene.assets, source.provenance(), settings));
-    SerialExecutor executor;
-    Session session(*built.model, 3, executor);
-    Liar liar(writer, lie ? lie->first : Liar::About::force, lie ? lie->second : ~std::uint64_t{0});
-    session.join(liar);
-    RunSettings run;
-    run.seconds = 2.1;
-    EXPECT_EQ(runAttempt(session, source, run).outcome, Outcome::stopped);
-    writer.finish();
+    test::recordTouches(file, lie);
     return file;
   }
 
@@ -131,7 +56,7 @@ TEST_F(Replay, SaysWhatIsWrongWithADamagedRecordingAndWhatSavesIt) {
 }
 
 TEST_F(Replay, NamesStepTickComponentAndBothValues) {
-  const ReplayReport force = replayRecording(record("f.h5", {{Liar::About::force, 150}}), {});
+  const ReplayReport force = replayRecording(record("f.h5", test::Lie{test::Lie::About::force, 150}), {});
   ASSERT_EQ(force.verdict, ReplayVerdict::diverged) << force.message;
   EXPECT_TRUE(force.chainIntact);
   ASSERT_TRUE(force.divergence);
@@ -143,18 +68,18 @@ TEST_F(Replay, NamesStepTickComponentAndBothValues) {
   EXPECT_EQ(force.reproducible, true);
   EXPECT_EQ(force.fault(), ErrorKind::refused);
 
-  const ReplayReport digest = replayRecording(record("d.h5", {{Liar::About::digest, 151}}), {});
+  const ReplayReport digest = replayRecording(record("d.h5", test::Lie{test::Lie::About::digest, 151}), {});
   ASSERT_TRUE(digest.divergence) << digest.message;
   EXPECT_EQ(digest.divergence->step, 151U);
   EXPECT_EQ(digest.divergence->component, "organ.liver");
   EXPECT_EQ(digest.divergence->field, "position");
 
-  const ReplayReport volume = replayRecording(record("v.h5", {{Liar::About::volume, 152}}), {});
+  const ReplayReport volume = replayRecording(record("v.h5", test::Lie{test::Lie::About::volume, 152}), {});
   ASSERT_TRUE(volume.divergence) << volume.message;
   EXPECT_EQ(volume.divergence->component, "observables");
   EXPECT_EQ(volume.divergence->field, "organs/volume[0]");
 
-  const ReplayReport keyframe = replayRecording(record("k.h5", {{Liar::About::keyframe, 199}}), {});
+  const ReplayReport keyframe = replayRecording(record("k.h5", test::Lie{test::Lie::About::keyframe, 199}), {});
   ASSERT_TRUE(keyframe.divergence) << keyframe.message;
   EXPECT_EQ(keyframe.divergence->step, 199U);
   EXPECT_EQ(keyframe.divergence->component, "keyframe");

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/segments.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "recorder/session.h"
+
+namespace calot::recorder {
+
+namespace {
+
+constexpr std::chrono::milliseconds progressInterval{50};
+
+class MissCount final : public Observer {
+ public:
+  void onStep(const StepRecord& record) override { misses.add(record.result.misses); }
+  void onEnd(Outcome /*outcome*/) override {}
+  StepMisses misses;
+};
+
+/// A segment before has differed: what this one gives is of no interest any more.
+struct NotNeeded {};
+
+struct Result {
+  std::optional<Divergence> divergence;
+  std::exception_ptr error;
+  StepMisses misses;
+  [[nodiscard]] bool isGood() const { return !divergence && !error; }
+};
+
+/// A thread's own reader and session. A session that is used again keeps what it worked out of the model.
+class Verifier {
+ public:
+  Verifier(const std::filesystem::path& path, const Model& model) : recording_(path), model_(model) {}
+
+  Result run(const Segment& segment, const std::function<void()>& stepped) {
+    if (!session_ || !segment.keyframe)
+      session_ = std::make_unique<Session>(model_, recording_.header().seed, executor_);
+    Result result;
+    if (segment.keyframe) {
+      // Of which contact sets the ticks before had come to is in the recording, and checked with the segment before.
+      const RecordedStep& before = recording_.step(segment.first - 1);
+      const std::array named{before.ticks.back().hand[0].contactSet, before.ticks.back().hand[1].contactSet};
+      if (!session_->restore(recording_.keyframe(*segment.keyframe), named)) {
+        result.divergence = Divergence{segment.first - 1, {}, "keyframe", "state", "no State of this scene's model"};
+        return result;
+      }
+    }
+    MissCount count;
+    session_->join(count);
+    struct Joined {
+      Session& session;
+      MissCount& count;
+      ~Joined() { session.leave(count); }
+    } const joined{*session_, count};
+    const auto progress = [&](std::uint64_t /*step*/, std::uint64_t /*of*/) { stepped(); };
+    result.divergence = follow(recording_, *session_, segment.end, progress);
+    result.misses = count.misses;
+    return result;
+  }
+
+ private:
+  Recording recording_;
+  const Model& model_;
+  SerialExecutor executor_;
+  std::unique_ptr<Session> session_;
+};
+
+/// Hands segments to threads in their order.
+class Verification {
+ public:
+  Verification(const std::filesystem::path& path, const Model& model, const std::vector<Segment>& segments)
+      : path_(path), model_(model), segments_(segments), results_(segments.size()), firstBad_(segments.size()) {}
+
+  void run(unsigned threads, const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+    std::vector<std::thread> pool;
+    working_ = std::min<std::size_t>(threads, segments_.size());
+    const std::size_t count = working_;
+    for (std::size_t t = 0; t < count; ++t) pool.emplace_back([this] { work(); });
+    std::uint64_t of = 0;
+    for (const Segment& segment : segments_) of += segment.end - segment.first;
+    {
+      std::unique_lock lock(mutex_);
+      while (!finished_.wait_for(lock, progressInterval, [this] { return working_ == 0; })) {
+        lock.unlock();
+        if (progress) progress(done_, of);
+        lock.lock();
+      }
+    }
+    for (std::thread& thread : pool) thread.join();
+    if (progress) progress(done_, of);
+  }
+
+  SegmentsVerdict verdict() {
+    SegmentsVerdict verdict;
+    const std::size_t bad = firstBad_;
+    for (std::size_t i = 0; i < std::min(bad + 1, results_.size()); ++i) verdict.misses.add(results_[i].misses);
+    if (bad == results_.size()) return verdict;
+    if (results_[bad].error) std::rethrow_exception(results_[bad].error);
+    verdict.divergence = results_[bad].divergence;
+    verdict.reproducible = Verifier(path_, model_).run(segments_[bad], [] {}).divergence == verdict.divergence;
+    return verdict;
+  }
+
+ private:
+  void work() {
+    std::unique_ptr<Verifier> verifier;
+    for (std::size_t i = next_++; i < segments_.size() && i < firstBad_; i = next_++) {
+      try {
+        if (!verifier) verifier = std::make_unique<Verifier>(path_, model_);
+        results_[i] = verifier->run(segments_[i], [&] {
+          ++done_;
+          if (i > firstBad_) throw NotNeeded();
+        });
+      } catch (const NotNeeded&) {
+        break;
+      } catch (...) {
+        results_[i].error = std::current_exception();
+      }
+      if (results_[i].isGood()) continue;
+      std::size_t before = firstBad_;
+      while (i < before && !firstBad_.compare_exchange_weak(before, i)) {
+      }
+    }
+    const std::lock_guard lock(mutex_);
+    if (--working_ == 0) finished_.notify_one();
+  }
+
+  const std::filesystem::path& path_;
+  const Model& model_;
+  const std::vector<Segment>& segments_;
+  std::vector<Result> results_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<std::size_t> firstBad_;
+  std::atomic<std::uint64_t> done_{0};
+  std::mutex mutex_;
+  std::condition_variable finished_;
+  std::size_t working_ = 0;
+};
+
+}  // namespace
+
+std::vector<Segment> segmentsOf(const Recording& recording) {
+  std::vector<Segment> segments;
+  Segment segment;
+  const std::vector<std::uint64_t>& keyframes = recording.keyframeSteps();
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    segment.end = keyframes[k] + 1;
+    segments.push_back(segment);
+    segment = {segment.end, 0, k};
+  }
+  segment.end = recording.stepCount();
+  if (segment.first < segment.end) segments.push_back(segment);
+  return segments;
+}
+
+SegmentsVerdict verifySegments(const std::filesystem::path& recording, const Model& model,
+                               const std::vector<Segment>& segments, unsigned threads,
+                               const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+  if (segments.empty()) throw std::invalid_argument("no segments");
+  Verification verification(recording, model, segments);
+  verification.run(std::max(threads, 1U), progress);
+  return verification.verdict();
+}
+
+}  // namespace calot::recorder

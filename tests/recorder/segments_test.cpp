@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Verification in segments says what a run from the start says.
+#include "recorder/segments.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "recorder/compare.h"
+#include "recorder/errors.h"
+#include "recorder/replay.h"
+#include "tests/recorder/support/lying_recording.h"
+
+namespace calot::recorder {
+namespace {
+
+using test::Lie;
+
+ReplayReport verified(const std::filesystem::path& file, unsigned threads) {
+  ReplaySettings settings;
+  settings.threads = threads;
+  return replayRecording(file, settings);
+}
+
+void expectSame(const ReplayReport& serial, const ReplayReport& parallel) {
+  EXPECT_EQ(serial.verdict, parallel.verdict);
+  EXPECT_EQ(serial.message, parallel.message);
+  EXPECT_EQ(serial.divergence, parallel.divergence);
+  EXPECT_EQ(serial.reproducible, parallel.reproducible);
+  EXPECT_EQ(serial.misses, parallel.misses);
+  EXPECT_EQ(serial.steps, parallel.steps);
+  EXPECT_EQ(serial.outcome, parallel.outcome);
+  EXPECT_EQ(serial.chainHead, parallel.chainHead);
+}
+
+TEST(Segments, CoverEveryStepOnce) {
+  const test::Folder folder;
+  test::recordTouches(folder / "r.h5");
+  const Recording recording(folder / "r.h5");
+  const std::vector<Segment> expected{{0, 100, {}}, {100, 200, 0}, {200, 210, 1}};
+  EXPECT_EQ(segmentsOf(recording), expected);
+}
+
+/// Steps at both ends of segments and within them, and every kind of data that is compared.
+TEST(Segments, NameTheFirstDifferenceThatARunFromTheStartNames) {
+  const test::Folder folder;
+  int number = 0;
+  const auto check = [&](const std::optional<Lie>& lie) {
+    const std::filesystem::path file = folder / (std::to_string(number++) + ".h5");
+    test::recordTouches(file, lie);
+    const ReplayReport serial = verified(file, 1);
+    EXPECT_EQ(serial.verdict, lie ? ReplayVerdict::diverged : ReplayVerdict::exact) << serial.message;
+    SCOPED_TRACE(serial.message);
+    expectSame(serial, verified(file, 3));
+    std::filesystem::remove(file);
+  };
+  check(std::nullopt);
+  using About = Lie::About;
+  for (const About about :
+       {About::force, About::torque, About::contactSet, About::sample, About::digest, About::volume, About::event}) {
+    for (const std::uint64_t step : {99U, 100U, 207U}) {
+      SCOPED_TRACE("lie " + std::to_string(static_cast<int>(about)) + " at step " + std::to_string(step));
+      check(Lie{about, step});
+    }
+  }
+  for (const About about : {About::keyframe, About::lastByte}) {
+    for (const std::uint64_t step : {99U, 199U}) {
+      SCOPED_TRACE("lie " + std::to_string(static_cast<int>(about)) + " at step " + std::to_string(step));
+      check(Lie{about, step});
+    }
+  }
+}
+
+/// They get what was recorded once it is proven, in order, with all that a run would have shown them.
+TEST(Segments, ObserversSeeTheStepsOfARun) {
+  const test::Folder folder;
+  test::recordTouches(folder / "r.h5");
+  struct Watch final : Observer {
+    std::vector<StepResult> results;
+    std::vector<Vec3> forces, positions;
+    std::vector<StateDigest> digests;
+    Outcome outcome = Outcome::running;
+    void onStep(const StepRecord& record) override {
+      ASSERT_EQ(record.step, results.size());
+      results.push_back(record.result);
+      digests.push_back(record.digest);
+      for (const TickOutcome& tick : record.ticks) forces.push_back(tick.hand[1].force);
+      for (const TickSamples& tick : record.samples) positions.push_back(tick.hand[0].position);
+    }
+    void onEnd(Outcome end) override { outcome = end; }
+  };
+  std::array<Watch, 2> watch;
+  for (const unsigned threads : {1U, 2U}) {
+    ReplaySettings settings;
+    settings.threads = threads;
+    settings.observers = [&](const AttemptHeader&, const Model&) {
+      return std::vector<Observer*>{&watch[threads - 1]};
+    };
+    EXPECT_EQ(replayRecording(folder / "r.h5", settings).verdict, ReplayVerdict::exact);
+  }
+  EXPECT_EQ(watch[0].results.size(), 210U);
+  ASSERT_EQ(watch[1].results.size(), 210U);
+  ResultComparison differ(Recording(folder / "r.h5").header());
+  for (std::size_t n = 0; n < 210; ++n) {
+    EXPECT_FALSE(differ(watch[0].results[n], watch[1].results[n])) << "step " << n;
+  }
+  EXPECT_EQ(watch[0].digests, watch[1].digests);
+  EXPECT_EQ(watch[0].forces, watch[1].forces);
+  EXPECT_EQ(watch[0].positions, watch[1].positions);
+  EXPECT_EQ(watch[1].outcome, Outcome::stopped);
+}
+
+TEST(Segments, ObserversSeeNothingOfWhatIsNotProven) {
+  const test::Folder folder;
+  test::recordTouches(folder / "r.h5", Lie{Lie::About::force, 205});
+  struct Watch final : Observer {
+    int calls = 0;
+    void onStep(const StepRecord& /*record*/) override { ++calls; }
+    void onEnd(Outcome /*outcome*/) override { ++calls; }
+  } watch;
+  ReplaySettings settings;
+  settings.threads = 2;
+  settings.observers = [&](const AttemptHeader&, const Model&) { return std::vector<Observer*>{&watch}; };
+  EXPECT_EQ(replayRecording(folder / "r.h5", settings).verdict, ReplayVerdict::diverged);
+  EXPECT_EQ(watch.calls, 0);
+}
+
+TEST(Segments, ProgressCountsEveryStepAndComesToTheCaller) {
+  const test::Folder folder;
+  test::recordTouches(folder / "r.h5");
+  const std::thread::id here = std::this_thread::get_id();
+  std::uint64_t last = 0;
+  ReplaySettings settings;
+  settings.threads = 3;
+  settings.progress = [&](std::uint64_t step, std::uint64_t of) {
+    EXPECT_EQ(std::this_thread::get_id(), here);
+    EXPECT_GE(step, last);
+    EXPECT_EQ(of, 210U);
+    last = step;
+  };
+  replayRecording(folder / "r.h5", settings);
+  EXPECT_EQ(last, 210U);
+}
+
+/// A part is consistent, never exact; what is wrong elsewhere is not its affair.
+TEST(Segments, APartIsConsistentWithTheKeyframeBeforeIt) {
+  const test::Folder folder;
+  test::recordTouches(folder / "r.h5", Lie{Lie::About::force, 205});
+  const auto part = [&](std::size_t first, std::size_t last) {
+    ReplaySettings settings;
+    settings.part.emplace(first, last);
+    return replayRecording(folder / "r.h5", settings);
+  };
+  const ReplayReport good = part(0, 1);
+  EXPECT_EQ(good.verdict, ReplayVerdict::consistent);
+  EXPECT_EQ(good.message, "segments 0 to 1 consistent (steps 0 to 199); the rest was not looked at");
+  EXPECT_EQ(good.fault(), std::nullopt);
+  EXPECT_EQ(good.misses.steps, 200U);
+  const ReplayReport bad = part(2, 2);
+  EXPECT_EQ(bad.verdict, ReplayVerdict::diverged);
+  ASSERT_TRUE(bad.divergence);
+  EXPECT_EQ(bad.divergence->step, 205U);
+  EXPECT_THROW(part(1, 3), Error);
+  EXPECT_THROW(part(2, 1), Error);
+}
+
+/// What cannot be read is told as it is from a run, in whichever segment it lies.
+TEST(Segments, AreOfARecordingThatCanBeRead) {
+  const test::Folder folder;
+  const std::filesystem::path file = folder / "r.h5";
+  test::recordTouches(file);
+  const Recording recording(file);
+  const std::unique_ptr<const Model> model = modelOf(recording);
+  EXPECT_THROW(verifySegments(file, *model, {}, 2), std::invalid_argument);
+  EXPECT_THROW(verifySegments(folder / "none.h5", *model, segmentsOf(recording), 2), Error);
+  const SegmentsVerdict part = verifySegments(file, *model, {segmentsOf(recording)[1]}, 2);
+  EXPECT_FALSE(part.divergence);
+  EXPECT_EQ(part.misses.steps, 100U);
+}
+
+}  // namespace
+}  // namespace calot::recorder
