@@ -112,7 +112,8 @@ TEST(MeshAndStep, OfADissection) {
     expectWithin(runs, std::string("force-impulse ") + hand, 0.1);
     expectWithin(runs, std::string("force-maximum ") + hand, 0.15);
   }
-  expectWithin(runs, "cautery-without-contact right", 0.2);
+  // 0.9 s of this attempt, in strokes that begin and end in the air: 0.19 s less in steps of 20 ms.
+  expectWithin(runs, "cautery-without-contact right", 0.25);
 }
 
 /// Not with 20 ms: there a hold that a step misses is no hold, and all that follows is another attempt.

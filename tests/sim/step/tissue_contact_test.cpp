@@ -78,10 +78,12 @@ TEST(TissueContact, AStackCarriesItsWeight) {
   const double weight = massOf(*model, 1) * gravity;
   std::sort(residual.begin(), residual.end());
   EXPECT_LT(residual[242], 1e-3);
+  // Over two seconds: it wanders, and what it is accelerated by in a shorter time is a hundredth of its weight.
+  constexpr int steps = 200;
   double mean = 0.0;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < steps; ++i) {
     const StepResult& result = rig.step(scene.hands[0].home);
-    mean += std::accumulate(rig.state.tissue.force.begin(), rig.state.tissue.force.end(), 0.0) / 50.0;
+    mean += std::accumulate(rig.state.tissue.force.begin(), rig.state.tissue.force.end(), 0.0) / steps;
     deepest = std::max(deepest, result.contact.tissueDepth);
   }
   std::printf(
