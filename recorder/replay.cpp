@@ -9,6 +9,7 @@
 
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/miss_count.h"
 #include "recorder/segments.h"
 #include "recorder/step_comparison.h"
 #include "sim/scene/version.h"
@@ -16,13 +17,6 @@
 namespace calot::recorder {
 
 namespace {
-
-class MissCount final : public Observer {
- public:
-  void onStep(const StepRecord& record) override { misses.add(record.result.misses); }
-  void onEnd(Outcome /*outcome*/) override {}
-  StepMisses misses;
-};
 
 std::optional<Divergence> runOnce(Recording& recording, const Model& model, const ReplaySettings& settings,
                                   const std::vector<Observer*>& observers) {
@@ -38,9 +32,9 @@ std::optional<Divergence> runOnce(Recording& recording, const Model& model, cons
 std::vector<Segment> partOf(const Recording& recording, const std::vector<Segment>& all,
                             const std::pair<std::size_t, std::size_t>& part) {
   if (part.first > part.second || part.second >= all.size()) {
-    throw Error(
-        ErrorKind::invalid, Where{recording.path().string()},
-        fmt::format("it has segments 0 to {}: there are none from {} to {}", all.size() - 1, part.first, part.second));
+    throw Error(ErrorKind::invalid, Where{recording.path().string()},
+                fmt::format("it has {} segments, from 0 on: there are none from {} to {}", all.size(), part.first,
+                            part.second));
   }
   const auto at = [&](std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
   return {at(part.first), at(part.second) + 1};

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "recorder/miss_count.h"
 #include "recorder/session.h"
 
 namespace calot::recorder {
@@ -18,13 +19,6 @@ namespace calot::recorder {
 namespace {
 
 constexpr std::chrono::milliseconds progressInterval{50};
-
-class MissCount final : public Observer {
- public:
-  void onStep(const StepRecord& record) override { misses.add(record.result.misses); }
-  void onEnd(Outcome /*outcome*/) override {}
-  StepMisses misses;
-};
 
 /// A segment before has differed: what this one gives is of no interest any more.
 struct NotNeeded {};
@@ -81,7 +75,7 @@ class Verification {
       : path_(path), model_(model), segments_(segments), results_(segments.size()), firstBad_(segments.size()) {}
 
   void run(unsigned threads, const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
-    std::vector<std::thread> pool;
+    std::vector<std::jthread> pool;  // joined whatever `progress` throws
     working_ = std::min<std::size_t>(threads, segments_.size());
     const std::size_t count = working_;
     for (std::size_t t = 0; t < count; ++t) pool.emplace_back([this] { work(); });
@@ -95,7 +89,7 @@ class Verification {
         lock.lock();
       }
     }
-    for (std::thread& thread : pool) thread.join();
+    for (std::jthread& thread : pool) thread.join();
     if (progress) progress(done_, of);
   }
 

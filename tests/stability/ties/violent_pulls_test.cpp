@@ -23,7 +23,7 @@ constexpr double fastest = 10.0;  ///< m/s, of anything at any time
 /// Of the steps, at most: a limit that works oftener would be a law of motion.
 constexpr double heldBackShare = 0.001;
 /// Of the whole operation: fat that hangs on a vessel when it tears is whipped to the speed limit for some steps. How
-/// many is chance: 16 to 36 of 600 over twenty variants of contact's settings that no figure of a grade tells apart.
+/// many is chance: 16 to 36 of 600 over twenty variants of contact's settings.
 constexpr double heldBackWithFat = 0.07;
 
 SceneDescription sceneNamed(const std::string& name) {
