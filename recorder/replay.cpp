@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/miss_count.h"
 #include "recorder/segments.h"
@@ -18,10 +17,10 @@ namespace calot::recorder {
 
 namespace {
 
-std::optional<Divergence> runOnce(Recording& recording, const Model& model, const ReplaySettings& settings,
+std::optional<Divergence> runOnce(Recording& recording, PreparedScene& scene, const ReplaySettings& settings,
                                   const std::vector<Observer*>& observers) {
   WorkerPool pool(settings.threads);
-  Session session(model, recording.header().seed, pool);
+  Session session(scene.model(), recording.header().seed, pool, &scene.compliances());
   for (Observer* observer : observers) session.join(*observer);
   const std::optional<Divergence> first = follow(recording, session, recording.stepCount(), settings.progress);
   session.end(recording.outcome());
@@ -116,16 +115,17 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
     report.remedies = {Remedy::replayAnyway};
     return;
   }
-  const std::unique_ptr<const Model> model = modelOf(recording);
+  const std::shared_ptr<PreparedScene> scene = sceneOf(recording);
+  const Model& model = scene->model();
   // Another version may have other components; digests of different layouts say nothing field by field.
-  const bool comparable = header.layout.components == model->layout().components &&
-                          header.layout.fields.size() == model->layout().fields.size();
+  const bool comparable = header.layout.components == model.layout().components &&
+                          header.layout.fields.size() == model.layout().fields.size();
   if (!comparable) {
     report.verdict = otherVersion && chain.intact ? ReplayVerdict::undecided : ReplayVerdict::diverged;
     report.message = "the recorded digests have other components than this build's State: nothing to compare";
     return;
   }
-  std::vector<Observer*> observers = settings.observers ? settings.observers(header, *model) : std::vector<Observer*>{};
+  std::vector<Observer*> observers = settings.observers ? settings.observers(header, model) : std::vector<Observer*>{};
   std::vector<Segment> segments = segmentsOf(recording);
   if (settings.part) segments = partOf(recording, segments, *settings.part);
   const unsigned threads = settings.threads == 0 ? std::thread::hardware_concurrency() : settings.threads;
@@ -133,7 +133,7 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   const bool inSegments =
       settings.part || (threads > 1 && segments.size() > 1 && header.stepResultVersion == stepResultVersion);
   if (inSegments) {
-    const SegmentsVerdict verdict = verifySegments(recording.path(), *model, segments, threads, settings.progress);
+    const SegmentsVerdict verdict = verifySegments(recording.path(), *scene, segments, threads, settings.progress);
     report.divergence = verdict.divergence;
     report.reproducible = verdict.reproducible;
     report.misses = verdict.misses;
@@ -141,14 +141,15 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   } else {
     MissCount count;
     observers.push_back(&count);
-    report.divergence = runOnce(recording, *model, settings, observers);
+    report.divergence = runOnce(recording, *scene, settings, observers);
     report.misses = count.misses;
     if (report.divergence) {
       ReplaySettings again = settings;
       again.progress = nullptr;
-      report.reproducible = runOnce(recording, *model, again, {}) == report.divergence;
+      report.reproducible = runOnce(recording, *scene, again, {}) == report.divergence;
     }
   }
+  scene->save();
   if (report.divergence) {
     report.message = describe(*report.divergence) +
                      (*report.reproducible ? "; reproducible: a second run differs in the same way"
@@ -189,15 +190,6 @@ std::optional<ErrorKind> ReplayReport::fault() const {
   return std::nullopt;
 }
 
-std::unique_ptr<const Model> modelOf(const Recording& recording) {
-  LoadedScene scene = sceneFromAssets(recording.header().assets);
-  Model::Built built = Model::build(std::move(scene.description));
-  if (!built.model) {
-    throw Error(ErrorKind::damaged, Where{recording.path().string(), "/scene"}, built.error);
-  }
-  return std::move(built.model);
-}
-
 std::string messageWithout(const std::filesystem::path& recording, const Error& error) {
   const Where& where = error.where();
   if (where.file != recording.string() && where.file != recording.filename().string()) return error.what();
@@ -223,7 +215,7 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
 }
 
 Seeker::Seeker(Recording& recording, Executor& executor)
-    : recording_(recording), model_(modelOf(recording)), executor_(executor) {}
+    : recording_(recording), scene_(sceneOf(recording)), executor_(executor) {}
 
 void Seeker::seek(std::uint64_t step) {
   const auto nearest = recording_.keyframeAtOrBefore(step);
@@ -232,7 +224,9 @@ void Seeker::seek(std::uint64_t step) {
   const bool goOn = session_ && done <= step + 1 && (!nearest || recording_.keyframeSteps()[*nearest] < done);
   if (!goOn) {
     // A session that has been there keeps what it worked out of the model, above all compliances.
-    if (!session_ || !nearest) session_ = std::make_unique<Session>(*model_, recording_.header().seed, executor_);
+    if (!session_ || !nearest) {
+      session_ = std::make_unique<Session>(scene_->model(), recording_.header().seed, executor_, &scene_->compliances());
+    }
     if (nearest) {
       const Keyframe keyframe = recording_.keyframe(*nearest);
       if (!session_->restore(keyframe)) {

@@ -13,6 +13,7 @@
 
 #include "recorder/errors.h"
 #include "recorder/observer.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
 #include "recorder/session.h"
 #include "recorder/step_misses.h"
@@ -93,9 +94,6 @@ std::optional<Divergence> follow(Recording& recording, Session& session, std::ui
 /// "diverged at step 13: hand.right realPosition (...)".
 std::string describe(const Divergence& divergence);
 
-/// Model and scene of a recording. @throws Error (damaged) where the scene in it cannot be built.
-std::unique_ptr<const Model> modelOf(const Recording& recording);
-
 /// Goes anywhere in a recording: the nearest keyframe at or before, then re-simulation. The State is the one that
 /// running there gives, bit for bit.
 class Seeker {
@@ -108,12 +106,12 @@ class Seeker {
   void seek(std::uint64_t step);
 
   [[nodiscard]] const Session& session() const { return *session_; }
-  [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] const Model& model() const { return scene_->model(); }
 
  private:
   void advance();
   Recording& recording_;
-  std::unique_ptr<const Model> model_;
+  std::shared_ptr<PreparedScene> scene_;
   Executor& executor_;
   std::unique_ptr<Session> session_;
 };

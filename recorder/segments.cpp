@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -20,6 +21,13 @@ namespace {
 
 constexpr std::chrono::milliseconds progressInterval{50};
 
+/// Processor time of this thread.
+double threadSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 /// A segment before has differed: what this one gives is of no interest any more.
 struct NotNeeded {};
 
@@ -27,17 +35,18 @@ struct Result {
   std::optional<Divergence> divergence;
   std::exception_ptr error;
   StepMisses misses;
+  double seconds = 0.0;
   [[nodiscard]] bool isGood() const { return !divergence && !error; }
 };
 
 /// A thread's own reader and session. A session that is used again keeps what it worked out of the model.
 class Verifier {
  public:
-  Verifier(const std::filesystem::path& path, const Model& model) : recording_(path), model_(model) {}
+  Verifier(const std::filesystem::path& path, PreparedScene& scene) : recording_(path), scene_(scene) {}
 
   Result run(const Segment& segment, const std::function<void()>& stepped) {
     if (!session_ || !segment.keyframe)
-      session_ = std::make_unique<Session>(model_, recording_.header().seed, executor_);
+      session_ = std::make_unique<Session>(scene_.model(), recording_.header().seed, executor_, &scene_.compliances());
     Result result;
     if (segment.keyframe) {
       // Of which contact sets the ticks before had come to is in the recording, and checked with the segment before.
@@ -63,7 +72,7 @@ class Verifier {
 
  private:
   Recording recording_;
-  const Model& model_;
+  PreparedScene& scene_;
   SerialExecutor executor_;
   std::unique_ptr<Session> session_;
 };
@@ -71,8 +80,8 @@ class Verifier {
 /// Hands segments to threads in their order.
 class Verification {
  public:
-  Verification(const std::filesystem::path& path, const Model& model, const std::vector<Segment>& segments)
-      : path_(path), model_(model), segments_(segments), results_(segments.size()), firstBad_(segments.size()) {}
+  Verification(const std::filesystem::path& path, PreparedScene& scene, const std::vector<Segment>& segments)
+      : path_(path), scene_(scene), segments_(segments), results_(segments.size()), firstBad_(segments.size()) {}
 
   void run(unsigned threads, const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
     std::vector<std::jthread> pool;  // joined whatever `progress` throws
@@ -95,12 +104,13 @@ class Verification {
 
   SegmentsVerdict verdict() {
     SegmentsVerdict verdict;
+    for (const Result& result : results_) verdict.seconds.push_back(result.seconds);
     const std::size_t bad = firstBad_;
     for (std::size_t i = 0; i < std::min(bad + 1, results_.size()); ++i) verdict.misses.add(results_[i].misses);
     if (bad == results_.size()) return verdict;
     if (results_[bad].error) std::rethrow_exception(results_[bad].error);
     verdict.divergence = results_[bad].divergence;
-    verdict.reproducible = Verifier(path_, model_).run(segments_[bad], [] {}).divergence == verdict.divergence;
+    verdict.reproducible = Verifier(path_, scene_).run(segments_[bad], [] {}).divergence == verdict.divergence;
     return verdict;
   }
 
@@ -108,8 +118,9 @@ class Verification {
   void work() {
     std::unique_ptr<Verifier> verifier;
     for (std::size_t i = next_++; i < segments_.size() && i < firstBad_; i = next_++) {
+      const double begin = threadSeconds();
       try {
-        if (!verifier) verifier = std::make_unique<Verifier>(path_, model_);
+        if (!verifier) verifier = std::make_unique<Verifier>(path_, scene_);
         results_[i] = verifier->run(segments_[i], [&] {
           ++done_;
           if (i > firstBad_) throw NotNeeded();
@@ -119,6 +130,7 @@ class Verification {
       } catch (...) {
         results_[i].error = std::current_exception();
       }
+      results_[i].seconds = threadSeconds() - begin;
       if (results_[i].isGood()) continue;
       std::size_t before = firstBad_;
       while (i < before && !firstBad_.compare_exchange_weak(before, i)) {
@@ -129,7 +141,7 @@ class Verification {
   }
 
   const std::filesystem::path& path_;
-  const Model& model_;
+  PreparedScene& scene_;
   const std::vector<Segment>& segments_;
   std::vector<Result> results_;
   std::atomic<std::size_t> next_{0};
@@ -156,11 +168,11 @@ std::vector<Segment> segmentsOf(const Recording& recording) {
   return segments;
 }
 
-SegmentsVerdict verifySegments(const std::filesystem::path& recording, const Model& model,
+SegmentsVerdict verifySegments(const std::filesystem::path& recording, PreparedScene& scene,
                                const std::vector<Segment>& segments, unsigned threads,
                                const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
   if (segments.empty()) throw std::invalid_argument("no segments");
-  Verification verification(recording, model, segments);
+  Verification verification(recording, scene, segments);
   verification.run(std::max(threads, 1U), progress);
   return verification.verdict();
 }

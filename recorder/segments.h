@@ -10,10 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
 #include "recorder/step_misses.h"
-#include "sim/scene/model.h"
 
 namespace calot::recorder {
 
@@ -33,12 +33,13 @@ struct SegmentsVerdict {
   std::optional<Divergence> divergence;  ///< the first, as a run from the start would find it
   std::optional<bool> reproducible;      ///< its segment, run once more, differed in the same way
   StepMisses misses;                     ///< of the steps up to there
+  std::vector<double> seconds;           ///< per segment: processor time that it took; 0: not needed
 };
 
 /// Verifies each of the segments, up to `threads` at a time, each on one thread with a reader of its own.
 /// @param progress steps done, of all; called on this thread
 /// @throws what reading the recording throws, where no segment before differs; std::invalid_argument on no segments
-SegmentsVerdict verifySegments(const std::filesystem::path& recording, const Model& model,
+SegmentsVerdict verifySegments(const std::filesystem::path& recording, PreparedScene& scene,
                                const std::vector<Segment>& segments, unsigned threads,
                                const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
 

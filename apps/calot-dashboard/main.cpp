@@ -10,7 +10,9 @@
 #include "apps/common/program.h"
 #include "apps/window/start_checks.h"
 #include "gui/dashboard/dashboard_window.h"
+#include "recorder/compliance_cache.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/prepared_scene.h"
 
 namespace {
 
@@ -30,6 +32,7 @@ int run(int argc, char** argv) {
     return calot::apps::endWith(calot::apps::ExitCode::usage, programName, std::string(error.what()) + "; try --help");
   }
 
+  calot::recorder::useComplianceCache(calot::recorder::userCacheFolder());
   // A file that cannot be opened is told before there is a window, and needs none.
   std::shared_ptr<const calot::gui::CohortDocument> document;
   if (given->count() > 0) document = std::make_shared<const calot::gui::CohortDocument>(database);

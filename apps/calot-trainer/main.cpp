@@ -20,7 +20,9 @@
 #include "apps/window/start_checks.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/trainer_window.h"
+#include "recorder/compliance_cache.h"
 #include "recorder/errors.h"
+#include "recorder/prepared_scene.h"
 
 namespace calot::apps {
 namespace {
@@ -108,8 +110,7 @@ std::optional<recorder::LoadedScene> sceneOf(const std::string& name) {
   if (name.empty()) return std::nullopt;
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(name, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot-trainer: warning: {}\n", warning);
-  const Model::Built built = Model::build(scene.description);
-  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", name, built.error));
+  static_cast<void>(recorder::prepareScene(scene.assets, Where{"scene " + name}));  // a fault is told before a window
   return scene;
 }
 
@@ -124,6 +125,7 @@ int run(int argc, char** argv) {
     return endWith(ExitCode::usage, programName, std::string(error.what()) + "; try --help");
   }
   stopOnSignals();
+  recorder::useComplianceCache(recorder::userCacheFolder());
   std::optional<recorder::LoadedScene> scene = sceneOf(o.scene);
   gui::TrainerSetup setup = setUp(o, scene);
   std::vector<std::string> faults;

@@ -15,6 +15,7 @@
 #include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/writer.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
@@ -55,14 +56,15 @@ int branch(const BranchOptions& o) {
   recorder::Recording parent(o.parent);
   recorder::refuseParent(parent, chain);
   const std::uint64_t forkStep = recorder::forkStepAt(parent, at);
-  const std::unique_ptr<const Model> model = recorder::modelOf(parent);
-  const std::unique_ptr<recorder::SampleSource> source = makeSource(o.source, model->scene(), o.seed);
-  recorder::AttemptHeader header = recorder::branchHeader(parent, *model, forkStep, source->provenance());
+  const std::shared_ptr<recorder::PreparedScene> scene = recorder::sceneOf(parent);
+  const Model& model = scene->model();
+  const std::unique_ptr<recorder::SampleSource> source = makeSource(o.source, model.scene(), o.seed);
+  recorder::AttemptHeader header = recorder::branchHeader(parent, model, forkStep, source->provenance());
   if (key) header.station = key->station;  // of who signs, wherever the parent came from
 
   recorder::RecordingWriter writer(file.path(), header, {true, std::move(key)});
   recorder::WorkerPool pool(o.threads);
-  recorder::Session session(*model, header.seed, pool);
+  recorder::Session session(model, header.seed, pool, &scene->compliances());
   LastPose pose;
   session.join(writer);
   session.join(pose);
@@ -81,10 +83,10 @@ int branch(const BranchOptions& o) {
 
   recorder::BlendedSource blended(*source, pose.last);
   recorder::RunSettings run;
-  run.seconds = o.seconds > 0.0 ? static_cast<double>(session.steps()) * model->stepSeconds() + o.seconds : 0.0;
+  run.seconds = o.seconds > 0.0 ? static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds : 0.0;
   run.live = o.live;
   driveDevice(*source, run);
-  recordDevice(*source, writer, session.steps() * model->scene().ticksPerStep);
+  recordDevice(*source, writer, session.steps() * model.scene().ticksPerStep);
   run.stop = &stopRequested();
   Progress progress("recording, steps", o.json);
   run.progress = [&](std::uint64_t step) {
@@ -98,7 +100,7 @@ int branch(const BranchOptions& o) {
     tellDevice(*source);
   }
   return tell(
-      {header.attempt, o.output, model->stepSeconds(), report, source->statusText(), run.paced || o.live, o.live},
+      {header.attempt, o.output, model.stepSeconds(), report, source->statusText(), run.paced || o.live, o.live},
       o.json);
 }
 

@@ -19,6 +19,7 @@ void addExport(CLI::App& app, Run& run);
 void addState(CLI::App& app, Run& run);
 void addDiff(CLI::App& app, Run& run);
 void addMesh(CLI::App& app, Run& run);
+void addCache(CLI::App& app, Run& run);
 void addRender(CLI::App& app, Run& run);
 void addImport(CLI::App& app, Run& run);
 void addAssess(CLI::App& app, Run& run);

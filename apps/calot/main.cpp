@@ -4,6 +4,8 @@
 #include "apps/calot/commands.h"
 #include "apps/common/program.h"
 #include "recorder/attempt.h"
+#include "recorder/compliance_cache.h"
+#include "recorder/prepared_scene.h"
 #include "sim/scene/version.h"
 
 int main(int argc, char** argv) {
@@ -19,7 +21,7 @@ int main(int argc, char** argv) {
         apps::addStudy,   apps::addProtocol,    apps::addPower,   apps::addRate,    apps::addNorm,
         apps::addGrade,   apps::addParticipant, apps::addAttempt, apps::addRegrade, apps::addCohort,
         apps::addStation, apps::addRender,      apps::addMesh,    apps::addScenes,  apps::addCheckpoints,
-        apps::addDevices, apps::addGolden}) {
+        apps::addDevices, apps::addGolden,      apps::addCache}) {
     add(app, run);
   }
   const auto isCommand = [&app](const std::string& word) {
@@ -40,5 +42,6 @@ int main(int argc, char** argv) {
     }
     return apps::endWith(apps::ExitCode::usage, "calot", std::string(e.what()) + " (try: " + name + " --help)");
   }
+  recorder::useComplianceCache(recorder::userCacheFolder());
   return apps::runProgram("calot", run);
 }

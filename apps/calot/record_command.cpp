@@ -14,6 +14,7 @@
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recording/writer.h"
 
 namespace calot::apps {
@@ -37,11 +38,12 @@ int record(const RecordOptions& o) {
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
-  const Model::Built built = Model::build(scene.description);
-  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", o.scene, built.error));
+  const std::shared_ptr<recorder::PreparedScene> prepared =
+      recorder::prepareScene(scene.assets, Where{"scene " + o.scene});
+  const Model& model = prepared->model();
   SourceOptions who = o.source;
   who.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
-  const std::unique_ptr<recorder::SampleSource> source = makeSource(who, built.model->scene(), o.seed);
+  const std::unique_ptr<recorder::SampleSource> source = makeSource(who, model.scene(), o.seed);
   recorder::AttemptSettings settings;
   settings.participant = o.participant;
   settings.station = stationOf(o.station, key);
@@ -50,10 +52,10 @@ int record(const RecordOptions& o) {
   settings.mode = who.mode;
   settings.seed = o.seed;
   const recorder::AttemptHeader header =
-      recorder::makeHeader(*built.model, std::move(scene.assets), source->provenance(), settings);
+      recorder::makeHeader(model, std::move(scene.assets), source->provenance(), settings);
   recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
   recorder::WorkerPool pool(o.threads);
-  recorder::Session session(*built.model, o.seed, pool);
+  recorder::Session session(model, o.seed, pool, &prepared->compliances());
   session.join(writer);
   Progress progress("recording, seconds", o.json);
   recorder::RunSettings run;
@@ -63,7 +65,7 @@ int record(const RecordOptions& o) {
   driveDevice(*source, run);
   recordDevice(*source, writer);
   run.stop = &stopRequested();
-  const double stepSeconds = built.model->stepSeconds();
+  const double stepSeconds = model.stepSeconds();
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
     progress.show(static_cast<std::uint64_t>(static_cast<double>(step) * stepSeconds),
@@ -71,6 +73,7 @@ int record(const RecordOptions& o) {
   };
   const recorder::RunReport report = recorder::runAttempt(session, *source, run);
   writer.finish();
+  prepared->save();
   if (!o.json) tellDevice(*source);
   return tell({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live},
               o.json);

@@ -176,10 +176,8 @@ void TrainingSession::giveWay() const {
 }
 
 void TrainingSession::prepare() {
-  if (model_) return;
-  Model::Built built = Model::build(settings_.scene.description);
-  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", scene().name, built.error));
-  model_ = std::move(built.model);
+  if (prepared_) return;
+  prepared_ = recorder::prepareScene(settings_.scene.assets, Where{"scene " + scene().name});
 }
 
 void TrainingSession::attempt() {
@@ -187,12 +185,12 @@ void TrainingSession::attempt() {
   giveWay();
   recorder::ControlledSource controlled(*source);
   const recorder::AttemptHeader header =
-      recorder::makeHeader(*model_, settings_.scene.assets, source->provenance(), settings_.attempt);
+      recorder::makeHeader(prepared_->model(), settings_.scene.assets, source->provenance(), settings_.attempt);
   const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
   recorder::RecordingWriter writer(file, header, {false, settings_.key});
   recorder::WorkerPool pool(settings_.threads);
-  recorder::Session session(*model_, header.seed, pool);
-  AttemptMonitor monitor(*model_);
+  recorder::Session session(prepared_->model(), header.seed, pool, &prepared_->compliances());
+  AttemptMonitor monitor(prepared_->model());
   session.join(writer);
   session.join(monitor);
   input_->record(*source, writer, 0);
@@ -209,13 +207,13 @@ void TrainingSession::branch(double time) {
   recorder::Recording parent(parentFile);
   recorder::refuseParent(parent, parent.verifyChain());
   const std::uint64_t fork = recorder::forkStepAt(parent, time);
-  const recorder::AttemptHeader header = recorder::branchHeader(parent, *model_, fork, source->provenance());
+  const recorder::AttemptHeader header = recorder::branchHeader(parent, prepared_->model(), fork, source->provenance());
   const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
   recorder::BranchFile place(file, false);
   recorder::RecordingWriter writer(place.path(), header, {true, settings_.key});
   recorder::WorkerPool pool(settings_.threads);
-  recorder::Session session(*model_, header.seed, pool);
-  AttemptMonitor monitor(*model_);
+  recorder::Session session(prepared_->model(), header.seed, pool, &prepared_->compliances());
+  AttemptMonitor monitor(prepared_->model());
   session.join(writer);
   session.join(monitor);
   recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
@@ -267,13 +265,14 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
       status_.file = file;
       status_.attempt = header.attempt;
       status_.parent = header.parent;
-      status_.branchedAt = static_cast<double>(header.forkStep + 1) * model_->stepSeconds();
+      status_.branchedAt = static_cast<double>(header.forkStep + 1) * prepared_->model().stepSeconds();
       status_.operatorKind = header.provenance.kind;
       status_.report = {};
     }
     report = recorder::runAttempt(session, controlled, run);
   }
   writer.finish();
+  prepared_->save();
   keepResult(report, source);
 }
 

@@ -18,8 +18,8 @@
 #include "gui/trainer/view_tap.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/controlled_source.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recording/station_key.h"
-#include "sim/scene/model.h"
 
 namespace calot::gui {
 
@@ -116,7 +116,7 @@ class TrainingSession {
   TrainingSettings settings_;
   std::shared_ptr<AttemptInput> input_;
   ViewTap tap_;
-  std::unique_ptr<const Model> model_;  ///< the thread's, made by it
+  std::shared_ptr<recorder::PreparedScene> prepared_;  ///< the thread's, made by it
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -2,14 +2,15 @@
 #include "sim/solid/rest_compliance.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sim/math/floating_point.h"
 
 namespace calot {
 
 RestCompliance::RestCompliance(const SolidModel& model, const SolidSolver::Settings& settings, Executor& executor,
-                               const Surroundings& surroundings)
-    : model_(model), settings_(settings), column_(model.nodes()) {
+                               const Surroundings& surroundings, const ComplianceShelf& shelf)
+    : model_(model), settings_(settings), shelf_(shelf), column_(model.nodes()), fresh_(model.nodes()) {
   const FloatingPointScope scope;
   settings_.lattice = false;  // not used with several right-hand sides
   SolidState rest = restState(model);
@@ -21,8 +22,10 @@ void RestCompliance::precomputeCompliance(std::span<const int> nodes) {
   // nodes, which are likely to be requested as well.
   pending_.clear();
   const auto request = [this](std::size_t node) {
-    if (!column_[node].empty()) return;
-    column_[node].resize(9 * model_.nodes());
+    if (column_[node] != nullptr || !fresh_[node].empty()) return;
+    if (shelf_.store != nullptr) column_[node] = shelf_.store->find(shelf_.solid, node);
+    if (column_[node] != nullptr) return;
+    fresh_[node].resize(9 * model_.nodes());
     for (std::size_t axis = 0; axis < 3; ++axis) pending_.emplace_back(node, axis);
   };
   for (const int node : nodes) request(static_cast<std::size_t>(node));
@@ -47,15 +50,20 @@ void RestCompliance::precomputeCompliance(std::span<const int> nodes) {
       for (std::size_t a = 0; a < model_.nodes(); ++a) {
         const Vec3& v = response_[k][a];
         for (std::size_t i = 0; i < 3; ++i) {
-          column_[node][9 * a + 3 * i + axis] = static_cast<float>(v[static_cast<int>(i)]);
+          fresh_[node][9 * a + 3 * i + axis] = static_cast<float>(v[static_cast<int>(i)]);
         }
       }
     }
   }
+  for (const auto& [node, axis] : pending_) {
+    if (axis != 0) continue;
+    column_[node] = shelf_.store == nullptr ? fresh_[node].data()
+                                            : shelf_.store->keep(shelf_.solid, node, std::exchange(fresh_[node], {}));
+  }
 }
 
 Mat3 RestCompliance::block(int a, int b) const {
-  const float* c = column_[static_cast<std::size_t>(b)].data() + 9 * static_cast<std::size_t>(a);
+  const float* c = column_[static_cast<std::size_t>(b)] + 9 * static_cast<std::size_t>(a);
   Mat3 m;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) m(i, j) = static_cast<double>(c[3 * i + j]);
@@ -65,7 +73,7 @@ Mat3 RestCompliance::block(int a, int b) const {
 
 void RestCompliance::blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const {
   for (std::size_t j = 0; j < b.size(); ++j) {
-    const float* column = column_[static_cast<std::size_t>(b[j])].data();
+    const float* column = column_[static_cast<std::size_t>(b[j])];
     for (std::size_t i = 0; i < a.size(); ++i) {
       const float* from = column + 9 * static_cast<std::size_t>(a[i]);
       double* to = out.data() + 9 * (i * b.size() + j);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/solid/compliance_store.h"
 #include "sim/solid/solid.h"
 
 namespace calot {
@@ -22,8 +23,9 @@ class RestCompliance {
   /// @param model outlives this. Assembles A in the reference configuration; columns are computed on demand.
   /// @param surroundings attachments and fill in the reference configuration: without its springs, a solid without
   /// fixed nodes would respond as a free body
+  /// @param shelf where columns are kept; its store outlives this
   RestCompliance(const SolidModel& model, const SolidSolver::Settings& settings, Executor& executor,
-                 const Surroundings& surroundings = {});
+                 const Surroundings& surroundings = {}, const ComplianceShelf& shelf = {});
 
   /// Computes missing columns of these nodes, eight right-hand sides at a time. A column depends on the model alone,
   /// not on the order of requests.
@@ -38,7 +40,9 @@ class RestCompliance {
   const SolidModel& model_;
   SolidSolver::Settings settings_;
   SolidSolver solver_;
-  std::vector<std::vector<float>> column_;  ///< per node: 9 numbers for each node, row-major; empty: not computed
+  ComplianceShelf shelf_;
+  std::vector<const float*> column_;       ///< per node: 9 numbers for each node, row-major; null: not asked for yet
+  std::vector<std::vector<float>> fresh_;  ///< per node: its column that is being computed, or that no store keeps
   std::vector<std::pair<std::size_t, std::size_t>> pending_;  ///< requested nodes and axes
   std::vector<SolidSolver::Impulse> impulses_;
   std::vector<std::vector<Vec3>> response_;

@@ -15,9 +15,15 @@ bool fitsMemory(std::size_t computed, std::size_t nodes) {
   return nodes == 0 || computed <= maxPrecomputed / (9 * sizeof(float)) / nodes;
 }
 
+/// A store may give nothing until a first column was worked out here: a few before all.
+void precomputeAll(Body& body, std::span<const int> nodes) {
+  body.precomputeCompliance(nodes.first(std::min<std::size_t>(nodes.size(), 1)));
+  body.precomputeCompliance(nodes);
+}
+
 }  // namespace
 
-Bodies::Bodies(const Model& model, Executor& executor) : model_(model) {
+Bodies::Bodies(const Model& model, Executor& executor, ComplianceStore* compliances) : model_(model) {
   const SolverDescription& solver = model.scene().solver;
   settings_.step = model.stepSeconds();
   settings_.tolerance = solver.tolerance;
@@ -27,7 +33,8 @@ Bodies::Bodies(const Model& model, Executor& executor) : model_(model) {
   responseSettings_.tolerance = solver.responseTolerance;
   responseSettings_.speedTolerance = solver.responseSpeedTolerance;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
-    auto organ = std::make_unique<OrganBody>(model, o, settings_, responseSettings_, executor);
+    auto organ = std::make_unique<OrganBody>(model, o, settings_, responseSettings_, executor,
+                                             ComplianceShelf{compliances, o});
     organ_.push_back(organ.get());
     body_.push_back(std::move(organ));
   }
@@ -37,7 +44,8 @@ Bodies::Bodies(const Model& model, Executor& executor) : model_(model) {
     body_.push_back(std::move(vessels));
   }
   for (std::size_t f = 0; f < model.fat().size(); ++f) {
-    auto fat = std::make_unique<FatMotion>(model, f, settings_, responseSettings_, executor);
+    auto fat = std::make_unique<FatMotion>(model, f, settings_, responseSettings_, executor,
+                                           ComplianceShelf{compliances, model.organs().size() + f});
     fat_.push_back(fat.get());
     body_.push_back(std::move(fat));
   }
@@ -83,14 +91,14 @@ void Bodies::precompute() {
     }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    if (fitsMemory(nodes.size(), organ.solid.nodes())) body_[o]->precomputeCompliance(nodes);
+    if (fitsMemory(nodes.size(), organ.solid.nodes())) precomputeAll(*body_[o], nodes);
     body_[o]->precompute();
   }
   for (FatMotion* fat : fat_) {
     if (!fitsMemory(fat->nodes(), fat->nodes())) continue;
     std::vector<int> nodes(fat->nodes());
     for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = static_cast<int>(n);
-    fat->precomputeCompliance(nodes);
+    precomputeAll(*fat, nodes);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/math/executor.h"
+#include "sim/solid/compliance_store.h"
 #include "sim/step/body.h"
 #include "sim/step/fat_motion.h"
 #include "sim/step/joined_solids.h"
@@ -19,7 +20,8 @@ namespace calot {
 /// The bodies of a scene with their linear solvers, and the couplings of vessels to the organs that they are grown to.
 class Bodies {
  public:
-  Bodies(const Model& model, Executor& executor);
+  /// @param compliances that runs of the model share, or null
+  Bodies(const Model& model, Executor& executor, ComplianceStore* compliances = nullptr);
 
   /// To be called when the State was replaced.
   void invalidate();

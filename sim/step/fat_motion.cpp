@@ -7,13 +7,13 @@
 namespace calot {
 
 FatMotion::FatMotion(const Model& model, std::size_t fat, const SolidSolver::Settings& settings,
-                     const SolidSolver::Settings& responses, Executor& executor)
+                     const SolidSolver::Settings& responses, Executor& executor, const ComplianceShelf& shelf)
     : index_(fat),
       settings_(settings),
       executor_(executor),
       fat_(*model.fat()[fat]),
       rest_(model.fat()[fat]->solid(), responses, executor,
-            {model.fat()[fat]->restAttachments(settings.step), model.fat()[fat]->restFill()}) {}
+            {model.fat()[fat]->restAttachments(settings.step), model.fat()[fat]->restFill()}, shelf) {}
 
 void FatMotion::beginStep(const State& state) {
   if (stale_) {

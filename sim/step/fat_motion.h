@@ -13,7 +13,7 @@ namespace calot {
 class FatMotion final : public SolidBody {
  public:
   FatMotion(const Model& model, std::size_t fat, const SolidSolver::Settings& settings,
-            const SolidSolver::Settings& responses, Executor& executor);
+            const SolidSolver::Settings& responses, Executor& executor, const ComplianceShelf& shelf);
 
   /// To be called when the State was replaced.
   void invalidate() { stale_ = true; }

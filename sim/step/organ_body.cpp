@@ -6,12 +6,12 @@
 namespace calot {
 
 OrganBody::OrganBody(const Model& model, std::size_t organ, const SolidSolver::Settings& settings,
-                     const SolidSolver::Settings& responses, Executor& executor)
+                     const SolidSolver::Settings& responses, Executor& executor, const ComplianceShelf& shelf)
     : organ_(organ),
       solid_(model.organs()[organ].solid),
       settings_(settings),
       executor_(executor),
-      rest_(solid_, responses, executor) {}
+      rest_(solid_, responses, executor, {}, shelf) {}
 
 std::span<const Vec3> OrganBody::position(const State& state) const { return state.organ[organ_].position; }
 std::span<const Vec3> OrganBody::velocity(const State& state) const { return state.organ[organ_].velocity; }

@@ -12,7 +12,7 @@ namespace calot {
 class OrganBody final : public SolidBody {
  public:
   OrganBody(const Model& model, std::size_t organ, const SolidSolver::Settings& settings,
-            const SolidSolver::Settings& responses, Executor& executor);
+            const SolidSolver::Settings& responses, Executor& executor, const ComplianceShelf& shelf);
 
   [[nodiscard]] std::size_t nodes() const override { return solid_.nodes(); }
   [[nodiscard]] std::span<const Vec3> position(const State& state) const override;

@@ -30,9 +30,9 @@ StepResult emptyResult(const Model& model) {
 
 /// The stages, what they hand on, and what they work on.
 struct Stepper::Pipeline {
-  Pipeline(const Model& m, Executor& executor, MakeBroadPhase make)
+  Pipeline(const Model& m, Executor& executor, MakeBroadPhase make, ComplianceStore* compliances)
       : model(m),
-        bodies(m, executor),
+        bodies(m, executor, compliances),
         surfaces(m, bodies, make),
         activity(m),
         grasping(m),
@@ -69,8 +69,8 @@ struct Stepper::Pipeline {
   IncrementalDigest digest;
 };
 
-Stepper::Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase)
-    : p_(std::make_unique<Pipeline>(model, executor, makeBroadPhase)) {}
+Stepper::Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase, ComplianceStore* compliances)
+    : p_(std::make_unique<Pipeline>(model, executor, makeBroadPhase, compliances)) {}
 Stepper::~Stepper() = default;
 
 const StepResult& Stepper::step(State& state, std::span<const TickSamples> samples) {

@@ -12,6 +12,7 @@
 #include "sim/scene/samples.h"
 #include "sim/scene/state.h"
 #include "sim/scene/step_result.h"
+#include "sim/solid/compliance_store.h"
 
 namespace calot {
 
@@ -22,7 +23,10 @@ class Stepper {
   using MakeBroadPhase = std::unique_ptr<BroadPhase> (*)();
 
   /// @param executor outlives the stepper. @param makeBroadPhase one is made for each structure.
-  Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase = nullptr);
+  /// @param compliances where columns of rest compliances come from and go to, for other steppers of the same model;
+  /// null: of this one alone. Outlives the stepper.
+  Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase = nullptr,
+          ComplianceStore* compliances = nullptr);
   ~Stepper();
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;

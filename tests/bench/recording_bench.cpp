@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
+#include "recorder/segments.h"
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
@@ -120,6 +122,54 @@ void replay(benchmark::State& bench) {
   figures().add("replay.cholecystectomy.x_realtime", report.seconds / spent);
 }
 
+/// When the last of so many workers is done that take segments in their order (s).
+double criticalPath(const std::vector<double>& seconds, std::size_t workers) {
+  std::vector<double> busy(workers, 0.0);
+  for (const double s : seconds) *std::min_element(busy.begin(), busy.end()) += s;
+  return *std::max_element(busy.begin(), busy.end());
+}
+
+/// A whole operation, verified on one thread and on two (wall time), and what as many as segments would allow: each
+/// segment is timed alone.
+void segments(benchmark::State& bench) {
+  static const Folder folder("segments");
+  const std::filesystem::path file = folder / "segments.h5";
+  run(workIn("cholecystectomy", 600.0), file);
+  const recorder::Recording recording(file);
+  const std::vector<recorder::Segment> all = recorder::segmentsOf(recording);
+  const std::shared_ptr<recorder::PreparedScene> scene = recorder::sceneOf(recording);
+  recorder::SegmentsVerdict alone;
+  double one = 0.0;
+  double two = 0.0;
+  for (auto _ : bench) {
+    const auto timed = [&](unsigned threads, recorder::SegmentsVerdict& verdict) {
+      const auto begin = std::chrono::steady_clock::now();
+      verdict = recorder::verifySegments(file, *scene, all, threads);
+      if (verdict.divergence) throw std::runtime_error(recorder::describe(*verdict.divergence));
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    recorder::SegmentsVerdict together;
+    one = timed(1, alone);
+    two = timed(2, together);
+    bench.SetIterationTime(two);
+  }
+  const double sum = criticalPath(alone.seconds, 1);
+  auto& counters = bench.counters;
+  counters["segments"] = static_cast<double>(all.size());
+  counters["longest_ms"] = 1e3 * *std::max_element(alone.seconds.begin(), alone.seconds.end());
+  counters["file_mb"] = 1e-6 * static_cast<double>(std::filesystem::file_size(file));
+  const auto add = [&](const std::string& name, double value) {
+    counters[name] = value;
+    figures().add("replay.cholecystectomy." + name, value);
+  };
+  add("x_realtime_2", recording.seconds() / two);
+  add("speedup_2", one / two);
+  for (const std::size_t workers : {8U, 32U}) {
+    add("path_" + std::to_string(workers), sum / criticalPath(alone.seconds, workers));
+  }
+  figures().add("record.operation_mb", 1e-6 * static_cast<double>(std::filesystem::file_size(file)));
+}
+
 void seek(benchmark::State& bench) {
   static const Folder folder("seek");
   const Work work = workIn("cholecystectomy", 40.0);
@@ -153,6 +203,7 @@ void registerRecordings() {
     repeated(benchmark::RegisterBenchmark(("recording/overhead/" + scene).c_str(), overhead, scene), 2);
   }
   repeated(benchmark::RegisterBenchmark("recording/replay", replay), 2);
+  repeated(benchmark::RegisterBenchmark("recording/segments", segments), 1);
   repeated(benchmark::RegisterBenchmark("recording/seek", seek), 2);
 }
 

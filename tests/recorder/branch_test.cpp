@@ -39,14 +39,15 @@ std::filesystem::path branchOf(const std::filesystem::path& parentFile, const st
   Recording parent(parentFile);
   refuseParent(parent, parent.verifyChain());
   const std::uint64_t fork = forkStepAt(parent, at);
-  const std::unique_ptr<const Model> model = modelOf(parent);
+  const std::shared_ptr<PreparedScene> prepared = sceneOf(parent);
+  const Model& model = prepared->model();
   const test::SmallScene scene = test::smallScene();
   const std::unique_ptr<SampleSource> source = test::performer(scene, "unskilled", 2);
-  const AttemptHeader header = branchHeader(parent, *model, fork, source->provenance());
+  const AttemptHeader header = branchHeader(parent, model, fork, source->provenance());
   BranchFile place(file, false);
   RecordingWriter writer(place.path(), header);
   SerialExecutor executor;
-  Session session(*model, header.seed, executor);
+  Session session(model, header.seed, executor);
   session.join(writer);
   takeParent(parent, session, fork);
   place.publish();

@@ -107,8 +107,9 @@ TEST(Live, ASlowSimulationReplaysAndCanBeSoughtIn) {
   // Seeking from keyframes gives the state, forces and keyframes of running there.
   ASSERT_EQ(recording.keyframeSteps(), (std::vector<std::uint64_t>{99, 199}));
   SerialExecutor executor;
-  const std::unique_ptr<const Model> model = modelOf(recording);
-  Session straight(*model, recording.header().seed, executor);
+  const std::shared_ptr<PreparedScene> prepared = sceneOf(recording);
+  const Model& model = prepared->model();
+  Session straight(model, recording.header().seed, executor);
   std::vector<Keyframe> frames;
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     rerun(straight, recording.step(n));

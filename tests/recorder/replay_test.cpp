@@ -89,8 +89,9 @@ TEST_F(Replay, SeekingGivesTheStateOfRunningThere) {
   Recording recording(record("s.h5"));
   ASSERT_EQ(recording.keyframeSteps(), (std::vector<std::uint64_t>{99, 199}));
   SerialExecutor executor;
-  const std::unique_ptr<const Model> model = modelOf(recording);
-  Session straight(*model, recording.header().seed, executor);
+  const std::shared_ptr<PreparedScene> prepared = sceneOf(recording);
+  const Model& model = prepared->model();
+  Session straight(model, recording.header().seed, executor);
   std::vector<StateDigest> digests;
   std::vector<std::vector<std::byte>> states;
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
@@ -112,8 +113,9 @@ TEST_F(Replay, SeekingGivesTheStateOfRunningThere) {
 TEST_F(Replay, ASessionRefusesAKeyframeThatIsNotItsOwn) {
   Recording recording(record("o.h5"));
   SerialExecutor executor;
-  const std::unique_ptr<const Model> model = modelOf(recording);
-  Session session(*model, 1, executor);
+  const std::shared_ptr<PreparedScene> prepared = sceneOf(recording);
+  const Model& model = prepared->model();
+  Session session(model, 1, executor);
   const Keyframe good = recording.keyframe(0);
   Keyframe cut = good;
   cut.state.resize(cut.state.size() - 8);
@@ -132,8 +134,9 @@ TEST_F(Replay, ASessionRefusesAKeyframeThatIsNotItsOwn) {
 TEST_F(Replay, ATickThatNamesAnUnknownContactSetIsRefused) {
   Recording recording(record("c.h5"));
   SerialExecutor executor;
-  const std::unique_ptr<const Model> model = modelOf(recording);
-  Session session(*model, 3, executor);
+  const std::shared_ptr<PreparedScene> prepared = sceneOf(recording);
+  const Model& model = prepared->model();
+  Session session(model, 3, executor);
   const TickSamples tick = recording.step(0).samples[0];
   EXPECT_NO_THROW(session.tick(tick, std::array<std::int64_t, 2>{-1, -1}));
   EXPECT_THROW(session.tick(tick, std::array<std::int64_t, 2>{0, -1}), std::out_of_range);

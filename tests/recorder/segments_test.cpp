@@ -176,10 +176,10 @@ TEST(Segments, AreOfARecordingThatCanBeRead) {
   const std::filesystem::path file = folder / "r.h5";
   test::recordTouches(file);
   const Recording recording(file);
-  const std::unique_ptr<const Model> model = modelOf(recording);
-  EXPECT_THROW(verifySegments(file, *model, {}, 2), std::invalid_argument);
-  EXPECT_THROW(verifySegments(folder / "none.h5", *model, segmentsOf(recording), 2), Error);
-  const SegmentsVerdict part = verifySegments(file, *model, {segmentsOf(recording)[1]}, 2);
+  const std::shared_ptr<PreparedScene> scene = sceneOf(recording);
+  EXPECT_THROW(verifySegments(file, *scene, {}, 2), std::invalid_argument);
+  EXPECT_THROW(verifySegments(folder / "none.h5", *scene, segmentsOf(recording), 2), Error);
+  const SegmentsVerdict part = verifySegments(file, *scene, {segmentsOf(recording)[1]}, 2);
   EXPECT_FALSE(part.divergence);
   EXPECT_EQ(part.misses.steps, 100U);
 }

@@ -118,9 +118,9 @@ TEST(ReplayPlayer, ShowsTheStateThatTheSimulationGivesWhereverItGoes) {
     ASSERT_TRUE(listener.awaitStep(step)) << step;
     // From the very beginning, without any keyframe.
     recorder::Recording recording(recorded().file);
-    const auto model = recorder::modelOf(recording);
+    const auto scene = recorder::sceneOf(recording);
     SerialExecutor executor;
-    recorder::Session session(*model, recording.header().seed, executor);
+    recorder::Session session(scene->model(), recording.header().seed, executor);
     while (session.steps() <= step) recorder::rerun(session, recording.step(session.steps()));
     EXPECT_EQ(numbersOf(*listener.view()), numbersOf(session.view())) << "step " << step;
   }

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/compliance_cache.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "sim/math/digest.h"
+#include "sim/scene/version.h"
+
+namespace calot::recorder {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr const char* extension = ".compliances";
+constexpr const char* cacheFormat = "calot-compliances-1";
+constexpr std::size_t maxHeader = 4096;                          ///< of the first line (bytes)
+constexpr std::size_t maxEntry = std::size_t{512} << 20U;        ///< of a file (bytes); above: nothing that was written
+constexpr std::uint32_t maxColumn = std::uint32_t{9} * 1000000;  ///< numbers of a column
+
+/// Its owner is this user, and no other may write it.
+bool isOwn(const fs::path& file) {
+  struct stat status {};
+  return lstat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
+         (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
+std::string payloadOf(const std::vector<ComplianceColumn>& columns) {
+  std::string payload;
+  for (const ComplianceColumn& c : columns) {
+    const std::array<std::uint32_t, 3> head{c.solid, c.node, static_cast<std::uint32_t>(c.value.size())};
+    payload.append(reinterpret_cast<const char*>(head.data()), sizeof head);
+    payload.append(reinterpret_cast<const char*>(c.value.data()), c.value.size() * sizeof(float));
+  }
+  return payload;
+}
+
+std::string digestOf(std::string_view payload) {
+  return fmt::format("{:016x}", digest64(std::as_bytes(std::span(payload))));
+}
+
+struct Entry {
+  nlohmann::json header;
+  std::string_view payload;
+};
+
+/// Header and payload of a file's bytes, if the payload is the one that was written.
+std::optional<Entry> entryOf(std::string_view bytes) {
+  const std::size_t end = bytes.substr(0, maxHeader).find('\n');
+  if (end == std::string_view::npos) return std::nullopt;
+  Entry entry{nlohmann::json::parse(bytes.substr(0, end), nullptr, false), bytes.substr(end + 1)};
+  const nlohmann::json& h = entry.header;
+  const auto isText = [&](const char* name) { return h.contains(name) && h[name].is_string(); };
+  const auto isNumber = [&](const char* name) { return h.contains(name) && h[name].is_number_unsigned(); };
+  const bool whole = h.is_object() && isText("format") && h["format"] == cacheFormat && isText("key") &&
+                     isText("scene") && isNumber("simulation_version") && isNumber("columns") && isText("digest") &&
+                     h["digest"] == digestOf(entry.payload);
+  return whole ? std::optional(std::move(entry)) : std::nullopt;
+}
+
+/// @returns false where the payload does not end with a column.
+bool readColumns(std::string_view payload, std::vector<ComplianceColumn>& columns) {
+  while (!payload.empty()) {
+    std::array<std::uint32_t, 3> head{};
+    if (payload.size() < sizeof head) return false;
+    std::memcpy(head.data(), payload.data(), sizeof head);
+    payload.remove_prefix(sizeof head);
+    if (head[2] > maxColumn || payload.size() < head[2] * sizeof(float)) return false;
+    ComplianceColumn& column = columns.emplace_back(ComplianceColumn{head[0], head[1], std::vector<float>(head[2])});
+    std::memcpy(column.value.data(), payload.data(), head[2] * sizeof(float));
+    payload.remove_prefix(head[2] * sizeof(float));
+  }
+  return true;
+}
+
+std::string textOf(const fs::path& file) {
+  const std::vector<std::byte> bytes = readFileBytes(file, file.filename().string(), maxEntry);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+CacheEntry look(const fs::path& file) {
+  CacheEntry entry;
+  entry.file = file;
+  std::error_code ignored;
+  entry.bytes = fs::file_size(file, ignored);
+  if (file.extension() != extension) {
+    entry.state = CacheEntry::State::leftover;
+  } else if (!isOwn(file)) {
+    entry.state = CacheEntry::State::foreign;
+  } else {
+    try {
+      const std::string bytes = textOf(file);
+      if (const std::optional<Entry> found = entryOf(bytes)) {
+        entry.scene = found->header["scene"].get<std::string>();
+        entry.simulationVersion = found->header["simulation_version"].get<std::uint32_t>();
+        entry.columns = found->header["columns"].get<std::uint64_t>();
+        entry.state = entry.simulationVersion == simulationVersion ? CacheEntry::State::usable
+                                                                   : CacheEntry::State::otherVersion;
+      }
+    } catch (const Error&) {
+      entry.state = CacheEntry::State::damaged;
+    }
+  }
+  return entry;
+}
+
+/// The files in the folder that this class makes, by name.
+std::vector<fs::path> filesIn(const fs::path& folder, std::error_code& fault) {
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(folder, fault), end; !fault && it != end; it.increment(fault)) {
+    const std::string name = it->path().filename().string();
+    if (name.find(extension) != std::string::npos && !it->is_directory()) files.push_back(it->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::string complianceKey(const std::vector<Asset>& assets) {
+  std::string text = fmt::format("{}\nsimulation version {}\n", cacheFormat, simulationVersion);
+  for (const Asset& asset : assets) text += fmt::format("{} {}\n", sha256Hex(asset.bytes), asset.name);
+  return sha256Hex(std::as_bytes(std::span(text)));
+}
+
+std::optional<fs::path> userCacheFolder() {
+  const auto named = [](const char* variable) -> std::string {
+    const char* value = std::getenv(variable);
+    return value == nullptr ? "" : value;
+  };
+  if (const std::string own = named("CALOT_CACHE"); !own.empty()) {
+    return own == "off" ? std::nullopt : std::optional<fs::path>(own);
+  }
+  // The base directory specification has relative ones ignored.
+  if (const fs::path base = named("XDG_CACHE_HOME"); base.is_absolute()) return base / "calot";
+  if (const fs::path home = named("HOME"); home.is_absolute()) return home / ".cache" / "calot";
+  return std::nullopt;
+}
+
+fs::path ComplianceCache::fileOf(const std::string& key) const { return folder_ / (key + extension); }
+
+std::vector<ComplianceColumn> ComplianceCache::load(const std::string& key) const {
+  const fs::path file = fileOf(key);
+  if (!isOwn(file)) return {};
+  try {
+    const std::string bytes = textOf(file);
+    const std::optional<Entry> entry = entryOf(bytes);
+    std::vector<ComplianceColumn> columns;
+    if (!entry || entry->header["key"] != key || !readColumns(entry->payload, columns)) return {};
+    return columns;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+bool ComplianceCache::save(const std::string& key, const std::string& scene,
+                           const std::vector<ComplianceColumn>& columns) const {
+  std::error_code fault;
+  fs::create_directories(folder_.parent_path(), fault);
+  if (fault || (mkdir(folder_.c_str(), S_IRWXU) != 0 && !fs::is_directory(folder_, fault))) return false;
+  const std::string payload = payloadOf(columns);
+  const nlohmann::json header = {{"format", cacheFormat},
+                                 {"key", key},
+                                 {"scene", scene},
+                                 {"simulation_version", simulationVersion},
+                                 {"columns", columns.size()},
+                                 {"digest", digestOf(payload)}};
+  const std::string line = header.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + '\n';
+  if (line.size() > maxHeader || line.size() + payload.size() > maxEntry) return false;
+  const fs::path file = fileOf(key);
+  const fs::path temporary = file.string() + fmt::format(".{}.part", getpid());
+  {
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    out << line << payload << std::flush;
+    if (!out) {
+      fs::remove(temporary, fault);
+      return false;
+    }
+  }
+  chmod(temporary.c_str(), S_IRUSR | S_IWUSR);
+  fs::rename(temporary, file, fault);
+  if (fault) return false;
+  makeRoom(file);
+  return true;
+}
+
+/// Removes the oldest entries until all together fit.
+void ComplianceCache::makeRoom(const fs::path& newest) const {
+  std::error_code fault;
+  struct File {
+    fs::file_time_type written;
+    fs::path path;
+    std::uint64_t bytes;
+  };
+  std::vector<File> files;
+  std::uint64_t all = 0;
+  for (const fs::path& path : filesIn(folder_, fault)) {
+    std::error_code gone;
+    files.push_back({fs::last_write_time(path, gone), path, fs::file_size(path, gone)});
+    if (gone) {
+      files.pop_back();
+    } else {
+      all += files.back().bytes;
+    }
+  }
+  std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.written < b.written; });
+  for (const File& file : files) {
+    if (all <= maxBytes) break;
+    if (file.path == newest) continue;
+    fs::remove(file.path, fault);
+    all -= file.bytes;
+  }
+}
+
+std::vector<CacheEntry> ComplianceCache::list() const {
+  std::error_code fault;
+  if (!fs::exists(folder_, fault)) return {};
+  std::vector<CacheEntry> entries;
+  for (const fs::path& file : filesIn(folder_, fault)) entries.push_back(look(file));
+  if (fault) throw Error(ErrorKind::failure, Where{folder_.string()}, "cannot be read: " + fault.message());
+  return entries;
+}
+
+std::vector<CacheEntry> ComplianceCache::clean(bool usableToo) const {
+  std::vector<CacheEntry> removed;
+  for (const CacheEntry& entry : list()) {
+    if (entry.state == CacheEntry::State::usable && !usableToo) continue;
+    std::error_code fault;
+    fs::remove(entry.file, fault);
+    if (fault) throw Error(ErrorKind::failure, Where{entry.file.string()}, "cannot be removed: " + fault.message());
+    removed.push_back(entry);
+  }
+  return removed;
+}
+
+}  // namespace calot::recorder
