@@ -72,6 +72,19 @@ std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& 
   return std::nullopt;
 }
 
+std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& layout, const BriefDigest& recorded,
+                                        const BriefDigest& here) {
+  if (recorded == here) return std::nullopt;
+  for (std::size_t f = 0; f < layout.fields.size(); ++f) {
+    if (recorded.field[f] == here.field[f]) continue;
+    const std::string& component = layout.components[layout.fields[f].component];
+    // The digest of all is the one that counts: where it agrees, the field's own was changed.
+    if (recorded.state == here.state) return Divergence{step, {}, "digest", layout.fields[f].name, ""};
+    return Divergence{step, {}, component, layout.fields[f].name.substr(component.size() + 1), ""};
+  }
+  return Divergence{step, {}, "state", "a field that only the long digest shows", ""};
+}
+
 std::optional<Divergence> compareKeyframe(const Model& model, const Keyframe& recorded, const Keyframe& here) {
   if (recorded.state != here.state) {
     State a;

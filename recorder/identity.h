@@ -16,6 +16,10 @@ namespace calot::recorder {
 enum class OperatorKind : std::uint8_t { human = 0, kinematics = 1, performer = 2 };
 enum class Mode : std::uint8_t { practice = 0, assessment = 1 };
 
+/// Version of the file format (schemas/recording.md) that is written, and the first one that is read.
+inline constexpr std::uint32_t formatVersion = 2;
+inline constexpr std::uint32_t oldestFormatVersion = 1;
+
 /// What a source says of itself; copied into every recording that it feeds.
 struct Provenance {
   OperatorKind kind = OperatorKind::performer;
@@ -36,12 +40,13 @@ struct Asset {
 /// Everything that is known when an attempt starts; the recording's root attributes and /scene. Names of tissue in the
 /// Model's order: columns of the observables, since the version of StepResult that brought them.
 struct AttemptHeader : Tissues::Names {
-  std::string attempt;         ///< uuid, lower case with hyphens
-  std::string parent;          ///< uuid of the recording this one branches from, or empty
-  std::int64_t forkStep = -1;  ///< last step shared with the parent; -1: no branch
-  std::string startUtc;        ///< ISO 8601 with Z
-  std::string software;        ///< "calot 0.1.0"
-  std::string build;           ///< compiler, type, revision
+  std::uint32_t formatVersion = recorder::formatVersion;  ///< of the file that it stands in
+  std::string attempt;                                    ///< uuid, lower case with hyphens
+  std::string parent;                                     ///< uuid of the recording this one branches from, or empty
+  std::int64_t forkStep = -1;                             ///< last step shared with the parent; -1: no branch
+  std::string startUtc;                                   ///< ISO 8601 with Z
+  std::string software;                                   ///< "calot 0.1.0"
+  std::string build;                                      ///< compiler, type, revision
   std::uint32_t simulationVersion = 0;
   std::uint32_t stepResultVersion = 0;
   std::string participant;  ///< pseudonym, or empty

@@ -39,11 +39,28 @@ struct TickOutcome {
   float lateness = 0.0F;
 };
 
+/// What of a keyframe's part follows from the rest of it, so that it need not be stored (schemas/recording.md). Numbers
+/// are stored and never reused.
+enum class PartForm : std::uint64_t {
+  plain = 0,
+  quaternions = 1,        ///< a list of unit quaternions, x y z w: w
+  quaternionsByLane = 2,  ///< groups of eight unit quaternions, eight w, eight x and so on: w
+  symmetricMatrix = 3,    ///< row after row: what lies below the diagonal
+};
+
+/// One field of a keyframe.
+struct KeyframePart {
+  std::uint32_t bytes = 0;
+  PartForm form = PartForm::plain;
+};
+
 /// Full state after a step, as bytes: enough to go on from the next step.
 struct Keyframe {
   std::uint64_t step = 0;
   std::vector<std::byte> state;    ///< State, by its field list
   std::vector<std::byte> haptics;  ///< HapticState of each hand, and every contact set that later ticks still name
+  /// The fields of state, then of haptics: where the like of them lies in another keyframe. Empty where it was read.
+  std::vector<KeyframePart> parts = {};
 };
 
 /// One step of the loop. References live for the call only.

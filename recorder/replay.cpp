@@ -39,12 +39,21 @@ std::vector<Segment> partOf(const Recording& recording, const std::vector<Segmen
   return {at(part.first), at(part.second) + 1};
 }
 
-/// Tells observers of the recorded steps, which were proven equal to those that re-simulation gives.
-void passOn(Recording& recording, const std::vector<Observer*>& observers) {
-  if (observers.empty()) return;
+/// Tells observers of the recorded steps, which were proven equal to those that re-simulation gives, with the forces
+/// that it gave.
+void passOn(Recording& recording, const std::vector<TickForces>& forces, const std::vector<Observer*>& observers) {
+  std::vector<TickOutcome> ticks;
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     const RecordedStep& step = recording.step(n);
-    const StepRecord record{n, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}};
+    ticks = step.ticks;
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      const TickForces& tick = forces[static_cast<std::size_t>(n) * ticks.size() + i];
+      for (std::size_t h = 0; h < handCount; ++h) {
+        ticks[i].hand[h].force = tick.force[h];
+        ticks[i].hand[h].torque = tick.torque[h];
+      }
+    }
+    const StepRecord record{n, step.samples, ticks, step.result, step.digest, step.lateness, {}, {}};
     for (Observer* observer : observers) observer->onStep(record);
   }
   for (Observer* observer : observers) observer->onEnd(recording.outcome());
@@ -133,11 +142,14 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   const bool inSegments =
       settings.part || (threads > 1 && segments.size() > 1 && header.stepResultVersion == stepResultVersion);
   if (inSegments) {
-    const SegmentsVerdict verdict = verifySegments(recording.path(), *scene, segments, threads, settings.progress);
+    const bool tell = !settings.part && !observers.empty();
+    std::vector<TickForces> forces(tell ? static_cast<std::size_t>(recording.tickCount()) : 0);
+    const SegmentsVerdict verdict =
+        verifySegments(recording.path(), *scene, segments, threads, settings.progress, tell ? &forces : nullptr);
     report.divergence = verdict.divergence;
     report.reproducible = verdict.reproducible;
     report.misses = verdict.misses;
-    if (!report.divergence && !settings.part) passOn(recording, observers);
+    if (!report.divergence && tell) passOn(recording, forces, observers);
   } else {
     MissCount count;
     observers.push_back(&count);

@@ -39,10 +39,31 @@ struct Result {
   [[nodiscard]] bool isGood() const { return !divergence && !error; }
 };
 
+/// Keeps the forces of a session's steps. Segments have no tick in common, so several may write to one log.
+class ForceLog final : public Observer {
+ public:
+  explicit ForceLog(std::vector<TickForces>* forces) : forces_(forces) {}
+  void onStep(const StepRecord& record) override {
+    if (forces_ == nullptr) return;
+    for (std::size_t i = 0; i < record.ticks.size(); ++i) {
+      TickForces& tick = forces_->at(static_cast<std::size_t>(record.step) * record.ticks.size() + i);
+      for (std::size_t h = 0; h < handCount; ++h) {
+        tick.force[h] = record.ticks[i].hand[h].force;
+        tick.torque[h] = record.ticks[i].hand[h].torque;
+      }
+    }
+  }
+  void onEnd(Outcome /*outcome*/) override {}
+
+ private:
+  std::vector<TickForces>* forces_;
+};
+
 /// A thread's own reader and session. A session that is used again keeps what it worked out of the model.
 class Verifier {
  public:
-  Verifier(const std::filesystem::path& path, PreparedScene& scene) : recording_(path), scene_(scene) {}
+  Verifier(const std::filesystem::path& path, PreparedScene& scene, std::vector<TickForces>* forces)
+      : recording_(path), scene_(scene), forces_(forces) {}
 
   Result run(const Segment& segment, const std::function<void()>& stepped) {
     if (!session_ || !segment.keyframe)
@@ -58,12 +79,18 @@ class Verifier {
       }
     }
     MissCount count;
+    ForceLog log(forces_);
     session_->join(count);
+    session_->join(log);
     struct Joined {
       Session& session;
       MissCount& count;
-      ~Joined() { session.leave(count); }
-    } const joined{*session_, count};
+      ForceLog& log;
+      ~Joined() {
+        session.leave(count);
+        session.leave(log);
+      }
+    } const joined{*session_, count, log};
     const auto progress = [&](std::uint64_t /*step*/, std::uint64_t /*of*/) { stepped(); };
     result.divergence = follow(recording_, *session_, segment.end, progress);
     result.misses = count.misses;
@@ -73,6 +100,7 @@ class Verifier {
  private:
   Recording recording_;
   PreparedScene& scene_;
+  std::vector<TickForces>* forces_;
   SerialExecutor executor_;
   std::unique_ptr<Session> session_;
 };
@@ -80,8 +108,14 @@ class Verifier {
 /// Hands segments to threads in their order.
 class Verification {
  public:
-  Verification(const std::filesystem::path& path, PreparedScene& scene, const std::vector<Segment>& segments)
-      : path_(path), scene_(scene), segments_(segments), results_(segments.size()), firstBad_(segments.size()) {}
+  Verification(const std::filesystem::path& path, PreparedScene& scene, const std::vector<Segment>& segments,
+               std::vector<TickForces>* forces)
+      : path_(path),
+        scene_(scene),
+        segments_(segments),
+        forces_(forces),
+        results_(segments.size()),
+        firstBad_(segments.size()) {}
 
   void run(unsigned threads, const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
     std::vector<std::jthread> pool;  // joined whatever `progress` throws
@@ -110,7 +144,7 @@ class Verification {
     if (bad == results_.size()) return verdict;
     if (results_[bad].error) std::rethrow_exception(results_[bad].error);
     verdict.divergence = results_[bad].divergence;
-    verdict.reproducible = Verifier(path_, scene_).run(segments_[bad], [] {}).divergence == verdict.divergence;
+    verdict.reproducible = Verifier(path_, scene_, nullptr).run(segments_[bad], [] {}).divergence == verdict.divergence;
     return verdict;
   }
 
@@ -120,7 +154,7 @@ class Verification {
     for (std::size_t i = next_++; i < segments_.size() && i < firstBad_; i = next_++) {
       const double begin = threadSeconds();
       try {
-        if (!verifier) verifier = std::make_unique<Verifier>(path_, scene_);
+        if (!verifier) verifier = std::make_unique<Verifier>(path_, scene_, forces_);
         results_[i] = verifier->run(segments_[i], [&] {
           ++done_;
           if (i > firstBad_) throw NotNeeded();
@@ -143,6 +177,7 @@ class Verification {
   const std::filesystem::path& path_;
   PreparedScene& scene_;
   const std::vector<Segment>& segments_;
+  std::vector<TickForces>* forces_;
   std::vector<Result> results_;
   std::atomic<std::size_t> next_{0};
   std::atomic<std::size_t> firstBad_;
@@ -170,9 +205,10 @@ std::vector<Segment> segmentsOf(const Recording& recording) {
 
 SegmentsVerdict verifySegments(const std::filesystem::path& recording, PreparedScene& scene,
                                const std::vector<Segment>& segments, unsigned threads,
-                               const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+                               const std::function<void(std::uint64_t step, std::uint64_t of)>& progress,
+                               std::vector<TickForces>* forces) {
   if (segments.empty()) throw std::invalid_argument("no segments");
-  Verification verification(recording, scene, segments);
+  Verification verification(recording, scene, segments, forces);
   verification.run(std::max(threads, 1U), progress);
   return verification.verdict();
 }

@@ -5,11 +5,13 @@
 // (docs/determinism.md, "In segments").
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
+#include "recorder/observer.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
@@ -28,6 +30,11 @@ struct Segment {
 /// All steps of a recording, in order, without gap or overlap.
 std::vector<Segment> segmentsOf(const Recording& recording);
 
+/// Both hands' forces and torques at one tick, as re-simulation gave them: recordings hold them rounded.
+struct TickForces {
+  std::array<Vec3, handCount> force, torque;
+};
+
 /// What re-simulating and comparing a recording's segments gave.
 struct SegmentsVerdict {
   std::optional<Divergence> divergence;  ///< the first, as a run from the start would find it
@@ -38,9 +45,12 @@ struct SegmentsVerdict {
 
 /// Verifies each of the segments, up to `threads` at a time, each on one thread with a reader of its own.
 /// @param progress steps done, of all; called on this thread
+/// @param forces takes those of every step that was done, by the number of the tick; as many as the recording's ticks,
+/// or null
 /// @throws what reading the recording throws, where no segment before differs; std::invalid_argument on no segments
 SegmentsVerdict verifySegments(const std::filesystem::path& recording, PreparedScene& scene,
                                const std::vector<Segment>& segments, unsigned threads,
-                               const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
+                               const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {},
+                               std::vector<TickForces>* forces = nullptr);
 
 }  // namespace calot::recorder

@@ -3,11 +3,44 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "sim/math/fields.h"
+#include "sim/solid/polar.h"
 
 namespace calot::recorder {
+
+namespace {
+
+/// Writes fields as saveState() does and notes what they are.
+class PartWriter {
+ public:
+  PartWriter(std::vector<std::byte>& out, std::vector<KeyframePart>& parts) : out_(out), parts_(parts), writer_(out) {}
+
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    const std::size_t before = out_.size();
+    writer_.write(value);
+    PartForm form = PartForm::plain;
+    if (std::is_same_v<T, std::vector<Quat>>) form = PartForm::quaternions;
+    if (std::is_same_v<T, std::vector<RotationGroup>>) form = PartForm::quaternionsByLane;
+    if (std::string_view(name) == "compliance") form = PartForm::symmetricMatrix;
+    parts_.push_back({static_cast<std::uint32_t>(out_.size() - before), form});
+  }
+  template <class Part>
+  void fieldsOf(const Part& part) {
+    Part::fields(part, *this);
+  }
+
+ private:
+  std::vector<std::byte>& out_;
+  std::vector<KeyframePart>& parts_;
+  ByteWriter writer_;
+};
+
+}  // namespace
 
 Session::Session(const Model& model, std::uint64_t seed, Executor& executor, ComplianceStore* compliances)
     : model_(model),
@@ -75,13 +108,14 @@ void Session::end(Outcome outcome) {
 Keyframe Session::keyframe() const {
   Keyframe frame;
   frame.step = steps() - 1;
-  frame.state = saveState(state_);
-  ByteWriter writer(frame.haptics);
-  for (const HapticState& haptic : haptic_) writer.write(haptic);
+  PartWriter state(frame.state, frame.parts);
+  State::components(state_, [&](const auto& part) { state.fieldsOf(part); });
+  PartWriter haptics(frame.haptics, frame.parts);
+  for (const HapticState& haptic : haptic_) haptics.fieldsOf(haptic);
   const std::int64_t first = std::max(oldest_, *std::min_element(named_.begin(), named_.end()));
-  writer.write(static_cast<std::uint64_t>(newest_ - first + 1));
+  haptics("sets", static_cast<std::uint64_t>(newest_ - first + 1));
   for (std::int64_t n = first; n <= newest_; ++n) {
-    for (const ContactSet& set : setsOf(n)) writer.write(set);
+    for (const ContactSet& set : setsOf(n)) haptics.fieldsOf(set);
   }
   return frame;
 }

@@ -11,7 +11,8 @@ StepComparison::StepComparison(Recording& recording, const Model& model)
     : recording_(recording),
       model_(model),
       compareResult_(recording.header()),
-      minimal_(isMinimal(recording.header())) {}
+      minimal_(isMinimal(recording.header())),
+      exactForces_(recording.header().formatVersion == 1) {}
 
 void StepComparison::onStep(const StepRecord& record) {
   if (first_) {
@@ -19,12 +20,13 @@ void StepComparison::onStep(const StepRecord& record) {
     return;
   }
   const RecordedStep& recorded = recording_.step(record.step);
-  if (minimal_ && forceDigest(record.ticks) != recorded.forces)
-    first_ = Divergence{record.step, {}, "force", "digest of the step's forces", ""};
   for (std::size_t i = 0; !minimal_ && i < record.ticks.size() && !first_; ++i) {
-    first_ = compareTick(record.step, record.step * record.ticks.size() + i, recorded.ticks[i], record.ticks[i]);
+    first_ = compareTick(record.step, record.step * record.ticks.size() + i, recorded.ticks[i],
+                         exactForces_ ? record.ticks[i] : asStored(record.ticks[i]));
   }
-  if (!first_) first_ = compareDigest(record.step, recording_.header().layout, recorded.digest, record.digest);
+  if (!first_ && (minimal_ || !exactForces_) && forceDigest(record.ticks) != recorded.forces)
+    first_ = Divergence{record.step, {}, "force", "digest of the step's forces", ""};
+  if (!first_) first_ = compareDigests(recorded, record);
   if (!first_) first_ = compareResult_(recorded.result, record.result);
   if (first_) {
     resolved_ = minimal_ || !first_->detail.empty();
@@ -35,6 +37,13 @@ void StepComparison::onStep(const StepRecord& record) {
     first_ = compareKeyframe(model_, recording_.keyframe(*index), record.keyframe());
     resolved_ = true;
   }
+}
+
+std::optional<Divergence> StepComparison::compareDigests(const RecordedStep& recorded, const StepRecord& record) {
+  const DigestLayout& layout = recording_.header().layout;
+  if (minimal_ || exactForces_) return compareDigest(record.step, layout, recorded.digest, record.digest);
+  shorten(record.digest, brief_);
+  return compareDigest(record.step, layout, recorded.brief, brief_);
 }
 
 void StepComparison::fail(Divergence divergence) {

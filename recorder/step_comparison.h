@@ -28,12 +28,15 @@ class StepComparison final : public Observer {
 
  private:
   std::optional<std::size_t> keyframeAt(std::uint64_t step);
+  std::optional<Divergence> compareDigests(const RecordedStep& recorded, const StepRecord& record);
   void resolveAtKeyframe(const StepRecord& record);
 
   Recording& recording_;
   const Model& model_;
   ResultComparison compareResult_;
-  bool minimal_;  ///< no forces, no keyframes
+  bool minimal_;      ///< no forces, no keyframes
+  bool exactForces_;  ///< format version 1: forces as they were, digests of components
+  BriefDigest brief_;
   std::optional<Divergence> first_;
   bool resolved_ = false;
 };

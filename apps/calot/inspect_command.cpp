@@ -13,6 +13,7 @@
 #include "recorder/recording/header.h"
 #include "recorder/recording/raw_statistics.h"
 #include "recorder/recording/reader.h"
+#include "recorder/recording/stored_bytes.h"
 #include "recorder/step_misses.h"
 #include "sim/scene/version.h"
 
@@ -106,6 +107,14 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
                                                                         : "invalid";
   if (signature) out["public_key"] = toHex(signature->publicKey);
   out["this_simulation_version"] = simulationVersion;
+  ordered_json bytes;
+  std::uint64_t whole = 0;
+  for (const recorder::StoredBytes& part : recorder::storedBytes(recording.path())) {
+    bytes[part.group] = part.bytes;
+    whole += part.bytes;
+  }
+  out["bytes"] = whole;
+  out["bytes_by_group"] = bytes;
   ordered_json attributes;
   Attributes visit{attributes};
   recorder::visitAttributes(header, visit);
@@ -134,6 +143,12 @@ void print(const ordered_json& d) {
     } else if (key == "scene_files") {
       for (const auto& asset : value)
         fmt::print("{:<24} {} ({} bytes)\n", "scene file", shown(asset["name"]), shown(asset["bytes"]));
+    } else if (key == "bytes_by_group") {
+      const auto whole = d["bytes"].get<double>();
+      for (const auto& [group, bytes] : value.items()) {
+        const auto own = bytes.get<double>();
+        fmt::print("{:<24} {} ({:.1f} %)\n", "bytes, " + group, shown(bytes), whole > 0.0 ? 100.0 * own / whole : 0.0);
+      }
     } else if (key == "device_samples") {
       for (const auto& [hand, s] : value.items()) {
         fmt::print(

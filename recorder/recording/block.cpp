@@ -177,24 +177,27 @@ void Block::clear() {
   completed = false;
   outcome = Outcome::running;
   rawDropped.fill(0);
+  keyframes.clear();
 }
 
 std::array<std::uint64_t, streamCount> countsOf(const StatusRow& row) {
   return {row.ticks, row.steps, row.events, row.keyframes, row.keyframeWords, row.rawSamples[0], row.rawSamples[1]};
 }
 
-void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* keyframe, std::uint64_t& keyframeBase,
-                Block& block) {
+void appendStep(const Layout& layout, const StepRecord& record, Block& block) {
   assert(record.samples.size() == layout.ticksPerStep && record.ticks.size() == layout.ticksPerStep);
+  assert(!layout.exactForces);
   for (std::size_t t = 0; t < layout.ticksPerStep; ++t) {
     AppendVisitor visit{layout, block};
-    visitTick(record.samples[t], record.ticks[t], visit);
+    const TickOutcome tick = asStored(record.ticks[t]);
+    visitTick(record.samples[t], tick, visit);
   }
   AppendVisitor visit{layout, block, layout.tickColumns};
-  const std::uint64_t forces = layout.minimal ? forceDigest(record.ticks) : 0;
+  const std::uint64_t forces = forceDigest(record.ticks);
+  if (layout.brief) shorten(record.digest, block.brief);
   assert(!layout.procedure);  // only versions of old had it
   const RecordedProcedure none;
-  visitStep(record.digest, forces, record.lateness, record.result, none, visit);
+  visitStep(record.digest, block.brief, forces, record.lateness, record.result, none, visit);
   for (const Event& event : record.result.events) {
     assert(event.step == record.step);
     appendEvent(event, block.column[layout.events]);
@@ -202,19 +205,20 @@ void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* 
   block.rows[static_cast<std::size_t>(Stream::ticks)] += layout.ticksPerStep;
   block.rows[static_cast<std::size_t>(Stream::steps)] += 1;
   block.rows[static_cast<std::size_t>(Stream::events)] += record.result.events.size();
-  if (keyframe == nullptr) return;
-  appendKeyframeRow({keyframe->step, keyframeBase * 8, keyframe->state.size(), keyframe->haptics.size()},
+}
+
+void appendKeyframe(const Layout& layout, const Keyframe& keyframe, std::span<const std::uint64_t> words,
+                    std::uint64_t& offset, Block& block) {
+  appendKeyframeRow({keyframe.step, offset * 8, keyframe.state.size(), keyframe.haptics.size()},
                     block.column[layout.keyframeIndex]);
   std::vector<std::byte>& bytes = block.column[layout.keyframeWords];
+  const std::uint64_t padded = (words.size() + keyframeChunkWords - 1) / keyframeChunkWords * keyframeChunkWords;
   const std::size_t before = bytes.size();
-  bytes.insert(bytes.end(), keyframe->state.begin(), keyframe->state.end());
-  bytes.insert(bytes.end(), keyframe->haptics.begin(), keyframe->haptics.end());
-  constexpr std::size_t chunk = static_cast<std::size_t>(keyframeChunkWords) * 8;
-  const std::size_t padded = (bytes.size() - before + chunk - 1) / chunk * chunk;
-  bytes.resize(before + padded);
-  keyframeBase += padded / 8;
+  appendBytes(bytes, words.data(), words.size_bytes());
+  bytes.resize(before + static_cast<std::size_t>(padded) * 8);
+  offset += padded;
   block.rows[static_cast<std::size_t>(Stream::keyframes)] += 1;
-  block.rows[static_cast<std::size_t>(Stream::keyframeWords)] += padded / 8;
+  block.rows[static_cast<std::size_t>(Stream::keyframeWords)] += padded;
 }
 
 std::string extractStep(const Layout& layout, const Block& block, std::uint64_t at, RecordedStep& out) {
@@ -233,7 +237,7 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
     }
   }
   ExtractVisitor visit{layout, block, at, layout.tickColumns, false, {}};
-  visitStep(out.digest, out.forces, out.lateness, out.result, out.procedure, visit);
+  visitStep(out.digest, out.brief, out.forces, out.lateness, out.result, out.procedure, visit);
   out.result.step = out.step;
   return named(visit.fault, out.step);
 }

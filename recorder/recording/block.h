@@ -22,6 +22,8 @@ struct Block {
   bool completed = false;                         ///< the attempt ended with it
   Outcome outcome = Outcome::running;
   std::array<std::uint64_t, handCount> rawDropped{};  ///< raw samples of this block that could not be kept
+  std::vector<Keyframe> keyframes;                    ///< of its steps, while they are not yet coded
+  BriefDigest brief;                                  ///< of its last step
 
   /// Reserves capacity for a whole block, so that filling it does not allocate (except for events and keyframes).
   explicit Block(const Layout& layout);
@@ -31,10 +33,13 @@ struct Block {
 /// Rows of each stream that a row of /status covers.
 std::array<std::uint64_t, streamCount> countsOf(const StatusRow& row);
 
-/// Appends a step to a block. The keyframe is appended where one is given; `keyframeBase` counts the words of
+/// Appends a step to a block, but for its keyframe. @pre the layout is of the newest format version
+void appendStep(const Layout& layout, const StepRecord& record, Block& block);
+
+/// Appends the coded words of a keyframe (keyframe_code.h) and its row of the index. `offset` counts the words of
 /// /keyframes/bytes before it and moves on.
-void appendStep(const Layout& layout, const StepRecord& record, const Keyframe* keyframe, std::uint64_t& keyframeBase,
-                Block& block);
+void appendKeyframe(const Layout& layout, const Keyframe& keyframe, std::span<const std::uint64_t> words,
+                    std::uint64_t& offset, Block& block);
 
 /// Reads step `at` (of this block) back, but for its events. @return an empty string, or which value is out of range.
 std::string extractStep(const Layout& layout, const Block& block, std::uint64_t at, RecordedStep& out);

@@ -20,7 +20,6 @@ ColumnReader::ColumnReader(std::filesystem::path path, const hdf5::Id& file, con
   // Open /status first: in a file being written, data sets opened later contain at least the rows it covers.
   statusColumn_.path = "/status";
   statusColumn_.element = Element::status;
-  statusColumn_.deflate = false;
   status_ = open(file, statusColumn_);
   rawCountsColumn_.path = std::string(rawCountsPath);
   rawCountsColumn_.element = Element::rawCounts;

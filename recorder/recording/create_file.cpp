@@ -24,7 +24,7 @@ using hdf5::Id;
 /// that fills up during creation. Every failure is an exception.
 class Builder {
  public:
-  explicit Builder(const std::filesystem::path& path) : path_(path) {
+  Builder(const std::filesystem::path& path, unsigned deflate) : path_(path), deflate_(deflate) {
     const Id create = hdf5::properties(H5Pcreate(H5P_FILE_CREATE));
     // Attributes and links stay in the object headers, at the front of the file.
     H5Pset_attr_phase_change(create.get(), 64, 32);
@@ -60,7 +60,7 @@ class Builder {
 
   /// A data set of fixed size (`growing` false) or that starts empty and grows.
   [[nodiscard]] Id dataset(const std::string& path, hid_t type, std::vector<hsize_t> shape, hsize_t chunkRows,
-                           bool deflate, bool growing) const {
+                           unsigned deflate, bool growing) const {
     std::vector<hsize_t> most = shape;
     if (growing) most[0] = H5S_UNLIMITED;
     std::vector<hsize_t> chunk = shape;
@@ -69,9 +69,9 @@ class Builder {
     const Id create = hdf5::properties(H5Pcreate(H5P_DATASET_CREATE));
     H5Pset_chunk(create.get(), static_cast<int>(chunk.size()), chunk.data());
     H5Pset_obj_track_times(create.get(), false);
-    if (deflate) {
+    if (deflate > 0) {
       H5Pset_shuffle(create.get());
-      H5Pset_deflate(create.get(), 1);
+      H5Pset_deflate(create.get(), deflate);
     }
     H5Pset_fletcher32(create.get());
     Id d =
@@ -83,7 +83,7 @@ class Builder {
   void bytes(const std::string& path, const Asset& asset) const {
     const Id type = hdf5::elementType(Element::u1);
     const Id d =
-        dataset(path, type.get(), {asset.bytes.size()}, std::min<hsize_t>(asset.bytes.size(), 65536), true, false);
+        dataset(path, type.get(), {asset.bytes.size()}, std::min<hsize_t>(asset.bytes.size(), 65536), deflate_, false);
     need(asset.bytes.empty() || H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, asset.bytes.data()) >= 0,
          path);
     text(d.get(), "name", asset.name);
@@ -97,7 +97,7 @@ class Builder {
     std::string padded(longest * names.size(), '\0');
     for (std::size_t i = 0; i < names.size(); ++i) std::memcpy(&padded[i * longest], names[i].data(), names[i].size());
     const Id type = hdf5::stringType(longest);
-    const Id d = dataset(path, type.get(), {names.size()}, names.size(), false, false);
+    const Id d = dataset(path, type.get(), {names.size()}, names.size(), 0, false);
     need(H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()) >= 0, path);
   }
 
@@ -125,6 +125,7 @@ class Builder {
 
  private:
   std::filesystem::path path_;
+  unsigned deflate_;
   Id file_;
 };
 
@@ -168,9 +169,9 @@ void observables(Builder& builder, const AttemptHeader& header, const Layout& la
 void signature(Builder& builder, const PublicKey& signer) {
   builder.group("/signature");
   const Id type = hdf5::elementType(Element::u1);
-  const Id key = builder.dataset(publicKeyPath, type.get(), {signer.size()}, signer.size(), false, false);
+  const Id key = builder.dataset(publicKeyPath, type.get(), {signer.size()}, signer.size(), 0, false);
   builder.need(H5Dwrite(key.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, signer.data()) >= 0, publicKeyPath);
-  const Id value = builder.dataset(signaturePath, type.get(), {0}, std::tuple_size_v<Signature>, false, true);
+  const Id value = builder.dataset(signaturePath, type.get(), {0}, std::tuple_size_v<Signature>, 0, true);
 }
 
 StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout, const PublicKey* signer) {
@@ -204,7 +205,7 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
   builder.names("/steps/field_names", fieldNames);
   if (!fieldComponents.empty()) {
     const Id d = builder.dataset("/steps/field_component", H5T_STD_U32LE, {fieldComponents.size()},
-                                 fieldComponents.size(), false, false);
+                                 fieldComponents.size(), 0, false);
     builder.need(H5Dwrite(d.get(), H5T_STD_U32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, fieldComponents.data()) >= 0,
                  "/steps/field_component");
   }
@@ -214,14 +215,14 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
   std::vector<std::byte> packed;
   appendStatus(first, packed);
   const Id statusType = hdf5::elementType(Element::status);
-  const Id status = builder.dataset("/status", statusType.get(), {1}, 1, false, true);
+  const Id status = builder.dataset("/status", statusType.get(), {1}, 1, 0, true);
   builder.need(H5Dwrite(status.get(), statusType.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) >= 0, "/status");
 
   if (layout.deviceSamples) {
     packed.clear();
     appendRawCounts(first, packed);
     const Id type = hdf5::elementType(Element::rawCounts);
-    const Id counts = builder.dataset(rawCountsPath, type.get(), {1}, rawChunkRows, false, true);
+    const Id counts = builder.dataset(rawCountsPath, type.get(), {1}, rawChunkRows, 0, true);
     builder.need(H5Dwrite(counts.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) >= 0, rawCountsPath);
   }
 
@@ -236,6 +237,8 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
 
 void checkHeader(const AttemptHeader& header) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorKind::invalid, "recording: " + what); };
+  if (header.formatVersion < oldestFormatVersion || header.formatVersion > formatVersion)
+    refuse(fmt::format("format version {} cannot be written", header.formatVersion));
   if (header.attempt.size() != 36) refuse("the attempt's uuid is not 36 characters long");
   if (header.ticksPerStep < 1 || header.ticksPerStep > maxTicksPerStep) refuse("ticks a step must lie in 1..1000");
   if (!(header.tickSeconds > 0.0 && header.tickSeconds <= 1.0)) refuse("the tick's length must lie in (0, 1] s");
@@ -261,7 +264,7 @@ StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHe
   checkHeader(header);
   const hdf5::Session session;
   try {
-    Builder builder(path);
+    Builder builder(path, layout.deflateLevel);
     const StatusRow first = build(builder, header, layout, signer);
     builder.close();
     return first;

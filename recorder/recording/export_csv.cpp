@@ -187,11 +187,12 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   const TickOutcome outcome;
   visitTick(samples, outcome, tickTitles);
   const StateDigest digest;
+  const BriefDigest brief;
   const StepResult result;
   const std::uint64_t forces = 0;
   const float lateness = 0.0F;
   const RecordedProcedure procedure;
-  visitStep(digest, forces, lateness, result, procedure, stepTitles);
+  visitStep(digest, brief, forces, lateness, result, procedure, stepTitles);
   endRows(ticks);
   endRows(steps);
   CsvTable events(stage, "/events");
@@ -210,7 +211,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
     }
     beginRows(steps, n);
     ValueVisitor values{layout, steps};
-    visitStep(step.digest, step.forces, step.lateness, step.result, step.procedure, values);
+    visitStep(step.digest, step.brief, step.forces, step.lateness, step.result, step.procedure, values);
     endRows(steps);
     for (const Event& e : step.result.events) {
       events.put(e.step);

@@ -20,7 +20,7 @@ inline constexpr std::array<const char*, 6> outcomeNames{"running",   "completed
 template <class Header, class Visitor>
 void visitAttributes(Header& h, Visitor& visit) {
   visit.constant("format", std::string(formatName));
-  visit.constant("format_version", formatVersion);
+  visit("format_version", h.formatVersion);
   visit("attempt_uuid", h.attempt);
   visit("parent_uuid", h.parent);
   visit("fork_step", h.forkStep);

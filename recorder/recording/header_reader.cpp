@@ -143,13 +143,6 @@ struct ReadAttributes {
     if (reader.text(reader.root(), "/", name) != expected)
       throw damaged(reader.path(), std::string("/@") + name, "the file is not a recording");
   }
-  void constant(const char* name, std::uint32_t expected) {
-    std::uint32_t v = 0;
-    reader.number(reader.root(), "/", name, H5T_STD_U32LE, &v);
-    if (v != expected) {
-      throw damaged(reader.path(), std::string("/@") + name, fmt::format("is {}; this build reads {}", v, expected));
-    }
-  }
   template <class T, std::size_t N>
   void choice(const char* name, T& value, const std::array<const char*, N>& names) {
     const std::string text = reader.text(reader.root(), "/", name);
@@ -179,6 +172,13 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   const HeaderReader reader(path, file, fileBytes);
   AttemptHeader h;
   ReadAttributes attributes{reader};
+  // What the other attributes are depends on the version.
+  attributes.constant("format", std::string(formatName));
+  attributes("format_version", h.formatVersion);
+  if (h.formatVersion < oldestFormatVersion || h.formatVersion > formatVersion) {
+    throw damaged(path, "/@format_version",
+                  fmt::format("is {}; this build reads {} to {}", h.formatVersion, oldestFormatVersion, formatVersion));
+  }
   visitAttributes(h, attributes);
   if (!isUuid(h.attempt)) throw damaged(path, "/@attempt_uuid", "is not a uuid");
   if (!h.parent.empty() && !isUuid(h.parent)) throw damaged(path, "/@parent_uuid", "is not a uuid");

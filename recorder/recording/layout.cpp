@@ -63,6 +63,10 @@ struct Stored<Phase> {
   static constexpr Element element = Element::u1;
 };
 template <>
+struct Stored<std::uint16_t> {
+  static constexpr Element element = Element::u2;
+};
+template <>
 struct Stored<std::uint32_t> {
   static constexpr Element element = Element::u4;
 };
@@ -122,6 +126,7 @@ struct Collect {
     c.vector = vector;
     c.width = width;
     c.chunkRows = stream == Stream::ticks ? layout.ticksPerBlock : layout.stepsPerBlock;
+    c.deflate = layout.deflateLevel;
     c.unit = std::string(unit);
     layout.columns.push_back(std::move(c));
   }
@@ -135,6 +140,30 @@ std::vector<std::string> namesOfComponents(const AttemptHeader& header, std::str
     if (component.starts_with(prefix)) names.push_back(component.substr(prefix.size()));
   }
   return names;
+}
+
+TickOutcome asStored(const TickOutcome& tick) {
+  constexpr double perNewton = 16384.0;         // 2^14
+  constexpr double perNewtonMetre = 1048576.0;  // 2^20
+  const auto rounded = [](const Vec3& v, double perUnit) -> Vec3 {
+    Vec3 out;
+    for (int i = 0; i < 3; ++i) out[i] = std::floor(v[i] * perUnit + 0.5) / perUnit;
+    return out;
+  };
+  TickOutcome out = tick;
+  for (HandTick& hand : out.hand) {
+    hand.force = rounded(hand.force, perNewton);
+    hand.torque = rounded(hand.torque, perNewtonMetre);
+  }
+  return out;
+}
+
+void shorten(const StateDigest& digest, BriefDigest& out) {
+  DigestStream stream;
+  for (const std::uint64_t component : digest.component) stream.append(&component, sizeof component);
+  out.state = stream.value();
+  out.field.clear();
+  for (const std::uint32_t field : digest.field) out.field.push_back(static_cast<std::uint16_t>(field & 0xFFFFU));
 }
 
 std::uint64_t forceDigest(std::span<const TickOutcome> ticks) {
@@ -151,6 +180,10 @@ std::uint64_t forceDigest(std::span<const TickOutcome> ticks) {
 Layout::Layout(const AttemptHeader& header)
     : deviceSamples(header.deviceSamples),
       minimal(isMinimal(header)),
+      brief(header.formatVersion > 1 && !minimal),
+      exactForces(header.formatVersion == 1),
+      codedKeyframes(header.formatVersion > 1),
+      deflateLevel(header.formatVersion == 1 ? 1 : 6),
       ticksPerStep(header.ticksPerStep),
       components(header.layout.components.size()),
       fields(header.layout.fields.size()),
@@ -163,11 +196,6 @@ Layout::Layout(const AttemptHeader& header)
   procedure = resultVersion == 3 && namesOfComponents(header, "procedure").size() == 1;
   stepsPerBlock = std::max<std::uint64_t>(1, 250 / ticksPerStep);
   ticksPerBlock = stepsPerBlock * ticksPerStep;
-  // About a second, and at the end of a block.
-  const double blockSeconds = static_cast<double>(ticksPerBlock) * header.tickSeconds;
-  const auto blocks = static_cast<std::uint64_t>(std::clamp(std::floor(1.0 / blockSeconds + 0.5), 1.0, 1e6));
-  keyframeInterval = stepsPerBlock * blocks;
-  shortInterval = stepsPerBlock * std::max<std::uint64_t>(1, blocks / 4);
 
   Collect collect{*this};
   TickSamples samples;
@@ -176,15 +204,16 @@ Layout::Layout(const AttemptHeader& header)
   tickColumns = columns.size();
   collect.stream = Stream::steps;
   StateDigest digest;
+  BriefDigest shortDigest;
   std::uint64_t forces = 0;
   float lateness = 0.0F;
   StepResult result;
   RecordedProcedure recorded;
-  visitStep(digest, forces, lateness, result, recorded, collect);
+  visitStep(digest, shortDigest, forces, lateness, result, recorded, collect);
   stepColumns = columns.size() - tickColumns;
 
   const auto irregular = [this](const char* path, Element element, Stream stream, std::uint64_t chunkRows,
-                                bool deflate) {
+                                unsigned deflate) {
     Column c;
     c.path = std::string(path);
     c.element = element;
@@ -194,14 +223,14 @@ Layout::Layout(const AttemptHeader& header)
     columns.push_back(std::move(c));
     return columns.size() - 1;
   };
-  events = irregular("/events", Element::event, Stream::events, 32, false);
-  keyframeIndex = irregular("/keyframes/index", Element::keyframe, Stream::keyframes, 16, false);
-  keyframeWords = irregular("/keyframes/bytes", Element::u8, Stream::keyframeWords, keyframeChunkWords, true);
+  events = irregular("/events", Element::event, Stream::events, 32, 0);
+  keyframeIndex = irregular("/keyframes/index", Element::keyframe, Stream::keyframes, 16, 0);
+  keyframeWords = irregular("/keyframes/bytes", Element::u8, Stream::keyframeWords, keyframeChunkWords, deflateLevel);
   if (minimal) columns[keyframeIndex].width = columns[keyframeWords].width = 0;
   for (std::size_t h = 0; h < raw.size(); ++h) {
     static constexpr std::array<const char*, handCount> path{"/device/left/samples", "/device/right/samples"};
     static constexpr std::array<Stream, handCount> stream{Stream::rawLeft, Stream::rawRight};
-    raw[h] = irregular(path[h], Element::rawSample, stream[h], rawChunkRows, false);
+    raw[h] = irregular(path[h], Element::rawSample, stream[h], rawChunkRows, 0);
     columns.back().width = deviceSamples ? 1 : 0;
     columns.back().chained = false;
   }

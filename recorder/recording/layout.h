@@ -13,12 +13,12 @@
 
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "recorder/recording/brief_digest.h"
 #include "recorder/recording/recorded_procedure.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot::recorder {
 
-inline constexpr std::uint32_t formatVersion = 1;
 inline constexpr const char* formatName = "calot-recording";
 inline constexpr std::uint32_t maxTicksPerStep = 1000;
 inline constexpr std::uint64_t keyframeChunkWords = 8192;
@@ -43,9 +43,9 @@ struct Column {
   bool vector = false;      ///< shape (N, width) rather than (N)
   std::uint64_t width = 1;  ///< elements a row; 0: the data set is absent
   std::uint64_t chunkRows = 1;
-  bool deflate = true;  ///< shuffle and deflate below the checksum
-  bool chained = true;  ///< part of the content chain
-  std::string unit;     ///< of the exported values; empty: none
+  unsigned deflate = 0;  ///< level of deflate, after shuffle and below the checksum; 0: neither
+  bool chained = true;   ///< part of the content chain
+  std::string unit;      ///< of the exported values; empty: none
 
   [[nodiscard]] std::size_t rowBytes() const { return elementBytes(element) * static_cast<std::size_t>(width); }
 };
@@ -67,13 +67,15 @@ struct Layout {
   std::size_t stepColumns = 0;                                   ///< the next ones
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
   std::array<std::size_t, handCount> raw{};
-  bool deviceSamples = false;  ///< there is a /device
-  bool minimal = false;        ///< isMinimal()
+  bool deviceSamples = false;   ///< there is a /device
+  bool minimal = false;         ///< isMinimal()
+  bool brief = false;           ///< one digest of State and short ones of fields, in the place of those of components
+  bool exactForces = false;     ///< version 1: forces are not rounded, and have a digest in golden recordings alone
+  bool codedKeyframes = false;  ///< as differences from one another (keyframe_code.h)
+  unsigned deflateLevel = 6;    ///< of what is deflated
   std::uint32_t ticksPerStep = 10;
   std::uint64_t stepsPerBlock = 25;  ///< max(1, 250 / ticksPerStep)
   std::uint64_t ticksPerBlock = 250;
-  std::uint64_t keyframeInterval = 100;  ///< steps: about a second, whole blocks
-  std::uint64_t shortInterval = 25;      ///< about a quarter of it, whole blocks
   std::size_t components = 0, fields = 0;
   std::array<std::size_t, Tissues::count> count{};  ///< of each kind of tissue; 0 before the version that brought it
   std::size_t structures = 0;                       ///< that can be touched
@@ -183,15 +185,25 @@ void visitProcedure(Procedure& p, Visitor& visit) {
 /// XXH3-64 of a step's forces and torques: tick by tick, left hand first.
 std::uint64_t forceDigest(std::span<const TickOutcome> ticks);
 
+/// A tick as version 2 stores it: forces rounded to 2^-14 N, torques to 2^-20 N m.
+TickOutcome asStored(const TickOutcome& tick);
+
+/// Takes a State's digest in the short form that version 2 stores.
+void shorten(const StateDigest& digest, BriefDigest& out);
+
 /// Lists what one step stores, but for its events. @param forces digest of its ticks' forces
-template <class Digest, class Forces, class Lateness, class Result, class Procedure, class Visitor>
-void visitStep(Digest& digest, Forces& forces, Lateness& lateness, Result& r, Procedure& procedure, Visitor& visit) {
-  visit.list("/steps", "component_digest", "", digest.component, visit.layout.components);
-  if (visit.layout.minimal) {
-    visit("/steps", "force_digest", "", forces);
+template <class Digest, class Brief, class Forces, class Lateness, class Result, class Procedure, class Visitor>
+void visitStep(Digest& digest, Brief& brief, Forces& forces, Lateness& lateness, Result& r, Procedure& procedure,
+               Visitor& visit) {
+  const Layout& layout = visit.layout;
+  if (layout.brief) {
+    visit("/steps", "state_digest", "", brief.state);
+    visit.list("/steps", "field_digest", "", brief.field, layout.fields);
   } else {
-    visit.list("/steps", "field_digest", "", digest.field, visit.layout.fields);
+    visit.list("/steps", "component_digest", "", digest.component, layout.components);
+    if (!layout.minimal) visit.list("/steps", "field_digest", "", digest.field, layout.fields);
   }
+  if (layout.minimal || !layout.exactForces) visit("/steps", "force_digest", "", forces);
   visit.outside("/steps", "lateness", "s", lateness);
   visitResult(r, visit);
   if (visit.layout.procedure) visitProcedure(procedure, visit);

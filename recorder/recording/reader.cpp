@@ -10,6 +10,7 @@
 #include "recorder/recording/column_reader.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/header_reader.h"
+#include "recorder/recording/keyframe_reader.h"
 #include "recorder/recording/open_file.h"
 
 namespace calot::recorder {
@@ -33,8 +34,7 @@ struct Recording::Impl {
   std::unique_ptr<ColumnReader> columns;
   std::optional<RecordedSignature> signature;
   std::vector<StatusRow> status;
-  std::vector<KeyframeRow> keyframes;
-  std::vector<std::uint64_t> keyframeSteps;
+  std::unique_ptr<KeyframeReader> keyframes;
 
   std::unique_ptr<Block> block;
   std::size_t blockRow = 0;                ///< row of /status whose block is held; 0: none
@@ -55,7 +55,7 @@ struct Recording::Impl {
       columns->readRawCounts(before, row, status.back());
     }
     signature = readSignature(path, file);
-    readKeyframeIndex();
+    keyframes = std::make_unique<KeyframeReader>(path, *layout, *columns, status.back());
     block = std::make_unique<Block>(*layout);
   }
 
@@ -63,26 +63,6 @@ struct Recording::Impl {
     const hdf5::Session session;
     columns.reset();
     file.reset();
-  }
-
-  void readKeyframeIndex() {
-    const StatusRow& last = status.back();
-    if (layout->minimal && (last.keyframes | last.keyframeWords) != 0)
-      throw hdf5::damaged(path, "/status", "counts keyframes, and a golden recording has none");
-    std::vector<std::byte> bytes;
-    columns->readRows(layout->keyframeIndex, 0, last.keyframes, bytes);
-    const std::uint64_t total = last.keyframeWords * 8;
-    for (std::size_t i = 0; i < last.keyframes; ++i) {
-      const KeyframeRow k = parseKeyframeRow(std::span(bytes).subspan(i * keyframeBytes));
-      if (k.step >= last.steps || (i > 0 && k.step <= keyframes.back().step)) {
-        throw hdf5::damaged(path, "/keyframes/index", fmt::format("row {} is out of order", i));
-      }
-      if (k.offset > total || k.stateBytes > total - k.offset || k.hapticsBytes > total - k.offset - k.stateBytes) {
-        throw hdf5::damaged(path, "/keyframes/index", fmt::format("row {} points outside /keyframes/bytes", i));
-      }
-      keyframes.push_back(k);
-      keyframeSteps.push_back(k.step);
-    }
   }
 
   void load(std::size_t row) {
@@ -117,7 +97,7 @@ std::uint64_t Recording::stepCount() const { return impl_->status.back().steps; 
 std::uint64_t Recording::tickCount() const { return impl_->status.back().ticks; }
 std::uint64_t Recording::eventCount() const { return impl_->status.back().events; }
 double Recording::seconds() const { return static_cast<double>(tickCount()) * impl_->header.tickSeconds; }
-const std::vector<std::uint64_t>& Recording::keyframeSteps() const { return impl_->keyframeSteps; }
+const std::vector<std::uint64_t>& Recording::keyframeSteps() const { return impl_->keyframes->steps(); }
 
 const RecordedStep& Recording::step(std::uint64_t n) {
   Impl& impl = *impl_;
@@ -138,28 +118,13 @@ const RecordedStep& Recording::step(std::uint64_t n) {
 }
 
 std::optional<std::size_t> Recording::keyframeAtOrBefore(std::uint64_t step) const {
-  const std::vector<std::uint64_t>& steps = impl_->keyframeSteps;
+  const std::vector<std::uint64_t>& steps = keyframeSteps();
   const auto after = std::upper_bound(steps.begin(), steps.end(), step);
   if (after == steps.begin()) return std::nullopt;
   return static_cast<std::size_t>(after - steps.begin()) - 1;
 }
 
-Keyframe Recording::keyframe(std::size_t index) {
-  const Impl& impl = *impl_;
-  const KeyframeRow& k = impl.keyframes.at(index);
-  const std::uint64_t firstWord = k.offset / 8;
-  const std::uint64_t endWord = (k.offset + k.stateBytes + k.hapticsBytes + 7) / 8;
-  std::vector<std::byte> words;
-  {
-    const hdf5::Session session;
-    impl.columns->readRows(impl.layout->keyframeWords, firstWord, endWord - firstWord, words);
-  }
-  const auto state =
-      std::span(words).subspan(static_cast<std::size_t>(k.offset % 8), static_cast<std::size_t>(k.stateBytes));
-  const auto haptics = std::span(words).subspan(static_cast<std::size_t>(k.offset % 8 + k.stateBytes),
-                                                static_cast<std::size_t>(k.hapticsBytes));
-  return {k.step, {state.begin(), state.end()}, {haptics.begin(), haptics.end()}};
-}
+Keyframe Recording::keyframe(std::size_t index) { return impl_->keyframes->read(index); }
 
 std::uint64_t Recording::rawSampleCount(Hand hand) const {
   return impl_->status.back().rawSamples[static_cast<std::size_t>(hand)];

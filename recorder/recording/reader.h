@@ -12,6 +12,7 @@
 #include "recorder/device_sample.h"
 #include "recorder/identity.h"
 #include "recorder/observer.h"
+#include "recorder/recording/brief_digest.h"
 #include "recorder/recording/recorded_procedure.h"
 #include "recorder/recording/station_key.h"
 
@@ -34,10 +35,11 @@ struct StatusRow {
 struct RecordedStep {
   std::uint64_t step = 0;
   std::vector<TickSamples> samples;  ///< ticksPerStep of them
-  std::vector<TickOutcome> ticks;    ///< as many
+  std::vector<TickOutcome> ticks;    ///< as many; forces are rounded, but in format version 1; in golden ones 0
   StepResult result;                 ///< with its events
-  StateDigest digest;
-  std::uint64_t forces = 0;  ///< golden: digest of the ticks' forces, which are not there themselves
+  StateDigest digest;                ///< of format version 1, and of golden recordings (no fields there); else empty
+  BriefDigest brief;                 ///< of the others
+  std::uint64_t forces = 0;          ///< digest of the ticks' forces before rounding; none in whole ones of version 1
   float lateness = 0.0F;
   RecordedProcedure procedure;  ///< version 3 of StepResult: the judgement of its time
 };

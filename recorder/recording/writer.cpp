@@ -13,6 +13,8 @@
 #include <thread>
 
 #include "recorder/recording/file_writer.h"
+#include "recorder/recording/keyframe_code.h"
+#include "recorder/recording/keyframe_schedule.h"
 #include "recorder/recording/publish.h"
 #include "recorder/recording/spsc_queue.h"
 
@@ -36,7 +38,8 @@ std::int64_t wallNow() {
 }  // namespace
 
 struct RecordingWriter::Impl {
-  Impl(std::filesystem::path to, const AttemptHeader& header) : target(std::move(to)), layout(header) {}
+  Impl(std::filesystem::path to, const AttemptHeader& header)
+      : target(std::move(to)), layout(header), schedule(layout, header.tickSeconds) {}
 
   std::filesystem::path target;
   Layout layout;
@@ -47,8 +50,7 @@ struct RecordingWriter::Impl {
   std::deque<Block> pool;  // grows at its end only: blocks keep their place
   Block* filling = nullptr;
   std::uint64_t nextStep = 0;
-  std::uint64_t keyframeWords = 0;
-  bool carved = false;  // since the last keyframe
+  KeyframeSchedule schedule;
   bool ended = false;
   RawSampleFeed* feed = nullptr;
   std::uint64_t feedFirstTick = 0;
@@ -61,6 +63,8 @@ struct RecordingWriter::Impl {
   std::atomic<double> writerSeconds{0.0}, maxFlush{0.0};
 
   // The writing thread's side; read by others after join.
+  KeyframeCoder coder;
+  std::uint64_t keyframeWords = 0;
   std::exception_ptr error;
   std::atomic<bool> failed{false};
   std::thread thread;
@@ -99,9 +103,11 @@ struct RecordingWriter::Impl {
     }
   }
 
-  void flush(const Block& block, bool last) {
+  void flush(Block& block, bool last) {
     const auto begin = std::chrono::steady_clock::now();
     try {
+      for (const Keyframe& keyframe : block.keyframes)
+        appendKeyframe(layout, keyframe, coder.code(keyframe), keyframeWords, block);
       // A block without rows is written only if it carries the outcome.
       if (block.rows[static_cast<std::size_t>(Stream::steps)] > 0 || block.completed) {
         file->append(block, wallNow());
@@ -117,14 +123,6 @@ struct RecordingWriter::Impl {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (seconds > maxFlush.load(std::memory_order_relaxed)) maxFlush.store(seconds, std::memory_order_relaxed);
     writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
-  }
-
-  /// Steps in which fat is carved take longest to re-simulate, so keyframes are four times as frequent there.
-  bool keyframeDue(const StepResult& result) {
-    for (const FatResult& fat : result.fat) carved = carved || fat.carved > 0.0;
-    if (nextStep % (carved ? layout.shortInterval : layout.keyframeInterval) != 0) return false;
-    carved = false;
-    return true;
   }
 
   /// Moves what the device measured up to the end of the last step into the block.
@@ -155,6 +153,7 @@ struct RecordingWriter::Impl {
 RecordingWriter::RecordingWriter(const std::filesystem::path& target, const AttemptHeader& header,
                                  WriterOptions options) {
   checkHeader(header);
+  assert(header.formatVersion == formatVersion);
   refuseExisting(target, options.force);
   impl_ = std::make_unique<Impl>(target, header);
   Impl& impl = *impl_;
@@ -195,11 +194,10 @@ void RecordingWriter::onStep(const StepRecord& record) {
   Impl& impl = *impl_;
   assert(!impl.ended && record.step == impl.nextStep);
   ++impl.nextStep;
-  if (record.keyframe && !impl.layout.minimal && impl.keyframeDue(record.result)) {
-    const Keyframe keyframe = record.keyframe();
-    appendStep(impl.layout, record, &keyframe, impl.keyframeWords, *impl.filling);
-  } else {
-    appendStep(impl.layout, record, nullptr, impl.keyframeWords, *impl.filling);
+  appendStep(impl.layout, record, *impl.filling);
+  if (impl.schedule.dueAfter(record.result) && record.keyframe && !impl.layout.minimal) {
+    impl.filling->keyframes.push_back(record.keyframe());
+    impl.schedule.taken(impl.filling->keyframes.back().state.size());
   }
   impl.takeRaw();
   if (impl.filling->rows[static_cast<std::size_t>(Stream::steps)] == impl.layout.stepsPerBlock) {

@@ -25,7 +25,7 @@ class Branch(program.ProgramTest):
                 path = f"/ticks/right/{name}"
                 self.assertEqual(a[path][:ticks].tobytes(), b[path][:ticks].tobytes(), name)
             self.assertEqual(a["/ticks/lateness"][:ticks].tobytes(), b["/ticks/lateness"][:ticks].tobytes())
-            self.assertEqual(a["/steps/component_digest"][:step + 1].tobytes(), b["/steps/component_digest"][:step + 1].tobytes())
+            self.assertEqual(a["/steps/state_digest"][:step + 1].tobytes(), b["/steps/state_digest"][:step + 1].tobytes())
             self.assertNotEqual(a["/ticks/right/position"][ticks:].tobytes(), b["/ticks/right/position"][ticks:].tobytes())
 
     def exact(self, r):

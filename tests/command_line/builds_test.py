@@ -22,7 +22,7 @@ class Builds(program.ProgramTest):
         self.well("replay", r)
         with h5py.File(skilled(), "r") as a, h5py.File(r, "r") as b:
             self.assertNotEqual(a.attrs["build"], b.attrs["build"], "the same build twice proves nothing")
-            self.assertEqual(a["/steps/component_digest"][:200].tobytes(), b["/steps/component_digest"][:].tobytes())
+            self.assertEqual(a["/steps/state_digest"][:200].tobytes(), b["/steps/state_digest"][:].tobytes())
 
     def test_states_are_equal(self):
         for name, calot_of in (("a", program.PROGRAM), ("b", OTHER)):

@@ -22,7 +22,7 @@ class Exact(program.ProgramTest):
     def test_recorded_with_two_threads_is_the_same_attempt(self):
         two = recording("two-threads", "--performer", "skilled", "--seed", 7, "--seconds", 5, "--threads", 2)
         with h5py.File(skilled(), "r") as a, h5py.File(two, "r") as b:
-            for name in ("/steps/component_digest", "/ticks/left/force", "/ticks/right/force", "/observables/misses"):
+            for name in ("/steps/state_digest", "/ticks/left/force", "/ticks/right/force", "/observables/misses"):
                 self.assertEqual(a[name][:].tobytes(), b[name][:].tobytes(), name)
             self.assertTrue(a["/ticks/right/force"][:].any() or a["/ticks/left/force"][:].any(), "nothing was touched")
 

@@ -89,7 +89,7 @@ def is_fixed_string(dtype):
 
 
 # What a golden recording goes without.
-NOT_GOLDEN = re.compile(r"^/(observables|keyframes|steps/field_digest)|^/ticks/(left|right|<hand>)/(force|torque)$")
+NOT_GOLDEN = re.compile(r"^/(observables|keyframes|steps/(state|field)_digest)|^/ticks/(left|right|<hand>)/(force|torque)$")
 
 
 class Checker:
@@ -107,6 +107,8 @@ class Checker:
                        "V6": version >= 6,
                        "D": int("/device" in file), "G": int(as_text(file.attrs["purpose"]) == b"golden"),
                        "K": sum(name.startswith(b"connective.") for name in components) if version >= 2 else 0}
+        golden = self.counts["G"]
+        self.counts |= {"H": 1 - golden, "GC": golden * len(components), "HF": (1 - golden) * self.counts["F"]}
         self.counts["K4"] = self.counts["K"] if version >= 4 else 0
         if version < 3 and vessels + fat > 0:
             self.fault(f"/scene: version {version} has neither vessels nor fat")
@@ -185,7 +187,7 @@ class Checker:
             wanted = min(int(chunk.split()[-1]), max(1, thing.shape[0]))
         if thing.chunks is None or wanted != thing.chunks[0]:
             self.fault(f"{name}: has chunks {thing.chunks}, the schema says {chunk}")
-        packed = thing.shuffle and thing.compression == "gzip" and thing.compression_opts == 1
+        packed = thing.shuffle and thing.compression == "gzip" and thing.compression_opts == 6
         if not thing.fletcher32 or packed != (row["filters"] == "SDF") or (thing.compression is not None) != packed:
             self.fault(f"{name}: has other filters than {row['filters']}")
 
@@ -248,7 +250,7 @@ def chain_heads(file, rows):
                            {"/events": "events", "/keyframes/index": "keyframes", "/keyframes/bytes": "keyframe_words"}[path])
     chained = [f"/ticks/{hand}/{name}" for hand in ("left", "right") for name in (
         "position", "orientation", "instrument", "jaw", "buttons", "valid", "contact_set", "force", "torque")]
-    chained += ["/camera/position", "/camera/orientation", "/steps/component_digest", "/steps/field_digest", "/steps/force_digest"]
+    chained += ["/camera/position", "/camera/orientation", "/steps/component_digest", "/steps/state_digest", "/steps/field_digest", "/steps/force_digest"]
     chained += [r["name"] for r in rows if r["name"].startswith("/observables") and r["kind"] == "dataset"]
     chained += ["/events", "/keyframes/index", "/keyframes/bytes"]
     for k in range(1, len(status)):

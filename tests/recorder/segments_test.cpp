@@ -77,6 +77,23 @@ TEST(Segments, NameTheFirstDifferenceThatARunFromTheStartNames) {
   }
 }
 
+/// With as many threads as a workstation has, too: one byte, the very last of a keyframe.
+TEST(Segments, FindAFaultInTheLastByteOfAKeyframe) {
+  const test::Folder folder;
+  for (const std::uint64_t step : {99U, 199U}) {
+    const std::filesystem::path file = folder / (std::to_string(step) + ".h5");
+    test::recordTouches(file, Lie{Lie::About::lastByte, step});
+    const ReplayReport report = verified(file, 8);
+    EXPECT_EQ(report.verdict, ReplayVerdict::diverged);
+    EXPECT_TRUE(report.chainIntact);
+    ASSERT_TRUE(report.divergence);
+    EXPECT_EQ(report.divergence->step, step);
+    EXPECT_EQ(report.divergence->component, "keyframe");
+    EXPECT_EQ(report.divergence->field, "haptics");
+    expectSame(verified(file, 1), report);
+  }
+}
+
 /// They get what was recorded once it is proven, in order, with all that a run would have shown them.
 TEST(Segments, ObserversSeeTheStepsOfARun) {
   const test::Folder folder;

@@ -165,7 +165,7 @@ TEST(Flip, AByteOfAChunkIsFoundAndItsDataSetNamed) {
   Random random(20);
   for (const char* dataset :
        {"/ticks/left/position", "/ticks/right/orientation", "/ticks/right/force", "/ticks/left/contact_set",
-        "/camera/position", "/steps/component_digest", "/steps/field_digest", "/events", "/observables/organs/volume",
+        "/camera/position", "/steps/state_digest", "/steps/field_digest", "/events", "/observables/organs/volume",
         "/observables/left/tip_real", "/keyframes/bytes", "/keyframes/index", "/status"}) {
     const auto [at, size] = chunkPlace(folder / "r.h5", dataset, 0);
     ASSERT_GT(size, 0U) << dataset;

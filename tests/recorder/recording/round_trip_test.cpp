@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
 #include "recorder/errors.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"
@@ -36,14 +38,21 @@ void expectSame(const Step& made, const RecordedStep& read) {
       EXPECT_TRUE(same(a.position, b.position) && same(a.orientation, b.orientation) && same(a.jaw, b.jaw));
       EXPECT_TRUE(a.instrument == b.instrument && a.buttons == b.buttons && a.valid == b.valid);
       const HandTick &c = made.ticks[t].hand[h], &d = read.ticks[t].hand[h];
-      EXPECT_TRUE(same(c.force, d.force) && same(c.torque, d.torque) && c.contactSet == d.contactSet);
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(d.force[i], std::floor(c.force[i] * 16384.0 + 0.5) / 16384.0);
+        EXPECT_EQ(d.torque[i], std::floor(c.torque[i] * 1048576.0 + 0.5) / 1048576.0);
+      }
+      EXPECT_EQ(c.contactSet, d.contactSet);
     }
     EXPECT_TRUE(same(made.samples[t].camera.position, read.samples[t].camera.position));
     EXPECT_TRUE(same(made.samples[t].camera.orientation, read.samples[t].camera.orientation));
     EXPECT_EQ(made.ticks[t].lateness, read.ticks[t].lateness);
   }
   EXPECT_TRUE(made.result.isSameAs(read.result));
-  EXPECT_EQ(made.digest, read.digest);
+  BriefDigest brief;
+  shorten(made.digest, brief);
+  EXPECT_EQ(brief, read.brief);
+  EXPECT_EQ(forceDigest(made.ticks), read.forces);
   EXPECT_EQ(made.lateness, read.lateness);
 }
 
@@ -151,34 +160,6 @@ TEST(EarlierVersion, OfStepResultIsRead) {
   EXPECT_EQ(r.step(59).result.hand[1].structureForce, made.result.hand[1].structureForce);
   EXPECT_EQ(r.step(59).result.contact.blocks, 0U);
   EXPECT_EQ(r.step(59).result.hand[1].graspForce, 0.0);
-}
-
-TEST(Keyframes, AreKeptAboutEverySecond) {
-  const Folder folder;
-  test::writeRecording(folder / "r.h5", makeHeader(), 450);
-  const Recording r(folder / "r.h5");
-  EXPECT_EQ(r.keyframeSteps(), (std::vector<std::uint64_t>{99, 199, 299, 399}));
-  EXPECT_FALSE(r.keyframeAtOrBefore(98).has_value());
-  EXPECT_EQ(r.keyframeAtOrBefore(99), 0U);
-  EXPECT_EQ(r.keyframeAtOrBefore(298), 1U);
-  EXPECT_EQ(r.keyframeAtOrBefore(10000), 3U);
-}
-
-TEST(Keyframes, AreKeptFourTimesAsOftenWhereFatIsCarved) {
-  const Folder folder;
-  const AttemptHeader header = test::withStructures(makeHeader(), 0, 1);
-  const auto step = [&](std::uint64_t n) {
-    Step made = randomStep(header, n, 1);
-    const bool carving = n == 130 || (n >= 210 && n < 320);
-    made.result.fat[0].carved = carving ? 1e-9 : 0.0;
-    return made;
-  };
-  RecordingWriter writer(folder / "r.h5", header, {true});
-  test::feed(writer, header, 550, step, 3001);
-  writer.onEnd(Outcome::completed);
-  writer.finish();
-  const Recording r(folder / "r.h5");
-  EXPECT_EQ(r.keyframeSteps(), (std::vector<std::uint64_t>{99, 149, 199, 224, 249, 274, 299, 324, 399, 499}));
 }
 
 TEST(Chain, SameContentSameChain) {
