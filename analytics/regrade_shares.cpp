@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/regrade_shares.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "analytics/cohort/withdraw.h"
+#include "analytics/recordings_found.h"
+#include "analytics/shards/values_set.h"
+#include "analytics/shards/values_writer.h"
+
+namespace calot::analytics {
+namespace {
+
+double recordedSeconds(const AttemptRow& row) { return static_cast<double>(row.steps) * row.stepSeconds; }
+
+std::vector<Dealt> dealtAttempts(const std::vector<AttemptRow>& rows) {
+  std::vector<Dealt> list;
+  list.reserve(rows.size());
+  for (const AttemptRow& row : rows) {
+    const std::string kind = fmt::format("{}/{} {}", row.scene, row.sceneMajor, row.simulationVersion);
+    list.push_back({kind, row.steps, row.uuid});
+  }
+  return list;
+}
+
+/// The cohort is closed again before long work begins: it may be written meanwhile.
+std::vector<AttemptRow> attemptsOf(const std::string& cohort) {
+  return CohortDatabase(cohort, CohortDatabase::Access::read).listAttempts();
+}
+
+}  // namespace
+
+std::vector<PlannedShare> regradePlan(const std::string& cohort, std::uint32_t shares) {
+  const std::vector<AttemptRow> rows = attemptsOf(cohort);
+  const std::vector<std::vector<std::size_t>> dealt = deal(dealtAttempts(rows), shares);
+  std::vector<PlannedShare> plan;
+  for (std::uint32_t i = 0; i < shares; ++i) {
+    PlannedShare& share = plan.emplace_back(PlannedShare{{i + 1, shares}, dealt[i].size()});
+    for (const std::size_t number : dealt[i]) share.seconds += recordedSeconds(rows[number]);
+  }
+  return plan;
+}
+
+ComputedShare computeRegradeShare(const std::string& cohort, const std::vector<std::filesystem::path>& places,
+                                  const Shard& shard, const std::filesystem::path& values, unsigned jobs, bool replace,
+                                  const std::function<void(std::uint64_t done, std::uint64_t of)>& progress) {
+  const std::vector<AttemptRow> rows = attemptsOf(cohort);
+  const std::vector<Dealt> planned = dealtAttempts(rows);
+  const std::vector<std::size_t> share = deal(planned, shard.of)[shard.number - 1];
+  ValuesWriter writer(values, headerOf(SharedWork::regrade, shard, share.size(), planned), replace);
+  ComputedShare result;
+  result.recordings = share.size();
+  result.before = writer.complete() ? share.size() : writer.done().size();
+  if (writer.complete()) return result;
+
+  std::vector<const AttemptRow*> wanted;
+  for (const std::size_t i : share) {
+    if (!writer.done().contains(i)) wanted.push_back(&rows[i]);
+  }
+  recorder::WorkerPool pool(jobs);
+  const RecordingsFound found(places, wanted, pool);
+  std::vector<const AttemptRow*> those;
+  std::vector<std::string> files;
+  const auto positionOf = [&](const AttemptRow* row) { return static_cast<std::uint64_t>(row - rows.data()); };
+  for (const AttemptRow* row : wanted) {
+    if (const auto file = found.of(*row)) {
+      those.push_back(row);
+      files.push_back(file->string());
+    } else {
+      writer.append({positionOf(row), row->uuid, row->fileName, std::nullopt});
+      ++result.missing;
+    }
+  }
+  judgeAll(files, pool, [&](std::size_t i, JudgedRecording judged) {
+    result.resimulation += judged.report.wallSeconds;
+    writer.append({positionOf(those[i]), those[i]->uuid, files[i], std::move(judged)});
+    if (progress) progress(writer.done().size(), share.size());
+  });
+  writer.finish();
+  return result;
+}
+
+TakenRegrade takeRegrade(const std::string& cohort, const std::vector<std::filesystem::path>& files,
+                         const std::function<void(std::uint64_t done, std::uint64_t of)>& progress) {
+  CohortDatabase database(cohort, CohortDatabase::Access::write);
+  const std::vector<AttemptRow> rows = database.listAttempts();
+  std::map<std::string, std::size_t> byUuid;
+  for (std::size_t i = 0; i < rows.size(); ++i) byUuid[rows[i].uuid] = i;
+  const ValuesSet set(files, SharedWork::regrade, [&](const ValuesRow& row) {
+    if (byUuid.contains(row.attempt) || wasWithdrawn(cohort, row.attempt)) return;
+    throw Error(ErrorKind::refused,
+                fmt::format("attempt {} is not in {}: values of another cohort", row.attempt, cohort));
+  });
+
+  TakenRegrade taken;
+  taken.refused = set.refused();
+  taken.missing.numbers = set.missing();
+  taken.missing.of = set.shares();
+  std::vector<RegradedAttempt>& attempts = taken.regrade.attempts;
+  attempts.resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    attempts[i].uuid = rows[i].uuid;
+    attempts[i].file = rows[i].fileName;
+    attempts[i].message = "in none of the shards that were taken";
+  }
+  std::uint64_t done = 0;
+  set.forEach([&](const ValuesRow& row) {
+    const auto known = byUuid.find(row.attempt);
+    if (known == byUuid.end()) {
+      ++taken.withdrawn;
+    } else {
+      const AttemptRow& attempt = rows[known->second];
+      attempts[known->second] =
+          row.judged ? storeRegraded(database, attempt, row.file, *row.judged) : withoutRecording(attempt);
+    }
+    if (progress) progress(++done, set.rows());
+  });
+  for (const RegradedAttempt& a : attempts) {
+    if (a.how == Regraded::missing && !a.fault) ++taken.missing.attempts;
+  }
+  return taken;
+}
+
+}  // namespace calot::analytics
