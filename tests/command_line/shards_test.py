@@ -197,6 +197,17 @@ class Shards(program.ProgramTest):
         self.assertIn("is shard 1 of 3, as is", answer.err)
         self.assertIn(f"{COUNT} attempts: 0 changed, {COUNT} unchanged", answer.out)
 
+    def test_attempts_withdrawn_meanwhile_stay_out(self):
+        files = self.compute(2)
+        who, = query(self.cohort, "SELECT pseudonym FROM participant ORDER BY id LIMIT 1")[0]
+        gone = query(self.cohort, f"SELECT count(*) FROM attempt JOIN participant p ON p.id = participant WHERE pseudonym = '{who}'")[0][0]
+        self.assertEqual(calot("participant", "withdraw", who, "--cohort", self.cohort, "--scope", "all", "--no-recordings", "--no-key").code, 0)
+        before = content(self.cohort)
+        answer = calot("regrade", self.cohort, "--take", *files)
+        self.assertEqual(answer.code, 0, answer)
+        self.assertIn(f"values of {gone} attempts were left out: withdrawn since", answer.err)
+        self.assertEqual(content(self.cohort), before)
+
     def test_usage(self):
         target = self.path("v")
         for shard in ("0/3", "4/3", "1", "1/0", "a/b", "1/2/3", "-1/2", "1/9999999"):
@@ -224,6 +235,9 @@ class AssessShards(program.ProgramTest):
         recording_file.flip_stored_byte(files[1], "/ticks/left/force", 0)
         recording_file.set_attribute(files[2], "simulation_version", 999)
         (places / "notes.txt").write_text("no recording")
+        key = self.path("key.json")
+        self.well("station", "init", "S1", "-o", key)
+        self.well("record", "--scene", program.SCENE, "--performer", "skilled", "--seconds", 0.3, "--station-key", key, "-o", places / "signed.h5")
         here = calot("assess", places, "--cohort", alone, "--json")
         shards = []
         for number in range(1, 5):
@@ -240,6 +254,7 @@ class AssessShards(program.ProgramTest):
         self.assertEqual(rows(taken), rows(here))
         self.assertEqual(content(together), content(alone))
         self.assertEqual(query(together, "SELECT id, uuid FROM attempt"), query(alone, "SELECT id, uuid FROM attempt"))
+        self.assertEqual(query(together, "SELECT count(*) FROM recording_signature"), [(1,)])
         again = json.loads(calot("assess", "--cohort", together, "--take", *shards, "--json").out)
         self.assertEqual({row["stored"] for row in again}, {"unchanged", "not stored"})
         self.assertEqual(content(together), content(alone))
