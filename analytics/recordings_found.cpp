@@ -3,70 +3,29 @@
 
 #include <algorithm>
 #include <exception>
-#include <numeric>
+#include <iterator>
+#include <utility>
 
 namespace calot::analytics {
-namespace {
 
-std::vector<std::size_t> allOf(std::size_t count) {
-  std::vector<std::size_t> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  return numbers;
-}
-
-}  // namespace
-
-RecordingsFound::RecordingsFound(const std::vector<std::filesystem::path>& places, recorder::WorkerPool& pool)
-    : files_(recorder::filesUnder(places)), looked_(files_.size(), 0) {
-  lookInto(allOf(files_.size()), places, pool);
-}
-
-RecordingsFound::RecordingsFound(const std::vector<std::filesystem::path>& places,
-                                 const std::vector<const AttemptRow*>& wanted, recorder::WorkerPool& pool)
-    : files_(recorder::filesUnder(places)), looked_(files_.size(), 0) {
-  std::map<std::string, std::vector<std::size_t>> byName;
-  for (std::size_t i = 0; i < files_.size(); ++i) byName[files_[i].filename().string()].push_back(i);
-  std::vector<std::size_t> likely;
-  for (const AttemptRow* attempt : wanted) {
-    const auto named = byName.find(attempt->fileName);
-    if (named != byName.end()) likely.insert(likely.end(), named->second.begin(), named->second.end());
-  }
-  std::sort(likely.begin(), likely.end());
-  likely.erase(std::unique(likely.begin(), likely.end()), likely.end());
-  lookInto(likely, places, pool);
-  const auto isFound = [&](const AttemptRow* attempt) {
-    const auto at = byUuid_.find(attempt->uuid);
-    return at != byUuid_.end() && std::any_of(at->second.begin(), at->second.end(), [&](const Entry& e) {
-             return e.identity.chainHead == attempt->chainHead;
-           });
-  };
-  // Motion without a scene has no recording.
-  const auto isLost = [&](const AttemptRow* attempt) { return attempt->simulationVersion != 0 && !isFound(attempt); };
-  if (std::any_of(wanted.begin(), wanted.end(), isLost)) lookInto(allOf(files_.size()), places, pool);
-}
-
-void RecordingsFound::lookInto(const std::vector<std::size_t>& files, const std::vector<std::filesystem::path>& places,
-                               recorder::WorkerPool& pool) {
-  std::vector<std::size_t> fresh;
-  std::copy_if(files.begin(), files.end(), std::back_inserter(fresh), [&](std::size_t i) { return looked_[i] == 0; });
-  std::vector<std::optional<recorder::RecordingIdentity>> identity(fresh.size());
-  std::vector<std::optional<Error>> fault(fresh.size());
+RecordingsFound::RecordingsFound(const std::vector<std::filesystem::path>& places, recorder::WorkerPool& pool) {
+  const std::vector<std::filesystem::path> files = recorder::filesUnder(places);
+  std::vector<std::optional<recorder::RecordingIdentity>> identity(files.size());
+  std::vector<std::optional<Error>> fault(files.size());
   const auto look = [&](std::size_t i) {
-    const std::filesystem::path& file = files_[fresh[i]];
-    const bool named = std::find(places.begin(), places.end(), file) != places.end();
-    if (!named && !recorder::looksLikeHdf5(file)) return;
+    const bool named = std::find(places.begin(), places.end(), files[i]) != places.end();
+    if (!named && !recorder::looksLikeHdf5(files[i])) return;
     try {
-      identity[i] = recorder::identify(file);
+      identity[i] = recorder::identify(files[i]);
     } catch (const Error& e) {
       fault[i] = e;
     } catch (const std::exception& e) {
-      fault[i] = Error(ErrorKind::failure, Where{file.string()}, e.what());
+      fault[i] = Error(ErrorKind::failure, Where{files[i].string()}, e.what());
     }
   };
-  pool.run(fresh.size(), look);
-  for (std::size_t i = 0; i < fresh.size(); ++i) {
-    looked_[fresh[i]] = 1;
-    if (identity[i]) byUuid_[identity[i]->attempt].push_back({files_[fresh[i]], *identity[i]});
+  pool.run(files.size(), look);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (identity[i]) byUuid_[identity[i]->attempt].push_back({files[i], *identity[i]});
     if (fault[i]) notRead_.push_back(*fault[i]);
   }
 }
@@ -77,10 +36,25 @@ std::optional<std::filesystem::path> RecordingsFound::of(const AttemptRow& a) co
   const auto better = [&](const Entry& x, const Entry& y) {
     const bool mine = x.identity.chainHead == a.chainHead, yours = y.identity.chainHead == a.chainHead;
     if (mine != yours) return mine;
+    const bool mineNamed = x.file.filename() == a.fileName, yoursNamed = y.file.filename() == a.fileName;
+    if (mine && mineNamed != yoursNamed) return mineNamed;
     if (x.identity.steps != y.identity.steps) return x.identity.steps > y.identity.steps;
     return x.file < y.file;
   };
   return std::min_element(at->second.begin(), at->second.end(), better)->file;
+}
+
+NamedFiles::NamedFiles(const std::vector<std::filesystem::path>& places) {
+  for (std::filesystem::path& file : recorder::filesUnder(places)) {
+    std::string name = file.filename().string();
+    byName_.emplace(std::move(name), std::move(file));
+  }
+}
+
+std::optional<std::filesystem::path> NamedFiles::only(const std::string& name) const {
+  const auto [begin, end] = byName_.equal_range(name);
+  if (begin == end || std::next(begin) != end) return std::nullopt;
+  return begin->second;
 }
 
 }  // namespace calot::analytics

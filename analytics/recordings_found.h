@@ -2,7 +2,6 @@
 // Where the recordings of a cohort's attempts are.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,18 +15,16 @@
 
 namespace calot::analytics {
 
-/// Recordings by uuid: of several, one with the content that the cohort holds, else the longest.
+/// Recordings by uuid: of several, one with the content that the cohort holds, if possible of the name that it knows;
+/// else the longest.
 class RecordingsFound {
  public:
   /// Looks into every file of the places. @throws Error (damaged) where a place is not there
   RecordingsFound(const std::vector<std::filesystem::path>& places, recorder::WorkerPool& pool);
-  /// Looks for these attempts alone: first under the names that the cohort knows, and into all files only where one of
-  /// them is not found there with the content that the cohort holds. What is found is the same.
-  RecordingsFound(const std::vector<std::filesystem::path>& places, const std::vector<const AttemptRow*>& wanted,
-                  recorder::WorkerPool& pool);
 
+  /// Nothing where none is there.
   [[nodiscard]] std::optional<std::filesystem::path> of(const AttemptRow& attempt) const;
-  /// Of files that are no recordings, or damaged; of those that were looked into.
+  /// Of files that are no recordings, or damaged.
   [[nodiscard]] const std::vector<Error>& notRead() const { return notRead_; }
 
  private:
@@ -35,13 +32,22 @@ class RecordingsFound {
     std::filesystem::path file;
     recorder::RecordingIdentity identity;
   };
-  void lookInto(const std::vector<std::size_t>& files, const std::vector<std::filesystem::path>& places,
-                recorder::WorkerPool& pool);
-
-  std::vector<std::filesystem::path> files_;
-  std::vector<char> looked_;  ///< into each
   std::map<std::string, std::vector<Entry>> byUuid_;
   std::vector<Error> notRead_;
+};
+
+/// Files by their names alone, none of which is looked into: where a cohort's recording probably is. Whoever judges it
+/// sees whether it is the one.
+class NamedFiles {
+ public:
+  /// @throws Error (damaged) where a place is not there
+  explicit NamedFiles(const std::vector<std::filesystem::path>& places);
+
+  /// The only file of this name; nothing where there are none or several.
+  [[nodiscard]] std::optional<std::filesystem::path> only(const std::string& name) const;
+
+ private:
+  std::multimap<std::string, std::filesystem::path> byName_;
 };
 
 }  // namespace calot::analytics

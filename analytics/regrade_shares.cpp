@@ -27,6 +27,11 @@ std::vector<Dealt> dealtAttempts(const std::vector<AttemptRow>& rows) {
   return list;
 }
 
+/// Is it of this attempt, with the content that the cohort holds?
+bool isRecordingOf(const AttemptRow& row, const recorder::ReplayReport& report) {
+  return report.attempt == row.uuid && report.chainHead == row.chainHead;
+}
+
 /// The cohort is closed again before long work begins: it may be written meanwhile.
 std::vector<AttemptRow> attemptsOf(const std::string& cohort) {
   return CohortDatabase(cohort, CohortDatabase::Access::read).listAttempts();
@@ -57,29 +62,54 @@ ComputedShare computeRegradeShare(const std::string& cohort, const std::vector<s
   result.before = writer.complete() ? share.size() : writer.done().size();
   if (writer.complete()) return result;
 
-  std::vector<const AttemptRow*> wanted;
-  for (const std::size_t i : share) {
-    if (!writer.done().contains(i)) wanted.push_back(&rows[i]);
-  }
   recorder::WorkerPool pool(jobs);
-  const RecordingsFound found(places, wanted, pool);
-  std::vector<const AttemptRow*> those;
+  const auto judge = [&](const std::vector<std::size_t>& numbers, const std::vector<std::string>& files, bool certain) {
+    std::vector<std::size_t> others;
+    judgeAll(files, pool, [&](std::size_t i, JudgedRecording judged) {
+      const AttemptRow& row = rows[numbers[i]];
+      result.resimulation += judged.report.wallSeconds;
+      if (!certain && !isRecordingOf(row, judged.report)) {
+        others.push_back(numbers[i]);
+        return;
+      }
+      writer.append({numbers[i], row.uuid, files[i], std::move(judged)});
+      if (progress) progress(writer.done().size(), share.size());
+    });
+    return others;
+  };
+
+  // Under the name that the cohort knows there is nearly always the recording that it knows: looking into all files of
+  // a cohort, to compute a small share of it, would cost as much again.
+  const NamedFiles names(places);
+  std::vector<std::size_t> numbers, unclear;
   std::vector<std::string> files;
-  const auto positionOf = [&](const AttemptRow* row) { return static_cast<std::uint64_t>(row - rows.data()); };
-  for (const AttemptRow* row : wanted) {
-    if (const auto file = found.of(*row)) {
-      those.push_back(row);
+  for (const std::size_t i : share) {
+    if (writer.done().contains(i)) continue;
+    if (const auto file = names.only(rows[i].fileName)) {
+      numbers.push_back(i);
       files.push_back(file->string());
     } else {
-      writer.append({positionOf(row), row->uuid, row->fileName, std::nullopt});
+      unclear.push_back(i);
+    }
+  }
+  for (const std::size_t i : judge(numbers, files, false)) unclear.push_back(i);
+
+  numbers.clear();
+  files.clear();
+  std::optional<RecordingsFound> found;
+  for (const std::size_t i : unclear) {
+    // Motion without a scene has no recording: for its sake no file is opened.
+    if (!found && rows[i].simulationVersion != 0) found.emplace(places, pool);
+    const auto file = found ? found->of(rows[i]) : std::nullopt;
+    if (file) {
+      numbers.push_back(i);
+      files.push_back(file->string());
+    } else {
+      writer.append({i, rows[i].uuid, rows[i].fileName, std::nullopt});
       ++result.missing;
     }
   }
-  judgeAll(files, pool, [&](std::size_t i, JudgedRecording judged) {
-    result.resimulation += judged.report.wallSeconds;
-    writer.append({positionOf(those[i]), those[i]->uuid, files[i], std::move(judged)});
-    if (progress) progress(writer.done().size(), share.size());
-  });
+  static_cast<void>(judge(numbers, files, true));
   writer.finish();
   return result;
 }
