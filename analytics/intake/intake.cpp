@@ -6,7 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "analytics/assess_shares.h"
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/recording/identify.h"
@@ -75,10 +74,11 @@ std::vector<Intake::Candidate> Intake::candidates(IntakeRest& rest) {
   std::vector<Candidate> list;
   std::map<std::string, Seen> seen;
   const auto now = std::chrono::steady_clock::now();
-  for (const std::filesystem::path& path : recordingsUnder(settings_.folders)) {
+  for (const std::filesystem::path& path : recorder::filesUnder(settings_.folders)) {
     const std::string file = path.string();
     const FileState state = fileState(path);
     if (isTemporary(path) || state == FileState{} || isDecided(file, state, rest)) continue;
+    if (!recorder::looksLikeHdf5(path)) continue;  // last: it opens the file
     const auto known = seen_.find(file);
     const Seen& entry =
         seen.emplace(file, known != seen_.end() && known->second.state == state ? known->second : Seen{state, now})

@@ -18,7 +18,7 @@ from cohort_content import content, query
 from cohort_test import change
 from program import PROGRAM, SOURCE, calot
 
-COUNT = 24
+COUNT = 16
 _store = []
 
 
@@ -86,7 +86,7 @@ class Shards(program.ProgramTest):
         self.assertLess(max(seconds) - min(seconds), 0.6)  # two of the longest
         many = json.loads(self.well("regrade", self.cohort, "--plan", 3 * COUNT, "--json").out)
         self.assertEqual(sum(share["recordings"] for share in many["shares"]), COUNT)
-        self.assertIn("4 shards, 24 recordings, 6 to 6 in each", self.well("assess", self.recordings, "--plan", 4).out)
+        self.assertIn("4 shards, 16 recordings, 4 to 4 in each", self.well("assess", self.recordings, "--plan", 4).out)
 
     def test_killed_share_goes_on(self):
         whole = self.compute(1)[0].read_text().splitlines()
@@ -137,7 +137,7 @@ class Shards(program.ProgramTest):
         answer = calot("regrade", self.cohort, "--take", *files)
         self.assertEqual(answer.code, 4, answer)
         self.assertOneLine(answer, self.cohort, "2 of 8 shards missing: 3, 7")
-        self.assertIn(", 6 missing", answer.out)
+        self.assertIn(", 4 missing", answer.out)
         self.take(self.compute(8, (3, 7)) + files)
         fewer = self.path("fewer.db")
         half = sorted(self.recordings.rglob("*.h5"))[:COUNT // 2]
