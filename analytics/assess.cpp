@@ -102,11 +102,13 @@ Verdict verdictOf(recorder::ReplayVerdict verdict) {
 
 }  // namespace
 
-Assessment assessRecording(const std::string& file, unsigned threads, double cutoff) {
+Assessment assessRecording(const std::string& file, unsigned threads, double cutoff,
+                           const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
   recorder::AttemptHeader header;
   std::unique_ptr<CheckpointCollector> collector;
   recorder::ReplaySettings settings;
   settings.threads = threads;
+  settings.progress = progress;
   settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
     header = h;
     collector = std::make_unique<CheckpointCollector>(h, model.scene(), Origin::resimulated, cutoff);
@@ -171,6 +173,16 @@ AttemptRecord recordOf(const AssessedAttempt& assessed) {
   a.signature = assessed.signature;
   a.verification = assessed.verification;
   return a;
+}
+
+JudgedRecording judgedRecording(Assessment assessment) {
+  JudgedRecording judged;
+  judged.report = std::move(assessment.report);
+  if (assessment.attempt) {
+    judged.record = recordOf(*assessment.attempt);
+    judged.values = std::move(assessment.attempt->values);
+  }
+  return judged;
 }
 
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed) {

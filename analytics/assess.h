@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -40,7 +41,18 @@ struct Assessment {
 /// Re-simulates a recording and computes its checkpoints. One that diverged has no values; one of another simulation
 /// version has those of its observables, where its content chain is intact.
 /// @param cutoff of the motion filter (Hz); values that are stored are of the default
-Assessment assessRecording(const std::string& file, unsigned threads, double cutoff = 6.0);
+/// @param progress may throw, which ends it: what is thrown leaves this function
+Assessment assessRecording(const std::string& file, unsigned threads, double cutoff = 6.0,
+                           const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
+
+/// What of an assessment is stored, and what people read of it. Unlike an Assessment it can be written to a values file
+/// and stored on another machine (analytics/shards).
+struct JudgedRecording {
+  recorder::ReplayReport report;
+  std::optional<AttemptRecord> record;  ///< none of a damaged file
+  std::vector<CheckpointValue> values;
+};
+JudgedRecording judgedRecording(Assessment assessment);
 
 /// One transaction; idempotent. @throws Error (refused) on a conflict (CohortDatabase::storeAttempt).
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed);

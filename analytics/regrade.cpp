@@ -5,57 +5,12 @@
 
 #include <algorithm>
 #include <exception>
-#include <map>
+#include <utility>
 
-#include "analytics/assess.h"
-#include "recorder/live/worker_pool.h"
-#include "recorder/recording/identify.h"
+#include "analytics/recordings_found.h"
 
 namespace calot::analytics {
 namespace {
-
-/// Recordings by uuid: of several, one with the content that the cohort holds, else the longest.
-class Found {
- public:
-  Found(const std::vector<std::filesystem::path>& places, recorder::WorkerPool& pool, Regrade& result) {
-    std::vector<std::filesystem::path> files = recorder::filesUnder(places);
-    std::vector<std::optional<recorder::RecordingIdentity>> identity(files.size());
-    std::vector<std::optional<Error>> fault(files.size());
-    const auto look = [&](std::size_t i) {
-      const bool named = std::find(places.begin(), places.end(), files[i]) != places.end();
-      if (!named && !recorder::looksLikeHdf5(files[i])) return;
-      try {
-        identity[i] = recorder::identify(files[i]);
-      } catch (const Error& e) {
-        fault[i] = e;
-      } catch (const std::exception& e) {
-        fault[i] = Error(ErrorKind::failure, Where{files[i].string()}, e.what());
-      }
-    };
-    pool.run(files.size(), look);
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      if (identity[i]) byUuid_[identity[i]->attempt].push_back({files[i], *identity[i]});
-      if (fault[i]) result.notRead.push_back(*fault[i]);
-    }
-  }
-
-  [[nodiscard]] std::optional<std::filesystem::path> of(const AttemptRow& a) const {
-    const auto at = byUuid_.find(a.uuid);
-    if (at == byUuid_.end()) return std::nullopt;
-    const auto better = [&](const Entry& x, const Entry& y) {
-      const bool mine = x.identity.chainHead == a.chainHead, yours = y.identity.chainHead == a.chainHead;
-      return mine != yours ? mine : x.identity.steps > y.identity.steps;
-    };
-    return std::min_element(at->second.begin(), at->second.end(), better)->file;
-  }
-
- private:
-  struct Entry {
-    std::filesystem::path file;
-    recorder::RecordingIdentity identity;
-  };
-  std::map<std::string, std::vector<Entry>> byUuid_;
-};
 
 /// Of a recording that cannot be re-simulated here: what was re-simulated before and is still of this version stays.
 std::vector<CheckpointValue> keepResimulated(const std::vector<CheckpointValue>& before,
@@ -70,36 +25,47 @@ std::vector<CheckpointValue> keepResimulated(const std::vector<CheckpointValue>&
   return now;
 }
 
-struct Work {
-  const AttemptRow* row = nullptr;
-  RegradedAttempt* result = nullptr;
-  std::optional<Assessment> assessment;
-  std::exception_ptr failure;
-};
+}  // namespace
 
-void storeOne(CohortDatabase& database, Work& work) {
-  RegradedAttempt& r = *work.result;
-  if (work.failure) std::rethrow_exception(work.failure);
-  const recorder::ReplayReport& report = work.assessment->report;
+RegradedAttempt withoutRecording(const AttemptRow& row) {
+  RegradedAttempt r;
+  r.uuid = row.uuid;
+  r.file = row.fileName;
+  if (row.simulationVersion == 0) {
+    r.how = Regraded::motion;
+    r.message = "motion without a recording";
+    r.remedies = {Remedy::importAgain};
+  } else {
+    r.fault = ErrorKind::damaged;
+    r.message = fmt::format("the recording {} is in none of the places", row.fileName);
+  }
+  return r;
+}
+
+RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, const std::string& file,
+                              JudgedRecording judged) {
+  RegradedAttempt r;
+  r.uuid = row.uuid;
+  r.file = file;
+  const recorder::ReplayReport& report = judged.report;
   r.fault = report.fault();
   if (r.fault) r.message = report.message;
   r.remedies = report.remedies;
-  if (!work.assessment->attempt) {
+  if (!judged.record) {
     r.how = Regraded::unreadable;
     r.message = fmt::format("{}: {}", r.file, report.message);
-    return;
+    return r;
   }
-  AssessedAttempt& assessed = *work.assessment->attempt;
   const std::vector<CheckpointValue> before = database.values(r.uuid);
   const bool undecided = report.verdict == recorder::ReplayVerdict::undecided;
-  if (undecided) assessed.values = keepResimulated(before, std::move(assessed.values));
+  if (undecided) judged.values = keepResimulated(before, std::move(judged.values));
   try {
-    const bool stays = undecided && work.row->verification.verdict == Verdict::verified;
+    const bool stays = undecided && row.verification.verdict == Verdict::verified;
     Imported imported = Imported::unchanged;
-    if (stays && assessed.chainHead == work.row->chainHead) {
-      database.storeValues(r.uuid, assessed.values);
+    if (stays && judged.record->chainHead == row.chainHead) {
+      database.storeValues(r.uuid, judged.values);
     } else {
-      imported = store(database, assessed);
+      imported = database.storeAttempt(*judged.record, judged.values);
     }
     r.changes = changesOf(before, database.values(r.uuid));
     r.how = imported == Imported::unchanged && r.changes.empty() ? Regraded::unchanged : Regraded::changed;
@@ -110,9 +76,35 @@ void storeOne(CohortDatabase& database, Work& work) {
     r.message = e.what();
     r.remedies = e.remedies();
   }
+  return r;
 }
 
-}  // namespace
+void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
+              const std::function<void(std::size_t index, JudgedRecording judged)>& consume) {
+  struct Work {
+    JudgedRecording judged;
+    std::exception_ptr failure;
+  };
+  // A batch is simulated in parallel and consumed in its order before the next one begins.
+  const std::size_t batch = std::size_t{4} * pool.threadCount();
+  for (std::size_t begin = 0; begin < files.size(); begin += batch) {
+    std::vector<Work> works(std::min(batch, files.size() - begin));
+    // Where recordings are fewer than threads, each has several.
+    const auto each = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));
+    const auto judge = [&](std::size_t i) {
+      try {
+        works[i].judged = judgedRecording(assessRecording(files[begin + i], each));
+      } catch (...) {
+        works[i].failure = std::current_exception();
+      }
+    };
+    pool.run(works.size(), judge);
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      if (works[i].failure) std::rethrow_exception(works[i].failure);
+      consume(begin + i, std::move(works[i].judged));
+    }
+  }
+}
 
 std::vector<ValueChange> changesOf(const std::vector<CheckpointValue>& before,
                                    const std::vector<CheckpointValue>& now) {
@@ -139,47 +131,25 @@ Regrade regrade(const std::string& path, const std::vector<std::filesystem::path
   CohortDatabase database(path, CohortDatabase::Access::write);
   Regrade result;
   recorder::WorkerPool pool(jobs);
-  const Found found(places, pool, result);
+  const RecordingsFound found(places, pool);
+  result.notRead = found.notRead();
   const std::vector<AttemptRow> rows = database.listAttempts();
   result.attempts.resize(rows.size());
-  std::vector<Work> works;
+  std::vector<std::size_t> numbers;
+  std::vector<std::string> files;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    RegradedAttempt& r = result.attempts[i];
-    r.uuid = rows[i].uuid;
-    r.file = rows[i].fileName;
     if (const auto file = found.of(rows[i])) {
-      r.file = file->string();
-      works.push_back({&rows[i], &r, std::nullopt, nullptr});
-    } else if (rows[i].simulationVersion == 0) {
-      r.how = Regraded::motion;
-      r.message = "motion without a recording";
-      r.remedies = {Remedy::importAgain};
+      numbers.push_back(i);
+      files.push_back(file->string());
     } else {
-      r.fault = ErrorKind::damaged;
-      r.message = fmt::format("the recording {} is in none of the places", rows[i].fileName);
+      result.attempts[i] = withoutRecording(rows[i]);
     }
   }
-  // A batch is simulated in parallel and stored in its order before the next one begins.
-  const std::size_t batch = std::size_t{4} * pool.threadCount();
-  for (std::size_t begin = 0; begin < works.size(); begin += batch) {
-    const std::size_t count = std::min(batch, works.size() - begin);
-    // Where recordings are fewer than threads, each has several.
-    const auto each = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / count));
-    const auto assess = [&](std::size_t i) {
-      Work& work = works[begin + i];
-      try {
-        work.assessment = assessRecording(work.result->file, each);
-      } catch (...) {
-        work.failure = std::current_exception();
-      }
-    };
-    pool.run(count, assess);
-    for (std::size_t i = begin; i < begin + count; ++i) {
-      storeOne(database, works[i]);
-      works[i].assessment.reset();
-    }
-    if (progress) progress(begin + count, works.size());
-  }
+  judgeAll(files, pool, [&](std::size_t i, JudgedRecording judged) {
+    const std::size_t number = numbers[i];
+    result.attempts[number] = storeRegraded(database, rows[number], files[i], std::move(judged));
+    if (progress) progress(i + 1, files.size());
+  });
   return result;
 }
 

@@ -9,8 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "analytics/assess.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/cohort_database.h"
 #include "recorder/errors.h"
+#include "recorder/live/worker_pool.h"
 
 namespace calot::analytics {
 
@@ -55,6 +58,18 @@ struct Regrade {
 /// @throws Error as CohortDatabase does; damaged where a place is not there
 Regrade regrade(const std::string& path, const std::vector<std::filesystem::path>& places, unsigned jobs,
                 const std::function<void(std::uint64_t done, std::uint64_t of)>& progress = {});
+
+/// Stores what re-simulating an attempt's recording gave, and says what changed: one transaction.
+/// @param file where the recording was found
+RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, const std::string& file,
+                              JudgedRecording judged);
+/// An attempt whose recording was not found, or that has none.
+RegradedAttempt withoutRecording(const AttemptRow& row);
+
+/// Re-simulates recordings, as many at a time as the pool has threads, and hands over what they gave in their order,
+/// from the calling thread. @throws what `consume` throws; Error (failure)
+void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
+              const std::function<void(std::size_t index, JudgedRecording judged)>& consume);
 
 /// Values of both lists that are not the same, in the order of the second, then what is left of the first.
 std::vector<ValueChange> changesOf(const std::vector<CheckpointValue>& before, const std::vector<CheckpointValue>& now);

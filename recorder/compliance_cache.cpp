@@ -107,8 +107,8 @@ CacheEntry look(const fs::path& file) {
         entry.scene = found->header["scene"].get<std::string>();
         entry.simulationVersion = found->header["simulation_version"].get<std::uint32_t>();
         entry.columns = found->header["columns"].get<std::uint64_t>();
-        entry.state = entry.simulationVersion == simulationVersion ? CacheEntry::State::usable
-                                                                   : CacheEntry::State::otherVersion;
+        entry.state =
+            entry.simulationVersion == simulationVersion ? CacheEntry::State::usable : CacheEntry::State::otherVersion;
       }
     } catch (const Error&) {
       entry.state = CacheEntry::State::damaged;

@@ -18,8 +18,8 @@ namespace calot::recorder {
 /// its files.
 std::string complianceKey(const std::vector<Asset>& assets);
 
-/// The user's folder for them: what CALOT_CACHE names, else `calot` in XDG_CACHE_HOME or ~/.cache. None where CALOT_CACHE
-/// is "off" or there is no home.
+/// The user's folder for them: what CALOT_CACHE names, else `calot` in XDG_CACHE_HOME or ~/.cache. None where
+/// CALOT_CACHE is "off" or there is no home.
 std::optional<std::filesystem::path> userCacheFolder();
 
 struct CacheEntry {

@@ -49,8 +49,8 @@ PreparedScene::PreparedScene(const std::vector<Asset>& assets, const Where& wher
     const std::size_t organs = model_->organs().size();
     std::erase_if(columns, [&](const ComplianceColumn& c) {
       if (c.solid >= organs + model_->fat().size()) return true;
-      const std::size_t nodes = c.solid < organs ? model_->organs()[c.solid].solid.nodes()
-                                                 : model_->fat()[c.solid - organs]->solid().nodes();
+      const std::size_t nodes =
+          c.solid < organs ? model_->organs()[c.solid].solid.nodes() : model_->fat()[c.solid - organs]->solid().nodes();
       return c.node >= nodes || c.value.size() != 9 * nodes;
     });
     compliances_.offer(std::move(columns));

@@ -237,7 +237,8 @@ void Seeker::seek(std::uint64_t step) {
   if (!goOn) {
     // A session that has been there keeps what it worked out of the model, above all compliances.
     if (!session_ || !nearest) {
-      session_ = std::make_unique<Session>(scene_->model(), recording_.header().seed, executor_, &scene_->compliances());
+      session_ =
+          std::make_unique<Session>(scene_->model(), recording_.header().seed, executor_, &scene_->compliances());
     }
     if (nearest) {
       const Keyframe keyframe = recording_.keyframe(*nearest);

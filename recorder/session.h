@@ -30,8 +30,8 @@ class Session {
   /// steps there are, of one tick).
   static constexpr std::size_t keptSets = 128;
 
-  /// @param model, executor outlive the session. @param compliances that sessions of the model share (PreparedScene), or
-  /// null; outlives it too
+  /// @param model, executor outlive the session. @param compliances that sessions of the model share (PreparedScene),
+  /// or null; outlives it too
   Session(const Model& model, std::uint64_t seed, Executor& executor, ComplianceStore* compliances = nullptr);
 
   /// Subscribes to every step from here on; observers are called in the order of joining.

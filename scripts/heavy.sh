@@ -5,7 +5,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-"$root/scripts/setup.sh"
+"$root/scripts/setup.sh" slurm-wlm munge snakemake
 configure release
 build release
 # Each source by itself: what one forgot to include, and names that hide others.
@@ -17,4 +17,8 @@ say "test clang"
 ctest --test-dir "$root/build/clang" --label-exclude 'heavy|determinism' --parallel "$jobs" --output-on-failure --no-tests=error
 say "heavy tests"
 ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure --no-tests=error "$@"
+if [[ $# -eq 0 ]]; then
+  say "a cohort of 10,000 recordings in shards"
+  "$python" -B "$root/scripts/shards.py" 10000
+fi
 say "passed"

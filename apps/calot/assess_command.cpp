@@ -9,12 +9,14 @@
 #include <optional>
 
 #include "analytics/assess.h"
+#include "analytics/assess_shares.h"
 #include "analytics/checkpoints/motion.h"
-#include "analytics/cohort/registers.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/key_fault.h"
 #include "apps/calot/replay_report.h"
+#include "apps/calot/share_options.h"
 #include "apps/calot/value_report.h"
 #include "recorder/errors.h"
 #include "recorder/replay.h"
@@ -29,8 +31,20 @@ struct AssessOptions {
   std::optional<unsigned> threads;
   bool uncertainty = false;
   double cutoff = 0.0;  ///< 0: values are stored
+  ShareOptions share;
+  unsigned jobs = 0;
   bool json = false;
 };
+
+/// Files as they are named; those of folders by name.
+std::vector<std::string> filesOf(const std::vector<std::string>& places) {
+  std::error_code ignored;
+  const auto isFolder = [&](const std::string& place) { return std::filesystem::is_directory(place, ignored); };
+  if (std::none_of(places.begin(), places.end(), isFolder)) return places;
+  std::vector<std::string> files;
+  for (const std::filesystem::path& file : analytics::recordingsUnder(pathsOf(places))) files.push_back(file.string());
+  return files;
+}
 
 /// What one file gave, beside the replay's report.
 struct Stored {
@@ -42,98 +56,140 @@ struct Stored {
 
 /// The intervals that the cohort has of these values, or else new ones.
 std::vector<analytics::ValueInterval> intervalsOf(const std::string& file, const AssessOptions& o,
-                                                  const analytics::AssessedAttempt& attempt,
+                                                  const std::string& attempt,
+                                                  const std::vector<analytics::CheckpointValue>& values,
                                                   analytics::CohortDatabase& database) {
   const auto there = [](const analytics::CheckpointValue& v) { return v.value.has_value(); };
-  const auto values = std::count_if(attempt.values.begin(), attempt.values.end(), there);
-  std::vector<analytics::ValueInterval> known = database.intervals(attempt.header.attempt);
-  if (values == static_cast<std::ptrdiff_t>(known.size())) return known;
+  const auto count = std::count_if(values.begin(), values.end(), there);
+  std::vector<analytics::ValueInterval> known = database.intervals(attempt);
+  if (count == static_cast<std::ptrdiff_t>(known.size())) return known;
   Progress progress(fmt::format("uncertainty of {}, runs", std::filesystem::path(file).filename().string()), o.json);
-  std::vector<analytics::ValueInterval> made =
-      analytics::estimateUncertainty(file, attempt.values, o.threads.value_or(0),
-                                     [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
-  database.storeIntervals(attempt.header.attempt, made);
+  std::vector<analytics::ValueInterval> made = analytics::estimateUncertainty(
+      file, values, o.threads.value_or(0), [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+  database.storeIntervals(attempt, made);
   return made;
 }
 
-/// Where a station's key is registered, its recordings are signed by it; empty: nothing to say.
-std::string keyFaultOf(const analytics::AssessedAttempt& attempt, const std::string& cohort) {
-  const std::string& station = attempt.header.station;
-  if (station.empty()) return {};
-  std::optional<analytics::PublicKey> key;
-  if (attempt.signature) key = attempt.signature->publicKey;
-  switch (analytics::standingOf(analytics::readRegisters(cohort), station, key)) {
-    case analytics::KeyStanding::another:
-      return fmt::format("signed by another key than that of station {} in {}", station, cohort);
-    case analytics::KeyStanding::unsignedButExpected:
-      return fmt::format("not signed, though station {} has a key in {}", station, cohort);
-    default:
-      return {};
+/// Stores what judging one recording gave. A damaged file is no attempt of the cohort. A conflict with what the cohort
+/// holds is this file's answer: it takes the place of the report.
+void storeJudged(const std::string& file, const AssessOptions& o, analytics::CohortDatabase& database,
+                 analytics::JudgedRecording& judged, Stored& stored) {
+  if (!judged.record) return;
+  try {
+    stored.how = importedName(database.storeAttempt(*judged.record, judged.values));
+    stored.keyFault = keyFaultOf(*judged.record, o.cohort);
+    if (o.uncertainty && judged.report.verdict == recorder::ReplayVerdict::exact)
+      stored.intervals = intervalsOf(file, o, judged.record->uuid, judged.values, database);
+    stored.values = std::move(judged.values);
+  } catch (const Error& e) {
+    if (e.kind() != ErrorKind::refused) throw;
+    judged.report = {};
+    judged.report.path = file;
+    judged.report.verdict = recorder::ReplayVerdict::diverged;
+    judged.report.message = recorder::messageWithout(file, e);
+    judged.report.remedies = e.remedies();
   }
 }
 
-/// Assesses one recording and stores the result, where there is a database. A damaged file is no attempt of the cohort.
-recorder::ReplayReport assessOne(const std::string& file, const AssessOptions& o, analytics::CohortDatabase* database,
-                                 Stored& stored) {
-  analytics::Assessment assessment =
-      analytics::assessRecording(file, o.threads.value_or(1), o.cutoff > 0.0 ? o.cutoff : analytics::motionCutoff);
-  if (!assessment.attempt) return assessment.report;
-  if (database != nullptr) {
-    stored.how = importedName(analytics::store(*database, *assessment.attempt));
-    stored.keyFault = keyFaultOf(*assessment.attempt, o.cohort);
-    if (o.uncertainty && assessment.report.verdict == recorder::ReplayVerdict::exact)
-      stored.intervals = intervalsOf(file, o, *assessment.attempt, *database);
-  }
-  stored.values = std::move(assessment.attempt->values);
-  return assessment.report;
-}
+/// What is printed of each recording, and the table at the end.
+class AssessOutput {
+ public:
+  AssessOutput(const AssessOptions& options, bool everyValue) : options_(options), everyValue_(everyValue) {}
 
-int assess(const AssessOptions& o) {
-  checkStored(o.cohort, o.cutoff);
-  std::optional<analytics::CohortDatabase> database;
-  if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
-  std::vector<recorder::ReplayReport> reports;
-  nlohmann::json list = nlohmann::json::array();
-  Progress progress("assessing, recordings", o.json);
-  for (const std::string& file : o.files) {
-    Stored stored;
-    try {
-      reports.push_back(assessOne(file, o, database ? &*database : nullptr, stored));
-    } catch (const Error& e) {
-      if (e.kind() != ErrorKind::refused) throw;
-      // A conflict with what the cohort holds is this file's answer; the others are still assessed.
-      recorder::ReplayReport report;
-      report.path = file;
-      report.verdict = recorder::ReplayVerdict::diverged;
-      report.message = recorder::messageWithout(file, e);
-      report.remedies = e.remedies();
-      reports.push_back(report);
-    }
-    progress.show(reports.size(), o.files.size());
-    if (o.json) {
-      nlohmann::json row = reportJson(reports.back());
+  void add(const recorder::ReplayReport& report, const Stored& stored) {
+    reports_.push_back(report);
+    if (options_.json) {
+      nlohmann::json row = reportJson(report);
       row["stored"] = stored.how;
       if (!stored.keyFault.empty()) row["key"] = stored.keyFault;
       row["checkpoints"] = jsonOf(stored.values, stored.intervals);
-      list.push_back(row);
-    } else {
-      printReport(reports.back());
-      if (!stored.keyFault.empty()) fmt::print(stderr, "calot: warning: {}: {}\n", file, stored.keyFault);
-      if (o.files.size() == 1 || !database) {
-        std::fflush(stdout);
-        analytics::printValues(stored.values, stored.intervals, std::cout);
-        std::cout << '\n' << std::flush;
-      }
+      list_.push_back(row);
+      return;
     }
-  }
-  if (o.json) {
-    std::cout << list.dump(2) << '\n';
-  } else {
-    std::cout << std::flush;
+    printReport(report);
+    if (!stored.keyFault.empty()) fmt::print(stderr, "calot: warning: {}: {}\n", report.path.string(), stored.keyFault);
+    if (!everyValue_) return;
     std::fflush(stdout);
-    if (database) analytics::printAttempts(*database, std::cout);
+    analytics::printValues(stored.values, stored.intervals, std::cout);
+    std::cout << '\n' << std::flush;
   }
-  return static_cast<int>(worstOf(reports));
+
+  ExitCode end(const analytics::CohortDatabase* database) {
+    if (options_.json) {
+      std::cout << list_.dump(2) << '\n';
+    } else {
+      std::cout << std::flush;
+      std::fflush(stdout);
+      if (database != nullptr) analytics::printAttempts(*database, std::cout);
+    }
+    return worstOf(reports_);
+  }
+
+  [[nodiscard]] std::size_t count() const { return reports_.size(); }
+
+ private:
+  const AssessOptions& options_;
+  bool everyValue_;
+  std::vector<recorder::ReplayReport> reports_;
+  nlohmann::json list_ = nlohmann::json::array();
+};
+
+int computeAssessShare(const AssessOptions& o) {
+  Progress progress(fmt::format("shard {}, recordings", o.share.shard), o.json);
+  const analytics::ComputedShare share = analytics::computeAssessShare(
+      pathsOf(o.files), analytics::shardNamed(o.share.shard), o.share.valuesTo, o.jobs, o.share.force,
+      [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+  printShare(o.share, share, o.json);
+  return static_cast<int>(ExitCode::yes);
+}
+
+int takeAssessShares(const AssessOptions& o) {
+  if (o.cohort.empty()) throw Error(ErrorKind::invalid, "--take: --cohort is wanted, the database to store in");
+  std::optional<analytics::CohortDatabase> database;
+  AssessOutput output(o, false);
+  Progress progress("taking, recordings", o.json);
+  const analytics::TakenAssess taken =
+      analytics::takeAssess(pathsOf(o.share.take), [&](const analytics::ValuesRow& row) {
+        if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+        analytics::JudgedRecording judged = *row.judged;
+        Stored stored;
+        storeJudged(row.file, o, *database, judged, stored);
+        output.add(judged.report, stored);
+        progress.show(output.count(), 0);
+      });
+  const ExitCode recordings = output.end(database ? &*database : nullptr);
+  const ExitCode shards = reportShards(o.cohort, taken.refused, {taken.missing, taken.shares, 0});
+  return static_cast<int>(worstOf({recordings, shards}));
+}
+
+int assess(const AssessOptions& o) {
+  if (o.files.empty() == o.share.take.empty())
+    throw Error(ErrorKind::invalid, "recordings or folders are wanted, or --take with values of shards");
+  if (o.share.plan > 0) {
+    printPlan(analytics::assessPlan(pathsOf(o.files), o.share.plan), o.json);
+    return static_cast<int>(ExitCode::yes);
+  }
+  if (!o.share.shard.empty()) return computeAssessShare(o);
+  if (!o.share.take.empty()) return takeAssessShares(o);
+  checkStored(o.cohort, o.cutoff);
+  const std::vector<std::string> files = filesOf(o.files);
+  std::optional<analytics::CohortDatabase> database;
+  if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+  AssessOutput output(o, files.size() == 1 || !database);
+  Progress progress("assessing, recordings", o.json);
+  for (const std::string& file : files) {
+    analytics::JudgedRecording judged = analytics::judgedRecording(
+        analytics::assessRecording(file, o.threads.value_or(1), o.cutoff > 0.0 ? o.cutoff : analytics::motionCutoff));
+    Stored stored;
+    if (database) {
+      storeJudged(file, o, *database, judged, stored);
+    } else {
+      stored.values = std::move(judged.values);
+    }
+    output.add(judged.report, stored);
+    progress.show(output.count(), files.size());
+  }
+  return static_cast<int>(output.end(database ? &*database : nullptr));
 }
 
 }  // namespace
@@ -142,13 +198,20 @@ void addAssess(CLI::App& app, Run& run) {
   auto o = std::make_shared<AssessOptions>();
   CLI::App* command =
       app.add_subcommand("assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.");
-  command->add_option("recordings", o->files, "recordings")->required();
+  command->add_option("recordings", o->files, "recordings, or folders that hold them");
   addStoring(*command, o->cohort, o->cutoff);
+  addSharing(*command, o->share);
+  command->add_option("--jobs", o->jobs, "with --shard: recordings at a time; 0: one a processor")
+      ->check(CLI::Range(0U, 64U))
+      ->needs("--shard")
+      ->capture_default_str();
   command
       ->add_flag("--uncertainty", o->uncertainty,
                  "stores an interval with each value: runs the attempt again in smaller steps, with a finer mesh and "
                  "with other assumed constants (takes some fifteen replays)")
-      ->needs("--cohort");
+      ->needs("--cohort")
+      ->excludes("--shard")
+      ->excludes("--take");
   command
       ->add_option("--threads", o->threads,
                    "segments between keyframes that are verified at a time (1), or with --uncertainty runs at a time "

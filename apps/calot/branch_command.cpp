@@ -14,8 +14,8 @@
 #include "recorder/branch.h"
 #include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/recording/writer.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {

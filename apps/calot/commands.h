@@ -23,6 +23,7 @@ void addCache(CLI::App& app, Run& run);
 void addRender(CLI::App& app, Run& run);
 void addImport(CLI::App& app, Run& run);
 void addAssess(CLI::App& app, Run& run);
+void addVerify(CLI::App& app, Run& run);
 void addStudy(CLI::App& app, Run& run);
 void addProtocol(CLI::App& app, Run& run);
 void addPower(CLI::App& app, Run& run);

@@ -16,12 +16,12 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   apps::Run run;
   for (const auto add :
-       {apps::addRecord,  apps::addReplay,      apps::addBranch,  apps::addInspect, apps::addRecover,
-        apps::addExport,  apps::addState,       apps::addDiff,    apps::addImport,  apps::addAssess,
-        apps::addStudy,   apps::addProtocol,    apps::addPower,   apps::addRate,    apps::addNorm,
-        apps::addGrade,   apps::addParticipant, apps::addAttempt, apps::addRegrade, apps::addCohort,
-        apps::addStation, apps::addRender,      apps::addMesh,    apps::addScenes,  apps::addCheckpoints,
-        apps::addDevices, apps::addGolden,      apps::addCache}) {
+       {apps::addRecord,      apps::addReplay,  apps::addBranch,      apps::addInspect, apps::addRecover,
+        apps::addExport,      apps::addState,   apps::addDiff,        apps::addImport,  apps::addAssess,
+        apps::addVerify,      apps::addStudy,   apps::addProtocol,    apps::addPower,   apps::addRate,
+        apps::addNorm,        apps::addGrade,   apps::addParticipant, apps::addAttempt, apps::addRegrade,
+        apps::addCohort,      apps::addStation, apps::addRender,      apps::addMesh,    apps::addScenes,
+        apps::addCheckpoints, apps::addDevices, apps::addGolden,      apps::addCache}) {
     add(app, run);
   }
   const auto isCommand = [&app](const std::string& word) {

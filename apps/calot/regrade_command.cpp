@@ -1,160 +1,81 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot regrade: the derived values of a cohort, computed anew.
+// calot regrade: the derived values of a cohort, computed anew; here, or in shares on many machines.
 #include <fmt/format.h>
 
 #include <iostream>
-#include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
 #include "analytics/regrade.h"
-#include "analytics/report/text_table.h"
+#include "analytics/regrade_shares.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/value_report.h"
-#include "apps/common/advice.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/regrade_report.h"
+#include "apps/calot/share_options.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
 namespace {
 
-using analytics::Regraded;
-using nlohmann::ordered_json;
-
 struct RegradeOptions {
   std::string cohort;
   std::vector<std::string> places;
+  ShareOptions share;
   unsigned jobs = 0;
   bool json = false;
 };
 
-const char* nameOf(Regraded how) {
-  switch (how) {
-    case Regraded::unchanged:
-      return "unchanged";
-    case Regraded::changed:
-      return "changed";
-    case Regraded::missing:
-      return "missing";
-    case Regraded::motion:
-      return "motion";
-    case Regraded::unreadable:
-      return "unreadable";
-    case Regraded::conflict:
-      return "conflict";
-  }
-  return "";
+std::vector<std::filesystem::path> placesOf(const RegradeOptions& o) {
+  if (!o.places.empty()) return pathsOf(o.places);
+  const std::filesystem::path folder = std::filesystem::path(o.cohort).parent_path();
+  return {folder.empty() ? std::filesystem::path(".") : folder};
 }
 
-std::string titleOf(const analytics::CheckpointValue& v) {
-  return v.subject.empty() ? v.name : v.name + " " + v.subject;
+void showRegrade(const analytics::Regrade& regrade, bool json) {
+  if (json) {
+    std::cout << regradeJson(regrade).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  } else {
+    printRegrade(regrade);
+  }
 }
 
-std::string shown(const std::optional<analytics::CheckpointValue>& v) {
-  if (!v) return "-";
-  if (!v->value) return v->availability == analytics::Availability::notApplicable ? "n/a" : "not available";
-  const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(v->name);
-  return analytics::significant(*v->value * (definition != nullptr ? definition->displayFactor : 1.0), 6) + " " +
-         (definition != nullptr ? definition->displayUnit : v->unit);
+int computeRegradeShare(const RegradeOptions& o) {
+  Progress progress(fmt::format("shard {}, recordings", o.share.shard), o.json);
+  const analytics::ComputedShare share = analytics::computeRegradeShare(
+      o.cohort, placesOf(o), analytics::shardNamed(o.share.shard), o.share.valuesTo, o.jobs, o.share.force,
+      [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+  printShare(o.share, share, o.json);
+  return static_cast<int>(ExitCode::yes);
 }
 
-/// What beside the figure is another.
-std::string otherwise(const analytics::ValueChange& c) {
-  if (!c.before) return "new";
-  if (!c.now) return "no longer computed";
-  std::string text;
-  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  if (c.before->version != c.now->version) add(fmt::format("version {} -> {}", c.before->version, c.now->version));
-  if (c.before->origin != c.now->origin)
-    add(fmt::format("{} -> {}", analytics::nameOf(c.before->origin), analytics::nameOf(c.now->origin)));
-  if (c.before->filter != c.now->filter) add("filter");
-  if (c.before->unit != c.now->unit) add("unit");
-  if (c.before->reason != c.now->reason && !c.now->value) add("reason");
-  if (c.before->note != c.now->note) add("note");
-  return text;
-}
-
-ordered_json jsonOf(const analytics::Regrade& regrade) {
-  ordered_json out;
-  out["attempts"] = ordered_json::array();
-  for (const analytics::RegradedAttempt& a : regrade.attempts) {
-    ordered_json row = {{"attempt", a.uuid}, {"file", a.file}, {"result", nameOf(a.how)}};
-    if (!a.message.empty()) row["message"] = a.message;
-    if (!a.remedies.empty()) row["advice"] = advice(a.remedies);
-    row["changes"] = ordered_json::array();
-    for (const analytics::ValueChange& c : a.changes) {
-      ordered_json change = {{"name", c.any().name}, {"subject", c.any().subject}};
-      change["before"] = c.before ? apps::jsonOf(std::vector{*c.before}).front() : ordered_json();
-      change["now"] = c.now ? apps::jsonOf(std::vector{*c.now}).front() : ordered_json();
-      row["changes"].push_back(change);
-    }
-    out["attempts"].push_back(row);
+int takeRegradeShares(const RegradeOptions& o) {
+  if (!o.places.empty())
+    throw Error(ErrorKind::invalid, "--take: recordings are not needed; values come from the files alone");
+  Progress progress("taking, recordings", o.json);
+  const analytics::TakenRegrade taken = analytics::takeRegrade(
+      o.cohort, pathsOf(o.share.take), [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+  if (taken.missing.of > 0) showRegrade(taken.regrade, o.json);  // else every file was refused
+  if (taken.withdrawn > 0) {
+    fmt::print(stderr, "calot: warning: {}: values of {} attempts were left out: withdrawn since\n", o.cohort,
+               taken.withdrawn);
   }
-  out["not_read"] = ordered_json::array();
-  for (const Error& fault : regrade.notRead) out["not_read"].push_back(messageOf(fault));
-  return out;
-}
-
-void print(const analytics::Regrade& regrade) {
-  using Align = analytics::TextTable::Align;
-  std::map<Regraded, std::uint64_t> counts;
-  std::vector<std::string> order;
-  std::map<std::string, std::uint64_t> attemptsOf;
-  analytics::TextTable table({{"attempt", Align::left},
-                              {"checkpoint", Align::left},
-                              {"before", Align::right},
-                              {"now", Align::right},
-                              {"", Align::left}});
-  for (const analytics::RegradedAttempt& a : regrade.attempts) {
-    ++counts[a.how];
-    for (const analytics::ValueChange& c : a.changes) {
-      const std::string title = titleOf(c.any());
-      if (attemptsOf[title]++ == 0) order.push_back(title);
-      table.add({a.uuid.substr(0, 8), title, shown(c.before), shown(c.now), otherwise(c)});
-    }
-  }
-  if (table.rows() > 0) {
-    table.print(std::cout);
-    std::cout << '\n';
-    for (const std::string& title : order)
-      std::cout << fmt::format("{}: changed in {} of {} attempts\n", title, attemptsOf[title], regrade.attempts.size());
-  }
-  std::cout << fmt::format("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
-                           counts[Regraded::unchanged]);
-  for (const Regraded how : {Regraded::missing, Regraded::motion, Regraded::unreadable, Regraded::conflict}) {
-    if (counts[how] > 0) std::cout << fmt::format(", {} {}", counts[how], nameOf(how));
-  }
-  std::cout << '\n';
-  for (const Error& fault : regrade.notRead) std::cout << "not read: " << messageOf(fault) << '\n';
-  std::cout << std::flush;
+  const ExitCode shards = reportShards(o.cohort, taken.refused, taken.missing);
+  return static_cast<int>(worstOf({shards, reportFaults(o.cohort, taken.regrade)}));
 }
 
 int regrade(const RegradeOptions& o) {
-  std::vector<std::filesystem::path> places(o.places.begin(), o.places.end());
-  if (places.empty()) {
-    const std::filesystem::path folder = std::filesystem::path(o.cohort).parent_path();
-    places.push_back(folder.empty() ? std::filesystem::path(".") : folder);
+  if (o.share.plan > 0) {
+    printPlan(analytics::regradePlan(o.cohort, o.share.plan), o.json);
+    return static_cast<int>(ExitCode::yes);
   }
+  if (!o.share.shard.empty()) return computeRegradeShare(o);
+  if (!o.share.take.empty()) return takeRegradeShares(o);
   Progress progress("regrading, recordings", o.json);
   const analytics::Regrade regrade = analytics::regrade(
-      o.cohort, places, o.jobs, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
-  if (o.json) {
-    std::cout << jsonOf(regrade).dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
-  } else {
-    print(regrade);
-  }
-  std::vector<ExitCode> codes;
-  for (const analytics::RegradedAttempt& a : regrade.attempts) {
-    codes.push_back(codeOf(a.fault));
-    if (a.fault)
-      fmt::print(stderr, "calot: {}: attempt {}: {}: {}\n", o.cohort, a.uuid, nameOf(a.how),
-                 advised(a.message, a.remedies));
-  }
-  return static_cast<int>(worstOf(codes));
+      o.cohort, placesOf(o), o.jobs, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+  showRegrade(regrade, o.json);
+  return static_cast<int>(reportFaults(o.cohort, regrade));
 }
 
 }  // namespace
@@ -165,6 +86,7 @@ void addRegrade(CLI::App& app, Run& run) {
       app.add_subcommand("regrade", "Compute the derived values of a cohort anew, and show what changed");
   command->add_option("cohort", o->cohort, "Cohort database")->required();
   command->add_option("recordings", o->places, "Recordings, or folders that hold them; default: the database's folder");
+  addSharing(*command, o->share);
   command->add_option("--jobs", o->jobs, "Recordings at a time; 0: one for each processor")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();

@@ -33,8 +33,8 @@ Bodies::Bodies(const Model& model, Executor& executor, ComplianceStore* complian
   responseSettings_.tolerance = solver.responseTolerance;
   responseSettings_.speedTolerance = solver.responseSpeedTolerance;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
-    auto organ = std::make_unique<OrganBody>(model, o, settings_, responseSettings_, executor,
-                                             ComplianceShelf{compliances, o});
+    auto organ =
+        std::make_unique<OrganBody>(model, o, settings_, responseSettings_, executor, ComplianceShelf{compliances, o});
     organ_.push_back(organ.get());
     body_.push_back(std::move(organ));
   }

@@ -37,6 +37,8 @@ MAY_SEE = {
     "analytics/statistics": (),
     "analytics/checkpoints": ("sim", "recorder", "analytics/statistics"),
     "analytics/cohort": ("sim", "recorder", "analytics"),
+    "analytics/shards": ("sim", "recorder", "analytics"),
+    "analytics/intake": ("sim", "recorder", "analytics"),
     "analytics/uncertainty": ("sim", "recorder", "analytics/checkpoints"),
     "analytics/interchange": ("sim", "recorder", "analytics"),
     "analytics/report": ("sim", "recorder", "analytics"),

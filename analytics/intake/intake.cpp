@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/intake/intake.h"
+
+#include <algorithm>
+#include <exception>
+#include <tuple>
+#include <utility>
+
+#include "analytics/checkpoints/motion.h"
+#include "analytics/cohort/cohort_database.h"
+#include "recorder/recording/identify.h"
+#include "sim/scene/version.h"
+
+namespace calot::analytics {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::system_clock;
+
+constexpr std::int64_t firstRetry = 10, lastRetry = 3600;  // s
+
+/// Ends a re-simulation from its progress.
+struct IntakeStopped {};
+
+std::int64_t secondsNow() {
+  return std::chrono::duration_cast<seconds>(system_clock::now().time_since_epoch()).count();
+}
+
+std::int64_t backOff(std::uint32_t tries) {
+  return std::min(lastRetry, firstRetry << std::min<std::uint32_t>(tries - 1, 16));
+}
+
+/// Names that a file has while it is written or copied.
+bool isTemporary(const std::filesystem::path& file) {
+  const std::string name = file.filename().string(), extension = file.extension().string();
+  return name.front() == '.' || extension == ".part" || extension == ".branch";
+}
+
+/// For how long it has not changed, by its own clock; nothing where that clock is ahead of ours.
+milliseconds ageOf(const FileState& state) {
+  const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(system_clock::now().time_since_epoch());
+  return std::max(std::chrono::duration_cast<milliseconds>(now - std::chrono::nanoseconds(state.modified)),
+                  milliseconds(0));
+}
+
+IntakeItem fault(std::string file, TakenIn how, Error error) {
+  IntakeItem item;
+  item.file = std::move(file);
+  item.how = how;
+  item.fault = std::move(error);
+  return item;
+}
+
+}  // namespace
+
+Intake::Intake(IntakeSettings settings) : settings_(std::move(settings)), journal_(settings_.journal) {
+  static_cast<void>(recorder::filesUnder(settings_.folders));
+}
+
+bool Intake::isDecided(const std::string& file, const FileState& state, IntakeRest& rest) const {
+  const JournalEntry* entry = journal_.find(file);
+  if (entry == nullptr || entry->state != state) return false;
+  if (entry->tries > 0) {
+    const bool later = entry->retryAt > secondsNow();
+    rest.retries += later ? 1U : 0U;
+    return later;
+  }
+  // What another version could not decide, this one may.
+  return !entry->otherVersion || entry->simulationVersion == simulationVersion;
+}
+
+std::vector<Intake::Candidate> Intake::candidates(IntakeRest& rest) {
+  std::vector<Candidate> list;
+  std::map<std::string, Seen> seen;
+  const auto now = std::chrono::steady_clock::now();
+  for (const std::filesystem::path& path : recorder::filesUnder(settings_.folders)) {
+    const std::string file = path.string();
+    const FileState state = fileState(path);
+    if (isTemporary(path) || state == FileState{} || isDecided(file, state, rest)) continue;
+    if (!recorder::looksLikeHdf5(path)) continue;  // last: it opens the file
+    const auto known = seen_.find(file);
+    const Seen& entry =
+        seen.emplace(file, known != seen_.end() && known->second.state == state ? known->second : Seen{state, now})
+            .first->second;
+    const milliseconds unchanged = std::max(ageOf(state), std::chrono::duration_cast<milliseconds>(now - entry.since));
+    if (unchanged < settings_.quiet) {
+      ++rest.settling;
+      continue;
+    }
+    const JournalEntry* before = journal_.find(file);
+    const std::uint32_t tries = before != nullptr && before->state == state ? before->tries : 0;
+    list.push_back({file, state, unchanged, tries});
+  }
+  seen_ = std::move(seen);
+  std::sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tie(a.state.modified, a.file) < std::tie(b.state.modified, b.file);
+  });
+  return list;
+}
+
+IntakeRest Intake::look(const std::function<void(const IntakeItem&)>& tell, const std::atomic<bool>& stop) {
+  IntakeRest rest;
+  for (const Candidate& candidate : candidates(rest)) {
+    if (stop) break;
+    std::optional<IntakeItem> item;
+    try {
+      item = take(candidate, rest, stop);
+    } catch (const Error& e) {
+      item = fault(candidate.file, e.kind() == ErrorKind::refused ? TakenIn::refused : TakenIn::failed, e);
+    } catch (const std::exception& e) {
+      item = fault(candidate.file, TakenIn::failed, Error(ErrorKind::failure, Where{candidate.file}, e.what()));
+    }
+    if (!item) continue;
+    if (item->how == TakenIn::failed) item->retryIn = backOff(candidate.tries + 1);
+    tell(*item);
+    enter(*item, candidate);
+  }
+  return rest;
+}
+
+std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, const std::atomic<bool>& stop) const {
+  recorder::RecordingIdentity identity;
+  try {
+    identity = recorder::identify(c.file);
+  } catch (const Error& e) {
+    if (e.kind() != ErrorKind::damaged) throw;
+    if (c.unchanged >= settings_.settle) return fault(c.file, TakenIn::damaged, e);
+  }
+  if ((identity.attempt.empty() || !identity.complete) && c.unchanged < settings_.settle) {
+    ++rest.growing;
+    return std::nullopt;
+  }
+  CohortDatabase database(settings_.cohort, CohortDatabase::Access::create);
+  const std::optional<AttemptRow> known = database.attempt(identity.attempt);
+  if (known && known->chainHead == identity.chainHead && known->complete == identity.complete &&
+      known->verification.verdict == Verdict::verified) {
+    IntakeItem item;
+    item.file = c.file;
+    item.how = TakenIn::known;
+    item.attempt = identity.attempt;
+    return item;
+  }
+  JudgedRecording judged;
+  try {
+    judged = judgedRecording(assessRecording(c.file, settings_.threads, motionCutoff, [&](auto, auto) {
+      if (stop) throw IntakeStopped();
+    }));
+  } catch (const IntakeStopped&) {
+    return std::nullopt;
+  }
+  if (fileState(c.file) != c.state) {  // it went on while it was verified
+    ++rest.growing;
+    return std::nullopt;
+  }
+  IntakeItem item;
+  item.file = c.file;
+  item.attempt = identity.attempt;
+  item.judged = std::move(judged);
+  if (!item.judged.record) {
+    item.how = TakenIn::damaged;
+    item.fault = Error(ErrorKind::damaged, Where{c.file}, item.judged.report.message, item.judged.report.remedies);
+    return item;
+  }
+  switch (database.storeAttempt(*item.judged.record, item.judged.values)) {
+    case Imported::added:
+      item.how = TakenIn::added;
+      break;
+    case Imported::extended:
+      item.how = TakenIn::extended;
+      break;
+    case Imported::unchanged:
+      item.how = TakenIn::unchanged;
+      break;
+  }
+  return item;
+}
+
+void Intake::enter(const IntakeItem& item, const Candidate& c) {
+  JournalEntry entry;
+  entry.state = c.state;
+  entry.simulationVersion = simulationVersion;
+  entry.otherVersion =
+      item.judged.record.has_value() && item.judged.report.verdict == recorder::ReplayVerdict::undecided;
+  if (item.how == TakenIn::failed) {
+    entry.tries = c.tries + 1;
+    entry.retryAt = secondsNow() + item.retryIn;
+  }
+  journal_.put(c.file, entry);
+  seen_.erase(c.file);
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Takes the recordings of a station into a cohort as they come: verified, assessed, stored (docs/cluster.md,
+// "Watching a folder").
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/assess.h"
+#include "analytics/intake/intake_journal.h"
+
+namespace calot::analytics {
+
+struct IntakeSettings {
+  std::vector<std::filesystem::path> folders;
+  std::string cohort;  ///< made where there is none
+  std::filesystem::path journal;
+  unsigned threads = 1;  ///< segments of a recording that are verified at a time
+  /// A finished recording is taken when it has not changed for this long.
+  std::chrono::milliseconds quiet{1000};
+  /// One that is not finished or cannot be read, when it has not changed for this long: its writer was killed, or its
+  /// copy is damaged.
+  std::chrono::milliseconds settle{60'000};
+};
+
+enum class TakenIn : std::uint8_t {
+  added,
+  extended,   ///< more of an attempt that the cohort had, or other values
+  unchanged,  ///< assessed, and the cohort had it so
+  known,      ///< the cohort has this content, verified: it was not re-simulated again
+  damaged,    ///< cannot be read; not looked at again until the file changes
+  refused,    ///< contradicts the cohort, or was withdrawn from it; likewise
+  failed,     ///< the machine stands in the way; tried again later
+};
+
+/// What came of one file.
+struct IntakeItem {
+  std::string file;
+  TakenIn how = TakenIn::added;
+  JudgedRecording judged;      ///< report alone where nothing was stored; empty where it was not re-simulated
+  std::string attempt;         ///< uuid, as far as it is known
+  std::optional<Error> fault;  ///< why it was not stored
+  std::int64_t retryIn = 0;    ///< s, where it failed
+};
+
+/// What is left after a look at the folders.
+struct IntakeRest {
+  std::uint64_t settling = 0;  ///< finished, and changed a moment ago
+  std::uint64_t growing = 0;   ///< not finished
+  std::uint64_t retries = 0;   ///< failed, and not yet due again
+};
+
+/// The queue: what the folders hold, less what the journal and the cohort know. It survives the program: a recording is
+/// stored, then told, then entered in the journal, so that one killed at any moment loses none and stores none twice.
+class Intake {
+ public:
+  /// @throws Error: failure, where the journal is another program's; damaged, where a folder is not there.
+  explicit Intake(IntakeSettings settings);
+
+  /// Takes what is ready, oldest first. Ends early once `stop` is set: a recording in progress stays in the queue.
+  /// @throws Error (damaged) where a folder has gone
+  IntakeRest look(const std::function<void(const IntakeItem&)>& tell, const std::atomic<bool>& stop);
+
+ private:
+  struct Seen {
+    FileState state;
+    std::chrono::steady_clock::time_point since;
+  };
+  struct Candidate {
+    std::string file;
+    FileState state;
+    std::chrono::milliseconds unchanged;
+    std::uint32_t tries;
+  };
+  std::vector<Candidate> candidates(IntakeRest& rest);
+  [[nodiscard]] bool isDecided(const std::string& file, const FileState& state, IntakeRest& rest) const;
+  /// Nothing where the file has to wait, or `stop` was set.
+  std::optional<IntakeItem> take(const Candidate& candidate, IntakeRest& rest, const std::atomic<bool>& stop) const;
+  void enter(const IntakeItem& item, const Candidate& candidate);
+
+  IntakeSettings settings_;
+  IntakeJournal journal_;
+  std::map<std::string, Seen> seen_;  ///< files that are not decided
+};
+
+}  // namespace calot::analytics

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// calot verify: a station's recordings, verified and assessed as they come into a folder.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analytics/intake/folder_watch.h"
+#include "analytics/intake/intake.h"
+#include "apps/calot/commands.h"
+#include "apps/calot/key_fault.h"
+#include "apps/calot/replay_report.h"
+#include "apps/calot/share_options.h"
+#include "apps/calot/stop_request.h"
+#include "apps/common/advice.h"
+#include "apps/common/exit_code.h"
+#include "recorder/errors.h"
+
+namespace calot::apps {
+namespace {
+
+using analytics::IntakeItem;
+using analytics::TakenIn;
+using std::chrono::milliseconds;
+
+/// How long a request to stop may go unnoticed at worst.
+constexpr milliseconds longestWait{1000};
+
+struct VerifyOptions {
+  std::vector<std::string> folders;
+  std::string cohort, journal;
+  unsigned threads = 1;
+  double quiet = 1.0, settle = 60.0, rescan = 30.0;  ///< s
+  bool once = false, json = false;
+};
+
+const char* wordFor(TakenIn how) {
+  switch (how) {
+    case TakenIn::added:
+      return "added";
+    case TakenIn::extended:
+      return "extended";
+    case TakenIn::unchanged:
+      return "unchanged";
+    case TakenIn::known:
+      return "known";
+    case TakenIn::damaged:
+      return "damaged";
+    case TakenIn::refused:
+      return "refused";
+    case TakenIn::failed:
+      return "failed";
+  }
+  return "";
+}
+
+/// An error's message and advice, without the file's name, which the line begins with.
+std::string faultText(const IntakeItem& item) {
+  return advised(recorder::messageWithout(item.file, *item.fault), item.fault->remedies());
+}
+
+std::string textOf(const IntakeItem& item) {
+  if (item.how == TakenIn::failed) return fmt::format("failed, again in {} s: {}", item.retryIn, faultText(item));
+  if (item.fault) return fmt::format("{}: {}", wordFor(item.how), faultText(item));
+  if (item.how == TakenIn::known) return "known, verified before";
+  const recorder::ReplayReport& report = item.judged.report;
+  const std::string verdict = report.fault() ? advised(report.message, report.remedies) : std::string("verified");
+  return fmt::format("{}{}, {}", verdict, report.complete ? "" : ", incomplete", wordFor(item.how));
+}
+
+ExitCode codeOfItem(const IntakeItem& item) {
+  if (item.fault) return codeOf(item.fault->kind());
+  return item.how == TakenIn::known ? ExitCode::yes : codeOf(item.judged.report.fault());
+}
+
+void tellItem(const IntakeItem& item, const VerifyOptions& o) {
+  std::string keyFault;
+  if (item.judged.record && !item.fault) keyFault = keyFaultOf(*item.judged.record, o.cohort);
+  if (o.json) {
+    nlohmann::ordered_json row = {{"file", item.file}, {"result", wordFor(item.how)}, {"attempt", item.attempt}};
+    if (!item.judged.report.path.empty()) row["report"] = reportJson(item.judged.report);
+    if (item.fault) row["message"] = faultText(item);
+    if (item.how == TakenIn::failed) row["retry_in_seconds"] = item.retryIn;
+    if (!keyFault.empty()) row["key"] = keyFault;
+    fmt::print("{}\n", row.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else {
+    fmt::print("{}: {}{}{}\n", item.file, textOf(item), keyFault.empty() ? "" : "; warning: ", keyFault);
+  }
+  // Whoever reads a pipe sees each line as it comes.
+  if (std::fflush(stdout) != 0) throw Error(ErrorKind::failure, "standard output cannot be written");
+}
+
+milliseconds fromSeconds(double seconds) { return milliseconds(static_cast<std::int64_t>(1000.0 * seconds)); }
+
+/// Nothing is left to wait for but what is still being written.
+int endOnce(const analytics::IntakeRest& rest, std::vector<ExitCode> codes) {
+  if (rest.growing > 0)
+    fmt::print(stderr, "calot: warning: {} recordings are not finished and were left\n", rest.growing);
+  if (rest.retries > 0) codes.push_back(ExitCode::failure);
+  return static_cast<int>(worstOf(codes));
+}
+
+int verify(const VerifyOptions& o) {
+  using Clock = std::chrono::steady_clock;
+  stopOnSignals();
+  analytics::IntakeSettings settings;
+  settings.folders = pathsOf(o.folders);
+  settings.cohort = o.cohort;
+  settings.journal = o.journal.empty() ? o.cohort + ".intake" : o.journal;
+  settings.threads = o.threads;
+  settings.quiet = fromSeconds(o.quiet);
+  settings.settle = fromSeconds(o.settle);
+  for (const std::filesystem::path& folder : settings.folders) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+      throw Error(ErrorKind::damaged, Where{folder.string()}, "is no folder that can be watched");
+  }
+  analytics::FolderWatch watch(settings.folders);
+  analytics::Intake intake(settings);
+  std::vector<ExitCode> codes;
+  while (true) {
+    const analytics::IntakeRest rest = intake.look(
+        [&](const IntakeItem& item) {
+          tellItem(item, o);
+          if (o.once) codes.push_back(codeOfItem(item));
+        },
+        stopRequested());
+    if (stopRequested()) return static_cast<int>(worstOf(codes));
+    if (o.once && rest.settling == 0) return endOnce(rest, codes);
+    // What settles is looked at again soon, what grows and what failed at the next look of its own accord.
+    const milliseconds next = rest.settling > 0 ? std::max(settings.quiet, milliseconds(50)) : fromSeconds(o.rescan);
+    const Clock::time_point until = Clock::now() + next;
+    for (bool changed = false; !changed && !stopRequested() && Clock::now() < until;) {
+      const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now()) + milliseconds(1);
+      changed = watch.wait(std::min(left, longestWait));
+    }
+    if (stopRequested()) return static_cast<int>(worstOf(codes));
+  }
+}
+
+}  // namespace
+
+void addVerify(CLI::App& app, Run& run) {
+  const auto o = std::make_shared<VerifyOptions>();
+  CLI::App* command =
+      app.add_subcommand("verify", "Verifies and assesses recordings as they come into folders, and stores them.");
+  command->add_option("--watch", o->folders, "folders that recordings come into, with what is below")->required();
+  command->add_option("--cohort", o->cohort, "cohort database; made where there is none")->required();
+  command->add_option("--journal", o->journal,
+                      "file that remembers what was decided; default: the database's name and .intake");
+  command->add_flag("--once", o->once, "take what is there, and end");
+  command
+      ->add_option("--threads", o->threads,
+                   "segments between keyframes that are verified at a time; 0: one a processor")
+      ->check(CLI::Range(0U, 64U))
+      ->capture_default_str();
+  command->add_option("--quiet", o->quiet, "seconds for which a finished recording has not changed before it is taken")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command
+      ->add_option("--settle", o->settle,
+                   "seconds for which one that is not finished or cannot be read has not changed before it is judged")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  command->add_option("--rescan", o->rescan, "seconds between looks at the folders where no change is noticed")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  command->add_flag("--json", o->json, "print a line of JSON for each recording");
+  command->callback([o, &run] { run = [o] { return verify(*o); }; });
+}
+
+}  // namespace calot::apps

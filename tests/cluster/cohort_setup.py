@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the cluster's tests share: recordings, a cohort whose values are old, and what it has to become."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "command_line"))
+from cohort_content import content  # noqa: E402,F401
+from cohort_test import change  # noqa: E402
+from program import PROGRAM, SOURCE, calot  # noqa: E402,F401
+
+CLUSTER = SOURCE / "scripts/cluster"
+COUNT = int(os.environ.get("CALOT_CLUSTER_COUNT") or 60)
+
+
+def make(folder):
+    """Recordings, `c.db` with old values, and `alone.db`: the same, regraded on one machine. @return what that printed as JSON"""
+    subprocess.run([sys.executable, SOURCE / "scripts/attempts.py", folder / "recordings", "--count", str(COUNT), "--seconds", "0.5", "--calot",
+                    PROGRAM], check=True)
+    first = calot("assess", folder / "recordings", "--cohort", folder / "c.db")
+    assert first.code == 0, first
+    change(folder / "c.db", "UPDATE checkpoint_value SET version = 0, value = value * 2 WHERE name = 'path-length' AND attempt % 2 = 0")
+    change(folder / "c.db", "DELETE FROM checkpoint_value WHERE name = 'elapsed-time' AND attempt % 3 = 0")
+    shutil.copyfile(folder / "c.db", folder / "alone.db")
+    alone = calot("regrade", folder / "alone.db", folder / "recordings", "--json")
+    assert alone.code == 0, alone
+    return json.loads(alone.out)

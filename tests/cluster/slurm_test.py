@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/cluster on a real Slurm of three nodes: one drained and one job killed in mid-run, the run taken up, and the cohort held
+row by row against one machine's. CALOT_CLUSTER_COUNT recordings (60)."""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import slurm_cluster
+from cohort_setup import CLUSTER, COUNT, PROGRAM, calot, change, content, make
+
+MAX_ARRAY_SIZE = 8  # seven jobs: fewer than bundles of a second would make
+
+
+class SlurmRun(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="calot-slurm-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.cluster = slurm_cluster.Cluster(self.folder / "slurm", nodes=3, max_array_size=MAX_ARRAY_SIZE)
+        self.addCleanup(self.cluster.stop)
+
+    def say(self, text):
+        print(text.rstrip(), flush=True)
+
+    def submit(self, *arguments):
+        done = subprocess.run([sys.executable, CLUSTER / "submit.py", *map(str, arguments)], env={**self.cluster.environment, "CALOT": str(PROGRAM)},
+                              capture_output=True, text=True, timeout=120, check=False)
+        self.say(done.stdout + done.stderr)
+        return done
+
+    def running(self):
+        return [job for job in self.cluster.jobs() if job[2] == "RUNNING" and job[4] == "calot-share"]
+
+    def wait(self):
+        self.cluster.until(lambda: not self.cluster.jobs(), "the queue", 1800)
+
+    def done(self, number):
+        """Recordings of a share that are in its unfinished file."""
+        part = self.run_folder / "values" / f"{number}.values.part"
+        return max(0, part.read_bytes().count(b"\n") - 1) if part.exists() else 0
+
+    def test_drained_node_and_killed_job(self):
+        make(self.folder)
+        self.cluster.start()
+        self.say(f"nodes: {self.cluster.states()}")
+        self.run_folder = self.folder / "run"
+        regrade = ("regrade", "--cohort", self.folder / "c.db", "--folder", self.run_folder, self.folder / "recordings")
+        before = content(self.folder / "c.db")
+        refused = self.submit(*regrade, "--shards", MAX_ARRAY_SIZE)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn(f"an array of this cluster holds {MAX_ARRAY_SIZE - 1} jobs", refused.stderr)
+        self.assertEqual(self.submit(*regrade, "--bundle", 1).returncode, 0)
+        plan = (self.run_folder / "plan.sh").read_text()
+        self.assertIn(f"shards={MAX_ARRAY_SIZE - 1}\n", plan)
+
+        # A node is drained as soon as it works: its job ends, and no other comes.
+        self.cluster.until(lambda: len(self.running()) == 3, "three jobs at a time")
+        self.cluster.run("scontrol", "update", "NodeName=n3", "State=DRAIN", "Reason=test")
+        # A job is killed once some of its share is done, and so is the program of another, as by a lack of memory.
+        victim = next(job for job in self.running() if job[3] != "n3")
+        number = int(victim[1].split("_")[1])
+        self.cluster.until(lambda: self.done(number) > 0 or (self.run_folder / "values" / f"{number}.values").exists(), "some of a share")
+        self.cluster.run("scancel", "--signal=KILL", victim[0])
+        self.cluster.run("scancel", victim[0])
+        self.say(f"killed job {victim[1]} on {victim[3]} with {self.done(number)} recordings done; drained n3: {self.cluster.states()}")
+        self.cluster.until(lambda: any(int(j[1].split("_")[1]) not in (number,) and self.done(int(j[1].split("_")[1])) > 0 for j in self.running()),
+                           "another share")
+        process = next(self.programs())
+        os.kill(process, signal.SIGKILL)
+        self.say(f"killed process {process}")
+        drained = self.cluster.states()["n3"]
+        self.assertIn(drained, ("DRAINING", "DRAINED"))
+        self.wait()
+        self.submit("progress", "--folder", self.run_folder)
+        report = (self.run_folder / "report.txt").read_text()
+        self.say(report.splitlines()[-1])
+        self.assertIsNotNone(re.search(rf"of {MAX_ARRAY_SIZE - 1} shards missing: .*{number}", report), report)
+        self.assertNotEqual(content(self.folder / "c.db"), before)
+        self.assertNotEqual(content(self.folder / "c.db"), content(self.folder / "alone.db"))
+
+        # The same command goes on.
+        self.cluster.run("scontrol", "update", "NodeName=n3", "State=RESUME")
+        self.assertEqual(self.submit(*regrade).returncode, 0)
+        self.wait()
+        self.submit("progress", "--folder", self.run_folder)
+        log = (self.run_folder / "log" / f"{number}.log").read_text()
+        self.say(log.splitlines()[-1])
+        self.assertIn("of an earlier run)", log)
+        report = (self.run_folder / "report.txt").read_text()
+        self.say(report.splitlines()[-1])
+        self.assertIn(f"{COUNT} attempts:", report)
+        self.assertNotIn("missing", report)
+        self.assertEqual(self.rows("c.db"), self.rows("alone.db"))
+        nothing = self.submit(*regrade)
+        self.assertNotIn("shards: job", nothing.stdout)  # only the report again
+        self.wait()
+        self.assertIn(f"{COUNT} attempts: 0 changed, {COUNT} unchanged", (self.run_folder / "report.txt").read_text())
+
+    def programs(self):
+        """Ids of calot processes of this run."""
+        for status in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                words = (status / "cmdline").read_bytes().split(b"\0")
+            except OSError:
+                continue
+            if words[0] == str(PROGRAM).encode() and any(w.startswith(str(self.run_folder).encode()) for w in words):
+                yield int(status.name)
+
+    def rows(self, name):
+        """All rows but the audit, whose order tells of two takings instead of one."""
+        tables = content(self.folder / name)
+        tables.pop("audit")
+        tables.pop("sqlite_sequence", None)
+        return tables
+
+    def test_assess(self):
+        make(self.folder)
+        self.cluster.start()
+        self.run_folder = self.folder / "run"
+        self.assertEqual(self.submit("assess", "--cohort", self.folder / "new.db", "--folder", self.run_folder, "--each", 10, "--limit", 2,
+                                     self.folder / "recordings").returncode, 0)
+        self.wait()
+        self.assertEqual(calot("assess", self.folder / "recordings", "--cohort", self.folder / "one.db").code, 0)
+        self.assertEqual(content(self.folder / "new.db"), content(self.folder / "one.db"))
+        self.assertIn(f"{COUNT} attempts, {COUNT} of them synthetic", (self.run_folder / "report.txt").read_text())
+
+
+if __name__ == "__main__":
+    why = slurm_cluster.missing()
+    if why:
+        print(why)
+        sys.exit(77)
+    assert change  # of the cohort's setup
+    unittest.main(verbosity=2)
