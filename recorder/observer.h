@@ -46,6 +46,7 @@ enum class PartForm : std::uint64_t {
   quaternions = 1,        ///< a list of unit quaternions, x y z w: w
   quaternionsByLane = 2,  ///< groups of eight unit quaternions, eight w, eight x and so on: w
   symmetricMatrix = 3,    ///< row after row: what lies below the diagonal
+  unchanged = 4,          ///< all of it, from the keyframe before; made by the writer alone
 };
 
 /// One field of a keyframe.
@@ -69,8 +70,8 @@ struct StepRecord {
   std::span<const TickSamples> samples;  ///< ticksPerStep of them
   std::span<const TickOutcome> ticks;    ///< as many
   const StepResult& result;
-  const StateDigest& digest;
-  float lateness = 0.0F;  ///< how long after the step was due it began (s); 0 when not paced
+  const StateDigest& digest;  ///< empty where a recorded step of format version 2 stands for a computed one
+  float lateness = 0.0F;      ///< how long after the step was due it began (s); 0 when not paced
   /// Makes the keyframe of this step; costs a copy of the State, so it is called only where one is kept. Empty where a
   /// recorded step stands for a computed one (ReplaySettings::observers), as is `view`.
   std::function<Keyframe()> keyframe;

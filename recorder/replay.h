@@ -70,7 +70,8 @@ struct ReplaySettings {
   bool anyway = false;  ///< re-simulate a recording of another simulation version too
   /// Makes observers of the re-simulation once header and model are known. On one thread they see every step as it is
   /// computed. On several they see, in order, the recorded steps after all were proven equal to the computed ones, and
-  /// none where they were not; there is no `keyframe` and no `view` then.
+  /// none where they were not, with the forces as they were computed; there is no `keyframe`, no `view` and no digest
+  /// of components then.
   std::function<std::vector<Observer*>(const AttemptHeader&, const Model&)> observers;
   std::function<void(std::uint64_t step, std::uint64_t of)> progress;
 };

@@ -40,6 +40,39 @@ struct Part {
   }
 };
 
+/// From how many words on a run that did not change is a part of its own.
+constexpr std::size_t leastRun = 64;
+
+/// Divides a plain part into what changed and long runs of whole words that did not.
+void divide(Part part, std::span<const std::byte> own, std::span<const std::byte> other, std::vector<Part>& out) {
+  const auto sameAt = [&](std::size_t w) {
+    return (w + 1) * wordBytes <= other.size() && wordAt(own, w * wordBytes) == wordAt(other, w * wordBytes);
+  };
+  const auto cut = [&](std::size_t words, PartForm form) {
+    Part front = part;
+    front.form = form;
+    front.length = words * wordBytes;
+    front.like = std::min(front.length, part.like);
+    out.push_back(front);
+    part.length -= front.length;
+    part.like -= front.like;
+    part.place += front.like;
+  };
+  const std::size_t words = other.size() / wordBytes;
+  std::size_t begin = 0;
+  for (std::size_t w = 0; w < words; ++w) {
+    std::size_t run = 0;
+    while (sameAt(w + run)) ++run;
+    if (run >= leastRun) {
+      if (w > begin) cut(w - begin, PartForm::plain);
+      cut(run, PartForm::unchanged);
+      begin = w + run;
+    }
+    w += run;
+  }
+  if (part.length > 0) out.push_back(part);
+}
+
 /// The words of a part of some form that follow from others of it. Its first word is the number of elements.
 class Derived {
  public:
@@ -67,6 +100,7 @@ class Derived {
       case PartForm::symmetricMatrix:
         return i % rows_ < i / rows_;
       case PartForm::plain:
+      case PartForm::unchanged:
         break;
     }
     return false;
@@ -82,6 +116,7 @@ class Derived {
       case PartForm::symmetricMatrix:
         return wordAt(part, (1 + (w - 1) % rows_ * rows_ + (w - 1) / rows_) * wordBytes);
       case PartForm::plain:
+      case PartForm::unchanged:
         break;
     }
     return 0;
@@ -144,17 +179,29 @@ std::vector<std::uint64_t> KeyframeCoder::code(const Keyframe& keyframe) {
     }
   }
 
-  std::vector<std::uint64_t> words{baseIndex ? *baseIndex + 1 : 0, parts.size()};
-  for (const Part& part : parts)
-    words.insert(words.end(), {part.length, part.place, part.like, static_cast<std::uint64_t>(part.form)});
-  std::span<const std::byte> bytes = now.bytes;
+  const std::span<const std::byte> bytes = now.bytes;
+  const std::span<const std::byte> others = base == nullptr ? std::span<const std::byte>{} : std::span(base->bytes);
+  std::vector<Part> divided;
+  std::size_t at = 0;
   for (const Part& part : parts) {
-    const auto own = bytes.first(static_cast<std::size_t>(part.length));
-    bytes = bytes.subspan(own.size());
-    const auto other =
-        base == nullptr
-            ? std::span<const std::byte>{}
-            : std::span(base->bytes).subspan(static_cast<std::size_t>(part.place), static_cast<std::size_t>(part.like));
+    const auto own = bytes.subspan(at, static_cast<std::size_t>(part.length));
+    const auto other = others.subspan(static_cast<std::size_t>(part.place), static_cast<std::size_t>(part.like));
+    at += own.size();
+    if (part.form == PartForm::plain) {
+      divide(part, own, other, divided);
+    } else {
+      divided.push_back(part);
+    }
+  }
+  std::vector<std::uint64_t> words{baseIndex ? *baseIndex + 1 : 0, divided.size()};
+  for (const Part& part : divided)
+    words.insert(words.end(), {part.length, part.place, part.like, static_cast<std::uint64_t>(part.form)});
+  at = 0;
+  for (const Part& part : divided) {
+    const auto own = bytes.subspan(at, static_cast<std::size_t>(part.length));
+    at += own.size();
+    if (part.form == PartForm::unchanged) continue;
+    const auto other = others.subspan(static_cast<std::size_t>(part.place), static_cast<std::size_t>(part.like));
     const Derived derived(part.form, own.size());
     for (std::size_t w = 0; w * wordBytes < own.size(); ++w) {
       const std::uint64_t expected = derived.has(w) ? derived.of(own, w) : wordAt(other, w * wordBytes);
@@ -196,7 +243,9 @@ CodedKeyframe::CodedKeyframe(std::span<const std::uint64_t> words, std::uint64_t
 std::string CodedKeyframe::decode(std::span<const std::byte> base, std::uint64_t size,
                                   std::vector<std::byte>& out) const {
   out.clear();
-  if (wordsOf(size) > values_.size()) return "claims more bytes than its words can hold";
+  // What is unchanged has no words. It comes from the base, and is no more than that.
+  if (size > base.size() && wordsOf(size - base.size()) > values_.size())
+    return "claims more bytes than its words can hold";
   out.resize(static_cast<std::size_t>(size));
   std::size_t done = 0;
   std::size_t value = 0;
@@ -208,10 +257,16 @@ std::string CodedKeyframe::decode(std::span<const std::byte> base, std::uint64_t
     if (length > out.size() - done) return "has parts of more bytes than it has";
     if (like > length || like > base.size() || place > base.size() - like)
       return "is compared with bytes that are not there";
-    if (wordsOf(length) > values_.size() - value) return "has fewer words than bytes";
-    if (part[3] > static_cast<std::uint64_t>(PartForm::symmetricMatrix)) return "has a part of an unknown form";
+    if (part[3] > static_cast<std::uint64_t>(PartForm::unchanged)) return "has a part of an unknown form";
     const auto own = std::span(out).subspan(done, static_cast<std::size_t>(length));
     const auto other = base.subspan(static_cast<std::size_t>(place), static_cast<std::size_t>(like));
+    done += own.size();
+    if (static_cast<PartForm>(part[3]) == PartForm::unchanged) {
+      if (like != length) return "has an unchanged part that is not as long as what it is";
+      std::copy(other.begin(), other.end(), own.begin());
+      continue;
+    }
+    if (wordsOf(length) > values_.size() - value) return "has fewer words than bytes";
     const Derived derived(static_cast<PartForm>(part[3]), own.size());
     for (const bool following : {false, true}) {
       for (std::size_t w = 0; w * wordBytes < own.size(); ++w) {
@@ -223,7 +278,6 @@ std::string CodedKeyframe::decode(std::span<const std::byte> base, std::uint64_t
       }
     }
     value += static_cast<std::size_t>(wordsOf(length));
-    done += own.size();
   }
   return done == out.size() ? "" : "has parts of fewer bytes than it has";
 }

@@ -32,7 +32,9 @@ KeyframeReader::KeyframeReader(std::filesystem::path path, const Layout& layout,
   for (std::size_t i = 0; i < last.keyframes; ++i) {
     const KeyframeRow k = parseKeyframeRow(std::span(bytes).subspan(i * keyframeBytes));
     if (k.step >= last.steps || (i > 0 && k.step <= rows_.back().step)) refuse(i, "is out of order");
-    if (k.offset > total || k.stateBytes > total - k.offset || k.hapticsBytes > total - k.offset - k.stateBytes)
+    // Coded ones are made of their own words and of those before them.
+    const std::uint64_t most = layout.codedKeyframes ? total : total - std::min(total, k.offset);
+    if (k.offset > total || k.stateBytes > most || k.hapticsBytes > most - k.stateBytes)
       refuse(i, "points outside /keyframes/bytes");
     if (layout.codedKeyframes && (k.offset % 8 != 0 || (i > 0 && k.offset <= rows_.back().offset)))
       refuse(i, "has an offset that does not rise by whole words");

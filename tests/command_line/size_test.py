@@ -23,6 +23,21 @@ class Size(program.ProgramTest):
         self.path("p.json").write_text(json.dumps(profile))
         return self.path("p.json")
 
+    def test_inspect_tells_bytes_by_group(self):
+        r = program.skilled()
+        said = json.loads(self.well("inspect", "--json", r).out)
+        groups = said["bytes_by_group"]
+        self.assertEqual(said["bytes"], r.stat().st_size)
+        self.assertEqual(sum(groups.values()), r.stat().st_size)
+        with h5py.File(r, "r") as file:
+            self.assertEqual(set(groups), set(file) | {"structure"})
+            keyframes = sum(file["keyframes"][name].id.get_storage_size() for name in file["keyframes"])
+        self.assertEqual(groups["keyframes"], keyframes)
+        self.assertEqual(list(groups.values()), sorted(groups.values(), reverse=True))
+        text = self.well("inspect", r).out
+        self.assertRegex(text, rf"(?m)^bytes +{r.stat().st_size}$")
+        self.assertRegex(text, rf"(?m)^bytes, keyframes +{keyframes} \([0-9.]+ %\)$")
+
     def test_against_repacked(self):
         r = self.path("r.h5")
         said = json.loads(self.well("record", "--scene", program.SCENE, "--performer", self.profile(), "--seconds", SECONDS, "--json", "-o", r).out)

@@ -54,7 +54,7 @@ class Changed(program.ProgramTest):
             "observables": ("/observables/organs/volume", lambda d: d.__setitem__((57, 0), d[57, 0] * (1 + 1e-15)), ("step 57", "volume")),
             "digest": ("/steps/state_digest", lambda d: d.__setitem__(58, d[58] ^ np.uint64(1)), ("step 58",)),
             "field": ("/steps/field_digest", lambda d: d.__setitem__((59, 3), d[59, 3] ^ np.uint16(1)), ("step 59",)),
-            "keyframe": ("/keyframes/bytes", lambda d: d.__setitem__(1000, d[1000] ^ np.uint64(1)), ("keyframe", "index")),
+            "keyframe": ("/keyframes/bytes", lambda d: d.__setitem__(1000, d[1000] ^ np.uint64(2)), ("keyframe", "index")),
         }
         for name, (dataset, change, words) in changes.items():
             with self.subTest(name):

@@ -68,6 +68,13 @@ TEST_F(Replay, NamesStepTickComponentAndBothValues) {
   EXPECT_EQ(force.reproducible, true);
   EXPECT_EQ(force.fault(), ErrorKind::refused);
 
+  // Less than the grid that forces are stored on: their digest tells.
+  const ReplayReport torque = replayRecording(record("t.h5", test::Lie{test::Lie::About::torque, 150}), {});
+  ASSERT_TRUE(torque.divergence) << torque.message;
+  EXPECT_EQ(torque.divergence->step, 150U);
+  EXPECT_EQ(torque.divergence->component, "force");
+  EXPECT_EQ(torque.divergence->field, "digest of the step's forces");
+
   const ReplayReport digest = replayRecording(record("d.h5", test::Lie{test::Lie::About::digest, 151}), {});
   ASSERT_TRUE(digest.divergence) << digest.message;
   EXPECT_EQ(digest.divergence->step, 151U);

