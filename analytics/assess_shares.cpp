@@ -7,6 +7,7 @@
 
 #include "analytics/shards/values_set.h"
 #include "analytics/shards/values_writer.h"
+#include "recorder/errors.h"
 #include "recorder/recording/identify.h"
 
 namespace calot::analytics {
@@ -31,6 +32,9 @@ std::vector<std::filesystem::path> recordingsUnder(const std::vector<std::filesy
     const bool named = std::find(places.begin(), places.end(), file) != places.end();
     return !named && !recorder::looksLikeHdf5(file);
   });
+  if (files.empty())
+    throw Error(ErrorKind::damaged, Where{places.empty() ? "" : places.front().string()},
+                "there are no recordings in it");
   return files;
 }
 

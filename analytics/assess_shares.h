@@ -15,7 +15,7 @@
 namespace calot::analytics {
 
 /// Recordings among files and in folders and below, by name: files that are named, and all HDF5 files of folders.
-/// @throws Error (damaged) where a place is not there
+/// @throws Error (damaged) where a place is not there, or no recording in any
 std::vector<std::filesystem::path> recordingsUnder(const std::vector<std::filesystem::path>& places);
 
 /// How recordings are divided, by their sizes. Recorded time is not known before they are read: seconds are 0.

@@ -78,21 +78,23 @@ def ranges(numbers):
 def make_plan(o):
     """RUN/plan.sh, which the jobs read; one that is there stays: its shards are in it."""
     plan = o.folder / "plan.sh"
+    places = [str(pathlib.Path(p).resolve()) for p in o.recordings]
+    cohort = pathlib.Path(o.cohort).resolve()
+    copy = []
+    if o.work == "regrade":
+        places = places or [str(cohort.parent)]
+        copy = [str(o.folder / "cohort.db")]
+    lines = [f"work={o.work}", f"cohort={shlex.quote(str(cohort))}", "input=(" + " ".join(shlex.quote(p) for p in copy + places) + ")"]
     if plan.exists():
+        if not set(lines) <= set(plan.read_text(encoding="utf-8").splitlines()):
+            sys.exit(f"submit: {o.folder} holds a run of another cohort or other recordings; name another --folder")
         print(f"submit: going on with {plan}")
         return
     for name in ("values", "log"):
         (o.folder / name).mkdir(parents=True, exist_ok=True)
-    places = [str(pathlib.Path(p).resolve()) for p in o.recordings]
-    cohort = pathlib.Path(o.cohort).resolve()
-    source = []
-    if o.work == "regrade":
-        places = places or [str(cohort.parent)]
-        snapshot(cohort, o.folder / "cohort.db")
-        source = [str((o.folder / "cohort.db").resolve())]
-    shards = share_count(o, places)
-    lines = [f"calot={shlex.quote(o.calot)}", f"work={o.work}", f"cohort={shlex.quote(str(cohort))}", f"shards={shards}",
-             "input=(" + " ".join(shlex.quote(p) for p in source + places) + ")"]
+    lines += [f"shards={share_count(o, places)}", f"calot={shlex.quote(o.calot)}"]
+    if copy:
+        snapshot(cohort, pathlib.Path(copy[0]))
     part = plan.with_suffix(".part")
     part.write_text("\n".join(lines) + "\n", encoding="utf-8")
     part.rename(plan)

@@ -97,6 +97,7 @@ class SlurmRun(unittest.TestCase):
         self.assertIn(f"{COUNT} attempts:", report)
         self.assertNotIn("missing", report)
         self.assertEqual(self.rows("c.db"), self.rows("alone.db"))
+        self.assertIn("name another --folder", self.submit(*regrade, self.folder).stderr)
         nothing = self.submit(*regrade)
         self.assertNotIn("shards: job", nothing.stdout)  # only the report again
         self.wait()

@@ -191,7 +191,7 @@ class WrongUse(program.ProgramTest):
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_help_of_every_command(self):
-        for command in ("record", "replay", "inspect", "recover", "export", "state", "diff", "assess", "study", "participant", "render",
+        for command in ("record", "replay", "inspect", "recover", "export", "state", "diff", "assess", "verify", "regrade", "study", "participant", "render",
                         "mesh", "scenes", "checkpoints"):
             self.assertIn("Usage: calot " + command, self.well(command, "--help").out)
         self.assertRegex(self.well("--version").out, r"simulation version \d+")
