@@ -123,7 +123,7 @@ TEST(Live, ASlowSimulationReplaysAndCanBeSoughtIn) {
     EXPECT_EQ(here.haptics, frames[step].haptics) << "step " << step;
   }
   // A keyframe there and back, in the midst of the lag.
-  Session other(*model, 1, executor);
+  Session other(model, 1, executor);
   ASSERT_TRUE(other.restore(frames[120]));
   EXPECT_EQ(other.keyframe().state, frames[120].state);
   EXPECT_EQ(other.keyframe().haptics, frames[120].haptics);
