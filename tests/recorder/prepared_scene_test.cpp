@@ -36,6 +36,7 @@ class PreparedScenes : public testing::Test {
     Recording recording(folder_ / "r.h5");
     SerialExecutor executor;
     Session session(scene.model(), recording.header().seed, executor, &scene.compliances());
+    session.precompute();
     std::vector<StateDigest> digests;
     while (session.steps() < steps) {
       rerun(session, recording.step(session.steps()));
