@@ -19,7 +19,7 @@ class Cache(program.ProgramTest):
         return json.loads(self.well("cache", "--json", *options).out)["entries"]
 
     def record(self, name):
-        self.well("record", "--scene", "touch-liver", "--performer", "skilled", "--seconds", "5", "-o", self.path(name))
+        self.well("record", "--scene", "touch-liver", "--performer", "skilled", "--seconds", "10", "-o", self.path(name))
 
     def test_an_entry_comes_serves_and_goes(self):
         self.assertEqual(self.entries(), [])
