@@ -44,6 +44,16 @@ milliseconds ageOf(const FileState& state) {
                   milliseconds(0));
 }
 
+/// A cohort or a folder that cannot serve is told at once, and leaves no journal.
+IntakeSettings checked(IntakeSettings settings) {
+  std::error_code ignored;
+  if (std::filesystem::exists(settings.cohort, ignored)) {
+    const CohortDatabase opened(settings.cohort, CohortDatabase::Access::read);
+  }
+  static_cast<void>(recorder::filesUnder(settings.folders));
+  return settings;
+}
+
 IntakeItem fault(std::string file, TakenIn how, Error error) {
   IntakeItem item;
   item.file = std::move(file);
@@ -54,9 +64,7 @@ IntakeItem fault(std::string file, TakenIn how, Error error) {
 
 }  // namespace
 
-Intake::Intake(IntakeSettings settings) : settings_(std::move(settings)), journal_(settings_.journal) {
-  static_cast<void>(recorder::filesUnder(settings_.folders));
-}
+Intake::Intake(IntakeSettings settings) : settings_(checked(std::move(settings))), journal_(settings_.journal) {}
 
 bool Intake::isDecided(const std::string& file, const FileState& state, IntakeRest& rest) const {
   const JournalEntry* entry = journal_.find(file);

@@ -61,7 +61,8 @@ struct IntakeRest {
 /// stored, then told, then entered in the journal, so that one killed at any moment loses none and stores none twice.
 class Intake {
  public:
-  /// @throws Error: failure, where the journal is another program's; damaged, where a folder is not there.
+  /// @throws Error as CohortDatabase does, where there is one; failure, where the journal is another program's;
+  /// damaged, where a folder is not there.
   explicit Intake(IntakeSettings settings);
 
   /// Takes what is ready, oldest first. Ends early once `stop` is set: a recording in progress stays in the queue.

@@ -235,6 +235,12 @@ class Watched(program.ProgramTest):
         self.refused(2, "verify", "--cohort", self.cohort)
         self.refused(2, "verify", "--watch", self.inbox)
         self.refused(4, "verify", "--watch", self.path("none"), "--cohort", self.cohort, names=("none",))
+        other = self.path("other.db")
+        other.write_text("no database")
+        self.put(9)
+        self.refused(4, "verify", "--watch", self.inbox, "--cohort", other, "--once", names=(other,))
+        self.assertEqual(sorted(p.name for p in self.folder.glob("other*")), ["other.db"], "a journal was left")
+        (self.inbox / "9.h5").unlink()
         out = self.well("verify", "--watch", self.inbox, "--cohort", self.cohort, "--once").out
         self.assertEqual(out, "")
         self.put(1)
