@@ -151,7 +151,7 @@ TEST(Keyframes, ThatLieAreDamage) {
     std::filesystem::copy_file(folder / "r.h5", folder / "c.h5", std::filesystem::copy_options::overwrite_existing);
     overwrite(folder / "c.h5", 8192, words);  // the second keyframe
     Recording r(folder / "c.h5");
-    EXPECT_NO_THROW(r.keyframe(0));
+    EXPECT_NO_THROW(static_cast<void>(r.keyframe(0)));
     try {
       static_cast<void>(r.keyframe(1));
       ADD_FAILURE() << "was read";
