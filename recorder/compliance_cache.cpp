@@ -122,7 +122,8 @@ std::vector<fs::path> filesIn(const fs::path& folder, std::error_code& fault) {
   std::vector<fs::path> files;
   for (fs::directory_iterator it(folder, fault), end; !fault && it != end; it.increment(fault)) {
     const std::string name = it->path().filename().string();
-    if (name.find(extension) != std::string::npos && !it->is_directory()) files.push_back(it->path());
+    std::error_code gone;
+    if (name.find(extension) != std::string::npos && !it->is_directory(gone)) files.push_back(it->path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -182,17 +183,15 @@ bool ComplianceCache::save(const std::string& key, const std::string& scene,
   if (line.size() > maxHeader || line.size() + payload.size() > maxEntry) return false;
   const fs::path file = fileOf(key);
   const fs::path temporary = file.string() + fmt::format(".{}.part", getpid());
-  {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    out << line << payload << std::flush;
-    if (!out) {
-      fs::remove(temporary, fault);
-      return false;
-    }
+  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+  out << line << payload;
+  out.close();
+  const bool written = !out.fail() && chmod(temporary.c_str(), S_IRUSR | S_IWUSR) == 0;
+  if (written) fs::rename(temporary, file, fault);
+  if (!written || fault) {
+    fs::remove(temporary, fault);
+    return false;
   }
-  chmod(temporary.c_str(), S_IRUSR | S_IWUSR);
-  fs::rename(temporary, file, fault);
-  if (fault) return false;
   makeRoom(file);
   return true;
 }
