@@ -8,8 +8,8 @@ namespace calot::recorder {
 
 namespace {
 
-/// Time of a step of the whole operation by what it reports, from a fit to all steps of one on one machine (ms). Nothing
-/// but the spacing of keyframes depends on it: too large makes them closer, too small makes seeks longer.
+/// Time of a step of the whole operation by what it reports, from a fit to all steps of one on one machine (ms).
+/// Nothing but the spacing of keyframes depends on it: too large makes them closer, too small makes seeks longer.
 constexpr double workOfStep = 0.2;
 constexpr double workOfOrganIteration = 0.018;
 constexpr double workOfFatIteration = 0.009;
