@@ -102,16 +102,16 @@ Verdict verdictOf(recorder::ReplayVerdict verdict) {
 
 }  // namespace
 
-Assessment assessRecording(const std::string& file, unsigned threads, double cutoff,
-                           const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+Assessment assessRecording(const std::string& file, const AssessSettings& wanted) {
   recorder::AttemptHeader header;
   std::unique_ptr<CheckpointCollector> collector;
   recorder::ReplaySettings settings;
-  settings.threads = threads;
-  settings.progress = progress;
-  settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
+  settings.threads = wanted.threads;
+  settings.engine = wanted.engine;
+  settings.progress = wanted.progress;
+  settings.observers = [&](const recorder::AttemptHeader& h, const SceneDescription& scene) {
     header = h;
-    collector = std::make_unique<CheckpointCollector>(h, model.scene(), Origin::resimulated, cutoff);
+    collector = std::make_unique<CheckpointCollector>(h, scene, Origin::resimulated, wanted.cutoff);
     return std::vector<recorder::Observer*>{collector.get()};
   };
   Assessment result;
@@ -134,9 +134,11 @@ Assessment assessRecording(const std::string& file, unsigned threads, double cut
   }
   const bool exact = report.verdict == recorder::ReplayVerdict::exact;
   assessed.verification = {verdictOf(report.verdict), exact ? "" : report.message, recorder::softwareName()};
-  if (exact) assessed.values = collector->values();
-  if (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact)
-    assessed.values = valuesFromObservables(recording, cutoff);
+  if (exact && collector) assessed.values = collector->values();
+  // An engine whose results are of an earlier version proves what is recorded; the values are of that.
+  const bool ofRecord = exact && !collector;
+  if (ofRecord || (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact))
+    assessed.values = valuesFromObservables(recording, wanted.cutoff);
   assessed.fileName = file;
   return result;
 }

@@ -12,9 +12,10 @@
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/cohort_database.h"
+#include "recorder/engine/observer.h"
 #include "recorder/identity.h"
-#include "recorder/observer.h"
 #include "recorder/replay.h"
 
 namespace calot::analytics {
@@ -38,12 +39,17 @@ struct Assessment {
   std::optional<AssessedAttempt> attempt;  ///< none of a damaged file
 };
 
+struct AssessSettings {
+  unsigned threads = 1;          ///< segments that are verified at a time
+  double cutoff = motionCutoff;  ///< of the motion filter (Hz); values that are stored are of the default
+  recorder::EngineWish engine = {};
+  /// May throw, which ends it: what is thrown leaves assessRecording().
+  std::function<void(std::uint64_t step, std::uint64_t of)> progress = {};
+};
+
 /// Re-simulates a recording and computes its checkpoints. One that diverged has no values; one of another simulation
-/// version has those of its observables, where its content chain is intact.
-/// @param cutoff of the motion filter (Hz); values that are stored are of the default
-/// @param progress may throw, which ends it: what is thrown leaves this function
-Assessment assessRecording(const std::string& file, unsigned threads, double cutoff = 6.0,
-                           const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
+/// version that no engine here decides has those of its observables, where its content chain is intact.
+Assessment assessRecording(const std::string& file, const AssessSettings& settings = {});
 
 /// What of an assessment is stored, and what people read of it. Unlike an Assessment it can be written to a values file
 /// and stored on another machine (analytics/shards).

@@ -93,7 +93,7 @@ void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
     const auto each = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));
     const auto judge = [&](std::size_t i) {
       try {
-        works[i].judged = judgedRecording(assessRecording(files[begin + i], each));
+        works[i].judged = judgedRecording(assessRecording(files[begin + i], {.threads = each}));
       } catch (...) {
         works[i].failure = std::current_exception();
       }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "recorder/engine/local_engine.h"
 #include "recorder/errors.h"
 #include "recorder/recording/publish.h"
 #include "recorder/replay.h"
@@ -60,7 +61,8 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
 
 void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
-  if (const auto divergence = follow(parent, session, forkStep + 1, progress)) {
+  LocalEngine engine(session);
+  if (const auto divergence = follow(parent, engine, forkStep + 1, {}, progress)) {
     throw Error(ErrorKind::refused, Where{parent.path().string()}, describe(*divergence));
   }
 }

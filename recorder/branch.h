@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "recorder/attempt.h"
+#include "recorder/engine/session.h"
 #include "recorder/recording/reader.h"
-#include "recorder/session.h"
 #include "recorder/sources/source.h"
 
 namespace calot::recorder {

@@ -5,8 +5,6 @@
 
 #include <bit>
 
-#include "recorder/state_fields.h"
-
 namespace calot::recorder {
 
 namespace {
@@ -85,24 +83,22 @@ std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& 
   return Divergence{step, {}, "state", "a field that only the long digest shows", ""};
 }
 
-std::optional<Divergence> compareKeyframe(const Model& model, const Keyframe& recorded, const Keyframe& here) {
-  if (recorded.state != here.state) {
-    State a;
-    State b;
-    Divergence d{here.step, {}, "keyframe", "state", ""};
-    if (!restoreState(model, recorded.state, a) || !restoreState(model, here.state, b)) {
-      d.detail = "the recorded bytes are no State of this scene's model";
-      return d;
-    }
-    if (const auto difference = firstDifference(stateFields(model, a), stateFields(model, b))) {
-      d.field = difference->field;
-      d.detail =
-          fmt::format("index {}: recorded {}, here {}", difference->index, difference->first, difference->second);
-    }
-    return d;
-  }
-  if (recorded.haptics != here.haptics) return Divergence{here.step, {}, "keyframe", "haptics", ""};
-  return std::nullopt;
+std::optional<Divergence> compareProcedure(std::uint64_t step, const RecordedProcedure& recorded,
+                                           const RecordedProcedure& here) {
+  if (recorded == here) return std::nullopt;
+  Comparison c(step, "observables");
+  const auto number = [&](const char* field, auto a, auto b) {
+    c.number(std::string("procedure/") + field, static_cast<double>(a), static_cast<double>(b));
+  };
+  number("phase", recorded.phase, here.phase);
+  number("triangle_cleared", recorded.triangleCleared, here.triangleCleared);
+  number("lower_third_freed", recorded.lowerThirdFreed, here.lowerThirdFreed);
+  number("two_structures", recorded.twoStructures, here.twoStructures);
+  number("critical_view_frozen", recorded.criticalViewFrozen, here.criticalViewFrozen);
+  number("lower_third_attached", recorded.lowerThirdAttached, here.lowerThirdAttached);
+  number("errors", recorded.errors, here.errors);
+  number("critical_errors", recorded.criticalErrors, here.criticalErrors);
+  return c.first();
 }
 
 }  // namespace calot::recorder

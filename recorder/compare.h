@@ -40,7 +40,8 @@ class ResultComparison {
   std::unique_ptr<Buffers> buffers_;
 };
 
-/// The first difference of two keyframes' States, or of their haptic bytes.
-std::optional<Divergence> compareKeyframe(const Model& model, const Keyframe& recorded, const Keyframe& here);
+/// The first difference of the judgement that version 3 of StepResult held.
+std::optional<Divergence> compareProcedure(std::uint64_t step, const RecordedProcedure& recorded,
+                                           const RecordedProcedure& here);
 
 }  // namespace calot::recorder

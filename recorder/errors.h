@@ -23,6 +23,7 @@ enum class ErrorKind : std::uint8_t {
 enum class Remedy : std::uint8_t {
   replaceExisting,        ///< ask for what is there to be replaced
   recover,                ///< save what a recording that is cut off still holds
+  installEngine,          ///< install the engine of the recording's simulation version
   replayAnyway,           ///< replay a recording of another simulation version, and report
   moveFork,               ///< choose another time for the fork of a branch
   measureCalibration,     ///< calibrate the device again

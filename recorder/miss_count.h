@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "recorder/step_misses.h"
 
 namespace calot::recorder {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/open_loop.h"
 
+#include "recorder/engine/session.h"
 #include "recorder/recording/reader.h"
-#include "recorder/session.h"
 
 namespace calot::recorder {
 

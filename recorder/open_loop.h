@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "sim/math/executor.h"
 #include "sim/scene/model.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "recorder/compliance_cache.h"
-#include "recorder/formats/scene_file.h"
+#include "recorder/formats/scene_assets.h"
 
 namespace calot::recorder {
 

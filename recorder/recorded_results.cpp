@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "recorder/formats/scene_file.h"
+#include "recorder/formats/scene_assets.h"
 
 namespace calot::recorder {
 

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
 
+#include "recorder/kept/engine_folders.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/miss_count.h"
 #include "recorder/segments.h"
@@ -17,13 +19,14 @@ namespace calot::recorder {
 
 namespace {
 
-std::optional<Divergence> runOnce(Recording& recording, PreparedScene& scene, const ReplaySettings& settings,
+std::optional<Divergence> runOnce(Recording& recording, const EngineChoice& choice, const ReplaySettings& settings,
                                   const std::vector<Observer*>& observers) {
-  WorkerPool pool(settings.threads);
-  Session session(scene.model(), recording.header().seed, pool, &scene.compliances());
-  for (Observer* observer : observers) session.join(*observer);
-  const std::optional<Divergence> first = follow(recording, session, recording.stepCount(), settings.progress);
-  session.end(recording.outcome());
+  WorkerPool pool(choice.isInside() ? settings.threads : 1);
+  const std::unique_ptr<Engine> engine = choice.make(pool);
+  engine->start(recording.header().seed);
+  const std::optional<Divergence> first =
+      follow(recording, *engine, recording.stepCount(), observers, settings.progress);
+  for (Observer* observer : observers) observer->onEnd(recording.outcome());
   return first;
 }
 
@@ -61,38 +64,52 @@ void passOn(Recording& recording, const std::vector<TickForces>& forces, const s
 
 }  // namespace
 
-void rerun(Session& session, const RecordedStep& recorded) {
-  const std::vector<TickSamples> samples = recorded.samples;  // an observer may read on in the recording
-  std::vector<TickOutcome> ticks(samples.size());
-  const float lateness = recorded.lateness;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const TickOutcome& logged = recorded.ticks[i];
-    ticks[i] = session.tick(samples[i], std::array{logged.hand[0].contactSet, logged.hand[1].contactSet});
-    ticks[i].lateness = logged.lateness;
-  }
-  session.step(samples, ticks, lateness);
+namespace {
+
+/// The first step from this one on that has a keyframe; the last one where none has.
+std::uint64_t nextKeyframe(const Recording& recording, std::uint64_t step) {
+  const std::vector<std::uint64_t>& steps = recording.keyframeSteps();
+  const auto next = std::lower_bound(steps.begin(), steps.end(), step);
+  return next == steps.end() ? recording.stepCount() : *next;
 }
 
-std::optional<Divergence> follow(Recording& recording, Session& session, std::uint64_t end,
+}  // namespace
+
+std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint64_t end,
+                                 const std::vector<Observer*>& observers,
                                  const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
-  StepComparison comparer(recording, session.model());
-  session.join(comparer);
-  struct Joined {
-    Session& session;
-    StepComparison& comparer;
-    ~Joined() { session.leave(comparer); }
-  } const joined{session, comparer};
-  while (session.steps() < end && !comparer.done()) {
-    const std::uint64_t n = session.steps();
+  StepComparison comparison(recording, engine);
+  std::vector<TickSamples> samples;
+  std::vector<TickOutcome> logged;
+  std::uint64_t announced = engine.steps();
+  while (engine.steps() < end && !comparison.done()) {
+    const std::uint64_t n = engine.steps();
     try {
-      rerun(session, recording.step(n));
+      // Not beyond a keyframe: it is compared with the engine's own, which has to be there then.
+      const std::uint64_t ahead = std::min({end, n + engine.takesAhead(), nextKeyframe(recording, n) + 1});
+      for (announced = std::max(announced, n); announced < ahead; ++announced) {
+        const RecordedStep& coming = recording.step(announced);
+        engine.announce({coming.samples, coming.ticks, coming.lateness});
+      }
+      const RecordedStep& recorded = recording.step(n);
+      samples = recorded.samples;  // an observer may read on in the recording
+      logged = recorded.ticks;
+      const float lateness = recorded.lateness;
+      const EngineStep step = engine.step({samples, logged, lateness});
+      StepRecord record{n, samples, step.ticks, step.result, step.digest, lateness, {}, {}};
+      if (engine.takesAhead() == 0) {
+        record.keyframe = [&] { return engine.keyframe(); };
+        record.view = [&] { return engine.view(); };
+      }
+      for (Observer* observer : observers) observer->onStep(record);
+      comparison.compare(step);
     } catch (const std::out_of_range& e) {
-      comparer.fail({n, n * recording.header().ticksPerStep, "force", "contact set", e.what()});
+      comparison.fail({n, n * recording.header().ticksPerStep, "force", "contact set", e.what()});
       break;
     }
     if (progress) progress(n + 1, end);
   }
-  return comparer.first();
+  return comparison.first();
 }
 
 std::string describe(const Divergence& d) {
@@ -117,35 +134,32 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   report.chainIntact = chain.intact;
   report.chainFault = chain.what;
   const bool otherVersion = header.simulationVersion != simulationVersion;
-  if (otherVersion && !settings.anyway && chain.intact) {
-    report.verdict = ReplayVerdict::undecided;
-    report.message = fmt::format("recorded with simulation version {}, this build has {}: cannot decide",
-                                 header.simulationVersion, simulationVersion);
-    report.remedies = {Remedy::replayAnyway};
-    return;
-  }
-  const std::shared_ptr<PreparedScene> scene = sceneOf(recording);
-  const Model& model = scene->model();
+  // What is damaged anyway may be compared with any engine: it cannot be proven by one.
+  const bool foreign =
+      otherVersion && (settings.engine.anyway || (!chain.intact && commandOfEngine(header.simulationVersion).empty()));
+  EngineWish wish = settings.engine;
+  wish.anyway = foreign;
+  const EngineChoice choice(recording, wish);
   // Another version may have other components; digests of different layouts say nothing field by field.
-  const bool comparable = header.layout.components == model.layout().components &&
-                          header.layout.fields.size() == model.layout().fields.size();
-  if (!comparable) {
-    report.verdict = otherVersion && chain.intact ? ReplayVerdict::undecided : ReplayVerdict::diverged;
+  if (!choice.fits(header.layout)) {
+    report.verdict = foreign && chain.intact ? ReplayVerdict::undecided : ReplayVerdict::diverged;
     report.message = "the recorded digests have other components than this build's State: nothing to compare";
     return;
   }
-  std::vector<Observer*> observers = settings.observers ? settings.observers(header, model) : std::vector<Observer*>{};
+  const bool sameResults = foreign || header.stepResultVersion == stepResultVersion;
+  std::vector<Observer*> observers;
+  if (settings.observers && sameResults) observers = settings.observers(header, choice.scene());
   std::vector<Segment> segments = segmentsOf(recording);
   if (settings.part) segments = partOf(recording, segments, *settings.part);
   const unsigned threads = settings.threads == 0 ? std::thread::hardware_concurrency() : settings.threads;
-  // Recorded results stand for those that were computed only if they have all of today's fields.
-  const bool inSegments =
-      settings.part || (threads > 1 && segments.size() > 1 && header.stepResultVersion == stepResultVersion);
+  // Recorded results stand for those that were computed only if they have all of the engine's fields.
+  const bool complete = !choice.isInside() || header.stepResultVersion == stepResultVersion;
+  const bool inSegments = settings.part || (threads > 1 && segments.size() > 1 && complete);
   if (inSegments) {
     const bool tell = !settings.part && !observers.empty();
     std::vector<TickForces> forces(tell ? static_cast<std::size_t>(recording.tickCount()) : 0);
     const SegmentsVerdict verdict =
-        verifySegments(recording.path(), *scene, segments, threads, settings.progress, tell ? &forces : nullptr);
+        verifySegments(recording.path(), choice, segments, threads, settings.progress, tell ? &forces : nullptr);
     report.divergence = verdict.divergence;
     report.reproducible = verdict.reproducible;
     report.misses = verdict.misses;
@@ -153,15 +167,15 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   } else {
     MissCount count;
     observers.push_back(&count);
-    report.divergence = runOnce(recording, *scene, settings, observers);
+    report.divergence = runOnce(recording, choice, settings, observers);
     report.misses = count.misses;
     if (report.divergence) {
       ReplaySettings again = settings;
       again.progress = nullptr;
-      report.reproducible = runOnce(recording, *scene, again, {}) == report.divergence;
+      report.reproducible = runOnce(recording, choice, again, {}) == report.divergence;
     }
   }
-  scene->save();
+  choice.save();
   if (report.divergence) {
     report.message = describe(*report.divergence) +
                      (*report.reproducible ? "; reproducible: a second run differs in the same way"
@@ -178,7 +192,7 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   }
   const bool differs = report.divergence || !chain.intact;
   report.verdict = differs ? ReplayVerdict::diverged : settings.part ? ReplayVerdict::consistent : ReplayVerdict::exact;
-  if (otherVersion && chain.intact) {
+  if (foreign && chain.intact) {
     report.verdict = ReplayVerdict::undecided;
     report.message += fmt::format("; recorded with simulation version {}, this build has {}", header.simulationVersion,
                                   simulationVersion);
@@ -226,34 +240,31 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
   return report;
 }
 
-Seeker::Seeker(Recording& recording, Executor& executor)
-    : recording_(recording), scene_(sceneOf(recording)), executor_(executor) {}
+Seeker::Seeker(Recording& recording, const EngineChoice& choice)
+    : recording_(recording), engine_(choice.make(executor_)) {}
 
 void Seeker::seek(std::uint64_t step) {
   const auto nearest = recording_.keyframeAtOrBefore(step);
-  const std::uint64_t done = session_ ? session_->steps() : 0;
   // Going on from here is as good as a keyframe that lies behind.
-  const bool goOn = session_ && done <= step + 1 && (!nearest || recording_.keyframeSteps()[*nearest] < done);
-  if (!goOn) {
-    // A session that has been there keeps what it worked out of the model, above all compliances.
-    if (!session_ || !nearest) {
-      session_ =
-          std::make_unique<Session>(scene_->model(), recording_.header().seed, executor_, &scene_->compliances());
+  const bool goOn =
+      begun_ && engine_->steps() <= step + 1 && (!nearest || recording_.keyframeSteps()[*nearest] < engine_->steps());
+  if (!goOn && nearest) {
+    const Keyframe keyframe = recording_.keyframe(*nearest);
+    if (!engine_->restore(keyframe, std::nullopt)) {
+      throw Error(ErrorKind::damaged, Where{recording_.path().string(), "/keyframes"},
+                  fmt::format("the one of step {} is no State of the scene's model", keyframe.step));
     }
-    if (nearest) {
-      const Keyframe keyframe = recording_.keyframe(*nearest);
-      if (!session_->restore(keyframe)) {
-        throw Error(ErrorKind::damaged, Where{recording_.path().string(), "/keyframes"},
-                    fmt::format("the one of step {} is no State of the scene's model", keyframe.step));
-      }
-    }
+  } else if (!goOn) {
+    engine_->start(recording_.header().seed);
   }
-  while (session_->steps() <= step) advance();
+  begun_ = true;
+  while (engine_->steps() <= step) advance();
 }
 
 void Seeker::advance() {
   try {
-    rerun(*session_, recording_.step(session_->steps()));
+    const RecordedStep& recorded = recording_.step(engine_->steps());
+    static_cast<void>(engine_->step({recorded.samples, recorded.ticks, recorded.lateness}));
   } catch (const std::out_of_range& e) {
     throw Error(ErrorKind::damaged, Where{recording_.path().string(), "/ticks"}, e.what());
   }

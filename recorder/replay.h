@@ -11,11 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "recorder/engine/engine.h"
+#include "recorder/engine_choice.h"
 #include "recorder/errors.h"
-#include "recorder/observer.h"
-#include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
-#include "recorder/session.h"
 #include "recorder/step_misses.h"
 
 namespace calot::recorder {
@@ -67,12 +66,13 @@ struct ReplaySettings {
   unsigned threads = 1;
   /// Numbers of the first and last segment to be verified; none: all.
   std::optional<std::pair<std::size_t, std::size_t>> part;
-  bool anyway = false;  ///< re-simulate a recording of another simulation version too
-  /// Makes observers of the re-simulation once header and model are known. On one thread they see every step as it is
-  /// computed. On several they see, in order, the recorded steps after all were proven equal to the computed ones, and
-  /// none where they were not, with the forces as they were computed; there is no `keyframe`, no `view` and no digest
-  /// of components then.
-  std::function<std::vector<Observer*>(const AttemptHeader&, const Model&)> observers;
+  EngineWish engine;
+  /// Makes observers of the re-simulation once the header is known and an engine is there; not asked where the engine's
+  /// results are of an earlier version of StepResult (what is recorded tells them as well, once it is proven). On one
+  /// thread they see every step as it is computed. On several they see, in order, the recorded steps after all were
+  /// proven equal to the computed ones, and none where they were not, with the forces as they were computed; there is
+  /// no `keyframe`, no `view` and no digest of components then.
+  std::function<std::vector<Observer*>(const AttemptHeader&, const SceneDescription&)> observers;
   std::function<void(std::uint64_t step, std::uint64_t of)> progress;
 };
 
@@ -83,13 +83,11 @@ std::string messageWithout(const std::filesystem::path& recording, const Error& 
 /// Judges one recording. Does not throw for the recording's faults: they are in the report.
 ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySettings& settings);
 
-/// Does the session's next step as it was recorded: its samples, each with the contact sets that its tick names.
-/// @throws std::out_of_range where a tick names a contact set that is not there.
-void rerun(Session& session, const RecordedStep& recorded);
-
-/// Re-simulates steps until the session has done `end` of them, or nothing more can be learned, and compares each with
-/// the recording. @returns the first difference. @pre the session is at one of the recording's own States
-std::optional<Divergence> follow(Recording& recording, Session& session, std::uint64_t end,
+/// Re-simulates steps until the engine has done `end` of them, or nothing more can be learned, and compares each with
+/// the recording. @param observers of each step, before it is compared @returns the first difference
+/// @pre the engine is at one of the recording's own States
+std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint64_t end,
+                                 const std::vector<Observer*>& observers,
                                  const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
 
 /// "diverged at step 13: hand.right realPosition (...)".
@@ -99,22 +97,27 @@ std::string describe(const Divergence& divergence);
 /// running there gives, bit for bit.
 class Seeker {
  public:
-  /// @param recording, executor outlive the seeker.
-  Seeker(Recording& recording, Executor& executor);
+  /// @param recording outlives the seeker. @param choice whose engine re-simulates
+  Seeker(Recording& recording, const EngineChoice& choice);
+  /// With the engine of the recording's version, inside where it is this program's own. @throws as EngineChoice
+  explicit Seeker(Recording& recording) : Seeker(recording, EngineChoice(recording, {})) {}
 
   /// Makes step n the last one done. @pre n < recording.stepCount() @throws Error (damaged) where a keyframe is no
   /// State of the scene's model, or a tick names a contact set that is not there.
   void seek(std::uint64_t step);
 
-  [[nodiscard]] const Session& session() const { return *session_; }
-  [[nodiscard]] const Model& model() const { return scene_->model(); }
+  /// Steps done. @pre seek()
+  [[nodiscard]] std::uint64_t steps() const { return engine_->steps(); }
+  /// What is to be drawn after that step, and the State as bytes.
+  [[nodiscard]] SceneView view() { return engine_->view(); }
+  [[nodiscard]] Keyframe keyframe() { return engine_->keyframe(); }
 
  private:
   void advance();
   Recording& recording_;
-  std::shared_ptr<PreparedScene> scene_;
-  Executor& executor_;
-  std::unique_ptr<Session> session_;
+  SerialExecutor executor_;
+  std::unique_ptr<Engine> engine_;
+  bool begun_ = false;
 };
 
 /// JUnit XML: one case a recording; diverged is a failure, damaged an error, undecided skipped, the divergence in the

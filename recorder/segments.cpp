@@ -13,7 +13,6 @@
 #include <thread>
 
 #include "recorder/miss_count.h"
-#include "recorder/session.h"
 
 namespace calot::recorder {
 
@@ -59,59 +58,46 @@ class ForceLog final : public Observer {
   std::vector<TickForces>* forces_;
 };
 
-/// A thread's own reader and session. A session that is used again keeps what it worked out of the model.
+/// A thread's own reader and engine. An engine that is used again keeps what it worked out of the scene.
 class Verifier {
  public:
-  Verifier(const std::filesystem::path& path, PreparedScene& scene, std::vector<TickForces>* forces)
-      : recording_(path), scene_(scene), forces_(forces) {}
+  Verifier(const std::filesystem::path& path, const EngineChoice& choice, std::vector<TickForces>* forces)
+      : recording_(path), engine_(choice.make(executor_)), forces_(forces) {}
 
   Result run(const Segment& segment, const std::function<void()>& stepped) {
-    if (!session_ || !segment.keyframe)
-      session_ = std::make_unique<Session>(scene_.model(), recording_.header().seed, executor_, &scene_.compliances());
     Result result;
+    if (!segment.keyframe) engine_->start(recording_.header().seed);
     if (segment.keyframe) {
       // Of which contact sets the ticks before had come to is in the recording, and checked with the segment before.
       const RecordedStep& before = recording_.step(segment.first - 1);
       const std::array named{before.ticks.back().hand[0].contactSet, before.ticks.back().hand[1].contactSet};
-      if (!session_->restore(recording_.keyframe(*segment.keyframe), named)) {
+      if (!engine_->restore(recording_.keyframe(*segment.keyframe), named)) {
         result.divergence = Divergence{segment.first - 1, {}, "keyframe", "state", "no State of this scene's model"};
         return result;
       }
     }
     MissCount count;
     ForceLog log(forces_);
-    session_->join(count);
-    session_->join(log);
-    struct Joined {
-      Session& session;
-      MissCount& count;
-      ForceLog& log;
-      ~Joined() {
-        session.leave(count);
-        session.leave(log);
-      }
-    } const joined{*session_, count, log};
     const auto progress = [&](std::uint64_t /*step*/, std::uint64_t /*of*/) { stepped(); };
-    result.divergence = follow(recording_, *session_, segment.end, progress);
+    result.divergence = follow(recording_, *engine_, segment.end, {&count, &log}, progress);
     result.misses = count.misses;
     return result;
   }
 
  private:
   Recording recording_;
-  PreparedScene& scene_;
-  std::vector<TickForces>* forces_;
   SerialExecutor executor_;
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<Engine> engine_;
+  std::vector<TickForces>* forces_;
 };
 
 /// Hands segments to threads in their order.
 class Verification {
  public:
-  Verification(const std::filesystem::path& path, PreparedScene& scene, const std::vector<Segment>& segments,
+  Verification(const std::filesystem::path& path, const EngineChoice& choice, const std::vector<Segment>& segments,
                std::vector<TickForces>* forces)
       : path_(path),
-        scene_(scene),
+        choice_(choice),
         segments_(segments),
         forces_(forces),
         results_(segments.size()),
@@ -144,7 +130,8 @@ class Verification {
     if (bad == results_.size()) return verdict;
     if (results_[bad].error) std::rethrow_exception(results_[bad].error);
     verdict.divergence = results_[bad].divergence;
-    verdict.reproducible = Verifier(path_, scene_, nullptr).run(segments_[bad], [] {}).divergence == verdict.divergence;
+    verdict.reproducible =
+        Verifier(path_, choice_, nullptr).run(segments_[bad], [] {}).divergence == verdict.divergence;
     return verdict;
   }
 
@@ -154,7 +141,7 @@ class Verification {
     for (std::size_t i = next_++; i < segments_.size() && i < firstBad_; i = next_++) {
       const double begin = threadSeconds();
       try {
-        if (!verifier) verifier = std::make_unique<Verifier>(path_, scene_, forces_);
+        if (!verifier) verifier = std::make_unique<Verifier>(path_, choice_, forces_);
         results_[i] = verifier->run(segments_[i], [&] {
           ++done_;
           if (i > firstBad_) throw NotNeeded();
@@ -175,7 +162,7 @@ class Verification {
   }
 
   const std::filesystem::path& path_;
-  PreparedScene& scene_;
+  const EngineChoice& choice_;
   const std::vector<Segment>& segments_;
   std::vector<TickForces>* forces_;
   std::vector<Result> results_;
@@ -203,12 +190,12 @@ std::vector<Segment> segmentsOf(const Recording& recording) {
   return segments;
 }
 
-SegmentsVerdict verifySegments(const std::filesystem::path& recording, PreparedScene& scene,
+SegmentsVerdict verifySegments(const std::filesystem::path& recording, const EngineChoice& choice,
                                const std::vector<Segment>& segments, unsigned threads,
                                const std::function<void(std::uint64_t step, std::uint64_t of)>& progress,
                                std::vector<TickForces>* forces) {
   if (segments.empty()) throw std::invalid_argument("no segments");
-  Verification verification(recording, scene, segments, forces);
+  Verification verification(recording, choice, segments, forces);
   verification.run(std::max(threads, 1U), progress);
   return verification.verdict();
 }

@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "recorder/observer.h"
-#include "recorder/prepared_scene.h"
+#include "recorder/engine/observer.h"
+#include "recorder/engine_choice.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
 #include "recorder/step_misses.h"
@@ -43,12 +43,12 @@ struct SegmentsVerdict {
   std::vector<double> seconds;           ///< per segment: processor time that it took; 0: not needed
 };
 
-/// Verifies each of the segments, up to `threads` at a time, each on one thread with a reader of its own.
+/// Verifies each of the segments, up to `threads` at a time, each on one thread with a reader and an engine of its own.
 /// @param progress steps done, of all; called on this thread
 /// @param forces takes those of every step that was done, by the number of the tick; as many as the recording's ticks,
 /// or null
 /// @throws what reading the recording throws, where no segment before differs; std::invalid_argument on no segments
-SegmentsVerdict verifySegments(const std::filesystem::path& recording, PreparedScene& scene,
+SegmentsVerdict verifySegments(const std::filesystem::path& recording, const EngineChoice& choice,
                                const std::vector<Segment>& segments, unsigned threads,
                                const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {},
                                std::vector<TickForces>* forces = nullptr);

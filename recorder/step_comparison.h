@@ -4,21 +4,21 @@
 #include <optional>
 
 #include "recorder/compare.h"
-#include "recorder/observer.h"
+#include "recorder/engine/engine.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
 
 namespace calot::recorder {
 
-/// Compares every step of a session that re-simulates a recording: forces, digests, observables and events; where there
+/// Compares every step of an engine that re-simulates a recording: forces, digests, observables and events; where there
 /// is a keyframe, State, haptic states and contact sets byte for byte.
-class StepComparison final : public Observer {
+class StepComparison {
  public:
-  /// @param recording, model outlive it.
-  StepComparison(Recording& recording, const Model& model);
+  /// @param recording, engine outlive it.
+  StepComparison(Recording& recording, Engine& engine);
 
-  void onStep(const StepRecord& record) override;
-  void onEnd(Outcome /*outcome*/) override {}
+  /// @pre it is the engine's newest
+  void compare(const EngineStep& step);
 
   [[nodiscard]] const std::optional<Divergence>& first() const { return first_; }
   /// Nothing more can be learned by going on.
@@ -28,11 +28,12 @@ class StepComparison final : public Observer {
 
  private:
   std::optional<std::size_t> keyframeAt(std::uint64_t step);
-  std::optional<Divergence> compareDigests(const RecordedStep& recorded, const StepRecord& record);
-  void resolveAtKeyframe(const StepRecord& record);
+  std::optional<Divergence> compareDigests(const RecordedStep& recorded, const EngineStep& step);
+  std::optional<Divergence> compareKeyframe(std::size_t index);
+  void resolveAtKeyframe(const EngineStep& step);
 
   Recording& recording_;
-  const Model& model_;
+  Engine& engine_;
   ResultComparison compareResult_;
   bool minimal_;      ///< no forces, no keyframes
   bool exactForces_;  ///< format version 1: forces as they were, digests of components

@@ -5,7 +5,8 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-"$root/scripts/setup.sh" slurm-wlm munge snakemake
+"$root/scripts/setup.sh" slurm-wlm munge snakemake g++-riscv64-linux-gnu g++-arm-linux-gnueabihf g++-i686-linux-gnu \
+  wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32 lld-14 llvm-14
 configure release
 build release
 # Each source by itself: what one forgot to include, and names that hide others.

@@ -7,7 +7,9 @@ and nothing else, over the same States: 200 steps, a line of digests each. All l
 
   --short   gcc at -O3 for x86-64 and for the widest machine that runs here, clang at -O0, 2 threads, a host that flushes
             denormals to zero; with --tree, build trees that hold a calot-matrix stand in for all but the widest machine
-  --full    {gcc, clang} x {-O0 .. -O3} x {x86-64, v3, v4, native} x {1, 2 threads}, the same host, and aarch64 under qemu
+  --full    {gcc, clang} x {-O0 .. -O3} x {x86-64, v3, v4, native} x {1, 2 threads}, the same host; aarch64, riscv64, armhf and i386
+            under qemu; WebAssembly by node
+  --machine M   those of --full that are for this machine, beside the reference
 
 Exit: 0 all equal; 3 some differ; 1 something could not be built or run. Cells that this machine cannot run are printed as
 skipped, with the reason, and do not count as equal.
@@ -31,7 +33,15 @@ LEVELS = {  # what each level of the x86-64 ABI adds, as /proc/cpuinfo names it
     "x86-64-v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
     "native": set(),
 }
-CROSS = {"gcc": "aarch64-linux-gnu-g++", "clang": "clang++"}
+# Other processors: the cross compiler of Debian, what runs its programs here, and what clang calls it. i386 computes in SSE2: the x87
+# registers of old have other digits.
+OTHERS = {
+    "aarch64": ("aarch64-linux-gnu-g++", "qemu-aarch64", "aarch64-linux-gnu", []),
+    "riscv64": ("riscv64-linux-gnu-g++", "qemu-riscv64", "riscv64-linux-gnu", []),
+    "armhf": ("arm-linux-gnueabihf-g++", "qemu-arm", "arm-linux-gnueabihf", []),
+    "i386": ("i686-linux-gnu-g++", "qemu-i386", "i686-linux-gnu", ["-msse2", "-mfpmath=sse"]),
+    "wasm32": ("clang++-14", "node", "wasm32-wasi", ["-msimd128", "-fignore-exceptions"]),
+}
 # What is recorded to take States from: scene, performer, seed, seconds, and what the State is taken just before: the first
 # touch, or the first event of a kind (schemas/recording.md). Together they have contact, fat, beams, springs, clips.
 CLIP_IS_SET = 21
@@ -46,7 +56,7 @@ class Build:
     """One executable of the matrix."""
     compiler: str  # gcc or clang
     level: str  # -O0 .. -O3
-    machine: str  # a key of LEVELS, or aarch64
+    machine: str  # a key of LEVELS or of OTHERS
 
     @property
     def name(self):
@@ -56,9 +66,9 @@ class Build:
         return work / self.name / "calot-matrix"
 
     def command(self):
-        if self.machine == "aarch64":
-            target = ["--target=aarch64-linux-gnu"] if self.compiler == "clang" else []
-            return [CROSS[self.compiler], *target]
+        if self.machine in OTHERS:
+            cross, _, target, options = OTHERS[self.machine]
+            return [cross if self.compiler == "gcc" else "clang++-14", *([f"--target={target}"] if self.compiler == "clang" else []), *options]
         return [{"gcc": "g++", "clang": "clang++"}[self.compiler], f"-march={self.machine}"]
 
     def flags(self):
@@ -108,10 +118,12 @@ def reason_to_skip(build):
         return None
     if not shutil.which(build.command()[0]):
         return f"no {build.command()[0]} here"
-    if build.machine == "aarch64":
-        if not shutil.which("aarch64-linux-gnu-g++"):
-            return "no cross library for aarch64 here"
-        return None if shutil.which("qemu-aarch64") else "no qemu-aarch64 here"
+    if build.machine in OTHERS:
+        cross, runner, target, _ = OTHERS[build.machine]
+        library = pathlib.Path("/usr/lib/wasm32-wasi/libc.a").exists() if build.machine == "wasm32" else shutil.which(cross)
+        if not library:
+            return f"no library for {build.machine} here"
+        return None if shutil.which(runner) else f"no {runner} here"
     if os.uname().machine != "x86_64":
         return f"this machine is {os.uname().machine}"
     needed = LEVELS[build.machine] | (LEVELS["x86-64-v3"] if build.machine == "x86-64-v4" else set())
@@ -136,7 +148,9 @@ def full_cells():
             cells.append(Cell(Build(compiler, level, "x86-64"), 2, True))
         for level in ("-O0", "-O3"):
             cells += [Cell(Build(compiler, level, "aarch64"), threads) for threads in (1, 2)]
+        cells += [Cell(Build(compiler, "-O3", machine)) for machine in ("riscv64", "armhf", "i386")]
     cells.append(Cell(Build("gcc", "-O3", "aarch64"), 1, True))
+    cells += [Cell(Build("clang", level, "wasm32")) for level in ("-O1", "-O3")]
     return cells
 
 
@@ -158,7 +172,7 @@ def build_all(builds, work, jobs):
     include = headers(work)
     launcher = os.environ.get("CMAKE_CXX_COMPILER_LAUNCHER", "")
     lines = ["rule compile", "  command = $compiler $flags -MMD -MF $out.d -c $in -o $out", "  depfile = $out.d",
-             "  deps = gcc", "  description = $out", "rule link", "  command = $compiler $in -o $out -static -pthread",
+             "  deps = gcc", "  description = $out", "rule link", "  command = $compiler $in -o $out $options",
              "  description = $out"]
     for build in builds:
         compiler = " ".join(build.command())
@@ -166,9 +180,10 @@ def build_all(builds, work, jobs):
         for source in sources:
             target = f"{build.name}/{source.relative_to(ROOT).with_suffix('.o')}"
             objects.append(target)
-            flags = " ".join([*build.flags(), f"-I{ROOT}", f"-isystem {include}", "-pthread"])
+            flags = " ".join([*build.flags(), f"-I{ROOT}", f"-isystem {include}", *([] if build.machine == "wasm32" else ["-pthread"])])
             lines += [f"build {target}: compile {source}", f"  compiler = {launcher} {compiler}", f"  flags = {flags}"]
-        lines += [f"build {build.name}/calot-matrix: link {' '.join(objects)}", f"  compiler = {compiler}"]
+        options = "-Wl,-z,stack-size=8388608" if build.machine == "wasm32" else "-static -pthread"
+        lines += [f"build {build.name}/calot-matrix: link {' '.join(objects)}", f"  compiler = {compiler}", f"  options = {options}"]
     (work / "build.ninja").write_text("\n".join(lines) + "\n")
     run = subprocess.run(["ninja", "-C", str(work), "--quiet", f"-j{jobs}", "-k0"], check=False)
     if run.returncode == 0:
@@ -226,8 +241,10 @@ def run_cell(cell, states, work):
     """The lines that the cell prints over all States; raises RuntimeError where it fails."""
     lines = []
     program = [str(cell.build.program(work))]
-    if cell.build.machine == "aarch64":
-        program.insert(0, "qemu-aarch64")
+    if cell.build.machine == "wasm32":
+        program[:0] = ["node", "--no-warnings", str(ROOT / "tests/determinism/run_module.mjs")]
+    elif cell.build.machine in OTHERS:
+        program.insert(0, OTHERS[cell.build.machine][1])
     for state in states:
         command = [*program, str(state), "--threads", str(cell.threads), *(["--flush-to-zero"] if cell.flush_to_zero else [])]
         run = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -268,6 +285,7 @@ def main():
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--short", action="store_true", help="the default")
     size.add_argument("--full", action="store_true")
+    size.add_argument("--machine", action="append", choices=[*LEVELS, *OTHERS], help="the cells of --full for this machine alone")
     size.add_argument("--self-test", action="store_true")
     parser.add_argument("--calot", type=pathlib.Path, help="release build of calot, which makes the States")
     parser.add_argument("--state", type=pathlib.Path, action="append", help="a stored State (calot state --flat) to use instead")
@@ -289,6 +307,8 @@ def main():
         if not Tree(tree).program(None).is_file():
             parser.error(f"--tree {tree}: no bin/calot-matrix there: build the target calot-matrix")
     cells = full_cells() if arguments.full else short_cells(trees)
+    if arguments.machine:
+        cells = short_cells(trees)[:1] + [c for c in full_cells() if c.build.machine in arguments.machine]
     work = arguments.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     states = [s.resolve() for s in arguments.state] if arguments.state else make_states(arguments.calot.resolve(), work)

@@ -10,14 +10,14 @@ packages=(
   libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
   nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libfreetype-dev
-  libsdl2-dev libopenigtlink-dev
+  libsdl2-dev libopenigtlink-dev libseccomp-dev
   qt6-base-dev qt6-charts-dev libqt6opengl6-dev libbullet-dev
   # run
   fonts-dejavu-core
   # tests and checks
   xvfb xauth libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy hdf5-tools
   clang clang-format clang-tidy libclang-rt-14-dev shellcheck valgrind
-  g++-aarch64-linux-gnu qemu-user
+  g++-aarch64-linux-gnu qemu-user nodejs
   "$@"
 )
 

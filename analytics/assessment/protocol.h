@@ -14,8 +14,8 @@
 
 #include "analytics/assessment/declared_document.h"
 #include "analytics/statistics/repeated_attempts.h"
+#include "recorder/engine/observer.h"
 #include "recorder/formats/json_reader.h"
-#include "recorder/observer.h"
 
 namespace calot::analytics {
 

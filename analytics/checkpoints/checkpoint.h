@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "analytics/checkpoints/scene_facts.h"
+#include "recorder/engine/observer.h"
 #include "recorder/identity.h"
-#include "recorder/observer.h"
 #include "sim/judgement/judgement.h"
 
 namespace calot::analytics {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/phases.h"
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "sim/scene/samples.h"
 
 namespace calot::analytics {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "analytics/checkpoints/phases.h"
+#include "sim/math/bounds.h"
 #include "sim/scene/step_result.h"
 
 namespace calot::analytics {
@@ -19,7 +20,7 @@ class GrowthInPhase {
   void add(Phase now, double total, bool fromZero) {
     if (!begun_) before_ = fromZero ? 0.0 : total;
     begun_ = true;
-    if (now == phase_) growth_ += std::max(total - before_, 0.0);
+    if (now == phase_) growth_ += notNegative(total - before_);
     before_ = total;
   }
   [[nodiscard]] double growth() const { return growth_; }

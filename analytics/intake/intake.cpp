@@ -151,9 +151,12 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
   }
   JudgedRecording judged;
   try {
-    judged = judgedRecording(assessRecording(c.file, settings_.threads, motionCutoff, [&](auto, auto) {
+    AssessSettings assess{.threads = settings_.threads};
+    assess.engine.apart = settings_.apart;
+    assess.progress = [&](auto, auto) {
       if (stop) throw IntakeStopped();
-    }));
+    };
+    judged = judgedRecording(assessRecording(c.file, assess));
   } catch (const IntakeStopped&) {
     return std::nullopt;
   }

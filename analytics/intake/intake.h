@@ -23,6 +23,7 @@ struct IntakeSettings {
   std::string cohort;  ///< made where there is none
   std::filesystem::path journal;
   unsigned threads = 1;  ///< segments of a recording that are verified at a time
+  bool apart = false;    ///< re-simulate in confined programs: a watched folder takes what anybody puts into it
   /// A finished recording is taken when it has not changed for this long.
   std::chrono::milliseconds quiet{1000};
   /// One that is not finished or cannot be read, when it has not changed for this long: its writer was killed, or its

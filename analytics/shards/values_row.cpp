@@ -30,8 +30,8 @@ constexpr std::pair<const char*, ReplayVerdict> verdictWords[] = {{"exact", Repl
                                                                   {"damaged", ReplayVerdict::damaged},
                                                                   {"undecided", ReplayVerdict::undecided}};
 /// Those that judging a recording gives; others are not written.
-constexpr std::pair<const char*, Remedy> remedyWords[] = {{"recover", Remedy::recover},
-                                                          {"replay anyway", Remedy::replayAnyway}};
+constexpr std::pair<const char*, Remedy> remedyWords[] = {
+    {"recover", Remedy::recover}, {"install engine", Remedy::installEngine}, {"replay anyway", Remedy::replayAnyway}};
 
 std::vector<KeyRule> joined(std::initializer_list<std::vector<KeyRule>> parts) {
   std::vector<KeyRule> all;

@@ -12,6 +12,7 @@
 #include "gui/dashboard/dashboard_window.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/kept/engine_folders.h"
 #include "recorder/prepared_scene.h"
 
 namespace {
@@ -42,7 +43,9 @@ int run(int argc, char** argv) {
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
   const std::filesystem::path program = QCoreApplication::applicationDirPath().toStdString();
-  calot::gui::DashboardWindow window(calot::apps::assessProgram(), calot::recorder::assetRoots(program, CALOT_ASSETS));
+  const std::vector<std::filesystem::path> assets = calot::recorder::assetRoots(program, CALOT_ASSETS);
+  calot::recorder::useEngines(calot::recorder::userEnginePlaces(program, assets));
+  calot::gui::DashboardWindow window(calot::apps::assessProgram(), assets);
   if (document) window.setDocument(document);
   window.show();
   if (!pictures.empty()) {

@@ -33,7 +33,7 @@ struct AssessOptions {
   double cutoff = 0.0;  ///< 0: values are stored
   ShareOptions share;
   unsigned jobs = 0;
-  bool json = false;
+  bool apart = false, json = false;
 };
 
 /// Files as they are named; those of folders by name.
@@ -177,9 +177,11 @@ int assess(const AssessOptions& o) {
   if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
   AssessOutput output(o, files.size() == 1 || !database);
   Progress progress("assessing, recordings", o.json);
+  analytics::AssessSettings settings{.threads = o.threads.value_or(1)};
+  if (o.cutoff > 0.0) settings.cutoff = o.cutoff;
+  settings.engine.apart = o.apart;
   for (const std::string& file : files) {
-    analytics::JudgedRecording judged = analytics::judgedRecording(
-        analytics::assessRecording(file, o.threads.value_or(1), o.cutoff > 0.0 ? o.cutoff : analytics::motionCutoff));
+    analytics::JudgedRecording judged = analytics::judgedRecording(analytics::assessRecording(file, settings));
     Stored stored;
     if (database) {
       storeJudged(file, o, *database, judged, stored);
@@ -217,6 +219,7 @@ void addAssess(CLI::App& app, Run& run) {
                    "segments between keyframes that are verified at a time (1), or with --uncertainty runs at a time "
                    "(0); 0: one a processor")
       ->check(CLI::Range(0U, 64U));
+  command->add_flag("--apart", o->apart, "re-simulate in confined programs (docs/engines.md)");
   command->add_flag("--json", o->json, "print the result as JSON");
   command->callback([o, &run] { run = [o] { return assess(*o); }; });
 }

@@ -11,6 +11,7 @@ namespace calot::apps {
 using Run = std::function<int()>;
 
 void addRecord(CLI::App& app, Run& run);
+void addEngine(CLI::App& app, Run& run);
 void addReplay(CLI::App& app, Run& run);
 void addBranch(CLI::App& app, Run& run);
 void addInspect(CLI::App& app, Run& run);

@@ -23,6 +23,12 @@ std::vector<std::filesystem::path> assetFolders() {
   return recorder::assetRoots(program.parent_path(), CALOT_ASSETS);
 }
 
+recorder::EnginePlaces enginePlaces() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return recorder::userEnginePlaces(program.parent_path(), assetFolders());
+}
+
 std::vector<std::filesystem::path> listAssets(const std::string& folder) {
   namespace fs = std::filesystem;
   std::map<std::string, fs::path> byName;

@@ -7,10 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "recorder/kept/engine_folders.h"
+
 namespace calot::apps {
 
 /// Folders that may hold scenes, organs and performers (recorder::assetRoots of this program).
 std::vector<std::filesystem::path> assetFolders();
+
+/// Where this program finds engines of simulation versions.
+recorder::EnginePlaces enginePlaces();
 
 /// A JSON file of the assets by its name ("goals"), or any file by its path ("mine/goals.json").
 /// @param folder of the assets: "forms". @param what messages call it: "form". @throws Error (invalid)

@@ -65,8 +65,8 @@ GoldenReplay replayGolden(const std::filesystem::path& file, const GoldenEntry& 
   std::unique_ptr<analytics::CheckpointCollector> collector;
   recorder::ReplaySettings settings;
   settings.threads = threads;
-  settings.observers = [&](const recorder::AttemptHeader& h, const Model& model) {
-    collector = std::make_unique<analytics::CheckpointCollector>(h, model.scene());
+  settings.observers = [&](const recorder::AttemptHeader& h, const SceneDescription& scene) {
+    collector = std::make_unique<analytics::CheckpointCollector>(h, scene);
     return std::vector<recorder::Observer*>{collector.get()};
   };
   replay.report = recorder::replayRecording(file, settings);

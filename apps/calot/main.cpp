@@ -2,6 +2,7 @@
 #include <string>
 
 #include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
 #include "apps/common/program.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
@@ -16,12 +17,12 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   apps::Run run;
   for (const auto add :
-       {apps::addRecord,      apps::addReplay,  apps::addBranch,      apps::addInspect, apps::addRecover,
-        apps::addExport,      apps::addState,   apps::addDiff,        apps::addImport,  apps::addAssess,
-        apps::addVerify,      apps::addStudy,   apps::addProtocol,    apps::addPower,   apps::addRate,
-        apps::addNorm,        apps::addGrade,   apps::addParticipant, apps::addAttempt, apps::addRegrade,
-        apps::addCohort,      apps::addStation, apps::addRender,      apps::addMesh,    apps::addScenes,
-        apps::addCheckpoints, apps::addDevices, apps::addGolden,      apps::addCache}) {
+       {apps::addRecord,  apps::addReplay,      apps::addEngine,  apps::addBranch,      apps::addInspect,
+        apps::addRecover, apps::addExport,      apps::addState,   apps::addDiff,        apps::addImport,
+        apps::addAssess,  apps::addVerify,      apps::addStudy,   apps::addProtocol,    apps::addPower,
+        apps::addRate,    apps::addNorm,        apps::addGrade,   apps::addParticipant, apps::addAttempt,
+        apps::addRegrade, apps::addCohort,      apps::addStation, apps::addRender,      apps::addMesh,
+        apps::addScenes,  apps::addCheckpoints, apps::addDevices, apps::addGolden,      apps::addCache}) {
     add(app, run);
   }
   const auto isCommand = [&app](const std::string& word) {
@@ -43,5 +44,6 @@ int main(int argc, char** argv) {
     return apps::endWith(apps::ExitCode::usage, "calot", std::string(e.what()) + " (try: " + name + " --help)");
   }
   recorder::useComplianceCache(recorder::userCacheFolder());
+  recorder::useEngines(apps::enginePlaces());
   return apps::runProgram("calot", run);
 }

@@ -21,10 +21,10 @@ namespace {
 
 struct ReplayOptions {
   std::vector<std::string> files;
-  std::string junit;
+  std::string junit, engine;
   std::vector<std::size_t> segments;  ///< first and last; empty: all
   unsigned threads = 1, jobs = 1;
-  bool anyway = false, json = false;
+  bool anyway = false, apart = false, json = false;
 };
 
 int replay(const ReplayOptions& o) {
@@ -42,7 +42,7 @@ int replay(const ReplayOptions& o) {
     for (std::size_t i = next++; i < o.files.size(); i = next++) {
       recorder::ReplaySettings settings;
       settings.threads = o.threads;
-      settings.anyway = o.anyway;
+      settings.engine = {o.apart, o.anyway, o.engine};
       if (!o.segments.empty()) settings.part.emplace(o.segments.front(), o.segments.back());
       if (single) settings.progress = [&](std::uint64_t step, std::uint64_t of) { progress.show(step, of); };
       try {
@@ -97,6 +97,9 @@ void addReplay(CLI::App& app, Run& run) {
   command->add_option("--segments", o->segments, "verify these alone, FIRST LAST, numbered from 0")->expected(2);
   command->add_option("--junit", o->junit, "write the result as JUnit XML");
   command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
+  command->add_flag("--apart", o->apart,
+                    "re-simulate in confined programs, as recordings of other simulation versions are");
+  command->add_option("--engine", o->engine, "this engine's program or module, whatever is installed");
   command->add_flag("--json", o->json, "print the result as JSON");
   command->callback([o, &run] { run = [o] { return replay(*o); }; });
 }

@@ -7,12 +7,12 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/common/exit_code.h"
+#include "recorder/engine/state_fields.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
-#include "recorder/live/worker_pool.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recording/state_file.h"
 #include "recorder/replay.h"
-#include "recorder/state_fields.h"
 #include "sim/scene/flat.h"
 #include "sim/scene/version.h"
 
@@ -36,20 +36,26 @@ int state(const StateOptions& o) {
     throw Error(ErrorKind::invalid, fmt::format("{}: has steps 0 to {}, not {}", o.recording,
                                                 static_cast<std::int64_t>(recording.stepCount()) - 1, o.step));
   }
-  recorder::WorkerPool pool(1);
-  recorder::Seeker seeker(recording, pool);
+  // What a State's bytes mean this build knows of its own version alone.
+  const recorder::EngineChoice choice(recording, {.anyway = true});
+  recorder::Seeker seeker(recording, choice);
   seeker.seek(o.step);
+  const std::shared_ptr<recorder::PreparedScene> scene = recorder::sceneOf(recording);
+  State state;
+  const recorder::Keyframe keyframe = seeker.keyframe();
+  if (!restoreState(scene->model(), keyframe.state, state))
+    throw Error(ErrorKind::damaged, fmt::format("{}: the State of step {} is none", o.recording, o.step));
   if (!o.flat) {
     std::vector<recorder::NamedNumbers> fields;
-    for (recorder::StateField& f : recorder::stateFields(seeker.model(), seeker.session().state())) {
+    for (recorder::StateField& f : recorder::stateFields(scene->model(), state)) {
       fields.emplace_back(std::move(f.name), std::move(f.values));
     }
     recorder::writeStateFile(o.output, o.step, simulationVersion, fields, o.force);
     return 0;
   }
   FlatState flat;
-  flat.scene = seeker.model().scene();
-  flat.state = saveState(seeker.session().state());
+  flat.scene = scene->model().scene();
+  flat.state = keyframe.state;
   const std::uint64_t last = std::min(recording.stepCount(), o.step + 1 + flatSteps);
   for (std::uint64_t n = o.step + 1; n < last; ++n) {
     const recorder::RecordedStep& step = recording.step(n);

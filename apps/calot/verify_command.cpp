@@ -19,6 +19,7 @@
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
+#include "recorder/kept/engine_folders.h"
 
 namespace calot::apps {
 namespace {
@@ -35,7 +36,7 @@ struct VerifyOptions {
   std::string cohort, journal;
   unsigned threads = 1;
   double quiet = 1.0, settle = 60.0, rescan = 30.0;  ///< s
-  bool once = false, json = false;
+  bool once = false, inside = false, json = false;
 };
 
 const char* wordFor(TakenIn how) {
@@ -112,6 +113,7 @@ int verify(const VerifyOptions& o) {
   settings.cohort = o.cohort;
   settings.journal = o.journal.empty() ? o.cohort + ".intake" : o.journal;
   settings.threads = o.threads;
+  settings.apart = !o.inside && !recorder::enginePlaces().own.empty();
   settings.quiet = fromSeconds(o.quiet);
   settings.settle = fromSeconds(o.settle);
   for (const std::filesystem::path& folder : settings.folders) {
@@ -169,6 +171,7 @@ void addVerify(CLI::App& app, Run& run) {
   command->add_option("--rescan", o->rescan, "seconds between looks at the folders where no change is noticed")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
+  command->add_flag("--inside", o->inside, "re-simulate in this program, not in confined ones");
   command->add_flag("--json", o->json, "print a line of JSON for each recording");
   command->callback([o, &run] { run = [o] { return verify(*o); }; });
 }

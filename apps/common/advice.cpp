@@ -10,6 +10,8 @@ const char* adviceOf(Remedy remedy) {
       return "--force replaces what is there";
     case Remedy::recover:
       return "calot recover saves what it can";
+    case Remedy::installEngine:
+      return "calot engine list shows those that are there";
     case Remedy::replayAnyway:
       return "--anyway replays and reports";
     case Remedy::moveFork:

@@ -15,7 +15,7 @@
 #include "assets/organs/vessel_paths.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
-#include "recorder/formats/obj.h"
+#include "recorder/formats/obj_file.h"
 #include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 

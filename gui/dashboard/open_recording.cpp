@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "recorder/errors.h"
+#include "recorder/kept/engine_folders.h"
 #include "sim/scene/version.h"
 
 namespace calot::gui {
@@ -36,10 +37,11 @@ recorder::Recording openRecording(const fs::path& file, const std::string& attem
     throw Error(ErrorKind::refused, Where{name}, fmt::format("its content chain is broken ({})", chain.what));
   if (recording.stepCount() == 0) throw Error(ErrorKind::damaged, Where{name}, "holds no step to show");
   const std::uint32_t version = recording.header().simulationVersion;
-  if (version != simulationVersion)
+  if (version != simulationVersion && recorder::commandOfEngine(version).empty())
     throw Error(ErrorKind::undecided, Where{name},
-                fmt::format("was made by simulation version {}; this program has version {} and cannot repeat it",
-                            version, simulationVersion));
+                fmt::format("was made by simulation version {}; this program has version {}, and no engine of version "
+                            "{} is installed to repeat it",
+                            version, simulationVersion, version));
   return recording;
 }
 

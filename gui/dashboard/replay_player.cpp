@@ -12,9 +12,7 @@
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
-#include "recorder/live/worker_pool.h"
 #include "recorder/replay.h"
-#include "sim/scene/scene_viewer.h"
 #include "sim/scene/version.h"
 
 namespace calot::gui {
@@ -37,9 +35,7 @@ class ReplayPlayer::Run {
   explicit Run(ReplayPlayer& player)
       : player_(player),
         recording_(openRecording(player.file_, player.attempt_)),
-        pool_(1),
-        seeker_(recording_, pool_),
-        viewer_(seeker_.model()),
+        seeker_(recording_),
         stepSeconds_(recording_.seconds() / static_cast<double>(recording_.stepCount())) {
     position_.steps = recording_.stepCount();
     position_.seconds = recording_.seconds();
@@ -90,7 +86,7 @@ class ReplayPlayer::Run {
     position_.time = static_cast<double>(*done_ + 1) * stepSeconds_;
     position_.settled = settled;
     position_.hopping = hopping;
-    player_.receiver_.moment(std::make_shared<const SceneView>(viewer_.view(seeker_.session().state())), position_);
+    player_.receiver_.moment(std::make_shared<const SceneView>(seeker_.view()), position_);
   }
 
   void take(const Wish& wish) {
@@ -161,9 +157,7 @@ class ReplayPlayer::Run {
 
   ReplayPlayer& player_;
   recorder::Recording recording_;
-  recorder::WorkerPool pool_;
   recorder::Seeker seeker_;
-  SceneViewer viewer_;
   const double stepSeconds_;
   PlayerPosition position_;
   std::optional<std::uint64_t> done_;  ///< the seeker's step

@@ -7,7 +7,7 @@
 namespace calot::gui {
 
 FilmSource::FilmSource(const std::filesystem::path& recording, const Overlays& overlays)
-    : recording_(recording), seeker_(recording_, pool_), viewer_(seeker_.model()) {
+    : recording_(recording), seeker_(recording_) {
   if (overlays.needTrack() || hasResults(recording_))
     track_ = std::make_unique<MomentTrack>(recording, overlays.checkpoints);
 }
@@ -23,7 +23,7 @@ std::uint64_t FilmSource::stepAt(double time) const {
 FilmSource::Scene FilmSource::at(std::uint64_t step) {
   seeker_.seek(step);
   Scene scene;
-  scene.view = viewer_.view(seeker_.session().state());
+  scene.view = seeker_.view();
   if (track_)
     scene.moment = track_->at(step);
   else

@@ -7,9 +7,7 @@
 
 #include "gui/film/moment_track.h"
 #include "gui/film/overlay.h"
-#include "recorder/live/worker_pool.h"
 #include "recorder/replay.h"
-#include "sim/scene/scene_viewer.h"
 
 namespace calot::gui {
 
@@ -40,9 +38,7 @@ class FilmSource {
 
  private:
   recorder::Recording recording_;
-  recorder::WorkerPool pool_{1};
   recorder::Seeker seeker_;
-  SceneViewer viewer_;
   std::unique_ptr<MomentTrack> track_;
 };
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gui/trainer/mistakes.h"
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/model.h"
 

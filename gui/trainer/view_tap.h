@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "recorder/session.h"
+#include "recorder/engine/session.h"
 #include "sim/scene/scene_viewer.h"
 
 namespace calot::gui {

@@ -35,6 +35,7 @@ const char* adviceOf(Remedy remedy) {
       return "exclude one";
     case Remedy::nameGroups:
       return "choose two groups";
+    case Remedy::installEngine:
     case Remedy::replayAnyway:
     case Remedy::listDevices:
     case Remedy::nameDevice:

@@ -12,8 +12,6 @@
 #include <vector>
 
 #include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/text_output.h"
 #include "recorder/formats/text_words.h"
 
 namespace calot::recorder {
@@ -146,10 +144,6 @@ TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name,
   return ObjParser(name, unit, limits).parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const ObjLimits& limits) {
-  return parseObj(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
-}
-
 std::string formatObj(const TriangleMesh& mesh, const std::string& comment) {
   std::string text;
   text.reserve(64 * mesh.vertex.size() + 24 * mesh.triangle.size() + 1024);
@@ -162,10 +156,6 @@ std::string formatObj(const TriangleMesh& mesh, const std::string& comment) {
   for (const Vec3& p : mesh.vertex) fmt::format_to(out, "v {} {} {}\n", p[0], p[1], p[2]);
   for (const Index3& v : mesh.triangle) fmt::format_to(out, "f {} {} {}\n", v[0] + 1, v[1] + 1, v[2] + 1);
   return text;
-}
-
-void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment, bool force) {
-  writeText(path, formatObj(mesh, comment), force);
 }
 
 }  // namespace calot::recorder

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -23,16 +22,8 @@ using ObjLimits = SurfaceLimits;
 TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                       const ObjLimits& limits = {});
 
-/// The same from a file. @throws Error (damaged)
-TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const ObjLimits& limits = {});
-
 /// The text of an OBJ file in metres. Coordinates are written so that they are read back bit for bit.
 /// @param comment lines for the head, each without "#"
 std::string formatObj(const TriangleMesh& mesh, const std::string& comment);
-
-/// Writes it under a temporary name, then renames.
-/// @throws Error (invalid) where the file exists and `force` is not set, or its folder does not exist; (failure) where
-/// writing fails. Nothing half-written stays.
-void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment, bool force);
 
 }  // namespace calot::recorder

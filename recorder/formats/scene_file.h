@@ -7,19 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "recorder/identity.h"
-#include "sim/scene/description.h"
+#include "recorder/formats/scene_assets.h"
 
 namespace calot::recorder {
-
-/// A scene with all its assets.
-struct LoadedScene {
-  SceneDescription description;       ///< what a Model is built from
-  std::string summary;                ///< one sentence for people
-  std::vector<std::string> warnings;  ///< repairs of surfaces, one line each
-  std::vector<Asset>
-      assets;  ///< the scene file first, then each mesh in the order of the organs and the fat; bytes as read
-};
 
 /// Reads a scene file and the meshes that it names.
 ///
@@ -28,11 +18,6 @@ struct LoadedScene {
 ///
 /// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
 LoadedScene loadScene(const std::filesystem::path& sceneFile);
-
-/// The same reading from bytes, such as a recording's: the first asset is the scene file, the others are looked up by
-/// name. Touches no file.
-/// @throws Error (damaged) as loadScene, and where a named asset is missing, double, or named by nobody.
-LoadedScene sceneFromAssets(std::vector<Asset> assets);
 
 /// Folders that may contain `scenes/`, `organs/` and `performers/`, in order of precedence: the environment's
 /// CALOT_ASSETS; or, where that is not set, `<programFolder>/../share/calot` and the folder compiled in by the program.

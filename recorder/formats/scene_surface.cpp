@@ -9,7 +9,7 @@
 #include "recorder/errors.h"
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_rules.h"
-#include "recorder/formats/surface_file.h"
+#include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/surface_report.h"
 
 namespace calot::recorder {

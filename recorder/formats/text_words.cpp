@@ -4,13 +4,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 namespace calot::recorder {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\v\f";
+
+/// Is a whole word a number? Both ways give the nearest double.
+bool parseNumber(std::string_view word, double& value) {
+#ifdef __cpp_lib_to_chars
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return code == std::errc() && end == word.data() + word.size();
+#else
+  // A library that has no from_chars of doubles: that of WebAssembly, whose strtod knows one locale.
+  if (word.empty() || word.front() == '+' || word.find_first_of(" \t\n\v\f\rxX") != std::string_view::npos)
+    return false;
+  const std::string text(word);
+  char* end = nullptr;
+  errno = 0;
+  value = std::strtod(text.c_str(), &end);
+  return errno == 0 && end == text.c_str() + text.size();
+#endif
+}
 
 }  // namespace
 
@@ -43,8 +62,7 @@ double readFiniteNumber(std::string_view word, std::string& fault) {
   const std::string_view whole = word;
   double value = 0.0;
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (code != std::errc() || end != word.data() + word.size()) {
+  if (!parseNumber(word, value)) {
     fault = fmt::format("\"{}\" is not a number", shown(whole));
   } else if (!std::isfinite(value)) {
     fault = fmt::format("\"{}\" is not a finite number", shown(whole));

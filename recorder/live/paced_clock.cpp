@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 
 namespace calot::recorder {
 

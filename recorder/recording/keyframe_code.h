@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 
 namespace calot::recorder {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "recorder/recording/column_reader.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/rows.h"

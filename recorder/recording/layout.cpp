@@ -193,7 +193,7 @@ Layout::Layout(const AttemptHeader& header)
     count[id] = namesOf<Kind>(header).size();
     if (Kind::hasStructures) structures += count[id];
   });
-  procedure = resultVersion == 3 && namesOfComponents(header, "procedure").size() == 1;
+  procedure = !minimal && resultVersion == 3 && namesOfComponents(header, "procedure").size() == 1;
   stepsPerBlock = std::max<std::uint64_t>(1, 250 / ticksPerStep);
   ticksPerBlock = stepsPerBlock * ticksPerStep;
 

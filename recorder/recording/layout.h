@@ -11,10 +11,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "recorder/engine/observer.h"
 #include "recorder/identity.h"
-#include "recorder/observer.h"
+#include "recorder/recorded_procedure.h"
 #include "recorder/recording/brief_digest.h"
-#include "recorder/recording/recorded_procedure.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot::recorder {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "recorder/device_sample.h"
+#include "recorder/engine/observer.h"
 #include "recorder/identity.h"
-#include "recorder/observer.h"
+#include "recorder/recorded_procedure.h"
 #include "recorder/recording/brief_digest.h"
-#include "recorder/recording/recorded_procedure.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::recorder {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "recorder/device_sample.h"
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::recorder {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "recorder/device_sample.h"
+#include "recorder/engine/observer.h"
 #include "recorder/identity.h"
-#include "recorder/observer.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::recorder {

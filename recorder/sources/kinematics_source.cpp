@@ -8,6 +8,7 @@
 #include "recorder/errors.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"
+#include "sim/math/bounds.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
@@ -123,7 +124,7 @@ KinematicsSource::KinematicsSource(KinematicsMotion motion, const SceneDescripti
       Row& row = rows_[i][h];
       row.position = placed(mapping_, from.position) + mapping_.slide[h] * view;
       row.orientation = mapping_.axes * from.orientation;
-      row.jaw = std::clamp(from.gripper, 0.0, widestJaw);
+      row.jaw = std::min(notNegative(from.gripper), widestJaw);
     }
   }
 }

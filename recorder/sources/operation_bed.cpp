@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recorder/sources/operation_mind.h"
+#include "sim/math/bounds.h"
 
 namespace calot::recorder {
 namespace {
@@ -54,7 +55,7 @@ struct WorkingMind::BedStroke {
     return (d.dot(across) + sweepLead) / sweepLength * static_cast<double>(legs);
   }
   [[nodiscard]] double offAt(double corner) const {
-    const double c = std::clamp(corner, 0.0, static_cast<double>(legs));
+    const double c = std::min(notNegative(corner), static_cast<double>(legs));
     const auto k = std::min(static_cast<std::size_t>(c), legs - 1);
     return off[k] + (c - static_cast<double>(k)) * (off[k + 1] - off[k]);
   }

@@ -10,7 +10,7 @@ namespace calot::recorder {
 namespace {
 
 constexpr double hookToe = 0.0023;      // from the hook's heel to the middle of its toe (m)
-constexpr double wire = 0.0006;         // radius of the hook's wire (m)
+constexpr double hookWire = 0.0006;     // radius of the hook's wire (m)
 constexpr double film = 0.0006;         // of fat on a vessel that counts as none (m)
 constexpr double laneLength = 0.014;    // of a stroke along a vessel (m)
 constexpr double legLength = 0.006;     // of its straight pieces (m)
@@ -99,7 +99,7 @@ void WorkingMind::runStroke(const FatStroke& stroke, const SeenVessel& vessel, d
   const PerformerProfile::Operation& operation = tools_.profile.operation;
   newError();
   error_ *= 0.25;
-  const double off = radius + wire + operation.keepOff;
+  const double off = radius + hookWire + operation.keepOff;
   const double height = stroke.lane == over ? std::max(stroke.height - operation.layer, off) : -off;
   const double sign = stroke.lane == 1 ? -1.0 : 1.0;
   double top = height;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "recorder/sources/operation_mind.h"
 #include "recorder/sources/performer_hand.h"
 #include "recorder/sources/performer_profile.h"

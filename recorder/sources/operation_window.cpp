@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recorder/sources/operation_mind.h"
+#include "sim/math/bounds.h"
 
 namespace calot::recorder {
 namespace {
@@ -25,7 +26,7 @@ double lowestAt(const Vec3& place, const Vec3& shaft, const Vec3& toe, double of
   for (const auto& [centre, radius] : vessels) {
     const Vec3 d = centre - place;
     const double height = -d.dot(shaft);
-    const double along = std::clamp(d.dot(toe), 0.0, toeEnd);
+    const double along = std::min(notNegative(d.dot(toe)), toeEnd);
     const double aside = (d + height * shaft - along * toe).norm();
     if (aside < radius + off) lowest = std::max(lowest, height + radius + off);
   }
@@ -100,7 +101,7 @@ void WorkingMind::window(Sight sight) {
       }
       column.top = column.bottom;
     }
-    strokeThrough(way, side, std::max(top - ended, 0.0) + windowClearance);
+    strokeThrough(way, side, notNegative(top - ended) + windowClearance);
   }
   if (made > 0) return;
   strokes_ = 0;

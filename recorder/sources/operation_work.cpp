@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "recorder/sources/operation_mind.h"
+#include "sim/math/bounds.h"
 
 namespace calot::recorder {
 namespace {
@@ -26,7 +27,7 @@ constexpr double cutAt = 0.52;
 /// The station of a vessel's course that is nearest to an arc length (m).
 std::size_t stationAt(double place, std::size_t stations) {
   const double last = static_cast<double>(stations) - 1.0;
-  return static_cast<std::size_t>(std::floor(std::clamp(place / PerformerSight::spacing, 0.0, last) + 0.5));
+  return static_cast<std::size_t>(std::floor(std::min(notNegative(place / PerformerSight::spacing), last) + 0.5));
 }
 
 }  // namespace

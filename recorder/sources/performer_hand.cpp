@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "recorder/sources/pointing.h"
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 
 namespace calot::recorder {
@@ -86,7 +87,7 @@ void PerformerHand::begin(double time) {
 
 double PerformerHand::progress(double time) const {
   if (!(stroke_.duration > 0.0)) return 1.0;
-  const double u = std::clamp((time - stroke_.start) / stroke_.duration, 0.0, 1.0);
+  const double u = std::min(notNegative((time - stroke_.start) / stroke_.duration), 1.0);
   if (!stroke_.steady) return minimumJerk(u);
   // Speed rises evenly, stays, falls evenly.
   const double speed = 1.0 / (1.0 - ramp);

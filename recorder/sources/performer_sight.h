@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "sim/scene/description.h"
 
 namespace calot::recorder {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 
 namespace calot::recorder {
@@ -81,7 +82,7 @@ Quat interpolated(const Quat& from, const Quat& to, double s) {
 }
 
 double minimumJerk(double s) {
-  const double t = std::clamp(s, 0.0, 1.0);
+  const double t = std::min(notNegative(s), 1.0);
   return t * t * t * (10.0 + t * (-15.0 + 6.0 * t));
 }
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "recorder/engine/observer.h"
 #include "recorder/identity.h"
-#include "recorder/observer.h"
 #include "sim/scene/samples.h"
 
 namespace calot::recorder {

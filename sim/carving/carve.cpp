@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/geometry/dwell.h"
+#include "sim/math/bounds.h"
 
 namespace calot {
 
@@ -38,8 +39,8 @@ NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds) {
   NodeBox box;
   for (int a = 0; a < 3; ++a) {
     const double last = static_cast<double>(lattice.nodes()[a]);
-    const double low = std::clamp((bounds.lower[a] - lattice.origin()[a]) / lattice.cell(), 0.0, last);
-    const double high = std::clamp((bounds.upper[a] - lattice.origin()[a]) / lattice.cell() + 1.0, 0.0, last);
+    const double low = std::min(notNegative((bounds.lower[a] - lattice.origin()[a]) / lattice.cell()), last);
+    const double high = std::min(notNegative((bounds.upper[a] - lattice.origin()[a]) / lattice.cell() + 1.0), last);
     box.lower[a] = static_cast<int>(low);
     box.upper[a] = static_cast<int>(high);
   }

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "sim/carving/carved_surface.h"
+#include "sim/math/bounds.h"
 
 namespace calot {
 
@@ -16,7 +17,7 @@ FieldSample sampleField(const CarvedField& field, const Vec3& p) {
   std::array<double, 3> t{};
   for (int a = 0; a < 3; ++a) {
     const int last = lattice.nodes()[a] - 1;
-    const double x = std::clamp(p[a], 0.0, static_cast<double>(last));
+    const double x = std::min(notNegative(p[a]), static_cast<double>(last));
     const int i = std::min(static_cast<int>(x), last - 1);
     t[slot(a)] = x - static_cast<double>(i);
     for (int k = 0; k < 2; ++k) {

@@ -7,6 +7,7 @@
 #include "sim/contact/surface_normal.h"
 #include "sim/contact/triangle_lanes.h"
 #include "sim/geometry/closest_point.h"
+#include "sim/math/bounds.h"
 
 namespace calot {
 
@@ -178,7 +179,7 @@ class Finder {
       if (through < 0) continue;
       const Crossing& c = crossing_[static_cast<std::size_t>(through)];
       const Vec3 normal = faceNormal(surface_, position_, c.triangle);
-      const double depth = std::clamp((axis_.at(c.parameter) - point).dot(normal), 0.0, maxAxisDepth);
+      const double depth = std::min(notNegative((axis_.at(c.parameter) - point).dot(normal)), maxAxisDepth);
       push(c.triangle, c.weight, normal, point, -depth - radius_, key);
     }
   }
@@ -292,11 +293,11 @@ AxisDistance axisDistance(const ContactSurface& surface, std::span<const Vec3> p
 double minGap(const ContactSurface& surface, std::span<const Vec3> position, std::span<const std::uint32_t> patches,
               const Vec3& p0, const Vec3& p1, double radius, double reach) {
   const AxisDistance nearest =
-      axisDistance(surface, position, patches, p0, p1, capsuleSearch(radius, std::max(reach, 0.0)));
+      axisDistance(surface, position, patches, p0, p1, capsuleSearch(radius, notNegative(reach)));
   if (!nearest.found) return reach;
   if (!nearest.inside) return std::min(reach, nearest.distance - radius);
   std::vector<SurfaceContact> found;
-  capsuleContacts(surface, position, patches, p0, p1, radius, std::max(reach, 0.0), 0, found);
+  capsuleContacts(surface, position, patches, p0, p1, radius, notNegative(reach), 0, found);
   double minimum = reach;
   for (const SurfaceContact& c : found) minimum = std::min(minimum, c.gap);
   return minimum;

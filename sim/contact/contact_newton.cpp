@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/contact/contact_solver.h"
+#include "sim/math/bounds.h"
 #include "sim/math/linear.h"
 
 namespace calot {
@@ -96,7 +97,7 @@ bool ContactSolver::direction(const ContactProblem& problem, std::span<const dou
       openRow(at);
     }
     if (problem.kind[b] == BlockKind::unilateral) continue;
-    const double bound = limit * std::max(lambda[at], 0.0);
+    const double bound = limit * notNegative(lambda[at]);
     const double s = 0.5 * (w[(at + 1) * n + at + 1] + w[(at + 2) * n + at + 2]);
     const double x = s * lambda[at + 1] - gap[at + 1];
     const double y = s * lambda[at + 2] - gap[at + 2];

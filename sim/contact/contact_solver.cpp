@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/math/bounds.h"
 #include "sim/math/lanes.h"
 #include "sim/math/linear.h"
 
@@ -87,7 +88,7 @@ double blockResidual(BlockKind kind, double limit, const Rows& w, const double* 
   if (kind == BlockKind::unilateral) return normal;
   const double s = 0.5 * (w(1, 1) + w(2, 2));
   const Vec3 l(s * lambda[1], s * lambda[2], 0.0);
-  const double slip = (l - projected(l - Vec3(gap[1], gap[2], 0.0), s * limit * std::max(lambda[0], 0.0))).norm();
+  const double slip = (l - projected(l - Vec3(gap[1], gap[2], 0.0), s * limit * notNegative(lambda[0]))).norm();
   return std::max(normal, slip);
 }
 
@@ -99,7 +100,7 @@ void projectOntoFrictionCone(BlockKind kind, double limit, std::span<double> lam
     for (std::size_t i = 0; i < 3; ++i) lambda[i] = l[static_cast<int>(i)];
     return;
   }
-  lambda[0] = std::max(lambda[0], 0.0);
+  lambda[0] = notNegative(lambda[0]);
   if (kind == BlockKind::unilateral) return;
   const Vec3 t = projected(Vec3(lambda[1], lambda[2], 0.0), limit * lambda[0]);
   lambda[1] = t[0];

@@ -6,6 +6,7 @@
 #include "sim/contact/surface_search.h"
 #include "sim/contact/surface_surface.h"
 #include "sim/geometry/closest_point.h"
+#include "sim/math/bounds.h"
 
 namespace calot {
 
@@ -106,7 +107,7 @@ void SurfacePair::measureRest(const ContactSurface& a, const ContactSurface& b) 
       const auto i = static_cast<std::size_t>(v);
       Near near = search.nearest(v, restA_[i], self_ ? maxOverlap : known);
       if (!near.found && !self_) near = whole.nearest(v, restA_[i], far);
-      if (near.found) offset_[i] = std::min(0.0, near.distance);
+      if (near.found) offset_[i] = notPositive(near.distance);
       depth = std::max(depth, maxOverlap - offset_[i]);
       double limit = known * known;
       scratch.candidates.forEachNear(restA_[i], limit, [&](std::size_t t, double squared) {

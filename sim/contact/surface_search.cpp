@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "sim/contact/surface_normal.h"
+#include "sim/math/bounds.h"
 #include "sim/math/vectors.h"
 
 namespace calot {
@@ -48,7 +49,7 @@ void Candidates::boundsOf(const TriangleLanes& group, BoundsLanes& bounds, Box& 
 double Candidates::boxDistance(const Box& box, const Vec3& p) {
   double squared = 0.0;
   for (int a = 0; a < 3; ++a) {
-    const double d = std::max(std::max(box.lower[a] - p[a], p[a] - box.upper[a]), 0.0);
+    const double d = notNegative(std::max(box.lower[a] - p[a], p[a] - box.upper[a]));
     squared += d * d * (1.0 - 1e-12);
   }
   return squared;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "sim/math/bounds.h"
 #include "sim/math/floating_point.h"
 
 namespace calot {
@@ -55,7 +56,7 @@ int FatPicture::cubeNear(const Vec3& rest) const {
   const Vec3 at = (rest - lattice.origin()) / edge;
   Index3 h;
   for (int a = 0; a < 3; ++a)
-    h[a] = std::clamp(static_cast<int>(std::clamp(at[a], 0.0, 1e6)), 0, model_.hexahedra()[a] - 1);
+    h[a] = std::clamp(static_cast<int>(std::min(notNegative(at[a]), 1e6)), 0, model_.hexahedra()[a] - 1);
   const int own = model_.cubeAt(h);
   if (there(own)) return own;
   const auto distance = [&](const Index3& cube) {

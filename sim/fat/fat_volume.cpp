@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/math/bounds.h"
+
 namespace calot {
 
 namespace {
@@ -84,7 +86,7 @@ void FatVolume::measure(const CarvedField& field, std::uint32_t brick) {
   std::int64_t sum = 0;
   if (anyBit(counted)) {
     for (std::uint32_t i = 0; i < nodes; ++i) {
-      const double share = std::clamp(0.5 - value[i] / cell, 0.0, 1.0);
+      const double share = std::min(notNegative(0.5 - value[i] / cell), 1.0);
       units[i] = testBit(counted, i) ? static_cast<std::int32_t>(unitsOfCell * share) : 0;
       sum += units[i];
     }

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "sim/geometry/triangle_mesh.h"
+#include "sim/math/bounds.h"
 #include "sim/math/linear.h"
 
 namespace calot {
@@ -36,7 +37,7 @@ class BrickLattice {
   static BrickLattice around(const Box& box, double cell, int margin, int multiple = 1) {
     Index3 nodes;
     for (int a = 0; a < 3; ++a) {
-      const double span = std::clamp((box.upper[a] - box.lower[a]) / cell, 0.0, 1e6);
+      const double span = std::min(notNegative((box.upper[a] - box.lower[a]) / cell), 1e6);
       int cells = 2 * margin + static_cast<int>(span) + 1;
       cells = (cells + multiple - 1) / multiple * multiple;
       nodes[a] = cells + 1;

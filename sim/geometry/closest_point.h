@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "sim/math/bounds.h"
 #include "sim/math/linear.h"
 
 namespace calot {
@@ -23,7 +24,7 @@ enum class TriangleFeature : std::uint8_t { face, edge0, edge1, edge2, vertex0, 
   const Vec3 ab = b - a;
   const double length2 = ab.dot(ab);
   if (!(length2 > 0.0)) return 0.0;
-  return std::clamp(ab.dot(p - a) / length2, 0.0, 1.0);
+  return std::min(notNegative(ab.dot(p - a) / length2), 1.0);
 }
 
 struct PointTriangle {

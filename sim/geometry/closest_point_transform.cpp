@@ -11,6 +11,7 @@
 #include "sim/geometry/convex_scan.h"
 #include "sim/geometry/distance_signs.h"
 #include "sim/geometry/surface_features.h"
+#include "sim/math/bounds.h"
 
 namespace calot {
 namespace {
@@ -140,7 +141,7 @@ class Transform {
     }
     scan.run(box, [&](const Index3& n) {
       const Vec3 x = point(n) - a;
-      const double s = std::clamp(t.dot(x), 0.0, length);
+      const double s = std::min(notNegative(t.dot(x)), length);
       const Vec3 q = x - s * t;
       offer(n, q.squaredNorm(), edge.normal.dot(q) < 0.0);
     });

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 
+#include "sim/math/bounds.h"
 #include "sim/math/linear.h"
 
 namespace calot {
@@ -43,7 +44,7 @@ class ConvexScan {
     Index3 to;
     for (int a = 0; a < 3; ++a) {
       const double last = static_cast<double>(nodes_[a] - 1);
-      from[a] = up(std::clamp(box.lower[a] - slack, 0.0, last + 1.0));
+      from[a] = up(std::min(notNegative(box.lower[a] - slack), last + 1.0));
       to[a] = static_cast<int>(std::clamp(box.upper[a] + slack, -1.0, last) + 1.0) - 1;
     }
     Index3 n;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "sim/geometry/surface_distance.h"
+#include "sim/math/bounds.h"
 
 namespace calot {
 
@@ -44,8 +45,8 @@ class TetrahedronGrid {
   [[nodiscard]] Index3 cellOf(const Vec3& p) const {
     Index3 c;
     for (int a = 0; a < 3; ++a) {
-      c[a] =
-          static_cast<int>(std::clamp(std::floor((p[a] - lower_[a]) / cell_), 0.0, static_cast<double>(count_[a] - 1)));
+      c[a] = static_cast<int>(
+          std::min(notNegative(std::floor((p[a] - lower_[a]) / cell_)), static_cast<double>(count_[a] - 1)));
     }
     return c;
   }

@@ -8,6 +8,7 @@
 
 #include "sim/geometry/surface_distance.h"
 #include "sim/geometry/surface_report.h"
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 
 namespace calot {
@@ -242,7 +243,7 @@ void compare(const Search& search, StuffedMesh& result) {
     lost += own;
     lostPart.triangle.push_back(surface.triangle[slot(t)]);
   }
-  report.surfaceToMesh = std::sqrt(std::max(maxSquared, 0.0));
+  report.surfaceToMesh = std::sqrt(notNegative(maxSquared));
   report.lostArea = area > 0.0 ? lost / area : 0.0;
   static_cast<void>(triangleComponents(lostPart, report.lostParts));
 

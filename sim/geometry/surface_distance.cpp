@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/geometry/surface_report.h"
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 
 namespace calot {
@@ -15,7 +16,7 @@ constexpr int leafSize = 4;
 constexpr double pi = 3.14159265358979323846;
 
 double squaredDistanceToBox(const Vec3& p, const Box& box) {
-  return (box.lower - p).cwiseMax(p - box.upper).cwiseMax(Vec3::Zero()).squaredNorm();
+  return notNegative(Vec3((box.lower - p).cwiseMax(p - box.upper))).squaredNorm();
 }
 
 /// Solid angle of a triangle over 4 pi (Van Oosterom and Strackee 1983).

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "sim/math/bounds.h"
+
 namespace calot {
 
 namespace {
@@ -115,8 +117,8 @@ void Judge::judgeCut(const std::vector<Event>& events, std::size_t at) {
   double missing = 0.0;
   for (const Divide& divide : divide_) {
     if (divide.structure != events[at].subject) continue;
-    missing += std::max(static_cast<double>(divide.clips[0]) - *start, 0.0);
-    missing += std::max(static_cast<double>(divide.clips[1]) - *end, 0.0);
+    missing += notNegative(static_cast<double>(divide.clips[0]) - *start);
+    missing += notNegative(static_cast<double>(divide.clips[1]) - *end);
   }
   if (missing > 0.0) countError(events[at], EventKind::tooFewClips, missing);
 }

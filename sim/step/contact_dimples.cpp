@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/contact/sphere_indentation.h"
+#include "sim/math/bounds.h"
 
 namespace calot {
 
@@ -56,7 +57,7 @@ void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& co
     contact.dimples[block.dimple].force += block.share * lambda[block.row];
   }
   for (Dimple& dimple : contact.dimples) {
-    dimple.end = roundEnd(std::max(dimple.force, 0.0), dimple.radius, dimple.modulus);
+    dimple.end = roundEnd(notNegative(dimple.force), dimple.radius, dimple.modulus);
   }
   for (std::size_t i = 0; i < n; ++i) {
     const ContactBlock& a = contact.blocks[contact.pressed[i]];

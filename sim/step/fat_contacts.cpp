@@ -13,6 +13,7 @@
 #include "sim/contact/capsule_contact.h"
 #include "sim/contact/surface_normal.h"
 #include "sim/geometry/closest_point.h"
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 #include "sim/step/contact_problem.h"
 #include "sim/step/tissue_contacts.h"
@@ -267,7 +268,7 @@ double FatContacts::touch(Surfaces& surfaces, const TissueTravel& travel, const 
     if (has(body, beside)) continue;
     const double rest = restDistance(travel, target, fat, c, pair) - target.radius;
     if (!(rest > 0.0)) continue;
-    const double gap = nearest.distance - target.radius - extent - std::min(0.0, rest - fat.size[c] * restEdge);
+    const double gap = nearest.distance - target.radius - extent - notPositive(rest - fat.size[c] * restEdge);
     if (!(gap < reach)) continue;
 
     depth = std::max(depth, -gap);
@@ -279,7 +280,7 @@ double FatContacts::touch(Surfaces& surfaces, const TissueTravel& travel, const 
     block.other = fat.body;
     block.direction[0] = normal;
     block.place = nearest.place;
-    const Vec3 local = (Vec3::Constant(0.5) - fat.size[c] / stretched * along).cwiseMax(0.0).cwiseMin(1.0);
+    const Vec3 local = notNegative(Vec3(Vec3::Constant(0.5) - fat.size[c] / stretched * along)).cwiseMin(1.0);
     const Index3& h = fixed.hexahedronOfCube(static_cast<int>(c));
     const std::array<double, 8> share =
         fixed.shares(static_cast<int>(c), static_cast<double>(fixed.cellsPerCube()) * (h.cast<double>() + local));

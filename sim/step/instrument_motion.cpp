@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/contact/capsule_contact.h"
+#include "sim/math/bounds.h"
 #include "sim/step/contact_dimples.h"
 #include "sim/step/hand_haptics.h"
 #include "sim/step/instrument_clash.h"
@@ -28,7 +29,7 @@ double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size
       const Vec3 dimple = dimpleOf(state.hand[hand], s, c.piece);
       const Vec3 p0 = c.p0 + dimple;
       const Vec3 p1 = c.p1 + dimple;
-      const double search = capsuleSearch(c.radius, std::max(least - allowed, 0.0));
+      const double search = capsuleSearch(c.radius, notNegative(least - allowed));
       const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, search);
       if (near.empty()) continue;
       least = allowed + minGap(surfaces.mesh(s), surfaces.points(s), near, p0, p1, c.radius, least - allowed);

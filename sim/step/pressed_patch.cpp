@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "sim/math/bounds.h"
+
 namespace calot {
 
 namespace {
@@ -70,7 +72,7 @@ SkinPoint walkTo(const Vec3& target, const ContactSurface& mesh, const std::vect
     before = at.triangle;
     at.triangle = static_cast<std::size_t>(next);
   }
-  at.weight = at.weight.cwiseMax(0.0);
+  at.weight = notNegative(at.weight);
   at.weight /= at.weight.sum();
   return at;
 }

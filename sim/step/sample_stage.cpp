@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "sim/math/bounds.h"
 #include "sim/math/fields.h"
 #include "sim/scene/measurement.h"
 
@@ -71,7 +72,7 @@ void SampleStage::readHand(std::span<const TickSamples> samples, std::size_t h, 
   const Pose pose = realPose(model_.scene(), h, *newest, hand.realPosition);
   hand.realPosition = pose.position;
   hand.realOrientation = pose.orientation;
-  hand.realJaw = std::clamp(newest->jaw, 0.0, maxJaw);
+  hand.realJaw = std::min(notNegative(newest->jaw), maxJaw);
   hand.buttons = newest->buttons;
 }
 

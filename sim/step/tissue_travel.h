@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/math/bounds.h"
 #include "sim/step/bodies.h"
 #include "sim/step/surfaces.h"
 #include "sim/step/vessel_capsules.h"
@@ -54,7 +55,7 @@ class TissueTravel {
 
 /// Between the nearest points of two boxes (m).
 inline double distanceOf(const Box& a, const Box& b) {
-  return (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(Vec3::Zero()).norm();
+  return notNegative(Vec3((a.lower - b.upper).cwiseMax(b.lower - a.upper))).norm();
 }
 
 }  // namespace calot

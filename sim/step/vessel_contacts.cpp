@@ -7,6 +7,7 @@
 
 #include "sim/contact/surface_normal.h"
 #include "sim/geometry/closest_point.h"
+#include "sim/math/bounds.h"
 #include "sim/step/tissue_contacts.h"
 
 namespace calot {
@@ -84,7 +85,7 @@ void VesselContacts::measureRest(const Vessel& vessel, Nearby& nearby) {
       const VesselCapsule& c = vessel.rest[i];
       if (distanceOf(boxOf(c), whole) > vessel.radius) continue;
       const AxisDistance axis = axisDistance(organ.surface, organ.skin, all, c.p0, c.p1, wholeOrgan);
-      if (axis.found && !axis.inside) offset[i] = std::min(0.0, axis.distance - vessel.radius);
+      if (axis.found && !axis.inside) offset[i] = notPositive(axis.distance - vessel.radius);
       if (!axis.inside) continue;
       leaveOut(c.node0);
       leaveOut(c.node1);
@@ -207,7 +208,7 @@ bool VesselContacts::areOneWall(const Vessel& a, std::size_t i, const Vessel& b,
 double VesselContacts::restOverlap(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) {
   const VesselCapsule& p = a.rest[a.now[i].element];
   const VesselCapsule& q = b.rest[b.now[j].element];
-  return std::min(0.0, std::sqrt(closestSegments(p.p0, p.p1, q.p0, q.p1).squaredDistance) - a.radius - b.radius);
+  return notPositive(std::sqrt(closestSegments(p.p0, p.p1, q.p0, q.p1).squaredDistance) - a.radius - b.radius);
 }
 
 double VesselContacts::touchVessel(const TissueTravel& travel, double step, std::size_t one, std::size_t two,

@@ -8,6 +8,7 @@
 
 #include "sim/geometry/closest_point.h"
 #include "sim/instruments/jaw_space.h"
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 #include "sim/vessel/centre_line.h"
 #include "sim/vessel/clips.h"
@@ -76,7 +77,7 @@ VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t
   const std::size_t tree = model_.structures()[best.structure].index;
   best.frame = centreLine(model_.vesselTrees()[tree].beams, state.vessel[tree], best.place);
   const double cosine = along.dot(best.frame.orientation * Vec3::UnitZ());
-  best.sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+  best.sine = std::sqrt(notNegative(1.0 - cosine * cosine));
   return best;
 }
 

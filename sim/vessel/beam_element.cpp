@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "sim/math/bounds.h"
 #include "sim/vessel/frames.h"
 
 namespace calot {
@@ -65,8 +66,8 @@ BeamStiffness stiffnessOf(const BeamElement& e, const BeamStrain& s, double slee
       out.bend(i, j) = scale * ((i == j ? e.bending : 0.0) + (e.twisting - e.bending) * (s.axis[i] * s.axis[j]));
     }
   }
-  out.stretch = inverse * (e.stretching * (1.0 + sleeve) + std::max(-s.tension, 0.0));
-  out.string = inverse * std::max(s.tension, 0.0);
+  out.stretch = inverse * (e.stretching * (1.0 + sleeve) + notNegative(-s.tension));
+  out.string = inverse * notNegative(s.tension);
   return out;
 }
 

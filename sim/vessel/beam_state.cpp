@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/math/bounds.h"
+
 namespace calot {
 
 namespace {
@@ -82,11 +84,11 @@ BeamPoint pointAt(const BeamModel& model, std::size_t branch, double arcLength) 
   const BeamModel::Branch& b = model.branches()[branch];
   BeamPoint out;
   out.branch = branch;
-  out.arcLength = std::clamp(arcLength, 0.0, b.length());
+  out.arcLength = std::min(notNegative(arcLength), b.length());
   std::size_t i = 0;
   while (i + 2 < b.arcLength.size() && b.arcLength[i + 1] <= out.arcLength) ++i;
   out.element = b.firstElement + i;
-  out.share = std::clamp((out.arcLength - b.arcLength[i]) / (b.arcLength[i + 1] - b.arcLength[i]), 0.0, 1.0);
+  out.share = std::min(notNegative((out.arcLength - b.arcLength[i]) / (b.arcLength[i + 1] - b.arcLength[i])), 1.0);
   return out;
 }
 
@@ -108,7 +110,7 @@ BeamPoint closestPoint(const BeamModel& model, const BeamState& state, std::size
   const auto consider = [&](std::size_t i, const Vec3& from, const Vec3& to, double first, double last) {
     const Vec3 along = to - from;
     const double square = along.squaredNorm();
-    const double t = square > 0.0 ? std::clamp((point - from).dot(along) / square, 0.0, 1.0) : 0.0;
+    const double t = square > 0.0 ? std::min(notNegative((point - from).dot(along) / square), 1.0) : 0.0;
     const double d = (point - (from + t * along)).squaredNorm();
     if (!(d < best)) return;
     best = d;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/math/bounds.h"
 #include "sim/vessel/frames.h"
 
 namespace calot {
@@ -65,8 +66,8 @@ ClipSeat clipSeat(const BeamModel& model, const BeamState& state, const ClipAtte
   const double arcLength = attempt.point.arcLength;
 
   const double wide = pinchedSection(b.section, 1.0).wide;
-  const double between = std::min(attempt.depth + wide, attempt.legs) - std::max(attempt.depth - wide, 0.0);
-  out.enclosed = std::clamp(between / (2.0 * wide), 0.0, 1.0);
+  const double between = std::min(attempt.depth + wide, attempt.legs) - notNegative(attempt.depth - wide);
+  out.enclosed = std::min(notNegative(between / (2.0 * wide)), 1.0);
   out.missed = !(out.enclosed > 0.0);
 
   const Piece piece = pieceAround(model, state, branch, arcLength);
@@ -92,8 +93,8 @@ void setClip(const BeamModel& model, BeamState& state, const ClipAttempt& attemp
   state.clipPlace.push_back(attempt.point.arcLength);
   state.clipWidth.push_back(attempt.width);
   state.clipRoll.push_back(attempt.roll);
-  state.clipClosure.push_back(std::clamp(attempt.closure, 0.0, 1.0));
-  state.clipEnclosed.push_back(std::clamp(enclosed, 0.0, 1.0));
+  state.clipClosure.push_back(std::min(notNegative(attempt.closure), 1.0));
+  state.clipEnclosed.push_back(std::min(notNegative(enclosed), 1.0));
   state.quietSteps = 0;
   const BeamModel::Branch& b = model.branches()[attempt.point.branch];
   for (std::size_t i = 0; i < b.elements(); ++i) {
@@ -126,7 +127,7 @@ Pinch pinchAt(const BeamModel& model, const BeamState& state, std::size_t branch
   for (std::size_t c = 0; c < state.clips(); ++c) {
     if (state.clipBranch[c] != branch) continue;
     const double beside = std::abs(arcLength - state.clipPlace[c]) - 0.5 * state.clipWidth[c];
-    const double t = std::clamp(1.0 - beside / blendLength, 0.0, 1.0);
+    const double t = std::min(notNegative(1.0 - beside / blendLength), 1.0);
     const double amount = state.clipClosure[c] * state.clipEnclosed[c] * (t * t * (3.0 - 2.0 * t));
     if (amount > out.amount) out = {amount, state.clipRoll[c]};
   }

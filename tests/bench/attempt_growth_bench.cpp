@@ -158,8 +158,7 @@ void attemptGrowth(benchmark::State& bench) {
         recorder::Recording recording(file);
         const double opened = threadSeconds();
         const std::uint64_t steps = recording.stepCount();
-        SerialExecutor executor;
-        recorder::Seeker seeker(recording, executor);
+        recorder::Seeker seeker(recording);
         seeker.seek(steps / 2);  // what is worked out once is not the later ones'
         const double seekEarly = seekTime(seeker, 0, steps / 9);
         const double seekLate = seekTime(seeker, steps - steps / 9, steps);

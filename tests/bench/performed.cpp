@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/session.h"
 #include "recorder/sources/performer.h"
 
 namespace calot::bench {

@@ -137,14 +137,14 @@ void segments(benchmark::State& bench) {
   run(workIn("cholecystectomy", 600.0), file);
   const recorder::Recording recording(file);
   const std::vector<recorder::Segment> all = recorder::segmentsOf(recording);
-  const std::shared_ptr<recorder::PreparedScene> scene = recorder::sceneOf(recording);
+  const recorder::EngineChoice inside(recording, {});
   recorder::SegmentsVerdict alone;
   double one = 0.0;
   double two = 0.0;
   for (auto _ : bench) {
     const auto timed = [&](unsigned threads, recorder::SegmentsVerdict& verdict) {
       const auto begin = std::chrono::steady_clock::now();
-      verdict = recorder::verifySegments(file, *scene, all, threads);
+      verdict = recorder::verifySegments(file, inside, all, threads);
       if (verdict.divergence) throw std::runtime_error(recorder::describe(*verdict.divergence));
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     };
@@ -176,8 +176,7 @@ void seek(benchmark::State& bench) {
   const std::filesystem::path file = folder / "seek.h5";
   const double step = run(work, file) / static_cast<double>(work.motion.step.size());
   recorder::Recording recording(file);
-  SerialExecutor executor;
-  recorder::Seeker seeker(recording, executor);
+  recorder::Seeker seeker(recording);
   std::vector<double> seconds;
   for (auto _ : bench) {
     Random random(11);

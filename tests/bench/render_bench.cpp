@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "gui/render/renderer.h"
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/session.h"
 #include "sim/scene/scene_viewer.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"

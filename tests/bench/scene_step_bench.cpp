@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/session.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/numbers.h"

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "recorder/engine/observer.h"
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/observer.h"
-#include "recorder/session.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/numbers.h"

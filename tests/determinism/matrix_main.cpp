@@ -20,6 +20,14 @@
 #include <xmmintrin.h>
 #endif
 
+#ifdef __wasm__
+// A module here cannot unwind: what would be thrown ends it.
+extern "C" {
+void* __cxa_allocate_exception(std::size_t bytes) noexcept { return std::malloc(bytes); }
+[[noreturn]] void __cxa_throw(void* /*thrown*/, void* /*type*/, void (* /*destroy*/)(void*)) { std::abort(); }
+}
+#endif
+
 namespace {
 
 std::vector<std::byte> readFile(const char* path) {

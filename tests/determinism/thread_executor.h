@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <thread>
 #include <vector>
+
+#ifndef __wasm__
+#include <thread>
+#endif
 
 #include "sim/math/executor.h"
 #include "sim/math/floating_point.h"
@@ -25,10 +28,14 @@ class ThreadExecutor final : public Executor {
       const FloatingPointScope scope;
       for (std::size_t i = next++; i < count; i = next++) task(i);
     };
+#ifdef __wasm__  // has no threads here: one does it all
+    work();
+#else
     std::vector<std::thread> others;
     for (std::size_t i = 1; i < std::min<std::size_t>(threads_, count); ++i) others.emplace_back(work);
     work();
     for (std::thread& other : others) other.join();
+#endif
   }
 
  private:

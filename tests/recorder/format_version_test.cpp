@@ -45,12 +45,11 @@ TEST(FormatVersion1, IsReplayedAndSought) {
     settings.threads = threads;
     EXPECT_EQ(replayRecording(old, settings).verdict, ReplayVerdict::exact) << threads;
   }
-  SerialExecutor executor;
-  Seeker seeker(r, executor);
+  Seeker seeker(r);
   seeker.seek(199);
-  EXPECT_EQ(seeker.session().keyframe().state, r.keyframe(1).state);
+  EXPECT_EQ(seeker.keyframe().state, r.keyframe(1).state);
   seeker.seek(120);
-  EXPECT_EQ(seeker.session().steps(), 121U);
+  EXPECT_EQ(seeker.steps(), 121U);
 }
 
 /// Saved, it stays what it is: the same version, the same chain.

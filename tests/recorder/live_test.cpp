@@ -9,6 +9,7 @@
 #include "recorder/attempt.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
+#include "tests/recorder/support/rerun.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::recorder {
@@ -112,13 +113,13 @@ TEST(Live, ASlowSimulationReplaysAndCanBeSoughtIn) {
   Session straight(model, recording.header().seed, executor);
   std::vector<Keyframe> frames;
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
-    rerun(straight, recording.step(n));
+    test::rerun(straight, recording.step(n));
     frames.push_back(straight.keyframe());
   }
-  Seeker seeker(recording, executor);
+  Seeker seeker(recording);
   for (const std::uint64_t step : {199U, 100U, 103U, 210U, 99U, 229U, 5U, 200U}) {
     seeker.seek(step);
-    const Keyframe here = seeker.session().keyframe();
+    const Keyframe here = seeker.keyframe();
     EXPECT_EQ(here.state, frames[step].state) << "step " << step;
     EXPECT_EQ(here.haptics, frames[step].haptics) << "step " << step;
   }
@@ -127,7 +128,7 @@ TEST(Live, ASlowSimulationReplaysAndCanBeSoughtIn) {
   ASSERT_TRUE(other.restore(frames[120]));
   EXPECT_EQ(other.keyframe().state, frames[120].state);
   EXPECT_EQ(other.keyframe().haptics, frames[120].haptics);
-  rerun(other, recording.step(121));
+  test::rerun(other, recording.step(121));
   EXPECT_EQ(other.keyframe().haptics, frames[121].haptics);
 }
 

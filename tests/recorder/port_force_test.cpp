@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "recorder/attempt.h"
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
-#include "recorder/session.h"
 #include "recorder/sources/performer_source.h"
 #include "tests/recorder/support/small_scene.h"
 

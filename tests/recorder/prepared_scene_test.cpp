@@ -13,6 +13,7 @@
 #include "recorder/compliance_cache.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/lying_recording.h"
+#include "tests/recorder/support/rerun.h"
 
 namespace calot::recorder {
 namespace {
@@ -39,7 +40,7 @@ class PreparedScenes : public testing::Test {
     session.precompute();
     std::vector<StateDigest> digests;
     while (session.steps() < steps) {
-      rerun(session, recording.step(session.steps()));
+      test::rerun(session, recording.step(session.steps()));
       digests.push_back(digestOf(session.state()));
     }
     EXPECT_FALSE(scene.compliances().columns().empty()) << "nothing was touched";

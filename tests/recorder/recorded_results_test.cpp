@@ -143,9 +143,9 @@ TEST(GoldenContent, ARuleIsChangedAndNoBitIs) {
   std::unique_ptr<Judging> usual;
   std::unique_ptr<Judging> stricter;
   ReplaySettings settings;
-  settings.observers = [&](const AttemptHeader&, const Model& model) {
-    usual = std::make_unique<Judging>(model.scene(), JudgementRules());
-    stricter = std::make_unique<Judging>(model.scene(), strict);
+  settings.observers = [&](const AttemptHeader&, const SceneDescription& scene) {
+    usual = std::make_unique<Judging>(scene, JudgementRules());
+    stricter = std::make_unique<Judging>(scene, strict);
     return std::vector<Observer*>{usual.get(), stricter.get()};
   };
   const ReplayReport report = replayRecording(root / "assets/golden/clip-and-cut.h5", settings);

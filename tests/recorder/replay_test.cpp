@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "recorder/session.h"
-#include "recorder/state_fields.h"
+#include "recorder/engine/session.h"
+#include "recorder/engine/state_fields.h"
 #include "tests/recorder/support/lying_recording.h"
 
 namespace calot::recorder {
@@ -108,12 +108,12 @@ TEST_F(Replay, SeekingGivesTheStateOfRunningThere) {
     straight.step(recorded.samples, ticks, 0.0F);
     states.push_back(saveState(straight.state()));
   }
-  Seeker seeker(recording, executor);
+  Seeker seeker(recording);
   // Forwards, backwards, onto keyframes, around them, and twice the same.
   for (const std::uint64_t step : {207U, 5U, 99U, 100U, 101U, 180U, 199U, 199U, 0U, 209U}) {
     seeker.seek(step);
-    EXPECT_EQ(seeker.session().steps(), step + 1);
-    EXPECT_EQ(saveState(seeker.session().state()), states[step]) << "step " << step;
+    EXPECT_EQ(seeker.steps(), step + 1);
+    EXPECT_EQ(seeker.keyframe().state, states[step]) << "step " << step;
   }
 }
 

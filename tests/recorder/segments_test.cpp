@@ -114,7 +114,7 @@ TEST(Segments, ObserversSeeTheStepsOfARun) {
   for (const unsigned threads : {1U, 2U}) {
     ReplaySettings settings;
     settings.threads = threads;
-    settings.observers = [&](const AttemptHeader&, const Model&) {
+    settings.observers = [&](const AttemptHeader&, const SceneDescription&) {
       return std::vector<Observer*>{&watch[threads - 1]};
     };
     EXPECT_EQ(replayRecording(folder / "r.h5", settings).verdict, ReplayVerdict::exact);
@@ -140,7 +140,7 @@ TEST(Segments, ObserversSeeNothingOfWhatIsNotProven) {
   } watch;
   ReplaySettings settings;
   settings.threads = 2;
-  settings.observers = [&](const AttemptHeader&, const Model&) { return std::vector<Observer*>{&watch}; };
+  settings.observers = [&](const AttemptHeader&, const SceneDescription&) { return std::vector<Observer*>{&watch}; };
   EXPECT_EQ(replayRecording(folder / "r.h5", settings).verdict, ReplayVerdict::diverged);
   EXPECT_EQ(watch.calls, 0);
 }
@@ -190,10 +190,10 @@ TEST(Segments, AreOfARecordingThatCanBeRead) {
   const std::filesystem::path file = folder / "r.h5";
   test::recordTouches(file);
   const Recording recording(file);
-  const std::shared_ptr<PreparedScene> scene = sceneOf(recording);
-  EXPECT_THROW(verifySegments(file, *scene, {}, 2), std::invalid_argument);
-  EXPECT_THROW(verifySegments(folder / "none.h5", *scene, segmentsOf(recording), 2), Error);
-  const SegmentsVerdict part = verifySegments(file, *scene, {segmentsOf(recording)[1]}, 2);
+  const EngineChoice choice(recording, {});
+  EXPECT_THROW(verifySegments(file, choice, {}, 2), std::invalid_argument);
+  EXPECT_THROW(verifySegments(folder / "none.h5", choice, segmentsOf(recording), 2), Error);
+  const SegmentsVerdict part = verifySegments(file, choice, {segmentsOf(recording)[1]}, 2);
   EXPECT_FALSE(part.divergence);
   EXPECT_EQ(part.misses.steps, 100U);
 }

@@ -37,6 +37,15 @@ RULES = (
      ("Eigen::AngleAxisd(a, v)", "q.slerp(t, p)", "v.stableNorm()"), ("v.norm()", "mySlerper(q)")),
     ("Eigen's random numbers", r"\bsetRandom\b|::\s*Random\s*\(\s*\)|\bUnitRandom\b", "use sim/math/random.h",
      ("v.setRandom();", "Vec3::Random()"), ("Random random(1);",)),
+    ("either zero",
+     r"\bstd\s*::\s*max(?:<double>)?\s*\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*,\s*0\.0F?\s*\)|\bstd\s*::\s*min(?:<double>)?\s*\(\s*0\.0F?\s*,|"
+     r"\bstd\s*::\s*clamp(?:<double>)?\s*\((?:[^(),]|\((?:[^()]|\([^()]*\))*\))*,\s*0\.0F?\s*,|<\s*0\.0F?\s*\?\s*0\.0F?\s*:|"
+     r"\bcwiseM(?:ax|in)\s*\(\s*(?:\w+::Zero|0\.0)",
+     "clang loses which zero it is on some machines; use sim/math/bounds.h",
+     ("a = std::max(x, 0.0);", "b = std::max(f(x, g(y)) - z, 0.0);", "c = std::min(0.0, x);", "d = std::clamp(x, 0.0, 1.0);",
+      "e = u < 0.0 ? 0.0 : u;", "v.cwiseMax(Vec3::Zero())"),
+     ("a = std::max(0.0, x);", "b = std::min(x, 0.0);", "c = std::max(x, 10.0);", "d = std::clamp(x, 1.0, 2.0);", "e = x > 0.0 ? x : 0.0;",
+      "f(std::max(x, y), 0.0);")),
     ("standard random numbers",
      r"\brandom_device\b|\bmt19937\w*|\bdefault_random_engine\b|\bminstd_rand0?\b|\b\w+_distribution\b|<random>",
      "distributions differ between libraries; use sim/math/random.h",

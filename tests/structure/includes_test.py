@@ -28,7 +28,9 @@ MAY_SEE = {
     "sim/bullet": SIM,  # a library of its own above the core
     "recorder contracts": ("sim",),
     "recorder/formats": ("sim", "recorder contracts"),
-    "recorder/recording": ("sim", "recorder contracts", "recorder/formats"),
+    "recorder/engine": ("sim", "recorder contracts", "recorder/formats"),
+    "recorder/recording": ("sim", "recorder contracts", "recorder/formats", "recorder/engine"),
+    "recorder/kept": ("sim", "recorder contracts", "recorder/formats", "recorder/engine", "recorder/recording"),
     "recorder/sources": ("sim", "recorder contracts", "recorder/formats", "recorder/recording"),
     "recorder/live": ("sim", "recorder contracts", "recorder/sources"),
     "recorder": ("sim", "recorder contracts", "recorder"),  # the loop and replay, above their folders
@@ -56,7 +58,7 @@ MAY_SEE = {
     "assets": ("sim", "recorder", "apps/common"),
 }
 # What lies at the top of recorder/ and belongs to all of its folders.
-CONTRACTS = ("recorder/device_sample.h", "recorder/errors.h", "recorder/identity.h", "recorder/observer.h", "recorder/ring.h")
+CONTRACTS = ("recorder/device_sample.h", "recorder/errors.h", "recorder/identity.h", "recorder/engine/observer.h", "recorder/recorded_procedure.h", "recorder/ring.h")
 
 # Headers of a module that another one, which may see the module, may not: what is judged is StepResult.
 NEVER = {"sim/judgement": ("sim/scene/state.h", "sim/scene/model.h", "sim/scene/scene_view.h", "sim/scene/scene_viewer.h")}
@@ -145,8 +147,8 @@ def check(root, report=print):
 def self_test():
     good = (
         ("sim/geometry/a.h", '#include <vector>\n#include <Eigen/Core>\n#include "sim/math/linear.h"'),
-        ("recorder/sources/a.cpp", '#include <fstream>\n#include "recorder/observer.h"\n#include "sim/scene/samples.h"'),
-        ("recorder/replay.h", '#include "recorder/recording/reader.h"\n#include "recorder/session.h"'),
+        ("recorder/sources/a.cpp", '#include <fstream>\n#include "recorder/engine/observer.h"\n#include "sim/scene/samples.h"'),
+        ("recorder/replay.h", '#include "recorder/recording/reader.h"\n#include "recorder/engine/session.h"'),
         ("recorder/loop.cpp", '#include "recorder/recording/writer.h"\n#include "recorder/live/worker_pool.h"'),
         ("analytics/cohort/a.cpp", "#include <SQLiteCpp/SQLiteCpp.h>"),
         ("gui/dashboard/a.cpp", '#include <QWidget>\n#include "analytics/cohort/cohort.h"'),
@@ -159,7 +161,7 @@ def self_test():
         ("sim/solid/a.cpp", "#include <chrono>"), ("sim/solid/a.cpp", "#include <thread>"),
         ("sim/solid/a.cpp", "#include <unordered_map>"), ("sim/solid/a.cpp", "#include <fmt/format.h>"),
         ("sim/contact/a.cpp", "#include <BulletCollision/BroadphaseCollision/btDbvt.h>"), ("sim/bullet/a.cpp", "#include <thread>"),
-        ("sim/scene/a.cpp", '#include "sim/bullet/bullet_tree.h"'), ("sim/solid/a.cpp", '#include "body.h"'), ("recorder/observer.h", '#include "recorder/recording/writer.h"'),
+        ("sim/scene/a.cpp", '#include "sim/bullet/bullet_tree.h"'), ("sim/solid/a.cpp", '#include "body.h"'), ("recorder/engine/observer.h", '#include "recorder/recording/writer.h"'),
         ("recorder/recording/a.cpp", '#include "recorder/sources/source.h"'),
         ("recorder/sources/a.cpp", '#include "analytics/cohort/cohort.h"'), ("recorder/sources/a.cpp", "#include <hdf5.h>"),
         ("recorder/live/a.cpp", "#include <QTimer>"), ("analytics/cohort/a.cpp", '#include "gui/render/renderer.h"'),

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "analytics/checkpoints/hand_motion.h"
+#include "sim/math/bounds.h"
 
 namespace calot::analytics {
 namespace {
@@ -55,7 +56,7 @@ Measured workingVolumeOf(const Motion& motion) {
       s[0] * (s[1] * s[2] - s[5] * s[5]) - s[3] * (s[3] * s[2] - s[5] * s[4]) + s[4] * (s[3] * s[5] - s[1] * s[4]);
   // Motion in a plane or on a line fills none; rounding may make its determinant negative.
   return Measured::of(4.0 / 3.0 * std::numbers::pi * chiSquared * std::sqrt(chiSquared) *
-                      std::sqrt(std::max(determinant, 0.0)));
+                      std::sqrt(notNegative(determinant)));
 }
 
 }  // namespace

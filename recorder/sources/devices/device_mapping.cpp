@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "recorder/sources/pointing.h"
+#include "sim/math/bounds.h"
 
 namespace calot::recorder {
 namespace {
@@ -41,7 +42,7 @@ InstrumentSample DeviceMapping::map(const DeviceSample& sample) const {
   out.position = anchor_ + scale_ * (axes_ * (tip - tip0_));
   const Quat turn = axes_ * (sample.orientation * turn0_.conjugate()) * axes_.conjugate();
   out.orientation = alignedToShaft(turn * orientation_, shaftDirection(hand_.port, out.position));
-  out.jaw = std::clamp(sample.gripper, 0.0, largestJaw);
+  out.jaw = std::min(notNegative(sample.gripper), largestJaw);
   out.buttons = static_cast<std::uint8_t>(sample.buttons & ~clutchButton);
   return out;
 }

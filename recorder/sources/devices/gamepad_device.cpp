@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "recorder/errors.h"
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 
 namespace calot::recorder {
@@ -142,7 +143,7 @@ void GamepadDevice::put(std::int64_t now, double seconds, DeviceInput& out) {
                       pressed(SDL_CONTROLLER_BUTTON_LEFTSHOULDER);
   p.roll += seconds * rollSpeed * std::clamp(turn, -1.0, 1.0);
   const double open = pressed(SDL_CONTROLLER_BUTTON_DPAD_UP) - pressed(SDL_CONTROLLER_BUTTON_DPAD_DOWN);
-  p.jaw = std::clamp(p.jaw + seconds * jawSpeed * open, 0.0, largestJaw);
+  p.jaw = std::min(notNegative(p.jaw + seconds * jawSpeed * open), largestJaw);
 
   DeviceSample sample;
   sample.hostTime = now;

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 
 namespace calot::recorder {
@@ -63,12 +64,13 @@ void MouseDevice::advance(Pointer& p, const MouseInput::Wish& wish, double secon
   const double right = drawn(p.right, most);
   const double down = drawn(p.down, most);
   // The tip stays a centimetre inside its port.
-  const double in = std::max(drawn(p.in, most), std::min(0.0, 0.01 - length));
+  const double in = std::max(drawn(p.in, most), notPositive(0.01 - length));
   p.position += Vec3(right, down, 0.0) + in * shaft;
   p.position = p.position.cwiseMax(-reach).cwiseMin(reach);
   p.roll += share * rollSpeed * seconds * either(MouseControl::rollRight, MouseControl::rollLeft);
-  p.jaw = std::clamp(p.jaw + share * jawSpeed * seconds * either(MouseControl::openJaw, MouseControl::closeJaw), 0.0,
-                     largestJaw);
+  p.jaw =
+      std::min(notNegative(p.jaw + share * jawSpeed * seconds * either(MouseControl::openJaw, MouseControl::closeJaw)),
+               largestJaw);
 }
 
 void MouseDevice::put(Hand hand, const MouseInput::Wish& wish, std::uint8_t momentary, std::int64_t now,

@@ -3,6 +3,7 @@
 
 #include "sim/carving/field_sample.h"
 #include "sim/fat/fat_picture.h"
+#include "sim/math/bounds.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
@@ -44,7 +45,7 @@ void FatView::sear() {
   for (const Vec3& rest : picture_.rest()) {
     const Vec3 at = (rest - lattice.origin()) / lattice.cell();
     const double depth = -sampleField(uncarved_, at).value / lattice.cell();
-    const double bare = std::clamp((depth - bareFrom) / (bareFully - bareFrom), 0.0, 1.0);
+    const double bare = std::min(notNegative((depth - bareFrom) / (bareFully - bareFrom)), 1.0);
     seared_.push_back(searing * static_cast<float>(bare));
   }
 }

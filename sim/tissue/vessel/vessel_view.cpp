@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
@@ -77,7 +78,7 @@ void addDome(int ring, std::size_t cap, double away, SurfaceView& surface) {
 double exposureAt(const BeamModel& beams, const BeamState& vessels, const BeamPoint& where) {
   const auto& branch = beams.branches()[where.branch];
   const double last = static_cast<double>(branch.stations - 1);
-  const double at = std::clamp(where.arcLength / branch.spacing() - 0.5, 0.0, last);
+  const double at = std::min(notNegative(where.arcLength / branch.spacing() - 0.5), last);
   const auto before = static_cast<std::size_t>(at);
   const std::size_t after = std::min(before + 1, branch.stations - 1);
   const double* const exposure = vessels.exposure.data() + branch.firstStation;
@@ -90,7 +91,7 @@ void stain(const Vec3& middle, double rim, SurfaceView& surface) {
   for (std::size_t v = 0; v < surface.face.size(); ++v) {
     if (surface.face[v] >= 1.0F) continue;
     const double along2 = (surface.rest[v] - middle).squaredNorm() - radius * radius;
-    const double along = std::sqrt(std::max(along2, 0.0)) / stainReach;
+    const double along = std::sqrt(notNegative(along2)) / stainReach;
     if (along < 1.0) surface.face[v] = std::max(surface.face[v], stained * static_cast<float>(1.0 - along));
   }
 }

@@ -13,12 +13,12 @@
 #include "analytics/checkpoints/from_observables.h"
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/attempt.h"
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
-#include "recorder/session.h"
 #include "recorder/sources/pointing.h"
 #include "tests/analytics/checkpoints/support/steps.h"
 
@@ -114,8 +114,8 @@ TEST(CarveFat, isAssessedFromTheHandToTheCohort) {
   // Every way to the values gives the same bits.
   std::unique_ptr<CheckpointCollector> replayed;
   recorder::ReplaySettings settings;
-  settings.observers = [&](const recorder::AttemptHeader& h, const Model& m) {
-    replayed = std::make_unique<CheckpointCollector>(h, m.scene());
+  settings.observers = [&](const recorder::AttemptHeader& h, const SceneDescription& s) {
+    replayed = std::make_unique<CheckpointCollector>(h, s);
     return std::vector<recorder::Observer*>{replayed.get()};
   };
   const std::vector<CheckpointValue> values = live.values();

@@ -13,6 +13,7 @@
 #include "recorder/errors.h"
 #include "recorder/replay.h"
 #include "tests/gui/dashboard/support/recorded.h"
+#include "tests/recorder/support/rerun.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui {
@@ -121,7 +122,7 @@ TEST(ReplayPlayer, ShowsTheStateThatTheSimulationGivesWhereverItGoes) {
     const auto scene = recorder::sceneOf(recording);
     SerialExecutor executor;
     recorder::Session session(scene->model(), recording.header().seed, executor);
-    while (session.steps() <= step) recorder::rerun(session, recording.step(session.steps()));
+    while (session.steps() <= step) recorder::test::rerun(session, recording.step(session.steps()));
     EXPECT_EQ(numbersOf(*listener.view()), numbersOf(session.view())) << "step " << step;
   }
 }

@@ -7,10 +7,10 @@
 #include <optional>
 #include <thread>
 
+#include "recorder/engine/session.h"
 #include "recorder/live/contact_exchange.h"
 #include "recorder/live/newest.h"
 #include "recorder/ring.h"
-#include "recorder/session.h"
 #include "sim/step/hand_haptics.h"
 #include "tests/recorder/support/small_scene.h"
 

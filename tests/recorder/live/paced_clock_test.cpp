@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "recorder/engine/observer.h"
 #include "recorder/live/cost_histogram.h"
-#include "recorder/observer.h"
 
 namespace calot::recorder {
 namespace {

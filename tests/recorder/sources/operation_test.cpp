@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/session.h"
 #include "recorder/sources/operation_source.h"
 #include "recorder/sources/performer.h"
 #include "recorder/sources/performer_source.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "recorder/attempt.h"
+#include "recorder/engine/session.h"
 #include "recorder/recording/writer.h"
-#include "recorder/session.h"
 
 namespace calot::recorder::test {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::recorder::test {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/engine/observer.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/observer.h"
 #include "recorder/sources/source.h"
 #include "sim/scene/model.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "recorder/formats/obj.h"
+#include "recorder/formats/obj_file.h"
 #include "sim/geometry/surface_report.h"
 #include "tests/sim/geometry/surfaces.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/state_fields.h"
+#include "recorder/engine/state_fields.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/session.h"
+#include "recorder/engine/session.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/observer.h"
+#include "recorder/engine/observer.h"
 #include "sim/haptics/haptic_tick.h"
 #include "sim/math/executor.h"
 #include "sim/scene/model.h"

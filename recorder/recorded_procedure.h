@@ -14,6 +14,7 @@ struct RecordedProcedure {
   bool criticalViewFrozen = false;
   double lowerThirdAttached = 0.0;
   std::uint32_t errors = 0, criticalErrors = 0;
+  bool operator==(const RecordedProcedure&) const = default;
 };
 
 }  // namespace calot::recorder

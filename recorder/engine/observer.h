@@ -73,7 +73,8 @@ struct StepRecord {
   const StateDigest& digest;  ///< empty where a recorded step of format version 2 stands for a computed one
   float lateness = 0.0F;      ///< how long after the step was due it began (s); 0 when not paced
   /// Makes the keyframe of this step; costs a copy of the State, so it is called only where one is kept. Empty where a
-  /// recorded step stands for a computed one (ReplaySettings::observers), as is `view`.
+  /// recorded step stands for a computed one (ReplaySettings::observers) and where another program computes steps ahead
+  /// of time, as is `view`.
   std::function<Keyframe()> keyframe;
   /// Makes the scene view of this step; costs surfaces, so it is called only by what draws.
   std::function<SceneView()> view;

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
+#include "apps/common/exit_code.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
+#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/engine_process.h"
+#include "recorder/kept/transcript.h"
+#include "recorder/replay.h"
+#include "sim/scene/version.h"
+
+namespace calot::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is kept beside an engine: its transcript and its golden recordings.
+std::vector<fs::path> keptBeside(std::uint32_t version, const std::string& ending) {
+  std::vector<fs::path> files;
+  for (const fs::path& root : assetFolders()) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / "engines" / std::to_string(version), fault), end; !fault && it != end;
+         it.increment(fault)) {
+      if (it->path().extension() == ending) files.push_back(it->path());
+    }
+    if (!files.empty()) break;
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+const char* kindOf(const recorder::KeptEngine& engine) { return engine.isModule ? "module" : "program"; }
+
+int list(bool json) {
+  const std::vector<recorder::KeptEngine> engines = recorder::listEngines();
+  if (json) {
+    nlohmann::json out = nlohmann::json::array();
+    for (const recorder::KeptEngine& e : engines) {
+      out.push_back(
+          {{"version", e.version}, {"kind", kindOf(e)}, {"file", e.file.string()}, {"runs", !e.command.empty()}});
+    }
+    std::cout << nlohmann::json{{"own_version", simulationVersion}, {"engines", out}}.dump(2) << '\n';
+    return 0;
+  }
+  fmt::print("this program decides simulation version {}\n", simulationVersion);
+  for (const recorder::KeptEngine& e : engines) {
+    fmt::print("version {}: {} {}{}\n", e.version, kindOf(e), fs::weakly_canonical(e.file).string(),
+               e.command.empty() ? " (node is needed to run it)" : "");
+  }
+  if (engines.empty()) fmt::print("no other engine was found (CALOT_ENGINES names folders that hold some)\n");
+  return 0;
+}
+
+/// @return false where the engine is not what it should be; prints a line of each thing that was looked at
+bool check(const recorder::KeptEngine& engine) {
+  const auto say = [&](const std::string& what, const std::string& fault) {
+    fmt::print("version {}, {}: {}: {}\n", engine.version, kindOf(engine), what, fault.empty() ? "ok" : fault);
+    return fault.empty();
+  };
+  bool good = true;
+  try {
+    const recorder::EngineProcess process(engine.command, engine.version);
+    static constexpr const char* confined[] = {"not confined", "confined by itself", "confined by its runtime"};
+    good = say(fmt::format("{}, {}", process.identity().software,
+                           confined[static_cast<std::size_t>(process.identity().confinement)]),
+               "");
+    for (const fs::path& file : keptBeside(engine.version, ".transcript")) {
+      good = say(file.filename().string(), compareWith(recorder::readTranscript(file), engine.command)) && good;
+    }
+  } catch (const Error& e) {
+    return say("it", e.what());
+  }
+  for (const fs::path& golden : keptBeside(engine.version, ".h5")) {
+    recorder::ReplaySettings settings;
+    settings.engine.file = engine.file;
+    const recorder::ReplayReport report = recorder::replayRecording(golden, settings);
+    const bool exact = report.verdict == recorder::ReplayVerdict::exact;
+    good = say(golden.filename().string(), exact ? "" : report.message) && good;
+  }
+  return good;
+}
+
+int checkAll(const std::vector<std::uint32_t>& versions) {
+  std::vector<recorder::KeptEngine> engines = recorder::listEngines();
+  std::erase_if(engines, [&](const recorder::KeptEngine& e) {
+    return !versions.empty() && std::find(versions.begin(), versions.end(), e.version) == versions.end();
+  });
+  for (const std::uint32_t version : versions) {
+    if (std::none_of(engines.begin(), engines.end(), [&](const auto& e) { return e.version == version; }))
+      throw Error(ErrorKind::invalid, fmt::format("no engine of version {} was found (calot engine list)", version));
+  }
+  bool good = true;
+  for (const recorder::KeptEngine& e : engines) {
+    if (e.command.empty()) {
+      fmt::print("version {}, module: not run, for there is no node here\n", e.version);
+      continue;
+    }
+    good = check(e) && good;
+  }
+  if (engines.empty()) fmt::print("no engine was found\n");
+  return static_cast<int>(good ? ExitCode::yes : ExitCode::no);
+}
+
+struct BuildOptions {
+  std::uint32_t version = 0;
+  std::string output, source;
+  bool module = false, force = false;
+};
+
+/// The script of a clone does it: no installed program holds the sources of old versions.
+int build(const BuildOptions& o) {
+  const fs::path script = fs::path(o.source) / "scripts/engine.py";
+  std::error_code ignored;
+  if (!fs::is_regular_file(script, ignored))
+    throw Error(ErrorKind::invalid, fmt::format("{} is no clone of the source: name one with --source", o.source));
+  refuseExisting(o.output, o.force);
+  std::vector<std::string> command{"python3", script.string(), "build", std::to_string(o.version), "-o", o.output};
+  if (o.module) command.emplace_back("--module");
+  std::vector<char*> arguments;
+  for (std::string& argument : command) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  execvp(arguments.front(), arguments.data());
+  throw Error(ErrorKind::failure, fmt::format("python3 cannot be started: {}", std::strerror(errno)));
+}
+
+struct TranscriptOptions {
+  std::string recording, engine, output;
+  std::uint64_t steps = 20;
+  bool force = false;
+};
+
+int transcribe(const TranscriptOptions& o) {
+  refuseExisting(o.output, o.force);
+  recorder::probe(o.recording);
+  recorder::Recording recording(o.recording);
+  if (o.steps < 2 || o.steps > recording.stepCount())
+    throw Error(ErrorKind::invalid, fmt::format("{}: has {} steps", o.recording, recording.stepCount()));
+  const std::vector<std::byte> bytes =
+      bytesOf(recorder::makeTranscript(recorder::commandOf(o.engine), recording, o.steps));
+  recorder::writeText(o.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, o.force);
+  return 0;
+}
+
+}  // namespace
+
+void addEngine(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("engine", "Kept engines: programs that decide recordings of other versions.");
+  command->require_subcommand(1);
+
+  auto json = std::make_shared<bool>(false);
+  CLI::App* listing = command->add_subcommand("list", "Shows which engines are there.");
+  listing->add_flag("--json", *json, "print them as JSON");
+  listing->callback([json, &run] { run = [json] { return list(*json); }; });
+
+  auto versions = std::make_shared<std::vector<std::uint32_t>>();
+  CLI::App* checking = command->add_subcommand(
+      "check", "Starts engines, compares their answers with their transcripts, and has them replay their goldens.");
+  checking->add_option("versions", *versions, "simulation versions; none: every engine that is there");
+  checking->callback([versions, &run] { run = [versions] { return checkAll(*versions); }; });
+
+  auto b = std::make_shared<BuildOptions>();
+  b->source = CALOT_SOURCE;
+  CLI::App* building = command->add_subcommand("build", "Builds the engine of a version from a clone of the source.");
+  building->add_option("version", b->version, "simulation version")->required();
+  building->add_option("-o,--output", b->output, "the engine's file")->required();
+  building->add_option("--source", b->source, "clone with the whole history")->capture_default_str();
+  building->add_flag("--module", b->module, "as a WebAssembly module");
+  building->add_flag("--force", b->force, "overwrite the file");
+  building->callback([b, &run] { run = [b] { return build(*b); }; });
+
+  auto t = std::make_shared<TranscriptOptions>();
+  CLI::App* writing = command->add_subcommand("transcript", "Writes what an engine answers, for engine check.");
+  writing->add_option("recording", t->recording, "whose scene and first steps are asked")->required();
+  writing->add_option("--engine", t->engine, "program or module")->required();
+  writing->add_option("--steps", t->steps, "steps that it is to do")->capture_default_str();
+  writing->add_option("-o,--output", t->output, "the transcript")->required();
+  writing->add_flag("--force", t->force, "overwrite the file");
+  writing->callback([t, &run] { run = [t] { return transcribe(*t); }; });
+}
+
+}  // namespace calot::apps

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What decides a recording: the simulation of one version, on one attempt. Replay, assessment, seeking and drawing all
+// go through this, whether the simulation is this program's own (LocalEngine) or another program's
+// (recorder/kept/engine_process.h, schemas/engine.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "recorder/engine/keyframe_difference.h"
+#include "recorder/engine/observer.h"
+#include "recorder/recorded_procedure.h"
+#include "sim/scene/digests.h"
+#include "sim/scene/scene_view.h"
+#include "sim/scene/step_result.h"
+
+namespace calot::recorder {
+
+/// What a program that is an engine has given up. Numbers are of schemas/engine.md.
+enum class Confinement : std::uint8_t {
+  none = 0,
+  own = 1,     ///< everything but reading, writing, computing and ending
+  byHost = 2,  ///< what runs it gives it nothing else
+};
+
+struct EngineIdentity {
+  std::uint32_t simulationVersion = 0;
+  std::uint32_t stepResultVersion = 0;
+  std::string software;  ///< program and version
+  Confinement confinement = Confinement::none;
+};
+
+/// One step's inputs, as a recording has them.
+struct StepInput {
+  std::span<const TickSamples> samples;  ///< ticksPerStep of them
+  std::span<const TickOutcome> logged;   ///< as many: which contact sets the ticks use, and how late they ran
+  float lateness = 0.0F;
+};
+
+/// What a step came to. Valid until the engine's next call.
+struct EngineStep {
+  std::uint64_t step = 0;
+  std::span<const TickOutcome> ticks;
+  const StepResult& result;
+  const StateDigest& digest;
+  const RecordedProcedure* procedure = nullptr;  ///< of version 3 of StepResult alone, where the scene has one
+};
+
+/// Contact sets that both hands' last ticks named.
+using NamedSets = std::array<std::int64_t, handCount>;
+
+class Engine {
+ public:
+  Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+  virtual ~Engine() = default;
+
+  /// Of its digests.
+  [[nodiscard]] virtual const DigestLayout& layout() const = 0;
+  /// Begins an attempt.
+  virtual void start(std::uint64_t seed) = 0;
+  /// Goes on from a keyframe. @param named by the last ticks before it; none: not known
+  /// @returns false, leaving all as it was, where it is no State of the scene
+  [[nodiscard]] virtual bool restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) = 0;
+  /// Steps done; the next step's number.
+  [[nodiscard]] virtual std::uint64_t steps() const = 0;
+  /// Does the next step. @pre start() or restore()
+  /// @throws std::out_of_range where a tick names a contact set that is not there
+  virtual EngineStep step(const StepInput& input) = 0;
+  /// How many steps it takes the inputs of ahead of time; 0: none.
+  [[nodiscard]] virtual std::size_t takesAhead() const { return 0; }
+  /// Inputs of a step to come, in order, which step() is given once more: an engine that is another program has them
+  /// before it asks. Until these steps are done nothing but step() may be called, if not to drop them.
+  /// @pre fewer than takesAhead() are ahead
+  virtual void announce(const StepInput& /*input*/) {}
+  /// Of the last step. @pre steps() > 0
+  [[nodiscard]] virtual Keyframe keyframe() = 0;
+  /// What is to be drawn now.
+  [[nodiscard]] virtual SceneView view() = 0;
+  /// How a keyframe differs from the engine's own after the last step.
+  [[nodiscard]] virtual std::optional<KeyframeDifference> explain(const Keyframe& recorded) = 0;
+};
+
+}  // namespace calot::recorder

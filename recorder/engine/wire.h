@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The payloads of an engine's protocol (schemas/engine.md, which comes first): each lists its fields once, in their
+// order, and is written and read by that list (sim/math/fields.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/math/fields.h"
+
+namespace calot::recorder::wire {
+
+inline constexpr std::array<char, 8> magic{'C', 'A', 'L', 'O', 'T', 'E', 'N', 'G'};
+inline constexpr std::uint32_t protocol = 1;
+
+using Bytes = std::vector<std::byte>;
+/// w, x, y, z.
+using Rotation = std::array<double, 4>;
+
+/// What a step is to come with.
+inline constexpr std::uint8_t wantKeyframe = 1U << 0U;
+inline constexpr std::uint8_t wantContactSets = 1U << 1U;
+inline constexpr std::uint8_t wantView = 1U << 2U;
+inline constexpr std::uint8_t wantAll = wantKeyframe | wantContactSets | wantView;
+
+enum class FaultCode : std::uint32_t { message = 1, protocol = 2, scene = 3, contactSet = 4, other = 5 };
+
+// Requests
+
+struct Hello {
+  static constexpr std::uint32_t kind = 1;
+  std::array<char, 8> magic = wire::magic;
+  std::uint32_t protocol = wire::protocol;
+  static void fields(auto& self, auto& visit) {
+    visit("magic", self.magic);
+    visit("protocol", self.protocol);
+  }
+};
+
+struct File {
+  std::string name;
+  Bytes content;
+  static void fields(auto& self, auto& visit) {
+    visit("name", self.name);
+    visit("content", self.content);
+  }
+};
+
+struct Scene {
+  static constexpr std::uint32_t kind = 2;
+  std::vector<File> files;
+  static void fields(auto& self, auto& visit) { visit("files", self.files); }
+};
+
+struct Start {
+  static constexpr std::uint32_t kind = 3;
+  std::uint64_t seed = 0;
+  static void fields(auto& self, auto& visit) { visit("seed", self.seed); }
+};
+
+struct Keyframe {
+  static constexpr std::uint32_t kind = 106;
+  std::uint64_t step = 0;
+  Bytes state, haptics;
+  static void fields(auto& self, auto& visit) {
+    visit("step", self.step);
+    visit("state", self.state);
+    visit("haptics", self.haptics);
+  }
+};
+
+struct Restore {
+  static constexpr std::uint32_t kind = 4;
+  Keyframe keyframe;
+  std::uint8_t known = 0;
+  std::array<std::int64_t, 2> named{-1, -1};
+  static void fields(auto& self, auto& visit) {
+    visit("keyframe", self.keyframe);
+    visit("known", self.known);
+    visit("named", self.named);
+  }
+};
+
+struct HandSample {
+  Vec3 position = Vec3::Zero();
+  Rotation orientation{1.0, 0.0, 0.0, 0.0};
+  double jaw = 0.0;
+  std::uint8_t instrument = 0, buttons = 0, valid = 1;
+  std::int64_t set = -1;
+  static void fields(auto& self, auto& visit) {
+    visit("position", self.position);
+    visit("orientation", self.orientation);
+    visit("jaw", self.jaw);
+    visit("instrument", self.instrument);
+    visit("buttons", self.buttons);
+    visit("valid", self.valid);
+    visit("set", self.set);
+  }
+};
+
+struct Tick {
+  std::array<HandSample, 2> hand;
+  Vec3 cameraPosition = Vec3::Zero();
+  Rotation cameraOrientation{1.0, 0.0, 0.0, 0.0};
+  float lateness = 0.0F;
+  static void fields(auto& self, auto& visit) {
+    visit("hand", self.hand);
+    visit("camera.position", self.cameraPosition);
+    visit("camera.orientation", self.cameraOrientation);
+    visit("lateness", self.lateness);
+  }
+};
+
+struct Step {
+  static constexpr std::uint32_t kind = 5;
+  std::uint8_t wanted = 0;
+  float lateness = 0.0F;
+  std::vector<Tick> ticks;
+  static void fields(auto& self, auto& visit) {
+    visit("wanted", self.wanted);
+    visit("lateness", self.lateness);
+    visit("ticks", self.ticks);
+  }
+};
+
+struct AskKeyframe {
+  static constexpr std::uint32_t kind = 6;
+  static void fields(auto& /*self*/, auto& /*visit*/) {}
+};
+
+struct AskView {
+  static constexpr std::uint32_t kind = 7;
+  static void fields(auto& /*self*/, auto& /*visit*/) {}
+};
+
+struct Explain {
+  static constexpr std::uint32_t kind = 8;
+  Keyframe keyframe;
+  static void fields(auto& self, auto& visit) { visit("keyframe", self.keyframe); }
+};
+
+// Answers
+
+struct IsHello {
+  static constexpr std::uint32_t kind = 101;
+  std::array<char, 8> magic = wire::magic;
+  std::uint32_t protocol = wire::protocol;
+  std::uint32_t simulation = 0, result = 0;
+  std::string software;
+  std::uint8_t confined = 0;
+  static void fields(auto& self, auto& visit) {
+    visit("magic", self.magic);
+    visit("protocol", self.protocol);
+    visit("simulation", self.simulation);
+    visit("result", self.result);
+    visit("software", self.software);
+    visit("confined", self.confined);
+  }
+};
+
+struct Field {
+  std::uint32_t component = 0;
+  std::string name;
+  static void fields(auto& self, auto& visit) {
+    visit("component", self.component);
+    visit("name", self.name);
+  }
+};
+
+struct Column {
+  std::string path, type;
+  std::uint32_t width = 0;
+  static void fields(auto& self, auto& visit) {
+    visit("path", self.path);
+    visit("type", self.type);
+    visit("width", self.width);
+  }
+  bool operator==(const Column&) const = default;
+};
+
+struct IsScene {
+  static constexpr std::uint32_t kind = 102;
+  std::uint32_t ticks = 0;
+  double tick = 0.0;
+  std::vector<std::string> components;
+  std::vector<Field> digested;
+  std::vector<std::string> structures;
+  std::vector<Column> columns;
+  static void fields(auto& self, auto& visit) {
+    visit("ticks", self.ticks);
+    visit("tick", self.tick);
+    visit("components", self.components);
+    visit("fields", self.digested);
+    visit("structures", self.structures);
+    visit("columns", self.columns);
+  }
+};
+
+struct IsReady {
+  static constexpr std::uint32_t kind = 103;
+  std::uint64_t steps = 0;
+  static void fields(auto& self, auto& visit) { visit("steps", self.steps); }
+};
+
+struct IsRefused {
+  static constexpr std::uint32_t kind = 104;
+  std::string why;
+  static void fields(auto& self, auto& visit) { visit("why", self.why); }
+};
+
+struct Event {
+  std::uint64_t step = 0;
+  std::uint8_t event = 0, hand = 255;
+  std::uint16_t subject = 0;
+  Vec3 position = Vec3::Zero();
+  double value = 0.0;
+  static void fields(auto& self, auto& visit) {
+    visit("step", self.step);
+    visit("kind", self.event);
+    visit("hand", self.hand);
+    visit("subject", self.subject);
+    visit("position", self.position);
+    visit("value", self.value);
+  }
+};
+
+struct IsStep {
+  static constexpr std::uint32_t kind = 105;
+  std::uint64_t step = 0;
+  std::vector<std::array<Vec3, 4>> forces;  ///< left force, left torque, right force, right torque
+  std::vector<std::uint64_t> components;
+  std::vector<std::uint32_t> digested;
+  std::vector<Event> events;
+  Bytes results, keyframe, sets, view;
+  static void fields(auto& self, auto& visit) {
+    visit("step", self.step);
+    visit("forces", self.forces);
+    visit("components", self.components);
+    visit("fields", self.digested);
+    visit("events", self.events);
+    visit("results", self.results);
+    visit("keyframe", self.keyframe);
+    visit("sets", self.sets);
+    visit("view", self.view);
+  }
+};
+
+struct Surface {
+  std::string structure, appearance;
+  std::uint8_t role = 0;
+  std::vector<Vec3> position, rest;
+  std::vector<std::array<std::uint32_t, 3>> triangle;
+  std::vector<float> charred, face;
+  static void fields(auto& self, auto& visit) {
+    visit("structure", self.structure);
+    visit("appearance", self.appearance);
+    visit("role", self.role);
+    visit("positions", self.position);
+    visit("rest", self.rest);
+    visit("triangles", self.triangle);
+    visit("charred", self.charred);
+    visit("face", self.face);
+  }
+};
+
+struct Bed {
+  std::string name;
+  std::vector<std::array<Vec3, 2>> strand;
+  std::vector<std::uint8_t> condition;
+  std::vector<float> alpha;
+  std::vector<std::array<std::uint32_t, 2>> sheet;
+  static void fields(auto& self, auto& visit) {
+    visit("name", self.name);
+    visit("strands", self.strand);
+    visit("conditions", self.condition);
+    visit("alpha", self.alpha);
+    visit("sheets", self.sheet);
+  }
+};
+
+struct Clip {
+  Vec3 position = Vec3::Zero();
+  Rotation orientation{1.0, 0.0, 0.0, 0.0};
+  double width = 0.0, legs = 0.0, halfGap = 0.0;
+  static void fields(auto& self, auto& visit) {
+    visit("position", self.position);
+    visit("orientation", self.orientation);
+    visit("width", self.width);
+    visit("legs", self.legs);
+    visit("half gap", self.halfGap);
+  }
+};
+
+struct Instrument {
+  std::uint8_t instrument = 0;
+  Vec3 position = Vec3::Zero();
+  Rotation orientation{1.0, 0.0, 0.0, 0.0};
+  Vec3 port = Vec3::Zero();
+  double radius = 0.0, jaw = 0.0;
+  std::uint8_t touching = 0;
+  static void fields(auto& self, auto& visit) {
+    visit("kind", self.instrument);
+    visit("position", self.position);
+    visit("orientation", self.orientation);
+    visit("port", self.port);
+    visit("radius", self.radius);
+    visit("jaw", self.jaw);
+    visit("touching", self.touching);
+  }
+};
+
+struct View {
+  static constexpr std::uint32_t kind = 107;
+  std::uint64_t step = 0;
+  double time = 0.0;
+  std::vector<Surface> surface;
+  std::vector<Bed> bed;
+  std::vector<Clip> clip;
+  std::array<Instrument, 2> instrument;
+  Vec3 cameraPosition = Vec3::Zero();
+  Rotation cameraOrientation{1.0, 0.0, 0.0, 0.0};
+  double fieldOfView = 0.0;
+  static void fields(auto& self, auto& visit) {
+    visit("step", self.step);
+    visit("time", self.time);
+    visit("surfaces", self.surface);
+    visit("beds", self.bed);
+    visit("clips", self.clip);
+    visit("instruments", self.instrument);
+    visit("camera.position", self.cameraPosition);
+    visit("camera.orientation", self.cameraOrientation);
+    visit("field of view", self.fieldOfView);
+  }
+};
+
+struct IsExplained {
+  static constexpr std::uint32_t kind = 108;
+  std::uint8_t differs = 0;
+  std::string field, detail;
+  static void fields(auto& self, auto& visit) {
+    visit("differs", self.differs);
+    visit("field", self.field);
+    visit("detail", self.detail);
+  }
+};
+
+struct Fault {
+  static constexpr std::uint32_t kind = 199;
+  FaultCode code = FaultCode::other;
+  std::string message;
+  static void fields(auto& self, auto& visit) {
+    visit("code", self.code);
+    visit("message", self.message);
+  }
+};
+
+}  // namespace calot::recorder::wire

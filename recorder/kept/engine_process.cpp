@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/kept/engine_process.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "recorder/engine/wire_forms.h"
+
+namespace calot::recorder {
+
+void EngineProcess::fail(const std::string& what) { throw Error(kind_, where_, what); }
+
+template <class Request>
+void EngineProcess::send(const Request& request) {
+  request_.clear();
+  appendMessage(request, request_);
+  // Where it has ended, receive() says so, after what it said before.
+  static_cast<void>(child_.send(request_));
+}
+
+std::span<const std::byte> EngineProcess::receive(std::uint32_t kind, std::uint32_t* got) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  std::array<std::byte, messageHead> head{};
+  using Received = ChildProcess::Received;
+  Received received = child_.receive(head, deadline);
+  MessageHead parsed;
+  if (received == Received::all) {
+    parsed = parseHead(head);
+    if (parsed.length > maxPayload) fail("the engine's answer has no length that can be");
+    payload_.resize(static_cast<std::size_t>(parsed.length));
+    received = child_.receive(payload_, deadline);
+  }
+  if (received == Received::late) fail(fmt::format("the engine gave no answer in {} s", patience.count()));
+  if (received == Received::ended) fail(fmt::format("the engine ended: {}", child_.end()));
+  if (got != nullptr) *got = parsed.kind;
+  if (parsed.kind == kind) return payload_;
+  if (parsed.kind == wire::Fault::kind) {
+    wire::Fault fault;
+    if (!decode(payload_, fault)) fail("the engine's fault cannot be read");
+    if (fault.code == wire::FaultCode::contactSet) throw std::out_of_range(fault.message);
+    fail(fault.message);
+  }
+  if (got == nullptr) fail(fmt::format("the engine answered with a message of kind {}, not {}", parsed.kind, kind));
+  return payload_;
+}
+
+template <class Request>
+std::span<const std::byte> EngineProcess::ask(const Request& request, std::uint32_t kind, std::uint32_t* got) {
+  for (; announced_ > 0; --announced_) static_cast<void>(receive(wire::IsStep::kind));
+  send(request);
+  return receive(kind, got);
+}
+
+template <class Answer, class Request>
+Answer EngineProcess::ask(const Request& request) {
+  Answer answer;
+  if (!decode(ask(request, Answer::kind), answer))
+    fail(fmt::format("the engine's answer {} has not the bytes that it must have", Answer::kind));
+  return answer;
+}
+
+EngineProcess::EngineProcess(const std::vector<std::string>& command, std::uint32_t simulationVersion)
+    : program_(command.back()), child_(command), where_{program_} {
+  const auto answer = ask<wire::IsHello>(wire::Hello{});
+  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("this is no engine");
+  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("this is no engine");
+  if (answer.simulation != simulationVersion)
+    fail(fmt::format("is an engine of simulation version {}, not {}", answer.simulation, simulationVersion));
+  identity_ = {answer.simulation, answer.result, answer.software, static_cast<Confinement>(answer.confined)};
+}
+
+void EngineProcess::load(const AttemptHeader& header, const Where& where) {
+  where_ = where;
+  kind_ = ErrorKind::damaged;
+  wire::Scene request;
+  for (const Asset& asset : header.assets) request.files.push_back({asset.name, asset.bytes});
+  auto answer = ask<wire::IsScene>(request);
+  if (answer.ticks != header.ticksPerStep)
+    fail(fmt::format("its scene has {} ticks a step, the recording {}", answer.ticks, header.ticksPerStep));
+  ticksPerStep_ = answer.ticks;
+  layout_.components = std::move(answer.components);
+  for (wire::Field& f : answer.digested) {
+    if (f.component >= layout_.components.size()) fail("the engine's fields belong to no component");
+    layout_.fields.push_back({f.component, std::move(f.name)});
+  }
+  if (layout_.components != header.layout.components || layout_.fields.size() != header.layout.fields.size())
+    fail("the recorded digests have other components than the engine's State: nothing to compare");
+  if (identity_.stepResultVersion != header.stepResultVersion)
+    fail(fmt::format("its results are of version {}, those of its engine {}", header.stepResultVersion,
+                     identity_.stepResultVersion));
+  results_.emplace(header);
+  if (const std::string fault = results_->fault(answer.columns); !fault.empty()) fail(fault);
+}
+
+void EngineProcess::start(std::uint64_t seed) { steps_ = ask<wire::IsReady>(wire::Start{seed}).steps; }
+
+bool EngineProcess::restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) {
+  wire::Restore request;
+  request.keyframe = wire::toWire(keyframe);
+  if (named) {
+    request.known = 1;
+    request.named = *named;
+  }
+  std::uint32_t kind = 0;
+  const std::span<const std::byte> payload = ask(request, wire::IsReady::kind, &kind);
+  if (kind == wire::IsRefused::kind) return false;
+  wire::IsReady answer;
+  if (kind != wire::IsReady::kind || !decode(payload, answer)) fail("the engine's answer to restore cannot be read");
+  steps_ = answer.steps;
+  return true;
+}
+
+void EngineProcess::announce(const StepInput& input) {
+  stepRequest_.lateness = input.lateness;
+  stepRequest_.ticks.clear();
+  for (std::size_t i = 0; i < input.samples.size(); ++i)
+    stepRequest_.ticks.push_back(wire::toWire(input.samples[i], input.logged[i]));
+  send(stepRequest_);
+  ++announced_;
+}
+
+EngineStep EngineProcess::step(const StepInput& input) {
+  if (announced_ == 0) announce(input);
+  --announced_;
+  if (!decode(receive(wire::IsStep::kind), stepAnswer_)) fail("the engine's step cannot be read");
+  const wire::IsStep& answer = stepAnswer_;
+  if (answer.step != steps_ || answer.forces.size() != ticksPerStep_ ||
+      answer.components.size() != layout_.components.size() || answer.digested.size() != layout_.fields.size())
+    fail(fmt::format("the engine's step {} is not that of the scene", steps_));
+  ticks_.resize(ticksPerStep_);
+  for (std::size_t i = 0; i < ticksPerStep_; ++i) {
+    ticks_[i].lateness = input.logged[i].lateness;
+    for (std::size_t h = 0; h < handCount; ++h)
+      ticks_[i].hand[h] = {answer.forces[i][2 * h], answer.forces[i][2 * h + 1], input.logged[i].hand[h].contactSet};
+  }
+  digest_.component = answer.components;
+  digest_.field = answer.digested;
+  if (const std::string fault = results_->read(answer.results, result_, procedure_); !fault.empty()) fail(fault);
+  result_.step = answer.step;
+  result_.events.clear();
+  for (const wire::Event& event : answer.events) result_.events.push_back(wire::fromWire(event));
+  ++steps_;
+  return {answer.step, ticks_, result_, digest_, results_->hasProcedure() ? &procedure_ : nullptr};
+}
+
+Keyframe EngineProcess::keyframe() { return wire::fromWire(ask<wire::Keyframe>(wire::AskKeyframe{})); }
+
+SceneView EngineProcess::view() {
+  SceneView view;
+  if (!wire::fromWire(ask<wire::View>(wire::AskView{}), view)) fail("the engine's scene view cannot be read");
+  return view;
+}
+
+std::optional<KeyframeDifference> EngineProcess::explain(const Keyframe& recorded) {
+  auto answer = ask<wire::IsExplained>(wire::Explain{wire::toWire(recorded)});
+  if (answer.differs == 0) return std::nullopt;
+  return KeyframeDifference{std::move(answer.field), std::move(answer.detail)};
+}
+
+}  // namespace calot::recorder

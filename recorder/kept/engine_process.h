@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "recorder/engine/engine.h"
+#include "recorder/engine/messages.h"
+#include "recorder/errors.h"
+#include "recorder/identity.h"
+#include "recorder/kept/child_process.h"
+#include "recorder/kept/result_reader.h"
+
+namespace calot::recorder {
+
+/// An engine that is another program (schemas/engine.md). Whatever becomes of it is an error of the recording that it
+/// was to decide, and of nothing else: it ends, it answers nonsense, it does not answer in time.
+class EngineProcess final : public Engine {
+ public:
+  /// How long it may take over one answer. A step takes milliseconds, the largest scene seconds.
+  static constexpr std::chrono::seconds patience{120};
+
+  /// Starts the program and greets it. @param command program and arguments
+  /// @throws Error (undecided) where it cannot be started, is no engine, or one of another version
+  EngineProcess(const std::vector<std::string>& command, std::uint32_t simulationVersion);
+
+  /// Gives it the scene of a recording. @param where of the recording, for errors @throws Error (damaged)
+  void load(const AttemptHeader& header, const Where& where);
+
+  [[nodiscard]] const EngineIdentity& identity() const { return identity_; }
+
+  [[nodiscard]] const DigestLayout& layout() const override { return layout_; }
+  void start(std::uint64_t seed) override;
+  [[nodiscard]] bool restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) override;
+  [[nodiscard]] std::uint64_t steps() const override { return steps_; }
+  EngineStep step(const StepInput& input) override;
+  /// A program that waits between its steps is a tenth slower: it wakes on another core.
+  [[nodiscard]] std::size_t takesAhead() const override { return 4; }
+  void announce(const StepInput& input) override;
+  [[nodiscard]] Keyframe keyframe() override;
+  [[nodiscard]] SceneView view() override;
+  [[nodiscard]] std::optional<KeyframeDifference> explain(const Keyframe& recorded) override;
+
+ private:
+  template <class Request>
+  void send(const Request& request);
+  /// The payload of the next answer, of this kind. @param got takes the kind, which then may be another
+  std::span<const std::byte> receive(std::uint32_t kind, std::uint32_t* got = nullptr);
+  template <class Request>
+  std::span<const std::byte> ask(const Request& request, std::uint32_t kind, std::uint32_t* got = nullptr);
+  template <class Answer, class Request>
+  Answer ask(const Request& request);
+  [[noreturn]] void fail(const std::string& what);
+
+  std::string program_;
+  ChildProcess child_;
+  Where where_;
+  ErrorKind kind_ = ErrorKind::undecided;  ///< of what goes wrong: until it has a scene, the program is at fault
+  EngineIdentity identity_;
+  DigestLayout layout_;
+  std::optional<ResultReader> results_;
+  std::uint64_t steps_ = 0;
+  std::size_t ticksPerStep_ = 0;
+  std::size_t announced_ = 0;  ///< steps whose answers were not taken yet
+  wire::Bytes request_, payload_;
+  wire::Step stepRequest_;
+  wire::IsStep stepAnswer_;
+  std::vector<TickOutcome> ticks_;
+  StepResult result_;
+  StateDigest digest_;
+  RecordedProcedure procedure_;
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Builds the engine of a simulation version, as a program or as a WebAssembly module, from the source of that version.
+
+  engine.py build N [--module] -o FILE   from the history of this clone, as assets/engines/engines.json names it
+  engine.py build here [--module] -o F   from this tree as it is
+  engine.py keep N                       makes the module of this tree's version the kept one, and notes it
+
+An old version's source may lack the engine's protocol: then assets/engines/N/source.patch is applied to it. A kept module
+is built anew with the same bytes wherever clang is the same. Needs clang 14 with wasi-libc and libc++ for wasm32 (a
+module), or g++ with fmt and libseccomp (a program).
+"""
+import argparse
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ENGINES = ROOT / "assets/engines"
+MANIFEST = ENGINES / "engines.json"
+# The flags of the contract (CMakeLists.txt, target calot_flags).
+CONTRACT = ["-std=c++20", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-fast-math", "-fno-math-errno", "-fno-trapping-math",
+            "-DEIGEN_DONT_VECTORIZE", "-DEIGEN_MPL2_ONLY", "-DFMT_HEADER_ONLY"]
+MODULE = ["--target=wasm32-wasi", "-msimd128", "-fignore-exceptions", "-DJSON_HAS_FILESYSTEM=0", "-DJSON_HAS_EXPERIMENTAL_FILESYSTEM=0"]
+STACK = 8 << 20
+FOREIGN = {"Eigen": "eigen3/Eigen", "xxhash.h": "xxhash.h", "fmt": "fmt", "nlohmann": "nlohmann"}
+
+
+def fail(text):
+    raise SystemExit(f"engine: {text}")
+
+
+def run(command, **options):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False, **options)
+    if done.returncode != 0:
+        fail(f"{' '.join(map(str, command[:4]))}: {(done.stderr or done.stdout).strip()[-2000:]}")
+    return done.stdout
+
+
+def manifest():
+    return json.loads(MANIFEST.read_text()) if MANIFEST.exists() else {"engines": []}
+
+
+def version_of(source):
+    return int(re.search(r"simulationVersion = (\d+);", (source / "sim/scene/version.h").read_text()).group(1))
+
+
+def check_out(version, folder):
+    """The source of a kept version."""
+    entry = next((e for e in manifest()["engines"] if e["version"] == version), None)
+    if entry is None:
+        fail(f"{MANIFEST.name} knows no engine {version}: there are {', '.join(str(e['version']) for e in manifest()['engines']) or 'none'}")
+    if subprocess.run(["git", "-C", ROOT, "cat-file", "-e", entry["commit"] + "^{commit}"], capture_output=True, check=False).returncode != 0:
+        fail(f"{ROOT} is no clone that holds commit {entry['commit'][:12]}: fetch its whole history (git fetch --unshallow)")
+    archive = subprocess.run(["git", "-C", ROOT, "archive", entry["commit"]], capture_output=True, check=True).stdout
+    subprocess.run(["tar", "-x", "-C", folder], input=archive, check=True)
+    patch = ENGINES / str(version) / "source.patch"
+    if patch.exists():
+        run(["git", "apply", "--directory", ".", patch], cwd=folder)
+    if version_of(folder) != version:
+        fail(f"commit {entry['commit'][:12]} is of simulation version {version_of(folder)}")
+
+
+def sources(folder, kind):
+    found = []
+    for line in (folder / "apps/calot-engine/sources.txt").read_text().splitlines():
+        words = line.split()
+        if not words or words[0].startswith("#"):
+            continue
+        if words[0] in ("native", "module"):
+            if words[0] != kind:
+                continue
+            words = words[1:]
+        remove = words[0] == "-"
+        matched = sorted(folder.glob(words[-1]))
+        if not matched:
+            fail(f"apps/calot-engine/sources.txt: {words[-1]} is no file")
+        found = [f for f in found if f not in matched] if remove else found + matched
+    return sorted(set(found))
+
+
+# Instructions that order -0 below 0, which no comparison in C++ does. clang 14 makes them of std::max(x, 0.0) and the like; with a
+# constant that is no zero they give what the comparison gives (sim/math/bounds.h).
+ORDERS_ZEROS = re.compile(r"\bf(?:64|32)(?:x[24])?\.(?:max|min)\b")
+NO_ZERO = re.compile(r"\bf(?:64|32)\.const\s+-?(?!0x0p0\b)\S+")
+
+
+def zeros_lost(listing):
+    """Instructions of a disassembly that may lose which zero a result is, each with the one before it."""
+    found, before = [], ""
+    for line in listing.splitlines():
+        text = line.split("\t", 1)[-1]
+        if ORDERS_ZEROS.search(text) and not NO_ZERO.search(before):
+            found.append(f"{before.strip()}; {text.strip()}")
+        before = text
+    return found
+
+
+def check_zeros(work, objects):
+    lost = [f"{name}: {what}" for name in objects if name.startswith("sim/")
+            for what in zeros_lost(run(["llvm-objdump-14", "-d", work / name]))]
+    if lost:
+        fail("the module would lose which zero a number is:\n" + "\n".join(lost[:20]))
+
+
+def self_test():
+    assert zeros_lost("  77: 2b\tf64.load\t0\n 7a: 44\tf64.const\t0x0p0\n 83: a5\tf64.max\n") == ["f64.const\t0x0p0; f64.max"]
+    assert zeros_lost(" 7a: 44\tf64.const\t0x1p0\n 83: a5\tf64.min\n") == []
+    assert zeros_lost(" 7a: 44\tf64.const\t-0x1.8p3\n 83: a5\tf64.min\n") == []
+    assert zeros_lost(" 7a: 44\tlocal.get\t3\n 83: a5\tf64x2.max\n") == ["local.get\t3; f64x2.max"]
+    assert zeros_lost(" 7a: 44\tlocal.get\t3\n 83: a5\tf64x2.pmax\n") == []
+    print("engine: finds the instructions that order zeros")
+
+
+def program_version(folder):
+    return re.search(r"project\(calot VERSION (\S+)", (folder / "CMakeLists.txt").read_text()).group(1)
+
+
+def build(folder, kind, output, work, jobs):
+    """Compiles and links an engine of the source in `folder`."""
+    module = kind == "module"
+    include = work / "include"
+    include.mkdir(parents=True, exist_ok=True)
+    for name, place in FOREIGN.items():
+        if not (include / name).is_symlink():
+            (include / name).symlink_to(f"/usr/include/{place}")
+    compiler = "clang++-14" if module else "g++"
+    flags = [*CONTRACT, *(MODULE if module else []), f'-DCALOT_VERSION=\\"{program_version(folder)}\\"', f"-I{folder}",
+             f"-ffile-prefix-map={folder}=."]
+    compat = folder / "apps/calot-engine/wasm/compat"
+    if module and compat.is_dir():
+        flags.append(f"-I{compat}")
+    flags.append(f"-isystem {include}")
+    link = [f"--target=wasm32-wasi -mexec-model=reactor -O2 -Wl,-s -Wl,-z,stack-size={STACK} -Wl,--max-memory={4 << 30}"
+            if module else "-O2 -s", "$in"] + ([] if module else ["-lseccomp"])
+    lines = ["rule compile", f"  command = {compiler} {' '.join(flags)} -MMD -MF $out.d -c $in -o $out", "  depfile = $out.d",
+             "  deps = gcc", "rule link", f"  command = {compiler} {' '.join(link)} -o $out"]
+    objects = []
+    for source in sources(folder, kind):
+        objects.append(str(source.relative_to(folder).with_suffix(".o")))
+        lines.append(f"build {objects[-1]}: compile {source}")
+    lines.append(f"build engine: link {' '.join(objects)}")
+    (work / "build.ninja").write_text("\n".join(lines) + "\n")
+    done = subprocess.run(["ninja", "-C", str(work), f"-j{jobs}", "--quiet"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        fail(f"does not build:\n{done.stdout[-4000:]}")
+    if module:
+        check_zeros(work, objects)
+    temporary = output.with_name(output.name + ".part")
+    shutil.copy(work / "engine", temporary)
+    os.replace(temporary, output)
+
+
+def keep(version, jobs):
+    """Notes the module of the last commit as that of its version."""
+    if run(["git", "-C", ROOT, "status", "--porcelain", "sim", "recorder", "apps/calot-engine"]).strip():
+        fail("the source has changes that are in no commit: an engine is kept of a commit")
+    if version_of(ROOT) != version:
+        fail(f"this tree is of simulation version {version_of(ROOT)}")
+    known = manifest()
+    if any(e["version"] == version for e in known["engines"]):
+        fail(f"engine {version} is kept already, and never changes")
+    file = ENGINES / f"engine-{version}.wasm"
+    with tempfile.TemporaryDirectory() as folder:
+        build(ROOT, "module", file, pathlib.Path(folder), jobs)
+    known["engines"].append(entry_of(version, run(["git", "-C", ROOT, "rev-parse", "HEAD"]).strip(), file))
+    MANIFEST.write_text(json.dumps(known, indent=2) + "\n")
+
+
+def entry_of(version, commit, file):
+    return {"version": version, "commit": commit, "module": file.name, "sha256": hashlib.sha256(file.read_bytes()).hexdigest(),
+            "compiler": run(["clang++-14", "--version"]).splitlines()[0],
+            "libraries": run(["dpkg-query", "-W", "-f", "${Package} ${Version}\\n", "wasi-libc", "libc++-14-dev-wasm32", "libeigen3-dev",
+                              "libxxhash-dev", "libfmt-dev", "nlohmann-json3-dev"]).split("\n")[:-1]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    one = commands.add_parser("build")
+    one.add_argument("version", help="a simulation version, or here")
+    one.add_argument("--module", action="store_true", help="WebAssembly")
+    one.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    one.add_argument("--work", type=pathlib.Path, help="keeps what was compiled")
+    two = commands.add_parser("keep")
+    two.add_argument("version", type=int)
+    commands.add_parser("self-test")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    arguments = parser.parse_args()
+    if arguments.command == "self-test":
+        self_test()
+        return 0
+    if arguments.command == "keep":
+        keep(arguments.version, arguments.jobs)
+        return 0
+    kind = "module" if arguments.module else "native"
+    output = arguments.output.resolve()
+    if not output.parent.is_dir():
+        fail(f"{output.parent} is no folder")
+    with tempfile.TemporaryDirectory() as temporary:
+        work = (arguments.work or pathlib.Path(temporary) / "work").resolve()
+        folder = ROOT
+        if arguments.version != "here":
+            if not arguments.version.isdigit():
+                fail(f"'{arguments.version}' is no simulation version")
+            folder = pathlib.Path(temporary) / "source"
+            folder.mkdir()
+            check_out(int(arguments.version), folder)
+        build(folder, kind, output, work, arguments.jobs)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

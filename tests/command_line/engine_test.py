@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Kept engines: they are there, they are what they say, they decide recordings of their versions."""
+
+import hashlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import program
+
+SOURCE = pathlib.Path(os.environ["CALOT_SOURCE_DIR"])
+ENGINES = SOURCE / "assets/engines"
+
+
+class Engine(program.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.manifest = json.loads((ENGINES / "engines.json").read_text())["engines"]
+
+    def environment(self, **values):
+        for name, value in values.items():
+            before = os.environ.get(name)
+            os.environ[name] = str(value)
+            self.addCleanup(os.environ.update, {name: before} if before is not None else {})
+            if before is None:
+                self.addCleanup(os.environ.pop, name, None)
+
+    def golden(self, version, name):
+        return ENGINES / str(version) / name
+
+    def test_each_kept_version_has_its_artefacts(self):
+        for entry in self.manifest:
+            module = ENGINES / entry["module"]
+            self.assertEqual(hashlib.sha256(module.read_bytes()).hexdigest(), entry["sha256"], entry["module"])
+            self.assertTrue(list((ENGINES / str(entry["version"])).glob("*.transcript")), entry["version"])
+        newest = json.loads((SOURCE / "assets/golden/golden.json").read_text())["simulation_version"]
+        self.assertIn(newest, [e["version"] for e in self.manifest], "keep the engine of the golden recordings: docs/engines.md")
+
+    def test_list(self):
+        listed = json.loads(self.well("engine", "list", "--json").out)
+        self.assertEqual({e["version"] for e in listed["engines"]} - {e["version"] for e in self.manifest}, set())
+        for entry in self.manifest:
+            self.assertIn(f"version {entry['version']}: module", self.well("engine", "list").out)
+
+    def test_check(self):
+        """Transcripts and golden recordings of every kept version, by its module."""
+        if not shutil.which("node"):
+            self.skipTest("no node here")
+        out = self.well("engine", "check").out
+        for entry in self.manifest:
+            kept = list((ENGINES / str(entry["version"])).glob("*.h5"))
+            for file in kept:
+                self.assertIn(f"version {entry['version']}, module: {file.name}: ok", out)
+        self.assertIn("version 12, module: cholecystectomy.h5: ok", out)
+        self.assertNotIn("diverged", out)
+
+    def test_the_newest_golden_recordings_by_their_module(self):
+        if not shutil.which("node"):
+            self.skipTest("no node here")
+        newest = max(e["version"] for e in self.manifest)
+        for name in ("touch-liver.h5", "dissect-bed.h5", "carve-fat.h5"):
+            file = SOURCE / "assets/golden" / name
+            self.assertIn("bit-exact", self.well("replay", "--engine", ENGINES / f"engine-{newest}.wasm", file).out)
+
+    def test_a_recording_of_another_version(self):
+        file = self.golden(12, "touch-liver.h5")
+        if shutil.which("node"):
+            self.assertIn("bit-exact", self.well("replay", file).out)
+        # Without the assets' engines there is none, and without node none that runs.
+        empty = self.folder / "empty"
+        empty.mkdir()
+        self.environment(CALOT_ASSETS=empty, CALOT_ENGINES=empty)
+        self.refused(5, "replay", file, names=["version 12", "installed", "calot engine list"])
+        report = json.loads(program.calot("replay", "--json", file).out)[0]
+        self.assertEqual(report["verdict"], "undecided")
+        self.assertIn("no other engine", self.well("engine", "list").out)
+
+    def test_a_native_engine_goes_before_the_module(self):
+        engine = pathlib.Path(os.environ["CALOT_PROGRAM"]).parent / "calot-engine"
+        folder = self.folder / "engines"
+        folder.mkdir()
+        own = json.loads(self.well("engine", "list", "--json").out)["own_version"]
+        shutil.copy(engine, folder / f"calot-engine-{own}")
+        self.environment(CALOT_ENGINES=folder)
+        out = self.well("engine", "check", own).out
+        self.assertIn(f"version {own}, program: calot-engine", out)
+        self.assertNotIn("differs", out)
+
+    def test_apart(self):
+        file = self.path("r.h5")
+        self.well("record", "--scene", "touch-liver", "--performer", "skilled", "--seconds", 3, "-o", file)
+        self.assertEqual(self.first_line(self.well("replay", "--apart", file).out),
+                         self.first_line(self.well("replay", file).out))
+
+    @staticmethod
+    def first_line(text):
+        return text.splitlines()[0].split(", ")[0]
+
+    def test_what_is_wrong_is_said(self):
+        file = self.golden(12, "touch-liver.h5")
+        self.refused(2, "engine", names=["subcommand"])
+        self.refused(2, "engine", "check", 99, names=["99", "calot engine list"])
+        self.refused(2, "engine", "check", "twelve", names=["twelve"])
+        self.refused(2, "engine", "build", 12, "-o", self.path("e"), "--source", self.folder, names=["clone"])
+        self.refused(4, "replay", "--engine", self.path("none"), file, names=["no such engine"])
+        self.refused(5, "replay", "--engine", "/bin/true", file, names=["ended"])
+        self.refused(5, "replay", "--engine", "/bin/cat", file, names=["no engine"])
+        text = self.path("text")
+        pathlib.Path(text).write_text("no program")
+        self.refused(5, "replay", "--engine", text, file, names=["started"])
+        self.refused(2, "engine", "transcript", file, "--engine", "/bin/true", "--steps", 1, "-o", self.path("t"), names=["steps"])
+        self.assertFalse(os.path.exists(self.path("t")))
+
+    def test_building_knows_its_versions(self):
+        run = subprocess.run([sys.executable, SOURCE / "scripts/engine.py", "build", "3", "-o", self.path("e")], capture_output=True,
+                             text=True, check=False)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("knows no engine 3", run.stderr)
+        subprocess.run([sys.executable, SOURCE / "scripts/engine.py", "self-test"], check=True, capture_output=True)
+
+
+if __name__ == "__main__":
+    program.main()
