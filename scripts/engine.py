@@ -85,37 +85,50 @@ def sources(folder, kind):
     return sorted(set(found))
 
 
-# Instructions that order -0 below 0, which no comparison in C++ does. clang 14 makes them of std::max(x, 0.0) and the like; with a
-# constant that is no zero they give what the comparison gives (sim/math/bounds.h).
-ORDERS_ZEROS = re.compile(r"\bf(?:64|32)(?:x[24])?\.(?:max|min)\b")
-NO_ZERO = re.compile(r"\bf(?:64|32)\.const\s+-?(?!0x0p0\b)\S+")
+# Comparisons with 0 in LLVM's form whose either zero clang 14 loses in WebAssembly, where its maximum and minimum order -0 below 0 and
+# keep what is no number: x < 0 ? 0 : x, and !(x >= 0) ? x : 0. Source that uses sim/math/bounds.h has none.
+ZERO = r"(?:0\.0+e\+00|zeroinitializer)"
+BELOW_ZERO = re.compile(rf"(%\S+) = fcmp ([uo])lt (?:<\d+ x )?(?:double|float)>? (%\S+), {ZERO}")
+SELECT = re.compile(r"= select (?:<\d+ x )?i1>? (%\S+), (?:<\d+ x )?(?:double|float)>? (\S+), (?:<\d+ x )?(?:double|float)>? (\S+)$")
 
 
 def zeros_lost(listing):
-    """Instructions of a disassembly that may lose which zero a result is, each with the one before it."""
-    found, before = [], ""
+    """Selects in LLVM's text that may lose which zero their result is."""
+    found, compared = [], {}
     for line in listing.splitlines():
-        text = line.split("\t", 1)[-1]
-        if ORDERS_ZEROS.search(text) and not NO_ZERO.search(before):
-            found.append(f"{before.strip()}; {text.strip()}")
-        before = text
+        text = line.split(", !")[0].strip()
+        if text.startswith("define "):
+            compared = {}
+        comparison = BELOW_ZERO.match(text)
+        if comparison:
+            compared[comparison[1]] = (comparison[2], comparison[3])
+        choice = SELECT.search(text)
+        if choice and choice[1] in compared:
+            ordered, number = compared[choice[1]]
+            zero, other = (choice[2], choice[3]) if ordered == "o" else (choice[3], choice[2])
+            if re.fullmatch(ZERO, zero) and other == number:
+                found.append(text)
     return found
 
 
 def check_zeros(work, objects):
     lost = [f"{name}: {what}" for name in objects if name.startswith("sim/")
-            for what in zeros_lost(run(["llvm-objdump-14", "-d", work / name]))]
+            for what in zeros_lost(run(["llvm-dis-14", "-o", "-", work / f"{name}.bc"]))]
     if lost:
-        fail("the module would lose which zero a number is:\n" + "\n".join(lost[:20]))
+        fail("clang would lose which zero a number is (sim/math/bounds.h):\n" + "\n".join(lost[:20]))
 
 
 def self_test():
-    assert zeros_lost("  77: 2b\tf64.load\t0\n 7a: 44\tf64.const\t0x0p0\n 83: a5\tf64.max\n") == ["f64.const\t0x0p0; f64.max"]
-    assert zeros_lost(" 7a: 44\tf64.const\t0x1p0\n 83: a5\tf64.min\n") == []
-    assert zeros_lost(" 7a: 44\tf64.const\t-0x1.8p3\n 83: a5\tf64.min\n") == []
-    assert zeros_lost(" 7a: 44\tlocal.get\t3\n 83: a5\tf64x2.max\n") == ["local.get\t3; f64x2.max"]
-    assert zeros_lost(" 7a: 44\tlocal.get\t3\n 83: a5\tf64x2.pmax\n") == []
-    print("engine: finds the instructions that order zeros")
+    lost = ("%2 = fcmp olt double %1, 0.000000e+00\n%3 = select i1 %2, double 0.000000e+00, double %1",
+            "%2 = fcmp ult double %1, 0.000000e+00\n%3 = select i1 %2, double %1, double 0.000000e+00",
+            "%2 = fcmp olt <2 x double> %1, zeroinitializer\n%3 = select <2 x i1> %2, <2 x double> zeroinitializer, <2 x double> %1")
+    kept = ("%2 = fcmp oge double %1, 0.000000e+00\n%3 = select i1 %2, double %1, double 0.000000e+00",
+            "%2 = fcmp ogt double %1, 0.000000e+00\n%3 = select i1 %2, double %1, double 0.000000e+00",
+            "%2 = fcmp olt double %1, 0.000000e+00\n%3 = select i1 %2, double %4, double %1",
+            "%2 = fcmp olt double %1, 1.000000e+00\n%3 = select i1 %2, double %1, double 1.000000e+00")
+    assert all(len(zeros_lost(text)) == 1 for text in lost), lost
+    assert not any(zeros_lost(text) for text in kept)
+    print("engine: finds the comparisons that lose a zero")
 
 
 def program_version(folder):
@@ -139,8 +152,10 @@ def build(folder, kind, output, work, jobs):
     flags.append(f"-isystem {include}")
     link = [f"--target=wasm32-wasi -mexec-model=reactor -O2 -Wl,-s -Wl,-z,stack-size={STACK} -Wl,--max-memory={4 << 30}"
             if module else "-O2 -s", "$in"] + ([] if module else ["-lseccomp"])
-    lines = ["rule compile", f"  command = {compiler} {' '.join(flags)} -MMD -MF $out.d -c $in -o $out", "  depfile = $out.d",
-             "  deps = gcc", "rule link", f"  command = {compiler} {' '.join(link)} -o $out"]
+    # A module goes by LLVM's own form, which is looked at afterwards.
+    compiling = (f"{compiler} {' '.join(flags)} -MMD -MF $out.d -MT $out -emit-llvm -c $in -o $out.bc && {compiler} {MODULE[0]} {MODULE[1]} -O3 -Xclang -disable-llvm-passes -c "
+                 "$out.bc -o $out" if module else f"{compiler} {' '.join(flags)} -MMD -MF $out.d -c $in -o $out")
+    lines = ["rule compile", f"  command = {compiling}", "  depfile = $out.d", "  deps = gcc", "rule link", f"  command = {compiler} {' '.join(link)} -o $out"]
     objects = []
     for source in sources(folder, kind):
         objects.append(str(source.relative_to(folder).with_suffix(".o")))

@@ -26,7 +26,7 @@ CALOT_LANE_KERNEL void ballKernel(const BoxLanes* const* boxes, std::size_t coun
       below -= upper[a];
       above = lower[a] - above;
       EightFloats d = below < above ? above : below;
-      d = d < 0.0F ? EightFloats{} : d;
+      d = d >= 0.0F ? d : EightFloats{};
       sum += d * d;
     }
     const EightInts bits = (sum <= maximum) & EightInts{1, 2, 4, 8, 16, 32, 64, 128};

@@ -149,7 +149,7 @@ CALOT_LANE_KERNEL void boxKernel(const double (*lower)[laneCount], const double 
       below -= p[a];
       above = p[a] - above;
       FourDoubles d = below < above ? above : below;
-      d = d < 0.0 ? FourDoubles{} : d;
+      d = d >= 0.0 ? d : FourDoubles{};
       sum += d * d * (1.0 - 1e-12);
     }
     writeVector(sum, squared + from);

@@ -127,7 +127,7 @@ class Transform {
         box.include(*end + tip);
       }
     } else {
-      const Vec3 reach = band_ * (1.0 - t.cwiseAbs2().array()).max(0.0).sqrt().matrix();
+      const Vec3 reach = band_ * notNegative(Vec3(1.0 - t.cwiseAbs2().array())).cwiseSqrt();
       box.lower -= reach;
       box.upper += reach;
       if (!(along.squaredNorm() > 0.0)) along = reach;
