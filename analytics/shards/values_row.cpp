@@ -129,8 +129,9 @@ ReplayReport reportOf(const JsonObject& o) {
   o.read("wall_seconds", r.wallSeconds);
   r.message = takeText(o, "message");
   if (o.has("remedies")) {
+    static_assert(std::size(remedyWords) == 3);
     for (const JsonPlace& place : o.at("remedies").list(0, std::size(remedyWords)))
-      r.remedies.push_back(place.word<Remedy>({remedyWords[0], remedyWords[1]}));
+      r.remedies.push_back(place.word<Remedy>({remedyWords[0], remedyWords[1], remedyWords[2]}));
   }
   if (o.has("misses")) {
     const JsonObject m = o.at("misses").object(missesRule());

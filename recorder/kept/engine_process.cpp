@@ -43,6 +43,7 @@ std::span<const std::byte> EngineProcess::receive(std::uint32_t kind, std::uint3
     if (fault.code == wire::FaultCode::contactSet) throw std::out_of_range(fault.message);
     fail(fault.message);
   }
+  if (kind == wire::IsHello::kind) fail("is no engine");
   if (got == nullptr) fail(fmt::format("the engine answered with a message of kind {}, not {}", parsed.kind, kind));
   return payload_;
 }
@@ -65,8 +66,8 @@ Answer EngineProcess::ask(const Request& request) {
 EngineProcess::EngineProcess(const std::vector<std::string>& command, std::uint32_t simulationVersion)
     : program_(command.back()), child_(command), where_{program_} {
   const auto answer = ask<wire::IsHello>(wire::Hello{});
-  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("this is no engine");
-  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("this is no engine");
+  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("is no engine");
+  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("is no engine");
   if (answer.simulation != simulationVersion)
     fail(fmt::format("is an engine of simulation version {}, not {}", answer.simulation, simulationVersion));
   identity_ = {answer.simulation, answer.result, answer.software, static_cast<Confinement>(answer.confined)};
