@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analytics/report/html_text.h"
+#include "recorder/formats/file_bytes.h"
 
 namespace calot::analytics {
 namespace {
@@ -75,7 +76,7 @@ struct Part {
 
 }  // namespace
 
-std::string pageHtml(const ReportDocument& document) {
+std::string pageHtml(const ReportDocument& document, const CarriedRecording* recording) {
   const std::string title = escaped(document.title);
   const std::string mark =
       document.synthetic ? fmt::format("<p class=\"watermark\">{}</p>\n", escaped(watermarkText)) : std::string();
@@ -84,7 +85,14 @@ std::string pageHtml(const ReportDocument& document) {
   if (document.synthetic) html += "<div class=\"behind\" aria-hidden=\"true\">SYNTHETIC</div>\n";
   html += mark + fmt::format("<h1>{}</h1>\n", title);
   for (const auto& part : document.parts) html += std::visit(Part{}, part);
-  return html + mark + "</body>\n</html>\n";
+  html += mark;
+  if (recording != nullptr) {
+    html += fmt::format(
+        "<p>This page carries the recording {0}. Drop it on calot-page.html to see the attempt and its proof.</p>\n"
+        "<script type=\"application/x-calot-recording\" id=\"recording\" data-name=\"{0}\">\n{1}\n</script>\n",
+        escaped(recording->name), recorder::base64(recording->bytes));
+  }
+  return html + "</body>\n</html>\n";
 }
 
 }  // namespace calot::analytics

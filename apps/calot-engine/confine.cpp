@@ -46,8 +46,8 @@ recorder::Confinement confine() {
   if (filter == nullptr) return recorder::Confinement::none;
   for (const int call : allowed) done = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0 && done;
   // Memory is for numbers: none of it may be run.
-  done = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0 &&
-         done;
+  const scmp_arg_cmp notToBeRun{2, SCMP_CMP_MASKED_EQ, PROT_EXEC, 0};
+  done = seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, &notToBeRun) == 0 && done;
   done = seccomp_load(filter) == 0 && done;
   seccomp_release(filter);
   return done ? recorder::Confinement::own : recorder::Confinement::none;

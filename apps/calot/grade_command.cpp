@@ -17,6 +17,7 @@
 #include "apps/calot/report_files.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/text_words.h"
 #include "recorder/recording/reader.h"
@@ -30,7 +31,7 @@ using Access = analytics::CohortDatabase::Access;
 struct GradeOptions {
   std::string database, attempt, norm, recording, html, pdf;
   unsigned version = 0;
-  bool mixKeys = false, json = false, force = false;
+  bool mixKeys = false, withReplay = false, json = false, force = false;
 };
 
 /// The attempt of this uuid, or the only one whose uuid begins so.
@@ -92,7 +93,21 @@ void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeO
                         }));
 }
 
+/// The bytes of the attempt's recording.
+std::vector<std::byte> carriedRecording(const analytics::AttemptRow& attempt, const fs::path& file) {
+  constexpr std::size_t most = std::size_t{512} << 20U;  // what a browser still opens as one page
+  if (file.empty())
+    throw Error(ErrorKind::damaged,
+                fmt::format("the recording {} is not beside the database: name it with --recording", attempt.fileName));
+  if (recorder::Recording(file).header().attempt != attempt.uuid)
+    throw Error(ErrorKind::refused, Where{file.string()}, fmt::format("is not of attempt {}", attempt.uuid));
+  return recorder::readFileBytes(file, file.string(), most);
+}
+
 int grade(const GradeOptions& o) {
+  if (o.withReplay && o.html.empty())
+    throw Error(ErrorKind::invalid, "--with-replay is of a page: name one with --html");
+
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
@@ -105,7 +120,10 @@ int grade(const GradeOptions& o) {
   lookAtRecording(result, recording, o);
   const std::string name = recording.filename().string();
   const std::string howToDraw = fmt::format("calot render {} --at SECONDS -o F.png draws a moment.", name);
-  writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force);
+  const std::vector<std::byte> carried = o.withReplay ? carriedRecording(attempt, recording) : std::vector<std::byte>{};
+  const analytics::CarriedRecording inPage{name, carried};
+  writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
+              o.withReplay ? &inPage : nullptr);
   if (o.json) {
     std::cout << analytics::gradeJson(result) << '\n';
   } else {
@@ -128,6 +146,7 @@ void addGrade(CLI::App& app, Run& run) {
       "The attempt's recording, for the moments of weak figures; default: the file beside the database");
   command->add_flag("--mix-keys", o->mixKeys, "Compare across scenes, devices and versions, and say so");
   command->add_option("--html", o->html, "Write the sheet as one self-contained page");
+  command->add_flag("--with-replay", o->withReplay, "The page carries the recording, for calot-page.html to play");
   addPdfOption(*command, o->pdf, "Write the sheet on A4 pages");
   command->add_flag("--json", o->json, "Print JSON");
   command->add_flag("--force", o->force, "Replace files that are there");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "apps/calot/report_files.h"
 
-#include "analytics/report/page_html.h"
 #include "recorder/attempt.h"
 #include "recorder/formats/text_output.h"
 #ifdef CALOT_PDF
@@ -18,8 +17,8 @@ void addPdfOption(CLI::App& command, std::string& file, const std::string& help)
 }
 
 void writeReport(const analytics::ReportDocument& document, const std::string& html,
-                 [[maybe_unused]] const std::string& pdf, bool force) {
-  if (!html.empty()) recorder::writeText(html, analytics::pageHtml(document), force);
+                 [[maybe_unused]] const std::string& pdf, bool force, const analytics::CarriedRecording* recording) {
+  if (!html.empty()) recorder::writeText(html, analytics::pageHtml(document, recording), force);
 #ifdef CALOT_PDF
   if (!pdf.empty()) recorder::writeText(pdf, gui::pdfReport(document, recorder::softwareName()), force);
 #endif

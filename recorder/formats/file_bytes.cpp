@@ -40,4 +40,12 @@ std::string sha256Hex(std::span<const std::byte> bytes) {
   return {hex.data()};
 }
 
+std::string base64(std::span<const std::byte> bytes) {
+  std::string text(sodium_base64_ENCODED_LEN(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
+  sodium_bin2base64(text.data(), text.size(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(),
+                    sodium_base64_VARIANT_ORIGINAL);
+  text.pop_back();  // its zero
+  return text;
+}
+
 }  // namespace calot::recorder

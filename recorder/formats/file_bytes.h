@@ -18,4 +18,7 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const st
 /// SHA-256 of bytes (FIPS 180-4) in lower-case hexadecimal, 64 characters.
 std::string sha256Hex(std::span<const std::byte> bytes);
 
+/// Bytes as base64 (RFC 4648, with padding).
+std::string base64(std::span<const std::byte> bytes);
+
 }  // namespace calot::recorder

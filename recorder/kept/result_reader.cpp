@@ -65,7 +65,7 @@ std::string ResultReader::read(std::span<const std::byte> row, StepResult& resul
   if (row.size() != offset_.back())
     return fmt::format("results have {} bytes instead of {}", row.size(), offset_.back());
   const auto place = [&](std::size_t column) { return row.data() + offset_[column - first_]; };
-  RowVisitor visit{layout_, place, first_, false, {}};
+  RowVisitor<decltype(place)> visit{layout_, place, first_, false, {}};
   visitResult(result, visit);
   if (layout_.procedure) visitProcedure(procedure, visit);
   return visit.fault;

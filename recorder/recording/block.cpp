@@ -135,7 +135,7 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
   out.ticks.resize(layout.ticksPerStep);
   for (std::size_t t = 0; t < layout.ticksPerStep; ++t) {
     const std::uint64_t row = at * layout.ticksPerStep + t;
-    RowVisitor visit{layout, BlockRow{layout, block, row}, 0, true, {}};
+    RowVisitor<BlockRow> visit{layout, BlockRow{layout, block, row}, 0, true, {}};
     visitTick(out.samples[t], out.ticks[t], visit);
     if (!visit.fault.empty()) return named(visit.fault, out.step * layout.ticksPerStep + t);
     for (const HandTick& hand : out.ticks[t].hand) {
@@ -145,7 +145,7 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
       }
     }
   }
-  RowVisitor visit{layout, BlockRow{layout, block, at}, layout.tickColumns, false, {}};
+  RowVisitor<BlockRow> visit{layout, BlockRow{layout, block, at}, layout.tickColumns, false, {}};
   visitStep(out.digest, out.brief, out.forces, out.lateness, out.result, out.procedure, visit);
   out.result.step = out.step;
   return named(visit.fault, out.step);

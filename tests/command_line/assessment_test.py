@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """calot protocol, power, rate, norm and grade: from recordings to a sheet, and what is refused."""
 
+import base64
 import json
 import pathlib
+import re
 import shutil
 import tempfile
 
@@ -192,6 +194,11 @@ class Grades(Assessment):
         self.assertIn("SYNTHETIC", page)
         self.assertNotIn("http", page.replace("http-equiv", ""))
         self.refused(2, "grade", self.database, "--attempt", attempt, "--html", sheet, names=("sheet.html",))
+        self.refused(2, "grade", self.database, "--attempt", attempt, "--with-replay", names=("--html",))
+        # The page carries the recording, byte for byte, as data that no browser runs.
+        self.well("grade", self.database, "--attempt", attempt, "--html", sheet, "--with-replay", "--force")
+        carried = re.search(r'<script type="application/x-calot-recording" id="recording" data-name="([^"]+)">\n(\S+)\n</script>', sheet.read_text())
+        self.assertEqual(base64.b64decode(carried[2]), (self.folder / carried[1]).read_bytes())
 
     def test_without_its_recording_a_sheet_says_so(self):
         self.well(*self.make())
