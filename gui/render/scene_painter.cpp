@@ -255,6 +255,12 @@ Image ScenePainter::read() const {
 
 Image ScenePainter::paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
                           const RenderSettings& settings) {
+  draw(list, sight, verticalFieldOfView, width, height, settings);
+  return read();
+}
+
+void ScenePainter::draw(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
+                        const RenderSettings& settings) {
   const bool film = settings.quality == Quality::film;
   prepareTargets(width, height, settings.quality);
   surfaces_.upload(list);
@@ -281,7 +287,6 @@ Image ScenePainter::paint(const DrawList& list, const Sight& sight, double verti
   drawSmoke(list.smoke, frame);
   gl_.FrontFace(GL_CCW);
   if (film) compose(frame);
-  return read();
 }
 
 }  // namespace calot::gui

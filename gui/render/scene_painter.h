@@ -27,6 +27,9 @@ class ScenePainter {
   /// @pre checkPictureSize(width, height) and checkView() have passed
   [[nodiscard]] Image paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
                             const RenderSettings& settings);
+  /// The same without reading it back: the framebuffer that is bound then holds the picture, its first row lowest.
+  void draw(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
+            const RenderSettings& settings);
 
  private:
   struct Frame;

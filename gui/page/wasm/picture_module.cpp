@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The renderer as a WebAssembly module: an engine's scene view to pixels. Its OpenGL is the host's.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "gui/page/wasm/thrown.h"
+#include "gui/page/wasm/web_context.h"
+#include "gui/render/draw_list.h"
+#include "gui/render/scene_painter.h"
+#include "gui/render/smoke.h"
+#include "gui/render/view_check.h"
+#include "recorder/engine/messages.h"
+#include "recorder/engine/wire_forms.h"
+
+namespace {
+
+using namespace calot;
+
+struct Pictures {
+  std::unique_ptr<gui::GraphicsContext> context = page::createWebContext();
+  gui::ScenePainter painter{*context};
+  std::array<gui::DrawListMaker, 2> lists;  ///< the endoscope's, and another camera's: both remember surfaces
+  SceneView view;
+  std::vector<gui::Puff> smoke;
+};
+
+Pictures& pictures() {
+  static Pictures one;
+  return one;
+}
+
+/// Where another camera's turning point is, and how far what is to be seen reaches around it.
+std::array<double, 4>& extent() {
+  static std::array<double, 4> centreAndRadius{};
+  return centreAndRadius;
+}
+
+}  // namespace
+
+extern "C" {
+
+/// Draws a speck of everything, so that shaders and textures are there before the first picture is wanted.
+__attribute__((export_name("calot_warm"))) void calot_warm() {
+  SceneView view;
+  for (const char* look : {"liver", "gallbladder", "duct", "artery", "fat"}) {
+    SurfaceView& surface = view.surface.emplace_back();
+    surface.appearance = look;
+    surface.position = surface.rest = {Vec3(-0.01, -0.01, 0.1), Vec3(0.01, -0.01, 0.1), Vec3(0.0, 0.01, 0.1)};
+    surface.triangle = {Index3(0, 1, 2), Index3(0, 2, 1)};
+  }
+  ConnectiveView& bed = view.connective.emplace_back();
+  bed.strand = {{Vec3(0.0, 0.0, 0.09), Vec3(0.0, 0.01, 0.09)}, {Vec3(0.01, 0.0, 0.09), Vec3(0.01, 0.01, 0.09)}};
+  bed.condition = {StrandCondition::attached, StrandCondition::attached};
+  bed.alpha = {1.0F, 1.0F};
+  bed.sheet = {{0, 1}};
+  view.instrument[0].kind = InstrumentKind::grasper;
+  view.instrument[1].kind = InstrumentKind::hook;
+  for (InstrumentView& instrument : view.instrument) {
+    instrument.pose.position = Vec3(0.0, 0.0, 0.1);
+    instrument.port = Vec3(0.0, 0.1, 0.1);
+  }
+  Pictures& p = pictures();
+  gui::RenderSettings settings;
+  settings.quality = gui::Quality::interactive;
+  const gui::Sight sight = gui::sightOf(64, 64, view.verticalFieldOfView, true);
+  p.painter.draw(gui::DrawListMaker().make(view, sight, true), sight, view.verticalFieldOfView, 64, 64, settings);
+}
+
+/// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is none
+__attribute__((export_name("calot_view"))) int calot_view() {
+  recorder::wire::View wire;
+  SceneView view;
+  if (!recorder::decode(page::placed(), wire) || !recorder::wire::fromWire(std::move(wire), view)) return 0;
+  gui::checkView(view);
+  pictures().view = std::move(view);
+  pictures().smoke.clear();
+  return 1;
+}
+
+/// Smoke of the view: placed is a list of events, each of the protocol's form, of its last seconds. @return as above
+__attribute__((export_name("calot_smoke"))) int calot_smoke(double stepSeconds) {
+  std::vector<recorder::wire::Event> events;
+  if (!recorder::decode(page::placed(), events)) return 0;
+  gui::SmokeTrail trail;
+  // Events of one step belong together: a puff's number counts within its step.
+  for (std::size_t i = 0; i < events.size();) {
+    std::vector<Event> together;
+    const std::uint64_t step = events[i].step;
+    for (; i < events.size() && events[i].step == step; ++i) together.push_back(recorder::wire::fromWire(events[i]));
+    trail.add(static_cast<double>(step + 1) * stepSeconds, together);
+  }
+  pictures().smoke = trail.at(pictures().view.time);
+  gui::checkSmoke(pictures().smoke);
+  return 1;
+}
+
+/// Four f8: centre (m, in W) and radius of the smallest structure's neighbourhood, the middle of the operation.
+__attribute__((export_name("calot_extent"))) const double* calot_extent() {
+  Vec3 low = Vec3::Constant(1e9), high = -low;
+  const SceneView& view = pictures().view;
+  const auto take = [&](const SurfaceView& s) {
+    for (const Vec3& p : s.position) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  };
+  for (const SurfaceView& s : view.surface)
+    if (s.role == StructureRole::gallbladder) take(s);
+  if (low.x() > high.x())
+    for (const SurfaceView& s : view.surface) take(s);
+  if (low.x() > high.x()) low = high = Vec3::Zero();
+  const Vec3 centre = 0.5 * (low + high);
+  extent() = {centre.x(), centre.y(), centre.z(), 0.5 * (high - low).norm()};
+  return extent().data();
+}
+
+/// The view's own camera: position, orientation (w x y z), vertical field of view.
+__attribute__((export_name("calot_camera"))) const double* calot_camera() {
+  static std::array<double, 8> camera;
+  const SceneView& view = pictures().view;
+  const Quat& q = view.camera.orientation;
+  const Vec3& p = view.camera.position;
+  camera = {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), view.verticalFieldOfView};
+  return camera.data();
+}
+
+/// Draws with the view's own camera into the framebuffer that is bound then. @param film 1: film quality
+__attribute__((export_name("calot_endoscope"))) void calot_endoscope(int width, int height, int film, int mask) {
+  Pictures& p = pictures();
+  gui::checkPictureSize(width, height);
+  gui::RenderSettings settings;
+  settings.quality = film == 1 ? gui::Quality::film : gui::Quality::interactive;
+  settings.endoscopeMask = mask == 1;
+  const gui::Sight sight = gui::sightOf(width, height, p.view.verticalFieldOfView, settings.endoscopeMask);
+  p.painter.draw(p.lists[0].make(p.view, sight, settings.cavity, p.smoke), sight, p.view.verticalFieldOfView, width,
+                 height, settings);
+}
+
+/// Draws with another camera: placed are position, orientation (w x y z) and vertical field of view, eight f8.
+__attribute__((export_name("calot_orbit"))) int calot_orbit(int width, int height, int film) {
+  std::array<double, 8> camera{};
+  if (!recorder::decode(page::placed(), camera)) return 0;
+  Pictures& p = pictures();
+  gui::checkPictureSize(width, height);
+  const CameraSample own = p.view.camera;
+  const double field = camera[7];
+  p.view.camera = {Vec3(camera[0], camera[1], camera[2]), Quat(camera[3], camera[4], camera[5], camera[6])};
+  gui::RenderSettings settings;
+  settings.quality = film == 1 ? gui::Quality::film : gui::Quality::interactive;
+  settings.endoscopeMask = false;
+  const gui::Sight sight = gui::sightOf(width, height, field, false);
+  const gui::DrawList& list = p.lists[1].make(p.view, sight, true, p.smoke);
+  p.view.camera = own;
+  p.painter.draw(list, sight, field, width, height, settings);
+  return 1;
+}
+
+}  // extern "C"
