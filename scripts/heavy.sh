@@ -6,7 +6,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 "$root/scripts/setup.sh" slurm-wlm munge snakemake g++-riscv64-linux-gnu g++-arm-linux-gnueabihf g++-i686-linux-gnu \
-  wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32 lld-14 llvm-14
+  wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32 lld-14 llvm-14 npm chromium
 configure release
 build release
 # Each source by itself: what one forgot to include, and names that hide others.
@@ -18,6 +18,9 @@ say "test clang"
 ctest --test-dir "$root/build/clang" --label-exclude 'heavy|determinism' --parallel "$jobs" --output-on-failure --no-tests=error
 say "heavy tests"
 ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure --no-tests=error "$@"
+say "the attempt in a browser"
+"$python" -B "$root/scripts/page.py" --jobs "$jobs"
+node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot"
 if [[ $# -eq 0 ]]; then
   say "a cohort of 10,000 recordings in shards"
   "$python" -B "$root/scripts/shards.py" 10000

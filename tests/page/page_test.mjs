@@ -246,6 +246,18 @@ await check('a recording inside the page opens by itself', async () => {
   await other.close();
 });
 
+await check('a grade sheet that carries its recording opens it', async () => {
+  const sheet = join(work, 'sheet.html');
+  const carried = `<script type="application/x-calot-recording" id="recording" data-name="carried.h5">\n${readFileSync(touch).toString('base64')}\n</script>`;
+  writeFileSync(sheet, `<!DOCTYPE html>\n<html><body><h1>Grade</h1>${carried}</body></html>`);
+  await page.drop(sheet);
+  assert.equal((await page.verdict()).short, 'verified: bit-exact');
+  assert.match(await page.page.textContent('#title'), /^carried\.h5/);
+  writeFileSync(sheet, '<!DOCTYPE html>\n<html><body><script type="application/x-calot-recording">?</script></body></html>');
+  await page.drop(sheet);
+  assert.equal(await page.refusal(), 'sheet.html cannot be opened: it is a page that carries no recording.');
+});
+
 await check('nothing is sent, and nothing goes wrong unsaid', async () => {
   assert.deepEqual(page.sent, []);
   assert.deepEqual(page.errors, []);

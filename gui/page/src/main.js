@@ -2,6 +2,7 @@
 // The page: opens what is dropped on it, and joins pictures, time line and proof.
 import { Attempt } from './attempt.js';
 import { describeAttempt, describeMoment, listEvents, markEvent } from './panel.js';
+import { fromBase64, isPage, recordingInPage } from './carried.js';
 import { bindKeys } from './keys.js';
 import { Stage } from './stage.js';
 import { listen, part, starter } from './threads.js';
@@ -83,6 +84,12 @@ async function open(what, name) {
   state.times = { dropped: performance.now() };
   state.file = name;
   await prepared;
+  if (what instanceof File && await isPage(what)) {
+    const carried = await recordingInPage(what).catch(() => null); // base64 that is none
+    if (!carried) return refused('it is a page that carries no recording');
+    state.file = carried.name;
+    what = carried.buffer;
+  }
   if (what instanceof ArrayBuffer) threads.reader.postMessage({ kind: 'open', bytes: what, simulation: state.engine.simulation }, [what]);
   else threads.reader.postMessage({ kind: 'open', file: what, simulation: state.engine.simulation });
 }
@@ -246,8 +253,7 @@ function bind() {
 function openEmbedded() {
   const embedded = document.getElementById('recording');
   if (embedded?.type !== 'application/x-calot-recording') return;
-  const bytes = Uint8Array.from(atob(embedded.textContent.trim()), (c) => c.charCodeAt(0));
-  open(bytes.buffer, embedded.dataset.name ?? 'The recording in this page');
+  open(fromBase64(embedded.textContent).buffer, embedded.dataset.name ?? 'The recording in this page');
 }
 
 bind();
