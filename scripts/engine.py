@@ -62,7 +62,8 @@ def check_out(version, folder):
     subprocess.run(["tar", "-x", "-C", folder], input=archive, check=True)
     patch = ENGINES / str(version) / "source.patch"
     if patch.exists():
-        run(["git", "apply", "--directory", ".", patch], cwd=folder)
+        # As plain files, whatever clone the folder may lie in.
+        run(["git", "apply", patch], cwd=folder, env={**os.environ, "GIT_CEILING_DIRECTORIES": str(folder.resolve().parent)})
     if version_of(folder) != version:
         fail(f"commit {entry['commit'][:12]} is of simulation version {version_of(folder)}")
 

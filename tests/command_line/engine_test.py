@@ -127,6 +127,19 @@ class Engine(program.ProgramTest):
         self.assertIn("knows no engine 3", run.stderr)
         subprocess.run([sys.executable, SOURCE / "scripts/engine.py", "self-test"], check=True, capture_output=True)
 
+    def test_the_sources_of_kept_versions_are_there(self):
+        sys.path.insert(0, str(SOURCE / "scripts"))
+        import engine
+        for entry in self.manifest:
+            known = subprocess.run(["git", "-C", SOURCE, "cat-file", "-e", entry["commit"]], capture_output=True, check=False)
+            if known.returncode != 0:
+                self.skipTest("a clone without its history")
+            folder = self.folder / str(entry["version"])
+            folder.mkdir()
+            engine.check_out(entry["version"], folder)
+            for kind in ("module", "native"):
+                self.assertGreater(len(engine.sources(folder, kind)), 100)
+
 
 if __name__ == "__main__":
     program.main()
