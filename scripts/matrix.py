@@ -38,7 +38,7 @@ LEVELS = {  # what each level of the x86-64 ABI adds, as /proc/cpuinfo names it
 OTHERS = {
     "aarch64": ("aarch64-linux-gnu-g++", "qemu-aarch64", "aarch64-linux-gnu", []),
     "riscv64": ("riscv64-linux-gnu-g++", "qemu-riscv64", "riscv64-linux-gnu", []),
-    "armhf": ("arm-linux-gnueabihf-g++", "qemu-arm", "arm-linux-gnueabihf", []),
+    "armhf": ("arm-linux-gnueabihf-g++", "qemu-arm", "arm-linux-gnueabihf", ["-Wno-psabi"]),
     "i386": ("i686-linux-gnu-g++", "qemu-i386", "i686-linux-gnu", ["-msse2", "-mfpmath=sse"]),
     "wasm32": ("clang++-14", "node", "wasm32-wasi", ["-msimd128", "-fignore-exceptions"]),
 }
