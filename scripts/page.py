@@ -20,14 +20,14 @@ import subprocess
 import sys
 import zlib
 
+import engine
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "gui/page"
 LIMIT = 6_000_000  # bytes
-FLAGS = ["--target=wasm32-wasi", "-std=c++20", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math",
-         "-DEIGEN_DONT_VECTORIZE", "-DEIGEN_MPL2_ONLY", "-DFMT_HEADER_ONLY", "-DJSON_HAS_FILESYSTEM=0", "-DJSON_HAS_EXPERIMENTAL_FILESYSTEM=0",
-         "-msimd128", "-fignore-exceptions", f"-ffile-prefix-map={ROOT}=."]
-LINK = ["--target=wasm32-wasi", "-mexec-model=reactor", "-O2", "-Wl,-s", f"-Wl,-z,stack-size={8 << 20}"]
-FOREIGN = {"Eigen": "eigen3/Eigen", "xxhash.h": "xxhash.h", "fmt": "fmt", "nlohmann": "nlohmann", "GL": "GL", "KHR": "KHR"}
+FLAGS = [*engine.MODULE, *engine.CONTRACT, f"-ffile-prefix-map={ROOT}=."]
+LINK = ["--target=wasm32-wasi", "-mexec-model=reactor", "-O2", "-Wl,-s", f"-Wl,-z,stack-size={engine.STACK}"]
+FOREIGN = {**engine.FOREIGN, "GL": "GL", "KHR": "KHR"}
 # What each module consists of: patterns of files, "-" leaves some out.
 MODULES = {
     "proof": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/proof_module.cpp", "gui/page/wasm/blake2b.cpp", "recorder/recording/keyframe_code.cpp", "sim/math/digest.cpp"],
@@ -127,8 +127,8 @@ def packed(content):
     return base64.b64encode(zlib.compress(content, 9)).decode()
 
 
-def assemble(engine, scripts, work):
-    parts = {"engine": engine.read_bytes(), "proof": (work / "proof.wasm").read_bytes(), "picture": (work / "picture.wasm").read_bytes(), "judge": (work / "judge.wasm").read_bytes(),
+def assemble(module, scripts, work):
+    parts = {"engine": module.read_bytes(), "proof": (work / "proof.wasm").read_bytes(), "picture": (work / "picture.wasm").read_bytes(), "judge": (work / "judge.wasm").read_bytes(),
              "reader": scripts["reader"], "worker": scripts["worker"]}
     texts = {name: packed(content) for name, content in parts.items()}
     script = scripts["main"].decode().strip()

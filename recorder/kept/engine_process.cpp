@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <stdexcept>
 #include <utility>
 
 #include "recorder/engine/wire_forms.h"
+#include "recorder/kept/receive_message.h"
 
 namespace calot::recorder {
 
@@ -22,19 +22,8 @@ void EngineProcess::send(const Request& request) {
 }
 
 std::span<const std::byte> EngineProcess::receive(std::uint32_t kind, std::uint32_t* got) {
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  std::array<std::byte, messageHead> head{};
-  using Received = ChildProcess::Received;
-  Received received = child_.receive(head, deadline);
   MessageHead parsed;
-  if (received == Received::all) {
-    parsed = parseHead(head);
-    if (parsed.length > maxPayload) fail("the engine's answer has no length that can be");
-    payload_.resize(static_cast<std::size_t>(parsed.length));
-    received = child_.receive(payload_, deadline);
-  }
-  if (received == Received::late) fail(fmt::format("the engine gave no answer in {} s", patience.count()));
-  if (received == Received::ended) fail(fmt::format("the engine ended: {}", child_.end()));
+  if (const std::string fault = receiveMessage(child_, parsed, payload_); !fault.empty()) fail("the engine " + fault);
   if (got != nullptr) *got = parsed.kind;
   if (parsed.kind == kind) return payload_;
   if (parsed.kind == wire::Fault::kind) {

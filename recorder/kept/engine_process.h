@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,9 +19,6 @@ namespace calot::recorder {
 /// was to decide, and of nothing else: it ends, it answers nonsense, it does not answer in time.
 class EngineProcess final : public Engine {
  public:
-  /// How long it may take over one answer. A step takes milliseconds, the largest scene seconds.
-  static constexpr std::chrono::seconds patience{120};
-
   /// Starts the program and greets it. @param command program and arguments
   /// @throws Error (undecided) where it cannot be started, is no engine, or one of another version
   EngineProcess(const std::vector<std::string>& command, std::uint32_t simulationVersion);

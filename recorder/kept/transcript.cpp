@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <optional>
 #include <utility>
 
 #include "recorder/engine/messages.h"
@@ -14,12 +11,12 @@
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/kept/child_process.h"
+#include "recorder/kept/receive_message.h"
 
 namespace calot::recorder {
 
 namespace {
 
-constexpr std::chrono::seconds patience{120};
 constexpr std::size_t maxTranscript = std::size_t{1} << 28U;
 
 /// An engine that is given whole messages.
@@ -28,20 +25,18 @@ class RawEngine {
   explicit RawEngine(const std::vector<std::string>& command) : name_(command.back()), child_(command) {}
 
   std::vector<std::byte> ask(const std::vector<std::byte>& request) {
-    using Received = ChildProcess::Received;
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    std::vector<std::byte> answer(messageHead);
-    Received received = child_.send(request) ? child_.receive(answer, deadline) : Received::ended;
-    if (received == Received::all) {
-      const MessageHead head = parseHead(answer);
-      if (head.length > maxPayload) throw Error(ErrorKind::failure, Where{name_}, "answers with no message");
-      answer.resize(messageHead + static_cast<std::size_t>(head.length));
-      received = child_.receive(std::span(answer).subspan(messageHead), deadline);
-    }
-    if (received == Received::ended) throw Error(ErrorKind::failure, Where{name_}, "ended: " + child_.end());
-    if (received == Received::late)
-      throw Error(ErrorKind::failure, Where{name_}, fmt::format("gave no answer in {} s", patience.count()));
-    return answer;
+    // Where it has ended, receiveMessage() says how.
+    static_cast<void>(child_.send(request));
+    MessageHead head;
+    wire::Bytes answer;
+    if (const std::string fault = receiveMessage(child_, head, answer); !fault.empty())
+      throw Error(ErrorKind::failure, Where{name_}, fault);
+    wire::Bytes message;
+    ByteWriter writer(message);
+    writer.write(head.kind);
+    writer.write(head.length);
+    message.insert(message.end(), answer.begin(), answer.end());
+    return message;
   }
 
  private:
