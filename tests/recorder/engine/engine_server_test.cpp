@@ -264,9 +264,11 @@ TEST_F(Server, AnswersEveryBrokenMessage) {
       default:
         for (int k = 0; k < 3; ++k) payload[below(payload.size())] ^= static_cast<std::byte>(1U << below(8));
         // A length that no message can keep.
-        if (round % 3 == 0)
-          std::fill_n(payload.begin() + static_cast<std::ptrdiff_t>(below(payload.size() - 8)), 8,
+        if (round % 3 == 0) {
+          const std::size_t length = sizeof(std::uint64_t);
+          std::fill_n(payload.begin() + static_cast<std::ptrdiff_t>(below(payload.size() - length + 1)), length,
                       static_cast<std::byte>(0xFF));
+        }
     }
     const std::uint32_t kind = askBytes(kinds[which], payload);
     EXPECT_TRUE(kind >= 101 && kind <= 199) << kind;
