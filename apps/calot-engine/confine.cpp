@@ -12,6 +12,13 @@ namespace calot::apps {
 
 namespace {
 
+// A sanitizer's own needs are others, and its memory has no bounds.
+#ifdef CALOT_SANITIZED
+constexpr bool sanitized = true;
+#else
+constexpr bool sanitized = false;
+#endif
+
 bool limit(int what, rlim_t most) {
   const rlimit both{most, most};
   return setrlimit(static_cast<__rlimit_resource>(what), &both) == 0;
@@ -36,10 +43,7 @@ constexpr std::array allowed{
 }  // namespace
 
 recorder::Confinement confine() {
-#ifdef CALOT_SANITIZED
-  // A sanitizer's own needs are others, and its memory has no bounds.
-  return recorder::Confinement::none;
-#else
+  if constexpr (sanitized) return recorder::Confinement::none;
   bool done = limit(RLIMIT_AS, engineMemory) && limit(RLIMIT_CORE, 0) && limit(RLIMIT_FSIZE, 0) &&
               prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0;
   const scmp_filter_ctx filter = seccomp_init(SCMP_ACT_KILL_PROCESS);
@@ -51,7 +55,6 @@ recorder::Confinement confine() {
   done = seccomp_load(filter) == 0 && done;
   seccomp_release(filter);
   return done ? recorder::Confinement::own : recorder::Confinement::none;
-#endif
 }
 
 }  // namespace calot::apps
