@@ -6,7 +6,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 "$root/scripts/setup.sh" slurm-wlm munge snakemake g++-riscv64-linux-gnu g++-arm-linux-gnueabihf g++-i686-linux-gnu \
-  wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32 lld-14 llvm-14 npm chromium
+  wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32 lld-14 llvm-14 npm chromium firefox-esr xvfb
 configure release
 build release
 # Each source by itself: what one forgot to include, and names that hide others.
@@ -21,6 +21,7 @@ ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure -
 say "the attempt in a browser"
 "$python" -B "$root/scripts/page.py" --jobs "$jobs"
 node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot"
+xvfb-run --auto-servernum node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot" --browser /usr/bin/firefox-esr --output "$root/build/page/pictures-firefox"
 if [[ $# -eq 0 ]]; then
   say "a cohort of 10,000 recordings in shards"
   "$python" -B "$root/scripts/shards.py" 10000

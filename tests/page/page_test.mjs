@@ -3,12 +3,12 @@
 //   node page_test.mjs --calot PROGRAM [--page FILE] [--packages FOLDER] [--browser FILE] [--output FOLDER]
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
-import { Page } from './browser.mjs';
+import { Page, sleep } from './browser.mjs';
 import { decodePng, encodePng } from './png.mjs';
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
@@ -66,11 +66,12 @@ await check('a recording that is dropped is verified', async () => {
   const { short, long } = await page.verdict();
   assert.equal(short, 'verified: bit-exact', long);
   assert.match(long, /800 steps/);
-  const { segments, states } = await page.page.evaluate(() => {
+  const { segments, states, waypoints } = await page.evaluate(() => {
     const v = window.calotPage.state.attempt.verification;
-    return { segments: v.segments.length, states: [...v.state] };
+    return { segments: v.segments.length, states: [...v.state], waypoints: [...v.waypoints.kept.keys()] };
   });
   assert.deepEqual(states, Array(segments).fill(2));
+  assert.equal(waypoints.length, 2 * segments); // the seeks of the next check begin at them
   return long.match(/[\d.]+ times real time/)[0];
 });
 
@@ -107,20 +108,20 @@ await check('connective tissue looks as in the program', async () => {
 
 await check('playing moves on and can be stopped', async () => {
   await page.seek(100);
-  await page.page.keyboard.press(' ');
-  await page.page.waitForFunction(() => window.calotPage.state.drawn.moment > 140, null, { timeout: 20000 });
-  await page.page.keyboard.press(' ');
-  await page.page.waitForTimeout(500);
-  const [one, two] = [await page.text('#clock'), (await page.page.waitForTimeout(400), await page.text('#clock'))];
+  await page.press(' ');
+  await page.until(() => window.calotPage.state.drawn.moment > 140, 20);
+  await page.press(' ');
+  await sleep(500);
+  const [one, two] = [await page.text('#clock'), (await sleep(400), await page.text('#clock'))];
   assert.equal(one, two);
-  await page.page.keyboard.press('Home');
-  await page.page.waitForFunction(() => window.calotPage.state.drawn.moment === 0, null, { timeout: 20000 });
+  await page.press('Home');
+  await page.until(() => window.calotPage.state.drawn.moment === 0, 20);
 });
 
 await check('the free view turns, by hand and by key, and views change', async () => {
-  const box = await page.page.locator('#stage').boundingBox();
+  const box = await (await page.page.$('#stage')).boundingBox();
   const right = { x: box.x + 0.6 * box.width, y: box.y + 60, width: 0.3 * box.width, height: box.height - 120 };
-  const shot = async () => (await page.page.waitForTimeout(700), page.page.screenshot({ clip: right }));
+  const shot = async () => (await sleep(700), Buffer.from(await page.page.screenshot({ clip: right })));
   const before = await shot();
   assert.ok(before.equals(await shot()), 'it moves by itself');
   await page.page.mouse.move(right.x + 80, right.y + 100);
@@ -129,15 +130,15 @@ await check('the free view turns, by hand and by key, and views change', async (
   await page.page.mouse.up();
   const turned = await shot();
   assert.ok(!before.equals(turned), 'the hand turns nothing');
-  await page.page.keyboard.press('w');
+  await page.press('w');
   assert.ok(!turned.equals(await shot()), 'the key turns nothing');
-  await page.page.keyboard.press('h');
+  await page.press('h');
   assert.ok(before.equals(await shot()), 'it does not come home');
-  await page.page.keyboard.press('v');
-  assert.deepEqual([await page.page.isVisible('#label-endoscope'), await page.page.isVisible('#label-orbit')], [true, false]);
-  await page.page.keyboard.press('v');
-  assert.deepEqual([await page.page.isVisible('#label-endoscope'), await page.page.isVisible('#label-orbit')], [false, true]);
-  await page.page.keyboard.press('v');
+  await page.press('v');
+  assert.deepEqual([await page.seen('#label-endoscope'), await page.seen('#label-orbit')], [true, false]);
+  await page.press('v');
+  assert.deepEqual([await page.seen('#label-endoscope'), await page.seen('#label-orbit')], [false, true]);
+  await page.press('v');
 });
 
 await check('a changed sample is found, and where', async () => {
@@ -148,13 +149,13 @@ with h5py.File(sys.argv[2], "r+") as f:
     f["ticks/right/position"][4321, 0] += 2.0 ** -20 * 1000`, touch, changed);
   await page.drop(changed);
   const { short, long } = await page.verdict();
-  const found = await page.page.evaluate(() => window.calotPage.state.attempt.verification.difference);
+  const found = await page.evaluate(() => window.calotPage.state.attempt.verification.difference);
   assert.equal(found.step, 432);
   assert.equal(short, 'differs at step 432');
   assert.match(long, /^The content chain is broken in what was written from step 425 on: something was changed after it was recorded\. The first/);
   assert.match(long, /The first difference is at step 432 \(tick 4321\), 0:04\.33: /);
   assert.match(long, /Run once more, its segment gives the same difference\./);
-  const bad = await page.page.evaluate(() => [...window.calotPage.state.attempt.verification.state]);
+  const bad = await page.evaluate(() => [...window.calotPage.state.attempt.verification.state]);
   assert.equal(bad.indexOf(3), 4);
   assert.deepEqual(bad.slice(0, 4), [2, 2, 2, 2]);
   return long.slice(0, 120);
@@ -188,7 +189,7 @@ await check('a recording whose writer was killed is read as far as it goes', asy
   const killed = join(work, 'killed.h5');
   const writer = spawn(given.calot, ['record', '--scene', 'touch-liver', '--performer', 'skilled', '--seed', '2', '--seconds', '30', '-o', killed], { env: { ...process.env, CALOT_CACHE: 'off' }, stdio: 'ignore' });
   const ended = new Promise((done) => writer.on('exit', done));
-  await new Promise((done) => setTimeout(done, 1500));
+  while (!existsSync(killed) || statSync(killed).size < 150_000) await sleep(20); // some keyframes are in it
   writer.kill('SIGKILL');
   await ended;
   await page.drop(killed);
@@ -225,11 +226,11 @@ with h5py.File(sys.argv[1], "r+") as f: del f["ticks/left/jaw"]`, /\/ticks\/left
   for (const [name, [code, expected]] of Object.entries(cases)) {
     const file = join(work, name);
     python(code, file, touch);
-    await page.page.evaluate(() => { document.getElementById('refusal').hidden = true; });
+    await page.evaluate(() => { document.getElementById('refusal').hidden = true; });
     await page.drop(file);
     assert.match(await page.refusal().catch(() => `nothing is said of ${name}`), expected);
   }
-  await page.page.evaluate(() => { document.getElementById('refusal').hidden = true; });
+  await page.evaluate(() => { document.getElementById('refusal').hidden = true; });
   const whole = readFileSync(touch);
   await page.drop(join(work, 'cut.h5'), whole.subarray(0, Math.floor(whole.length * 0.6)));
   assert.match(await page.refusal().catch(() => 'nothing is said of cut.h5'), /^cut.h5 cannot be opened: it is an HDF5 file that is cut off or damaged\.$/);
@@ -252,19 +253,29 @@ await check('a grade sheet that carries its recording opens it', async () => {
   writeFileSync(sheet, `<!DOCTYPE html>\n<html><body><h1>Grade</h1>${carried}</body></html>`);
   await page.drop(sheet);
   assert.equal((await page.verdict()).short, 'verified: bit-exact');
-  assert.match(await page.page.textContent('#title'), /^carried\.h5/);
+  assert.match(await page.text('#title'), /^carried\.h5/);
   writeFileSync(sheet, '<!DOCTYPE html>\n<html><body><script type="application/x-calot-recording">?</script></body></html>');
   await page.drop(sheet);
   assert.equal(await page.refusal(), 'sheet.html cannot be opened: it is a page that carries no recording.');
 });
 
+await check('without pictures it proves all the same', async () => {
+  const blind = await open({ blind: true });
+  await blind.drop(touch);
+  assert.equal((await blind.verdict()).short, 'verified: bit-exact');
+  assert.match(await blind.text('#refusal'), /^Pictures cannot be drawn: this browser has no WebGL 2\. All else works\.$/);
+  assert.ok(await blind.seen('#refusal'));
+  await blind.seek(200);
+  await blind.close();
+});
+
 await check('nothing is sent, and nothing goes wrong unsaid', async () => {
   assert.deepEqual(page.sent, []);
   assert.deepEqual(page.errors, []);
-  const policy = await page.page.getAttribute('meta[http-equiv="Content-Security-Policy"]', 'content');
+  const policy = await page.page.$eval('meta[http-equiv="Content-Security-Policy"]', (element) => element.content);
   assert.match(policy, /default-src 'none'/);
   assert.doesNotMatch(policy, /'unsafe-eval'|'unsafe-inline'/);
-  const tried = await page.page.evaluate(() => fetch('https://example.org/').then(() => 'sent', () => 'refused'));
+  const tried = await page.evaluate(() => fetch('https://example.org/').then(() => 'sent', () => 'refused'));
   assert.equal(tried, 'refused');
 });
 

@@ -66,10 +66,11 @@ export class Attempt {
       this.threads.reader.postMessage({ kind: 'columns', columns, result });
       this.on.ready();
     },
-    'segment?': ({ index }) => {
+    'segment?': ({ index, asker }) => {
       const { player } = this.threads;
-      this.read(index).then((rows) => player.postMessage({ kind: 'segment', index, rows }, buffersOf(rows)), (error) => player.postMessage({ kind: 'segment', index, message: error.message }));
+      this.read(index).then((found) => player.postMessage({ kind: 'answer', asker, found }, buffersOf(found)), (error) => player.postMessage({ kind: 'answer', asker, message: error.message }));
     },
+    'waypoint?': ({ moment, asker }) => this.threads.player.postMessage({ kind: 'answer', asker, found: this.verification?.waypointBefore(moment) ?? null }),
     compared: ({ moment, difference }) => this.compared.set(moment, difference),
     player: (m) => {
       this.playing = m.playing;

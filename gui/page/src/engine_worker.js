@@ -15,7 +15,8 @@ export function engineWorker() {
   let proving = Promise.resolve();
   let held = false;
   let picture = null; // port to the thread that draws
-  const asked = new Map(); // segments that the reader was asked for
+  const asked = new Map(); // what the recording was asked for
+  let asker = 0;
   const drawn = []; // waiting for a picture
 
   const build = () => {
@@ -24,11 +25,13 @@ export function engineWorker() {
     return engine;
   };
 
+  const ask = (kind, what) => new Promise((resolve, reject) => {
+    asked.set(++asker, { resolve, reject });
+    postMessage({ kind, asker, ...what });
+  });
   const host = {
-    fetch: (i) => new Promise((resolve, reject) => {
-      asked.set(i, { resolve, reject });
-      postMessage({ kind: 'segment?', index: i });
-    }),
+    segment: (index) => ask('segment?', { index }),
+    waypoint: (moment) => ask('waypoint?', { moment }),
     show: (view, moment, difference) => new Promise((resolve) => {
       drawn.push(resolve);
       postMessage({ kind: 'compared', moment, difference });
@@ -85,7 +88,7 @@ export function engineWorker() {
           if (now - told < 200) return;
           told = now;
           postMessage({ kind: 'progress', index, steps });
-        });
+        }, (waypoint) => postMessage({ kind: 'waypoint', ...waypoint }));
         if (difference?.ended) engine = verifier = null;
         postMessage({ kind: 'proved', index, difference });
       }));
@@ -94,12 +97,12 @@ export function engineWorker() {
       held = m.on;
       verifier?.hold(held);
     },
-    segment(m) {
-      const { resolve, reject } = asked.get(m.index) ?? {};
+    answer({ asker: whose, found, message }) {
+      const { resolve, reject } = asked.get(whose) ?? {};
       if (!resolve) return; // of a recording that was closed
-      asked.delete(m.index);
-      if (m.rows) resolve(m.rows);
-      else reject(new Error(m.message));
+      asked.delete(whose);
+      if (message === undefined) resolve(found);
+      else reject(new Error(message));
     },
     seek: (m) => withPlayer((p) => p.seek(m.moment)),
     play: (m) => withPlayer((p) => p.play(m.rate)),

@@ -11,7 +11,7 @@ import { momentOf, verdictOf } from './verdict.js';
 import { clock } from './words.js';
 
 const byId = (id) => document.getElementById(id);
-const state = { engine: null, attempt: null, tracks: null, events: [], phases: null, times: {}, last: -1, file: '' };
+const state = { engine: null, attempt: null, tracks: null, events: [], phases: null, times: {}, last: -1, file: '', blind: null };
 const threads = { size: Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2)) };
 let stage = null;
 let timeline = null;
@@ -114,6 +114,7 @@ function opened(m) {
   Object.assign(state, { tracks: null, phases: null, events: [], last: -1 });
   byId('refusal').hidden = true;
   byId('invite').hidden = true;
+  if (state.blind) refuse(state.blind);
   byId('panel').hidden = false;
   document.body.classList.add('open');
   document.querySelector('footer').hidden = false;
@@ -196,6 +197,11 @@ const fromPicture = {
     attempt.prove();
   },
   failed: ({ message }) => refuse(`Pictures cannot be drawn: ${message}.`),
+  blind: ({ message }) => {
+    mark('warm');
+    state.blind = `Pictures cannot be drawn: ${message}. All else works.`;
+    refuse(state.blind);
+  },
   picture: (m) => state.pictures?.(m),
 };
 

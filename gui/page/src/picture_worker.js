@@ -5,65 +5,85 @@ import { instantiate, place, textAt } from './wasm_host.js';
 
 const blank = [0.043, 0.05, 0.06, 1];
 const smokeSeconds = 2.5;
-// Film quality takes about eight times as long as interactive quality (docs/rendering.md).
-const measured = 6; // pictures
-const always = 2.5; // ms
-const atRest = 30; // ms
-const rest = 350; // ms without another picture
+// Film quality takes about eight times as long as interactive quality (docs/rendering.md). What one picture takes, both
+// panes of it, decides what pictures have:
+const measured = 6; // pictures that tell
+const always = 2.5; // ms: quicker ones have film quality always
+const atRest = 30; // ms: quicker ones have it where they stand still
+const slow = 80; // ms: where they take longer, those that move are coarse
+const coarse = 0.5; // of their width and height
+const filmRest = 350; // ms without another picture
+const fineRest = 800;
+const poll = 3; // ms
 const hidden = 300; // ms after which a picture is drawn although the browser asks for none
 
 export function pictureWorker() {
   let gl = null;
   let module = null; // exports
   let panes = []; // {kind: 'endoscope' | 'orbit', x, y, width, height} in pixels, y from the top
-  let film = 0;
-  let still = 0; // timer
-  const costs = []; // of the first pictures (ms)
+  let better = 0; // timer
+  const costs = []; // of the first pictures of interactive quality (ms)
   let orbit = null; // eight f8
   let events = null; // /events of the recording: {bytes, steps, stepSeconds}
   let port = null;
   let dirty = false;
   let waiting = []; // views shown when the next picture is there
   let seen = false;
+  let blind = false; // there is nothing to draw with
 
-  const failed = (error) => {
+  const failed = (error, kind = 'failed') => {
     const thrown = module ? textAt(module.memory, module.calot_thrown() >>> 0) : '';
-    postMessage({ kind: 'failed', message: thrown || error.message });
+    postMessage({ kind, message: thrown || error.message });
   };
 
+  function done(moment) {
+    postMessage({ kind: 'drawn', moment });
+    port?.postMessage(moment);
+  }
+
   /** Puts the framebuffer that is bound, first row lowest, where a pane is. */
-  function present({ x, y, width, height }) {
+  function present({ x, y, width, height }, w, h) {
     gl.disable(gl.SCISSOR_TEST);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     const bottom = gl.drawingBufferHeight - y - height;
-    gl.blitFramebuffer(0, 0, width, height, x, bottom + height, x + width, bottom, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.blitFramebuffer(0, 0, w, h, x, bottom + height, x + width, bottom, gl.COLOR_BUFFER_BIT, w === width ? gl.NEAREST : gl.LINEAR);
   }
 
-  /** How long a picture takes is found by the first ones: reading a pixel waits for it. */
-  function measure(began) {
-    if (costs.length === measured) return;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-    costs.push(performance.now() - began);
+  /** Calls what comes after a picture when it is finished, not only begun. */
+  function whenFinished(then) {
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    const look = () => {
+      if (gl.isContextLost() || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED) {
+        gl.deleteSync(fence);
+        then();
+      } else {
+        setTimeout(look, poll);
+      }
+    };
+    setTimeout(look);
   }
 
-  /** Where film quality is quick, all pictures have it; where it is bearable, those that stand still. */
-  function choose() {
-    if (costs.length < measured) return;
+  /** How a picture is drawn that moves, or that stands still. */
+  function quality(still) {
+    if (costs.length === 0) return { film: 0, scale: 1 };
     const cost = Math.min(...costs);
-    const wasStill = film === 1 && cost >= always;
-    film = cost < always ? 1 : 0;
-    if (film === 1 || wasStill || cost > atRest) return;
-    still = setTimeout(() => {
-      film = 1;
-      requestAnimationFrame(draw);
-    }, rest);
+    return { film: cost < always || (still && cost < atRest) ? 1 : 0, scale: still || cost < slow ? 1 : coarse };
   }
 
-  function draw() {
+  /** A picture is finished: where it stands still, it may become a better one. */
+  function rest() {
+    const [moving, still] = [quality(false), quality(true)];
+    if (moving.film === still.film && moving.scale === still.scale) return;
+    clearTimeout(better);
+    better = setTimeout(() => requestAnimationFrame(() => draw(true)), moving.scale === 1 ? filmRest : fineRest);
+  }
+
+  function draw(still = false) {
     dirty = false;
     if (!seen) return;
     const began = performance.now();
+    const { film, scale } = quality(still);
     try {
       gl.bindFramebuffer(gl.FRAMEBUFFER, null);
       gl.disable(gl.SCISSOR_TEST);
@@ -71,30 +91,29 @@ export function pictureWorker() {
       gl.clear(gl.COLOR_BUFFER_BIT);
       for (const pane of panes) {
         if (pane.width < 16 || pane.height < 16) continue;
+        const [w, h] = [Math.round(scale * pane.width), Math.round(scale * pane.height)];
         if (pane.kind === 'orbit' && orbit) {
           place(module, new Uint8Array(orbit.buffer));
-          module.calot_orbit(pane.width, pane.height, film);
+          module.calot_orbit(w, h, film);
         } else {
-          module.calot_endoscope(pane.width, pane.height, film, 1);
+          module.calot_endoscope(w, h, film, 1);
         }
-        present(pane);
+        present(pane, w, h);
       }
-      gl.flush();
-      if (film === 0) measure(began);
-      choose();
     } catch (error) {
       failed(error);
     }
-    for (const moment of waiting) {
-      postMessage({ kind: 'drawn', moment });
-      port?.postMessage(moment);
-    }
+    const drawn = waiting;
     waiting = [];
+    whenFinished(() => {
+      if (film === 0 && scale === 1 && costs.length < measured) costs.push(performance.now() - began);
+      if (!still) rest();
+      drawn.forEach(done);
+    });
   }
 
   function later() {
-    clearTimeout(still);
-    if (costs.length === measured && Math.min(...costs) >= always) film = 0;
+    clearTimeout(better);
     if (dirty) return;
     dirty = true;
     const once = () => { if (dirty) draw(); };
@@ -131,12 +150,13 @@ export function pictureWorker() {
         module.calot_warm();
         postMessage({ kind: 'started' });
       } catch (error) {
-        failed(error);
+        blind = true;
+        failed(error, 'blind');
       }
     },
     port(m) {
       port = m.port;
-      port.onmessage = ({ data }) => on[data.kind](data);
+      port.onmessage = take;
     },
     view(m) {
       try {
@@ -188,5 +208,10 @@ export function pictureWorker() {
       }
     },
   };
-  onmessage = ({ data }) => on[data.kind](data);
+  /** Whoever cannot draw says so once; all else goes on without pictures. */
+  const take = ({ data }) => {
+    if (!blind || data.kind === 'port') on[data.kind](data);
+    else if (data.kind === 'view') done(data.moment);
+  };
+  onmessage = take;
 }

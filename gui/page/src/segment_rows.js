@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A segment's rows on the side of an engine.
+// Segments, and their rows on the side of an engine.
 
 /** Adds what is looked up step by step to the rows that came from the reader. */
 export function withEvents(rows) {
@@ -16,6 +16,12 @@ export function withEvents(rows) {
     return events.subarray(45 * at, 45 * end);
   };
   return rows;
+}
+
+/** Index of the segment in which a moment is reached; the end is, from the last keyframe before it. */
+export function segmentOf(segments, moment) {
+  const found = segments.findIndex((s) => moment < s.end);
+  return found < 0 ? segments.length - 1 : found;
 }
 
 /** What of a segment's rows can be handed over to another thread. */

@@ -2,7 +2,8 @@
 // Hands segments to engines, near the moment that is looked at first, and keeps what they found. Segments joined prove
 // what one run from the start proves: only when all of them are consistent is the attempt verified.
 import { listen } from './threads.js';
-import { buffersOf } from './segment_rows.js';
+import { buffersOf, segmentOf } from './segment_rows.js';
+import { Waypoints } from './waypoints.js';
 
 const block = 8; // segments that one engine proves in a row
 
@@ -21,6 +22,7 @@ export class Verification {
     this.difference = null; // the first one
     this.again = null; // what its segment gave when it was run once more
     this.error = null;
+    this.waypoints = new Waypoints();
     this.began = performance.now();
     this.finished = null;
     this.workers = Array.from({ length: Math.min(size, segments.length) }, () => ({ thread: start(), work: 0, last: -1, ready: false, held: false }));
@@ -31,6 +33,7 @@ export class Verification {
     listen(worker.thread, {
       ready: () => { worker.ready = true; this.feed(); },
       progress: ({ index, steps }) => { this.steps[index] = steps; this.changed(); },
+      waypoint: (m) => this.waypoints.keep(m),
       proved: (m) => this.proved(worker, m),
       failed: ({ message }) => this.fail(message),
     }, (message) => this.fail(message));
@@ -41,6 +44,12 @@ export class Verification {
   get verified() { return this.difference === null && this.error === null && this.state.every((s) => s === State.consistent); }
   /** Re-simulated seconds a second. */
   speed(stepSeconds) { return this.done * stepSeconds / (((this.finished ?? performance.now()) - this.began) / 1000); }
+
+  /** Where whoever goes to a moment may begin instead of at the keyframe before it, or null: in consistent segments alone. */
+  waypointBefore(moment) {
+    const index = segmentOf(this.segments, moment);
+    return this.state[index] === State.consistent ? this.waypoints.before(moment, index) : null;
+  }
 
   end() { for (const { thread } of this.workers) thread.terminate(); }
 
@@ -62,7 +71,7 @@ export class Verification {
     const isOpen = (i) => i < limit && this.state[i] === State.open;
     const after = worker.last + 1;
     if (worker.last >= 0 && after % block !== 0 && isOpen(after)) return after;
-    const near = Math.max(0, this.segments.findIndex((s) => this.moment < s.end));
+    const near = segmentOf(this.segments, this.moment);
     const others = new Set(this.workers.filter((w) => w !== worker && w.work > 0).map((w) => Math.floor(w.last / block)));
     for (const alone of [true, false])
       for (const [from, to] of [[near, limit], [0, near]])

@@ -7,6 +7,7 @@ import { EngineFault, want } from './engine.js';
 import { sizes } from './recording.js';
 import { withEvents } from './segment_rows.js';
 import { encodeTicks } from './ticks.js';
+import { isWaypoint } from './waypoints.js';
 
 const slice = 30; // ms of stepping before messages are looked at
 
@@ -15,11 +16,11 @@ export function comparison(about, engine, proof) {
   return { ...about, proof, columns: engine.columns, columnSizes: engine.columns.map(({ type, width }) => sizes[type] * width) };
 }
 
-/** Step k of a segment, re-simulated and compared; at the segment's end its keyframe too, byte for byte. */
-export function provenStep(what, engine, rows, k) {
+/** Step k of a segment, re-simulated and compared; at the segment's end its keyframe too, byte for byte. @param wanted what the answer is to come with */
+export function provenStep(what, engine, rows, k, wanted = 0) {
   const { ticks, finish } = rows;
   const last = k + 1 === rows.end - rows.first && finish !== null;
-  const answer = engine.step(last ? want.keyframe : 0, rows.stepLateness[k], encodeTicks(rows, k * ticks, ticks));
+  const answer = engine.step(last ? want.keyframe : wanted, rows.stepLateness[k], encodeTicks(rows, k * ticks, ticks));
   const difference = compareStep(what, rows, k, answer);
   if (difference !== null || !last || (same(answer.keyframe.state, finish.state) && same(answer.keyframe.haptics, finish.haptics))) return { answer, difference };
   const { field, detail } = engine.explain(finish) ?? { field: 'bytes', detail: '' };
@@ -40,8 +41,8 @@ export class Verifier {
     if (!on) this.goOn?.();
   }
 
-  /** @param progress called with the number of steps done @return the first difference, or null */
-  async run(rows, progress) {
+  /** @param progress called with the number of steps done @param passed called with a waypoint @return the first difference, or null */
+  async run(rows, progress, passed) {
     withEvents(rows);
     const { engine } = this;
     const { index, first, end, start } = rows;
@@ -56,8 +57,10 @@ export class Verifier {
         if (why !== null) return { step: first - 1, component: 'keyframe', field: 'state', detail: why };
       }
       for (let rested = performance.now(); k < end - first; ++k) {
-        const { difference } = provenStep(this.what, engine, rows, k);
+        const leaves = isWaypoint(k, end - first);
+        const { answer, difference } = provenStep(this.what, engine, rows, k, leaves ? want.keyframe : 0);
         if (difference !== null) return difference;
+        if (leaves) passed({ moment: first + k + 1, index, keyframe: answer.keyframe, named: rows.hands.map((hand) => hand.contact_set[(k + 1) * rows.ticks - 1]) });
         progress(k + 1);
         if (performance.now() - rested < slice) continue;
         do {
