@@ -58,6 +58,11 @@ Tick toWire(const TickSamples& samples, const TickOutcome& logged) {
   return tick;
 }
 
+void toWire(std::span<const TickSamples> samples, std::span<const TickOutcome> logged, std::vector<Tick>& out) {
+  out.clear();
+  for (std::size_t i = 0; i < samples.size(); ++i) out.push_back(toWire(samples[i], logged[i]));
+}
+
 bool fromWire(const Tick& tick, TickSamples& samples, TickOutcome& logged) {
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandSample& hand = tick.hand[h];

@@ -2,6 +2,9 @@
 // Samples, events, keyframes and scene views in the protocol's form, and back.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "recorder/engine/observer.h"
 #include "recorder/engine/wire.h"
 #include "sim/scene/scene_view.h"
@@ -13,6 +16,8 @@ namespace calot::recorder::wire {
 Tick toWire(const TickSamples& samples, const TickOutcome& logged);
 /// @return false where something in it is no number, no rotation or no instrument that there is
 bool fromWire(const Tick& tick, TickSamples& samples, TickOutcome& logged);
+/// The ticks of a step's request, into memory that is used again. @pre as many outcomes as samples
+void toWire(std::span<const TickSamples> samples, std::span<const TickOutcome> logged, std::vector<Tick>& out);
 
 Event toWire(const calot::Event& event);
 calot::Event fromWire(const Event& event);

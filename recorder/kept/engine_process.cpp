@@ -105,9 +105,7 @@ bool EngineProcess::restore(const Keyframe& keyframe, const std::optional<NamedS
 
 void EngineProcess::announce(const StepInput& input) {
   stepRequest_.lateness = input.lateness;
-  stepRequest_.ticks.clear();
-  for (std::size_t i = 0; i < input.samples.size(); ++i)
-    stepRequest_.ticks.push_back(wire::toWire(input.samples[i], input.logged[i]));
+  wire::toWire(input.samples, input.logged, stepRequest_.ticks);
   send(stepRequest_);
   ++announced_;
 }

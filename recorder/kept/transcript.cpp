@@ -52,8 +52,7 @@ wire::Step stepOf(const RecordedStep& recorded, std::uint8_t wanted) {
   wire::Step step;
   step.wanted = wanted;
   step.lateness = recorded.lateness;
-  for (std::size_t i = 0; i < recorded.samples.size(); ++i)
-    step.ticks.push_back(wire::toWire(recorded.samples[i], recorded.ticks[i]));
+  wire::toWire(recorded.samples, recorded.ticks, step.ticks);
   return step;
 }
 

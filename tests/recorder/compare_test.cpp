@@ -122,5 +122,35 @@ TEST(ResultComparison, GoesByTheRecordingsVersion) {
   EXPECT_EQ(d->field, "right/organ_force[1]");
 }
 
+/// The judgement that version 3 of StepResult held, as an engine of that version gives it again.
+TEST(ProcedureComparison, NamesTheFirstFieldThatDiffers) {
+  using Change = void (*)(RecordedProcedure&);
+  const RecordedProcedure recorded{Phase::identification, 1, 2, 1, true, 0.25, 3, 1};
+  EXPECT_FALSE(compareProcedure(7, recorded, recorded));
+  const struct {
+    const char *field, *detail;
+    Change change;
+  } cases[] = {
+      {"phase", "recorded 1, here 0", [](RecordedProcedure& p) { p.phase = Phase::none; }},
+      {"triangle_cleared", "recorded 1, here 2", [](RecordedProcedure& p) { p.triangleCleared = 2; }},
+      {"lower_third_freed", "recorded 2, here 0", [](RecordedProcedure& p) { p.lowerThirdFreed = 0; }},
+      {"two_structures", "recorded 1, here 2", [](RecordedProcedure& p) { p.twoStructures = 2; }},
+      {"critical_view_frozen", "recorded 1, here 0", [](RecordedProcedure& p) { p.criticalViewFrozen = false; }},
+      {"lower_third_attached", "recorded 0.25, here 0.5", [](RecordedProcedure& p) { p.lowerThirdAttached = 0.5; }},
+      {"errors", "recorded 3, here 4", [](RecordedProcedure& p) { p.errors = 4; }},
+      {"critical_errors", "recorded 1, here 0", [](RecordedProcedure& p) { p.criticalErrors = 0; }},
+  };
+  for (const auto& c : cases) {
+    RecordedProcedure here = recorded;
+    c.change(here);
+    const auto d = compareProcedure(7, recorded, here);
+    ASSERT_TRUE(d) << c.field;
+    EXPECT_EQ(d->step, 7U);
+    EXPECT_EQ(d->component, "observables");
+    EXPECT_EQ(d->field, std::string("procedure/") + c.field);
+    EXPECT_EQ(d->detail, c.detail);
+  }
+}
+
 }  // namespace
 }  // namespace calot::recorder

@@ -56,7 +56,7 @@ class Server : public testing::Test {
     const RecordedStep of = recorded(n);
     wire::Step step;
     step.wanted = wanted;
-    for (std::size_t i = 0; i < of.samples.size(); ++i) step.ticks.push_back(wire::toWire(of.samples[i], of.ticks[i]));
+    wire::toWire(of.samples, of.ticks, step.ticks);
     return step;
   }
   void begin() {
