@@ -112,7 +112,7 @@ class Reference:
         return numpy.linalg.norm(numpy.diff(self.p[first:last], axis=0), axis=1).sum()
 
     def movements(self):
-        return self.stretches(self.v >= 0.05, 20)
+        return self.stretches(self.v >= max(numpy.quantile(self.v, 0.95) / 2, 0.005), 20)
 
     def widened(self, movement):
         a, b = movement
