@@ -63,7 +63,8 @@ std::vector<SummaryColumn> summaryColumns(const ValuesOfAttempts& values) {
 std::string figureText(const std::vector<CheckpointValue>& values, const SummaryColumn& column) {
   for (const CheckpointValue& v : values) {
     if (v.name != column.definition->name || v.subject != column.subject) continue;
-    if (!v.value) return v.availability == Availability::notApplicable ? "n/a" : "-";
+    if (!v.value)
+      return v.availability == Availability::notApplicable || v.availability == Availability::absentHand ? "n/a" : "-";
     return significant(*v.value * column.definition->displayFactor);
   }
   return "-";
@@ -204,8 +205,7 @@ void printValues(const std::vector<CheckpointValue>& values, const std::vector<V
     const CheckpointDefinition* definition = findCheckpoint(v.name);
     const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
     if (!v.value) {
-      const char* missing = v.availability == Availability::notApplicable ? "not applicable" : "not available";
-      table.add({name, "-", "", "", "", "", fmt::format("{}: {}", missing, v.reason)});
+      table.add({name, "-", "", "", "", "", fmt::format("{}: {}", nameOf(v.availability), v.reason)});
       continue;
     }
     const double factor = definition != nullptr ? definition->displayFactor : 1.0;

@@ -51,11 +51,32 @@ std::string nameOf(Aggregation aggregation) {
 
 std::string nameOf(Finality finality) { return finality == Finality::running ? "running" : "final"; }
 
+std::string nameOf(Availability availability) {
+  switch (availability) {
+    case Availability::value:
+      return "value";
+    case Availability::notApplicable:
+      return "not applicable";
+    case Availability::notAvailable:
+      return "not available";
+    case Availability::absentHand:
+      return "absent hand";
+    case Availability::tooLittleCoverage:
+      return "too little coverage";
+  }
+  return "unknown";
+}
+
 void Checkpoint::onStep(const recorder::StepRecord& /*record*/, const Judgement& /*judgement*/) {}
 
 std::string whyTooOld(const AttemptContext& context, std::uint32_t needed) {
   if (context.resultVersion >= needed) return {};
   return fmt::format("results of version {} do not tell of it", context.resultVersion);
+}
+
+std::string coverageText(const CheckpointDefinition& definition) {
+  if (definition.minCoverage <= 0.0) return {};
+  return fmt::format("at least {:g} % of the window", 100.0 * definition.minCoverage);
 }
 
 std::string stretchNote(const AttemptEnd& end) {

@@ -53,6 +53,7 @@ struct CheckpointDefinition {
   std::string
       instruments;     ///< how several instruments are joined: "each hand by itself", "union over instruments", ...
   std::string filter;  ///< resampling and filter with all their constants, or "none"
+  double minCoverage = 0.0;     ///< share of the window that samples must cover for a value; 0: not of samples
   std::vector<Origin> origins;  ///< allowed ones
   Finality finality = Finality::running;
   std::uint32_t version = 1;  ///< changes whenever a value may change
@@ -60,11 +61,16 @@ struct CheckpointDefinition {
   std::string paperReading;   ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
 };
 
+/// Whether there is a number, and what kind of missing it is. Numbers are stored and never reused.
 enum class Availability : std::uint8_t {
-  value = 0,          ///< there is a number
-  notApplicable = 1,  ///< the question has no answer for this attempt ("no instrument in the left hand")
-  notAvailable = 2,   ///< it has one, but what is recorded doesn't give it ("time limit reached")
+  value = 0,              ///< there is a number
+  notApplicable = 1,      ///< the question has no answer for this attempt ("no movement of 5 mm/s for 0.2 s")
+  notAvailable = 2,       ///< it has one, but what is recorded doesn't give it ("time limit reached")
+  absentHand = 3,         ///< the hand has no instrument
+  tooLittleCoverage = 4,  ///< samples cover too little of the window, or leave a gap that is not bridged
 };
+inline constexpr std::size_t availabilityCount = 5;
+std::string nameOf(Availability availability);  ///< "value", "not applicable", ..., "too little coverage"
 
 /// One figure. @invariant availability == value exactly when `value` holds a finite number; else `reason` is not empty.
 struct CheckpointValue {
@@ -78,6 +84,8 @@ struct CheckpointValue {
   std::string unit;             ///< SI
   Origin origin = Origin::resimulated;
   std::string filter;  ///< as declared when the value was made
+  /// Share of the window that samples cover, in [0, 1]; none where it isn't of samples, or the hand is absent.
+  std::optional<double> coverage;
   bool operator==(const CheckpointValue&) const = default;
 };
 
@@ -97,6 +105,9 @@ std::string whyTooOld(const AttemptContext& context, std::uint32_t needed);
 
 /// Version of a definition that stands on judgement (phases, critical view, errors): rises with the rules' own.
 constexpr std::uint32_t judgedVersion(std::uint32_t own) { return own + judgementVersion - 1; }
+
+/// "at least 90 % of the window", or empty: the figure isn't of samples.
+std::string coverageText(const CheckpointDefinition& definition);
 
 struct Motion;
 struct PhaseMotion;

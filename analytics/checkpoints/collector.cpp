@@ -6,7 +6,7 @@
 #include <cassert>
 
 #include "analytics/checkpoints/force.h"
-#include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/phases.h"
 #include "analytics/checkpoints/registry.h"
 #include "recorder/sources/kinematics_file.h"

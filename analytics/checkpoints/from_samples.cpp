@@ -5,6 +5,7 @@
 #include <array>
 
 #include "analytics/checkpoints/force.h"
+#include "analytics/checkpoints/gap_bridge.h"
 #include "analytics/checkpoints/phases.h"
 #include "analytics/checkpoints/registry.h"
 
@@ -14,27 +15,29 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
   const recorder::TrackedHand& rows = tracked.hand[hand];
   Motion motion;
   motion.cutoff = cutoff;
-  motion.mounted = rows.present;
   if (!rows.present) return motion;
-  motion.mountedTicks = motion.validTicks = rows.position.size();
   // Rows of a fixed rate are counted, so that no time is rounded.
   const bool counted = tracked.rate > 0.0;
-  SampleGrid grid(counted ? tracked.rate : 1.0);
-  SampleRate rate;
+  const auto since = [&](std::size_t i) {
+    return counted ? 1.0 / tracked.rate : tracked.time[i] - tracked.time[i - 1];
+  };
+  MotionSamples samples{SampleGrid(counted ? tracked.rate : 1.0), {}, 0.0, {}, rows.oriented};
   for (std::size_t i = 0; i < rows.position.size(); ++i) {
     const double time = counted ? static_cast<double>(i) : tracked.time[i];
-    const double since = i == 0 ? 0.0 : counted ? 1.0 / tracked.rate : tracked.time[i] - tracked.time[i - 1];
-    if (i == 0 || since > maxBridge) {
-      grid.begin(time, rows.position[i], rows.orientation[i]);
+    if (i > 0) samples.rate.add(since(i));
+    if (i == 0 || since(i) > straightBridge) {
+      samples.grid.begin(time, rows.position[i], rows.orientation[i], i > 0);
     } else {
-      grid.extend(time, rows.position[i], rows.orientation[i]);
-      rate.add(since);
+      samples.grid.extend(time, rows.position[i], rows.orientation[i]);
     }
   }
-  motion.rate = rate.hertz();
-  motion.segments = filteredSegments(std::move(grid).takeRuns(), cutoff, rows.oriented);
-  motion.unmeasured = std::max(0.0, tracked.time.back() - static_cast<double>(motion.points()) / motionRate);
-  return motion;
+  const GapRule rule(samples.rate.interval());
+  samples.longestRate = rule.longestEven();
+  samples.coverage.mounted = {{0.0, tracked.time.back()}};
+  for (std::size_t i = 1; i < tracked.time.size(); ++i) {
+    if (rule.isGap(since(i))) samples.coverage.lost.push_back({tracked.time[i] - rule.lost(since(i)), tracked.time[i]});
+  }
+  return filteredMotion(std::move(samples), cutoff);
 }
 
 std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tracked, const SamplesContext& context) {

@@ -17,7 +17,7 @@ struct SamplesContext {
   double cutoff = motionCutoff;  ///< Hz; values that are stored are of the default
 };
 
-/// The motion of one hand: every row is a sample; rows more than 0.1 s apart split it.
+/// The motion of one hand: every row is a sample.
 Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double cutoff = motionCutoff);
 
 /// The figures that motion alone can give (those whose definition allows the origin `samples`), in the registry's

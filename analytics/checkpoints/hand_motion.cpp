@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "analytics/checkpoints/gap_bridge.h"
+
 namespace calot::analytics {
 namespace {
 
@@ -17,7 +19,8 @@ class PerHand final : public Checkpoint {
     std::vector<CheckpointValue> result;
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
       const Motion& motion = *end.motion[h];
-      result.push_back(motionValue(definition_, handNames[h], measureHand(motion, measure_), motion.cutoff));
+      result.push_back(
+          motionValue(definition_, handNames[h], measureHand(definition_, motion, measure_), motion.cutoff));
     }
     return result;
   }
@@ -40,7 +43,7 @@ class PerHandAndPhase final : public Checkpoint {
       for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
         const Motion& motion = phase.motion[h];
         const Measured measured =
-            phase.seconds > 0.0 ? measureHand(motion, measure_) : Measured::notApplicable(noSuchPhase);
+            phase.seconds > 0.0 ? measureHand(definition_, motion, measure_) : Measured::notApplicable(noSuchPhase);
         result.push_back(motionValue(definition_, handAndPhase(h, phase.phase), measured, motion.cutoff, end.origin));
       }
     }
@@ -68,9 +71,10 @@ CheckpointDefinition motionDefinition(const char* name, const char* title, const
       .aggregation = Aggregation::hand,
       .instruments = "each hand by itself",
       .filter = motionFilterText(),
+      .minCoverage = minMotionCoverage,
       .origins = {Origin::samples},
       .finality = Finality::final,
-      .version = 1,
+      .version = 2,
       .definition = formula,
       .paperReading = "",
   };
@@ -82,19 +86,34 @@ CheckpointValue motionValue(const CheckpointDefinition& definition, std::string 
                               ? makeValue(definition, std::move(subject), origin, *measured.value, measured.note)
                               : makeMissing(definition, std::move(subject), origin, measured.missing, measured.reason);
   if (cutoff != motionCutoff && definition.filter == motionFilterText()) value.filter = motionFilterText(cutoff);
+  value.coverage = measured.coverage;
   return value;
 }
 
-Measured measureHand(const Motion& motion, MotionMeasure measure) {
-  if (!motion.mounted) return Measured::notApplicable("no instrument in this hand");
-  if (motion.segments.empty()) return Measured::notAvailable("no measured motion of 0.1 s or longer");
-  Measured measured = measure(motion);
-  // Less than a tenth of a second is the grid's rounding at the ends.
-  if (measured.value && motion.unmeasured > maxBridge) {
-    measured.note +=
-        fmt::format("{}{:.3f} s without measurement", measured.note.empty() ? "" : "; ", motion.unmeasured);
+std::optional<Measured> refusalOf(const CheckpointDefinition& definition, const MotionCoverage& coverage,
+                                  bool hasSegments, const std::string& ofHand) {
+  const double share = coverage.share().value_or(0.0);
+  if (share < definition.minCoverage) {
+    return Measured::none(Availability::tooLittleCoverage,
+                          fmt::format("samples cover {:.1f} % of the time; {:g} % are wanted", 100.0 * share,
+                                      100.0 * definition.minCoverage));
   }
+  if (!hasSegments) return Measured::notAvailable(fmt::format("no measured motion of 0.1 s or longer{}", ofHand));
+  return std::nullopt;
+}
+
+Measured withCoverage(Measured measured, const MotionCoverage& coverage) {
+  measured.coverage = coverage.share();
+  const double lost = lengthOf(coverage.lost);
+  if (measured.value && lost > straightBridge)
+    measured.note += fmt::format("{}{:.3f} s without measurement", measured.note.empty() ? "" : "; ", lost);
   return measured;
+}
+
+Measured measureHand(const CheckpointDefinition& definition, const Motion& motion, MotionMeasure measure) {
+  if (!motion.coverage.share()) return Measured::none(Availability::absentHand, "no instrument in this hand");
+  std::optional<Measured> refusal = refusalOf(definition, motion.coverage, !motion.segments.empty());
+  return withCoverage(refusal ? *std::move(refusal) : measure(motion), motion.coverage);
 }
 
 double maxSpeed(const Motion& motion) {

@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
+#include "analytics/checkpoints/gap_bridge.h"
+#include "analytics/checkpoints/movements.h"
 #include "analytics/checkpoints/zero_phase_filter.h"
 
 namespace calot::analytics {
@@ -56,12 +57,24 @@ std::vector<Quat> smoothOrientations(const ZeroPhaseFilter& filter, const std::v
   return smooth;
 }
 
+MotionSegment filteredSegment(GridRun&& run, const ZeroPhaseFilter& filter, bool oriented) {
+  MotionSegment segment;
+  segment.first = run.first;
+  segment.continues = run.continues;
+  segment.raw = std::move(run.position);
+  segment.filtered = smoothPositions(filter, segment.raw);
+  if (oriented) segment.orientation = smoothOrientations(filter, run.orientation);
+  segment.speed = speeds(segment.filtered);
+  return segment;
+}
+
 }  // namespace
 
 std::string motionFilterText(double cutoff) {
   return fmt::format(
-      "the tracker's own samples, linear to 100 Hz, gaps over 0.1 s split; Butterworth order 2 at {:g} Hz forward and "
-      "backward, odd extension by 50, steady initial state, cut-off not corrected by 0.802; central differences",
+      "the tracker's own samples, linear to 100 Hz; gaps of up to 1 s without samples bridged by cubics, longer ones "
+      "split; Butterworth order 2 at {:g} Hz forward and backward, odd extension by 50, steady initial state, cut-off "
+      "not corrected by 0.802; central differences",
       cutoff);
 }
 
@@ -71,106 +84,26 @@ std::uint64_t Motion::points() const {
   return count;
 }
 
-std::vector<MotionSegment> filteredSegments(std::vector<GridRun> runs, double cutoff, bool oriented) {
-  const ZeroPhaseFilter filter(cutoff, motionRate);
-  std::vector<MotionSegment> segments;
-  for (GridRun& run : runs) {
-    if (run.position.size() < ZeroPhaseFilter::shortest) continue;
-    MotionSegment segment;
-    segment.first = run.first;
-    segment.raw = std::move(run.position);
-    segment.filtered = smoothPositions(filter, segment.raw);
-    if (oriented) segment.orientation = smoothOrientations(filter, run.orientation);
-    segment.speed = speeds(segment.filtered);
-    segments.push_back(std::move(segment));
-  }
-  return segments;
-}
-
-MotionTrack::MotionTrack(double tickSeconds, double sourceRate)
-    : tickSeconds_(tickSeconds), rowsPerTick_(sourceRate * tickSeconds), grid_(1.0 / tickSeconds) {
-  assert(tickSeconds > 0.0 && sourceRate >= 0.0);
-}
-
-bool MotionTrack::isDue() const {
-  if (rowsPerTick_ <= 0.0 || tick_ == 0) return true;
-  // Half a row's thousandth keeps rounding from moving a row by a tick.
-  const double t = static_cast<double>(tick_);
-  return std::floor(t * rowsPerTick_ + 5e-4) > std::floor((t - 1.0) * rowsPerTick_ + 5e-4);
-}
-
-void MotionTrack::begin(const InstrumentSample& sample) {
-  closeRest(grid_);
-  grid_.begin(static_cast<double>(tick_), sample.position, sample.orientation);
-  interval_ = 1;
-}
-
-/// What the newest sample's pose vouches for beyond 0.1 s is rest, up to the end.
-void MotionTrack::closeRest(SampleGrid& grid) const {
-  if (!grid.runs().empty() && seconds(vouched_ - sample_) > maxBridge)
-    grid.extend(static_cast<double>(vouched_), position_, orientation_);
-}
-
-void MotionTrack::sampled(const InstrumentSample& sample) {
-  const bool interrupted = tick_ - vouched_ > 1;
-  const bool rested = seconds(vouched_ - sample_) > maxBridge;
-  if (interrupted) {
-    const std::int64_t from = rested ? vouched_ : sample_;
-    if (seconds(tick_ - from) > maxBridge) {
-      begin(sample);
-      return;
-    }
-    closeRest(grid_);
-  } else if (seconds(tick_ - sample_) > maxBridge) {
-    const std::int64_t until = std::max(tick_ - interval_, sample_ + 1);
-    if (until < tick_) grid_.extend(static_cast<double>(until), position_, orientation_);
-  } else {
-    interval_ = tick_ - sample_;
-    rate_.add(seconds(interval_));
-  }
-  grid_.extend(static_cast<double>(tick_), sample.position, sample.orientation);
-}
-
-void MotionTrack::add(const InstrumentSample& sample) {
-  ++tick_;
-  if (sample.instrument == InstrumentKind::none) {
-    if (instrument_ != InstrumentKind::none) closeRest(grid_);
-    instrument_ = InstrumentKind::none;
-    vouched_ = sample_ = tick_;  // nothing more to close
-    return;
-  }
-  ++mountedTicks_;
-  if (!sample.valid) return;
-  ++validTicks_;
-  const bool same = sample.instrument == instrument_;
-  const bool lost = same && seconds(tick_ - vouched_) > maxBridge;
-  const bool moved = sample.position != position_ || sample.orientation.coeffs() != orientation_.coeffs();
-  if (!same || lost) {
-    begin(sample);
-  } else if (!moved || !isDue()) {
-    vouched_ = tick_;
-    return;
-  } else {
-    sampled(sample);
-  }
-  instrument_ = sample.instrument;
-  sample_ = vouched_ = tick_;
-  position_ = sample.position;
-  orientation_ = sample.orientation;
-}
-
-Motion MotionTrack::motion(double cutoff) const {
+Motion filteredMotion(MotionSamples samples, double cutoff) {
   Motion motion;
-  motion.mounted = mountedTicks_ > 0;
-  motion.mountedTicks = mountedTicks_;
-  motion.validTicks = validTicks_;
-  motion.rate = rate_.hertz();
+  motion.mounted = !samples.coverage.mounted.empty();
+  motion.interval = samples.rate.interval();
+  motion.rate = samples.rate.hertz(samples.longestRate);
   motion.cutoff = cutoff;
-  SampleGrid grid = grid_;
-  closeRest(grid);
-  motion.segments = filteredSegments(std::move(grid).takeRuns(), cutoff);
-  const double covered = static_cast<double>(motion.points()) / motionRate;
-  motion.unmeasured = std::max(0.0, seconds(static_cast<std::int64_t>(mountedTicks_)) - covered);
+  const double unitsPerSecond = samples.grid.unitsPerSecond();
+  std::vector<GridRun> runs = bridged(std::move(samples.grid).takeRuns(), GapRule(motion.interval), unitsPerSecond);
+  const ZeroPhaseFilter filter(cutoff, motionRate);
+  TimeSpans lost = std::move(samples.coverage.lost);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].position.size() >= ZeroPhaseFilter::shortest) {
+      motion.segments.push_back(filteredSegment(std::move(runs[i]), filter, samples.oriented));
+    } else if (runs[i].continues || (i + 1 < runs.size() && runs[i + 1].continues)) {
+      lost.push_back({runs[i].begin.time / unitsPerSecond, runs[i].end.time / unitsPerSecond});
+    }
+  }
+  motion.coverage = {std::move(samples.coverage.mounted), {}};
+  motion.coverage.lost = intersection(normalized(std::move(lost)), motion.coverage.mounted);
+  motion.movementSpeed = movementSpeedOf(motion.segments);
   return motion;
 }
 

@@ -1,9 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/checkpoints/movements.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
+#include "analytics/statistics/descriptive.h"
+
 namespace calot::analytics {
+namespace {
+
+constexpr double fastest = 0.95;       // quantile of the speed
+constexpr double movementShare = 0.5;  // of it
+
+}  // namespace
+
+double movementSpeedOf(const std::vector<MotionSegment>& segments) {
+  std::vector<double> speed;
+  for (const MotionSegment& segment : segments) speed.insert(speed.end(), segment.speed.begin(), segment.speed.end());
+  const Expected<double> peak = quantile(speed, fastest);
+  return std::max(peak ? movementShare * *peak : 0.0, idleSpeed);
+}
 
 std::size_t pointsOf(double seconds) { return static_cast<std::size_t>(std::floor(seconds * motionRate + 0.5)); }
 
@@ -22,9 +40,17 @@ std::vector<Stretch> stretchesOf(const std::vector<bool>& points, std::size_t le
   return result;
 }
 
-std::vector<Stretch> movementsOf(const MotionSegment& segment) {
+std::string thresholdNote(const Motion& motion) {
+  return fmt::format("threshold {:.1f} mm/s", 1000.0 * motion.movementSpeed);
+}
+
+std::string noMovement(const Motion& motion) {
+  return fmt::format("no movement of {:.1f} mm/s for {:g} s", 1000.0 * motion.movementSpeed, movementTime);
+}
+
+std::vector<Stretch> movementsOf(const MotionSegment& segment, double threshold) {
   std::vector<bool> fast(segment.speed.size());
-  for (std::size_t i = 0; i < fast.size(); ++i) fast[i] = segment.speed[i] >= movementSpeed;
+  for (std::size_t i = 0; i < fast.size(); ++i) fast[i] = segment.speed[i] >= threshold;
   return stretchesOf(fast, pointsOf(movementTime));
 }
 

@@ -4,18 +4,22 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "analytics/checkpoints/motion.h"
 
 namespace calot::analytics {
 
-/// A movement: speed of at least so much (m/s) for at least so long (s). The figures of an open tool for hand motion.
-inline constexpr double movementSpeed = 0.05;
+/// A movement: speed of at least movementSpeedOf() for at least so long (s).
 inline constexpr double movementTime = 0.2;
 /// Idle: speed below so much (m/s) for at least so long (s).
 inline constexpr double idleSpeed = 0.005;
 inline constexpr double idleTime = 0.5;
+
+/// Threshold of a hand's movements (m/s): half of the 95th percentile (type 7) of its speed, at least idleSpeed. A
+/// fixed one finds no movement of slow hands, and only one in all that fast hands do.
+double movementSpeedOf(const std::vector<MotionSegment>& segments);
 
 /// Points [begin, end) of a segment.
 struct Stretch {
@@ -29,8 +33,13 @@ std::size_t pointsOf(double seconds);
 /// Maximal runs of points that are all `true`, of at least `least` points.
 std::vector<Stretch> stretchesOf(const std::vector<bool>& points, std::size_t least);
 
+/// "threshold 21.3 mm/s", and why a motion has no movement.
+std::string thresholdNote(const Motion& motion);
+std::string noMovement(const Motion& motion);
+
 /// Movements of a segment, in order: from the magnitude of the velocity, whatever its direction.
-std::vector<Stretch> movementsOf(const MotionSegment& segment);
+/// @param threshold Motion::movementSpeed
+std::vector<Stretch> movementsOf(const MotionSegment& segment, double threshold);
 
 /// Length of the way over the filtered points [begin, end) (m).
 double pathLength(const MotionSegment& segment, std::size_t begin, std::size_t end);

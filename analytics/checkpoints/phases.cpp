@@ -24,7 +24,8 @@ void append(const MotionSegment& segment, std::int64_t begin, std::int64_t end, 
   const std::int64_t to = std::min(end - segment.first, size);
   if (to <= from) return;
   motion.segments.push_back({segment.first + from, part(segment.raw, from, to), part(segment.filtered, from, to),
-                             part(segment.orientation, from, to), part(segment.speed, from, to)});
+                             part(segment.orientation, from, to), part(segment.speed, from, to),
+                             segment.continues && from == 0});
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ std::string whyNoPhases(const AttemptContext& context) {
   return context.procedure ? whyTooOld(context, 3) : "the scene has no procedure";
 }
 
-CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces) {
+CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces, std::uint32_t version) {
   constexpr std::string_view attempt = "whole attempt";
   assert(whole.window.starts_with(attempt));
   CheckpointDefinition d = whole;
@@ -63,7 +64,7 @@ CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const ch
   d.window = "each phase of the procedure, as often as it recurs" + whole.window.substr(attempt.size());
   d.aggregation = whole.aggregation == Aggregation::hand ? Aggregation::handAndPhase : Aggregation::phase;
   d.origins = {Origin::resimulated, Origin::observables};
-  d.version = judgedVersion(1);
+  d.version = judgedVersion(version);
   d.definition = fmt::format("as {}, of the {} in the phase", whole.name, pieces);
   d.paperReading.clear();
   return d;
@@ -89,20 +90,26 @@ std::vector<PhaseMotion> PhaseTrack::cut(const std::array<Motion, handCount>& mo
     PhaseMotion part;
     part.phase = phase;
     std::uint64_t ticks = 0;
-    for (std::size_t h = 0; h < motion.size(); ++h) {
-      part.motion[h].mounted = motion[h].mounted;
-      part.motion[h].rate = motion[h].rate;
-      part.motion[h].cutoff = motion[h].cutoff;
-    }
+    TimeSpans window;
     for (const Span& span : spans_) {
       if (span.phase != phase) continue;
       ticks += span.end - span.begin;
+      window.push_back({static_cast<double>(span.begin) * tickSeconds, static_cast<double>(span.end) * tickSeconds});
       for (std::size_t h = 0; h < motion.size(); ++h) {
         for (const MotionSegment& segment : motion[h].segments)
           append(segment, firstPoint(span.begin), firstPoint(span.end), part.motion[h]);
       }
     }
     part.seconds = static_cast<double>(ticks) * tickSeconds;
+    for (std::size_t h = 0; h < motion.size(); ++h) {
+      Motion& hand = part.motion[h];
+      hand.mounted = motion[h].mounted;
+      hand.coverage = within(motion[h].coverage, window);
+      hand.interval = motion[h].interval;
+      hand.rate = motion[h].rate;
+      hand.cutoff = motion[h].cutoff;
+      hand.movementSpeed = motion[h].movementSpeed;
+    }
     phases.push_back(std::move(part));
   }
   return phases;

@@ -22,9 +22,9 @@ std::size_t windowOf(Phase phase);
 std::string whyNoPhases(const AttemptContext& context);
 /// The declaration of a figure of the whole attempt in each of its phases: "phase-NAME", of hands or the attempt as it
 /// was. Where a phase begins and ends is the simulation's to say, so its origin is that of the steps.
-/// @param pieces what the figure counts: "points", "ticks", "steps".
+/// @param pieces what the figure counts: "points", "ticks", "steps". @param version its own, without the judgement's
 /// @pre whole.window begins with "whole attempt"
-CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces);
+CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces, std::uint32_t version = 1);
 /// "left clipping"
 std::string handAndPhase(std::size_t hand, Phase phase);
 /// Why a phase of no steps has no figure.

@@ -20,46 +20,46 @@ Quat unit(const Quat& q) {
 
 }  // namespace
 
-void SampleGrid::put(const Vec3& position, const Quat& orientation) {
-  GridRun& run = runs_.back();
-  Quat q = orientation;
-  if (!run.orientation.empty()) {
-    const Quat& before = run.orientation.back();
-    const double cosine = before.w() * q.w() + before.x() * q.x() + before.y() * q.y() + before.z() * q.z();
-    if (cosine < 0.0) q = Quat(-q.w(), -q.x(), -q.y(), -q.z());
+void GridRun::append(const Vec3& p, const Quat& q) {
+  double cosine = 1.0;
+  if (!orientation.empty()) {
+    const Quat& before = orientation.back();
+    cosine = before.w() * q.w() + before.x() * q.x() + before.y() * q.y() + before.z() * q.z();
   }
-  run.position.push_back(position);
-  run.orientation.push_back(q);
+  position.push_back(p);
+  orientation.push_back(cosine < 0.0 ? Quat(-q.w(), -q.x(), -q.y(), -q.z()) : q);
+}
+
+double gridTime(std::int64_t k, double unitsPerSecond) { return static_cast<double>(k) * unitsPerSecond / motionRate; }
+
+void SampleGrid::put(const Vec3& position, const Quat& orientation) {
+  runs_.back().append(position, orientation);
   ++next_;
 }
 
-void SampleGrid::begin(double time, const Vec3& position, const Quat& orientation) {
+void SampleGrid::begin(double time, const Vec3& position, const Quat& orientation, bool continues) {
   const double slack = onThePoint * unitsPerSecond_ / motionRate;
   next_ = static_cast<std::int64_t>(std::floor(time * motionRate / unitsPerSecond_));
-  while (timeOf(next_) < time - slack) ++next_;
-  lastTime_ = time;
-  lastPosition_ = position;
-  lastOrientation_ = unit(orientation);
-  runs_.push_back({next_, {}, {}});
-  if (timeOf(next_) <= time + slack) put(lastPosition_, lastOrientation_);
+  while (gridTime(next_, unitsPerSecond_) < time - slack) ++next_;
+  const TimedPose sample{time, position, unit(orientation)};
+  runs_.push_back({next_, {}, {}, sample, sample, continues});
+  if (gridTime(next_, unitsPerSecond_) <= time + slack) put(position, sample.orientation);
 }
 
 void SampleGrid::extend(double time, const Vec3& position, const Quat& orientation) {
-  assert(!runs_.empty() && time > lastTime_);
+  assert(!runs_.empty() && time > runs_.back().end.time);
+  const TimedPose last = runs_.back().end;
   const Quat to = unit(orientation);
   const double slack = onThePoint * unitsPerSecond_ / motionRate;
-  while (timeOf(next_) <= time + slack) {
-    const double at = timeOf(next_);
+  for (double at = gridTime(next_, unitsPerSecond_); at <= time + slack; at = gridTime(next_, unitsPerSecond_)) {
     if (at >= time - slack) {
       put(position, to);
     } else {
-      const double s = (at - lastTime_) / (time - lastTime_);
-      put(lastPosition_ + s * (position - lastPosition_), recorder::interpolated(lastOrientation_, to, s));
+      const double s = (at - last.time) / (time - last.time);
+      put(last.position + s * (position - last.position), recorder::interpolated(last.orientation, to, s));
     }
   }
-  lastTime_ = time;
-  lastPosition_ = position;
-  lastOrientation_ = to;
+  runs_.back().end = {time, position, to};
 }
 
 }  // namespace calot::analytics

@@ -6,17 +6,21 @@
 
 namespace calot::analytics {
 
-/// Effective rate of a tracker, from the intervals between its samples.
-///
-/// Where poses alone tell samples apart, one that is equal to the one before isn't seen, so a hand that stands
-/// still makes intervals of several periods. Therefore: the mean of the intervals of at most 1.5 times their median.
-/// Intervals over 0.1 s are rest or no measurement. Deterministic contract.
+/// A tracker's own interval and its rate by the clock, from the times between its samples. Times over `longestInterval`
+/// are pauses and count for neither. Deterministic contract.
 class SampleRate {
  public:
+  static constexpr double longestInterval = 1.0;  ///< s
+
   /// @param seconds since the sample before, > 0.
   void add(double seconds);
-  /// Hz; 0 where there was no interval of at most 0.1 s.
-  [[nodiscard]] double hertz() const;
+
+  /// The tracker's own interval (s): the median. Where intervals up to 1.5 medians fill less than a tenth of the time,
+  /// samples arrive in bursts, and it is the interval up to which intervals fill half of the time. 0: none was added.
+  [[nodiscard]] double interval() const;
+
+  /// Intervals of at most `longest` (s) by the time that they fill (Hz); 0: there is none.
+  [[nodiscard]] double hertz(double longest) const;
 
  private:
   /// Intervals by their length, to 10 us.
@@ -24,8 +28,11 @@ class SampleRate {
     std::uint64_t count = 0;
     double seconds = 0.0;
   };
+  /// Intervals of at most so many seconds together.
+  [[nodiscard]] Bin upTo(double longest) const;
+
   std::vector<Bin> bins_;
-  std::uint64_t count_ = 0;
+  Bin all_;
 };
 
 }  // namespace calot::analytics

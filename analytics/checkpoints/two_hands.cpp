@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace calot::analytics {
@@ -20,12 +21,18 @@ class OfBothHands final : public Checkpoint {
 
  private:
   [[nodiscard]] Measured measured(const Motion& left, const Motion& right) const {
-    for (const auto& [name, motion] : {std::pair{handNames[0], &left}, std::pair{handNames[1], &right}}) {
-      if (!motion->mounted) return Measured::notApplicable(fmt::format("no instrument in the {} hand", name));
-      if (motion->segments.empty())
-        return Measured::notAvailable(fmt::format("no measured motion of 0.1 s or longer of the {} hand", name));
+    const std::array hands{&left, &right};
+    for (std::size_t h = 0; h < hands.size(); ++h) {
+      if (!hands[h]->mounted)
+        return Measured::none(Availability::absentHand, fmt::format("no instrument in the {} hand", handNames[h]));
     }
-    return measure_(left, right, context_);
+    const MotionCoverage coverage = ofBoth(left.coverage, right.coverage);
+    for (std::size_t h = 0; h < hands.size(); ++h) {
+      if (std::optional<Measured> refusal = refusalOf(definition_, coverage, !hands[h]->segments.empty(),
+                                                      fmt::format(" of the {} hand", handNames[h])))
+        return withCoverage(*std::move(refusal), coverage);
+    }
+    return withCoverage(measure_(left, right, context_), coverage);
   }
 
   const CheckpointDefinition& definition_;

@@ -33,7 +33,7 @@ std::optional<LaggedCorrelation> greatestSpeedCorrelation(const Motion& left, co
 /// A figure of both motions. @pre both have segments.
 using TwoHandMeasure = Measured (*)(const Motion& left, const Motion& right, const AttemptContext& context);
 
-/// A checkpoint of the attempt that gives `measure`; not applicable where a hand has no instrument.
+/// A checkpoint of the attempt that gives `measure`; absent where a hand has no instrument.
 /// @pre the definition outlives it
 std::unique_ptr<Checkpoint> ofBothHands(const CheckpointDefinition& definition, TwoHandMeasure measure,
                                         const AttemptContext& context);

@@ -7,8 +7,8 @@ namespace calot::analytics::tables {
 namespace {
 
 constexpr const char* valueColumns =
-    "c.name, c.subject, c.version, c.availability, c.value, c.reason, c.note, c.unit, c.origin, c.filter ";
-constexpr int valueColumnCount = 10;
+    "c.name, c.subject, c.version, c.availability, c.value, c.reason, c.note, c.unit, c.origin, c.filter, c.coverage ";
+constexpr int valueColumnCount = 11;
 
 CheckpointValue valueRow(SQLite::Statement& row, int c) {
   CheckpointValue v;
@@ -21,7 +21,8 @@ CheckpointValue valueRow(SQLite::Statement& row, int c) {
   v.note = text(row.getColumn(c++));
   v.unit = text(row.getColumn(c++));
   v.origin = enumeration<Origin>(row.getColumn(c++));
-  v.filter = text(row.getColumn(c));
+  v.filter = text(row.getColumn(c++));
+  v.coverage = optional(row.getColumn(c));
   return v;
 }
 
@@ -58,7 +59,7 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
     SQLite::bind(clear, id, static_cast<std::int64_t>(i));
     clear.exec();
   }
-  SQLite::Statement put(db, "INSERT INTO checkpoint_value VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement put(db, "INSERT INTO checkpoint_value VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (same(i)) continue;
     const CheckpointValue& v = values[i];
@@ -76,6 +77,7 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
     put.bind(10, v.unit);
     put.bind(11, number(v.origin));
     put.bind(12, v.filter);
+    bindOptional(put, 13, v.coverage);
     put.exec();
   }
   return true;

@@ -33,8 +33,10 @@ std::vector<CodebookEntry> checkpointEntries() {
     e.unit = d.unit;
     e.allowed = "finite";
     e.missing =
-        "availability 1: the question has no answer for this attempt; 2: what is recorded does not give it; "
-        "the value is empty and a reason stands beside it";
+        "availability 1: the question has no answer for this attempt; 2: what is recorded does not give it; 3: the "
+        "hand "
+        "has no instrument; 4: samples cover too little; the value is empty and a reason stands beside it";
+    if (d.minCoverage > 0.0) e.missing += fmt::format("; coverage wanted: {}", coverageText(d));
     e.direction = nameOf(d.direction);
     e.window = d.window;
     e.subjects = fmt::format("each {}{}{}", nameOf(d.aggregation), d.instruments.empty() ? "" : "; ", d.instruments);

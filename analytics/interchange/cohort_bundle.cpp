@@ -162,14 +162,16 @@ class Writer {
                                        {"reason", "TEXT"},
                                        {"unit", "TEXT"},
                                        {"origin", "TEXT"},
-                                       {"filter", "TEXT"}});
+                                       {"filter", "TEXT"},
+                                       {"coverage", "REAL"}});
     for (const Handed& h : handed_) {
       const auto list = source_.values.find(h.attempt->uuid);
       if (list == source_.values.end()) continue;
       for (const CheckpointValue& v : list->second) {
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", h.name, csvCell(v.name), csvCell(v.subject), v.version,
-                            static_cast<int>(v.availability), v.value ? fmt::format("{}", *v.value) : "",
-                            csvCell(v.reason), csvCell(v.unit), csvCell(nameOf(v.origin)), csvCell(v.filter));
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", h.name, csvCell(v.name), csvCell(v.subject),
+                            v.version, static_cast<int>(v.availability), v.value ? fmt::format("{}", *v.value) : "",
+                            csvCell(v.reason), csvCell(v.unit), csvCell(nameOf(v.origin)), csvCell(v.filter),
+                            v.coverage ? fmt::format("{}", *v.coverage) : "");
         ++bundle.values;
       }
     }

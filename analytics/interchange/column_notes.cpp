@@ -7,8 +7,11 @@
 namespace calot::analytics {
 namespace {
 
+constexpr const char* kindsOfMissing =
+    "0 value, 1 not applicable, 2 not available, 3 absent hand, 4 too little coverage";
+
 // table, column, title, unit, allowed values, what stands where there is none
-constexpr std::array<ColumnNote, 214> notes{{
+constexpr std::array<ColumnNote, 216> notes{{
     {"participant", "id", "number of the row, which other tables name"},
     {"participant", "pseudonym", "pseudonym"},
     {"participant", "study_group", "study group", "", "", "empty"},
@@ -74,13 +77,15 @@ constexpr std::array<ColumnNote, 214> notes{{
     {"checkpoint_value", "name", "checkpoint"},
     {"checkpoint_value", "subject", "hand, organ or phase", "", "", "empty: the attempt as a whole"},
     {"checkpoint_value", "version", "version of the checkpoint"},
-    {"checkpoint_value", "availability", "whether there is a value", "", "0 value, 1 not applicable, 2 not available"},
+    {"checkpoint_value", "availability", "whether there is a value", "", kindsOfMissing},
     {"checkpoint_value", "value", "the value, in unit", "", "finite", "empty where availability is not 0"},
     {"checkpoint_value", "reason", "why there is no value", "", "", "empty where availability is 0"},
     {"checkpoint_value", "note", "what a reader of the value must know", "", "", "empty"},
     {"checkpoint_value", "unit", "SI unit of the value"},
     {"checkpoint_value", "origin", "what it was computed from", "", "0 re-simulated, 1 observables, 2 samples"},
     {"checkpoint_value", "filter", "resampling and filter when the value was made"},
+    {"checkpoint_value", "coverage", "share of the window that samples cover", "1", "0 to 1",
+     "empty: not of samples, or not known"},
     {"value_interval", "attempt", "row of attempt"},
     {"value_interval", "name", "checkpoint"},
     {"value_interval", "subject", "hand, organ or phase", "", "", "empty: the attempt as a whole"},
@@ -216,12 +221,14 @@ constexpr std::array<ColumnNote, 214> notes{{
     {"values", "checkpoint", "checkpoint"},
     {"values", "subject", "hand, organ or phase", "", "", "empty: the attempt as a whole"},
     {"values", "version", "version of the checkpoint"},
-    {"values", "availability", "whether there is a value", "", "0 value, 1 not applicable, 2 not available"},
+    {"values", "availability", "whether there is a value", "", kindsOfMissing},
     {"values", "value", "the value, in unit", "", "finite", "empty where availability is not 0"},
     {"values", "reason", "why there is no value", "", "", "empty where availability is 0"},
     {"values", "unit", "SI unit of the value"},
     {"values", "origin", "what it was computed from", "", "re-simulated, observables, samples"},
     {"values", "filter", "resampling and filter when the value was made"},
+    {"values", "coverage", "share of the window that samples cover", "1", "0 to 1",
+     "empty: not of samples, or not known"},
     {"ratings", "form", "form and its version"},
     {"ratings", "attempt", "attempt in attempts"},
     {"ratings", "rater", "new pseudonym of the rater, drawn for this bundle"},

@@ -13,6 +13,7 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
+#include "analytics/report/study_coverage.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
@@ -34,7 +35,8 @@ struct Column {
   StudySample sample;
   std::set<std::uint32_t> versions;
   std::set<std::string> origins;
-  std::string unit;  ///< of a checkpoint that the registry does not know
+  std::string unit;      ///< of a checkpoint that the registry does not know
+  bool sampled = false;  ///< its values have a coverage
 };
 
 using ColumnKey = std::pair<std::string, std::string>;  ///< checkpoint, subject
@@ -139,6 +141,7 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
   }
   row.versions.assign(column.versions.begin(), column.versions.end());
   row.origins.assign(column.origins.begin(), column.origins.end());
+  row.sampled = column.sampled;
   return row;
 }
 
@@ -236,6 +239,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   const std::set<std::string> leftAside(unasked.begin(), unasked.end());
   std::map<ColumnKey, Column> columns;
   std::vector<ColumnKey> order;
+  CoverageCollector coverage;
   for (const AttemptValue& item : values) {
     const auto at = member.find(item.attempt);
     if (at == member.end() || leftAside.count(item.value.name) > 0) continue;
@@ -244,11 +248,15 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     Column& column = columns[key];
     column.unit = item.value.unit;
     const Member& m = at->second;
+    column.sampled = column.sampled || item.value.coverage;
+    coverage.add(item.value, m.group, m.participant, item.attempt);
     const CheckpointDefinition* definition = findCheckpoint(item.value.name);
     const double factor = definition != nullptr ? definition->displayFactor : 1.0;
     const double shown = item.value.value.value_or(0.0) * factor;
     if (!item.value.value || !std::isfinite(shown)) {
-      column.sample.missing[m.group][m.participant].push_back(item.value.value ? "not finite" : item.value.reason);
+      column.sample.missing[m.group][m.participant].push_back(
+          item.value.value ? MissingValue{Availability::notAvailable, "not finite"}
+                           : MissingValue{item.value.availability, item.value.reason});
       if (item.value.availability == Availability::notAvailable && !m.completed && options.protocol &&
           options.protocol->protocol.missing == MissingRule::worstRank)
         column.sample.unfinished[m.group].insert(m.participant);
@@ -270,6 +278,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](const auto& a, const auto& b) { return place(a.first) < place(b.first); });
+  study.coverage = coverage.rows();
   std::array<std::map<std::string, double>, 2> duration;
   for (const ColumnKey& key : order) {
     const Column& column = columns[key];

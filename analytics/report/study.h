@@ -100,9 +100,10 @@ struct FlowRow {
 /// One group's values of one checkpoint, one per participant, in the checkpoint's display unit.
 struct GroupSummary {
   std::uint64_t n = 0;
-  std::uint64_t missing = 0;  ///< participants without any value
-  std::string missingReason;  ///< the commonest
-  std::uint64_t partial = 0;  ///< participants whose mean lacks some of their attempts
+  std::uint64_t missing = 0;                                 ///< participants without any value
+  std::string missingReason;                                 ///< the commonest
+  std::array<std::uint64_t, availabilityCount> missingOf{};  ///< the same participants by Availability
+  std::uint64_t partial = 0;                                 ///< participants whose mean lacks some of their attempts
   std::optional<double> mean, standardDeviation, median, lowerQuartile, upperQuartile;
 };
 
@@ -147,6 +148,15 @@ struct StudyRow {
   std::vector<std::string> coverageWarnings;               ///< intervals whose published coverage is low at these sizes
   std::optional<double> publishedExpert, publishedNovice;  ///< the paper's means, for reference
   std::optional<SimulationRange> simulation;               ///< where values have intervals
+  bool sampled = false;                                    ///< of samples: Study::coverage has its subject
+};
+
+/// What samples cover of the attempts, for figures of one subject.
+struct CoverageRow {
+  std::string subject;                       ///< as of the figures: a hand, "" both, "left clipping"
+  std::array<std::vector<double>, 2> share;  ///< in [0, 1], one per participant, the mean of several attempts
+  std::array<std::uint64_t, 2> below{};      ///< participants with a figure that was refused for it
+  Expected<MannWhitney> test = Expected<MannWhitney>::none("not computed");
 };
 
 /// A participant without a row at an occasion where others have one.
@@ -175,7 +185,8 @@ struct Study {
   bool phasesLeftOut = false;        ///< checkpoints of single phases, other than how long the phases lasted
   std::string family;                ///< which p values are adjusted for each other, a sentence
   std::vector<StudyRow> rows;
-  std::string publishedSource;  ///< of the paper's means
+  std::vector<CoverageRow> coverage;  ///< of figures of samples, by subject
+  std::string publishedSource;        ///< of the paper's means
   /// Of a cohort: the group of every participant and attempt (uuid) that is analysed.
   std::map<std::string, std::string> groupOf;
   std::vector<FormReport> ratings;  ///< addRatings()

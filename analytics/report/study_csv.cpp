@@ -9,6 +9,7 @@
 
 #include "analytics/report/csv_cells.h"
 #include "analytics/report/study_output.h"
+#include "analytics/statistics/descriptive.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 
@@ -117,6 +118,20 @@ std::string flowFile(const Study& study) {
   return text + fmt::format("analysed,{}\n", study.analysed);
 }
 
+std::string coverageFile(const Study& study) {
+  std::string text = "subject,group,n,median,lowest,too_little,p,watermark\n";
+  for (const CoverageRow& row : study.coverage) {
+    for (std::size_t g = 0; g < 2; ++g) {
+      const std::vector<double>& shares = row.share[g];
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", csvCell(row.subject), csvCell(study.groups[g]), shares.size(),
+                          shares.empty() ? "" : fmt::format("{}", *median(shares)),
+                          shares.empty() ? "" : fmt::format("{}", *std::min_element(shares.begin(), shares.end())),
+                          row.below[g], row.test ? fmt::format("{}", row.test->p) : "", watermark(study));
+    }
+  }
+  return text;
+}
+
 std::string ratingsFile(const Study& study) {
   std::string text =
       "form,version,item,group,primary,n,blank,q1,median,q3,mean,published_mean,icc_2_1,icc_2_1_lower,icc_2_1_upper,"
@@ -155,6 +170,7 @@ void writeStudyCsv(const Study& study, const std::string& folder, bool force) {
   }
   std::vector<std::pair<const char*, std::string>> files{
       {"study.csv", summaryTable(study)}, {"values.csv", valuesTable(study)}, {"flow.csv", flowFile(study)}};
+  if (!study.coverage.empty()) files.emplace_back("coverage.csv", coverageFile(study));
   if (!study.ratings.empty()) files.emplace_back("ratings.csv", ratingsFile(study));
   for (const auto& file : files) recorder::refuseOutput(root / file.first, force);
   for (const auto& file : files) recorder::writeText(root / file.first, file.second, force);

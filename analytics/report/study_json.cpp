@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/report/ratings_json.h"
+#include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 
@@ -12,11 +13,20 @@ using Json = nlohmann::ordered_json;
 
 Json numberOrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
+Json missingJson(const GroupSummary& s) {
+  Json kinds = Json::object();
+  for (std::size_t kind = 0; kind < s.missingOf.size(); ++kind) {
+    if (s.missingOf[kind] > 0) kinds[nameOf(static_cast<Availability>(kind))] = s.missingOf[kind];
+  }
+  return kinds;
+}
+
 Json groupJson(const std::string& name, const GroupSummary& s) {
   return {{"group", name},
           {"n", s.n},
           {"missing", s.missing},
           {"missing_reason", s.missingReason},
+          {"missing_kinds", missingJson(s)},
           {"partial", s.partial},
           {"mean", numberOrNull(s.mean)},
           {"sd", numberOrNull(s.standardDeviation)},
@@ -105,10 +115,20 @@ Json simulationJson(const StudyRow& row) {
   return j;
 }
 
+Json coverageJson(const CoverageRow& row) {
+  Json j{{"subject", row.subject}, {"shares", row.share}, {"too_little", row.below}};
+  j["mann_whitney"] = answerJson(row.test, [](const MannWhitney& t) {
+    return Json{{"u", t.u}, {"p", t.p}, {"method", t.exact ? "exact" : "asymptotic"}};
+  });
+  j["differs"] = coverageDiffers(row);
+  return j;
+}
+
 Json rowJson(const Study& study, const StudyRow& row) {
   Json j{{"checkpoint", row.checkpoint},       {"subject", row.subject},   {"title", row.title},    {"unit", row.unit},
          {"direction", nameOf(row.direction)}, {"versions", row.versions}, {"origins", row.origins}};
   j["groups"] = Json::array({groupJson(study.groups[0], row.group[0]), groupJson(study.groups[1], row.group[1])});
+  j["sampled"] = row.sampled;
   j["role"] = nameOf(row.role);
   j["supported"] = row.supported ? Json(*row.supported) : Json(nullptr);
   j["worst_ranked"] = row.worstRanked;
@@ -184,6 +204,8 @@ std::string studyJson(const Study& study) {
   for (const AbsentRow& a : study.absent)
     j["absent"].push_back({{"participant", a.participant}, {"group", a.group}, {"occasion", a.occasion}});
   j["ratings"] = ratingsJson(study.ratings);
+  j["coverage"] = Json::array();
+  for (const CoverageRow& row : study.coverage) j["coverage"].push_back(coverageJson(row));
   j["rows"] = Json::array();
   for (const StudyRow& row : study.rows) j["rows"].push_back(rowJson(study, row));
   return j.dump(2, ' ', false, Json::error_handler_t::replace);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "analytics/report/study_coverage.h"
 #include "analytics/report/study_tables.h"
 
 namespace calot::analytics {
@@ -55,6 +56,18 @@ void explainColumns(const Study& study, std::vector<std::string>& notes) {
   }
 }
 
+/// "no instrument in this hand"; of several kinds how many there are of each, and the commonest reason.
+std::string whyMissing(const GroupSummary& s) {
+  std::string kinds;
+  for (std::size_t kind = 0; kind < s.missingOf.size(); ++kind) {
+    if (s.missingOf[kind] == 0) continue;
+    if (s.missingOf[kind] == s.missing) return s.missingReason;
+    kinds +=
+        fmt::format("{}{} {}", kinds.empty() ? "" : ", ", s.missingOf[kind], nameOf(static_cast<Availability>(kind)));
+  }
+  return fmt::format("{}; most: {}", kinds, s.missingReason);
+}
+
 void explainMissing(const Study& study, std::vector<std::string>& notes) {
   for (const StudyRow& row : study.rows) {
     const std::string name = rowName(row);
@@ -69,7 +82,7 @@ void explainMissing(const Study& study, std::vector<std::string>& notes) {
       const GroupSummary& s = row.group[g];
       if (s.missing > 0) {
         notes.push_back(fmt::format("{}: {} of {} {} without a value ({})", name, s.missing, s.missing + s.n,
-                                    study.groups[g], s.missingReason));
+                                    study.groups[g], whyMissing(s)));
       }
       if (row.worstRanked[g] > 0) {
         notes.push_back(
@@ -101,6 +114,7 @@ std::vector<std::string> studyNotes(const Study& study) {
         fmt::format("paper: published means of ten experts (E) and ten novices (N), for reference only ({}).",
                     study.publishedSource));
   }
+  for (std::string& note : coverageNotes(study)) notes.push_back(std::move(note));
   notes.insert(notes.end(), study.remarks.begin(), study.remarks.end());
   if (study.protocol) {
     for (const std::string& deviation : study.protocol->deviations)

@@ -54,15 +54,16 @@ void summarise(GroupSummary& s, const std::vector<double>& values) {
 
 /// Counts who has no value at all and why, and whose mean lacks some attempts.
 void countMissing(GroupSummary& s, const std::vector<std::string>& present,
-                  const std::map<std::string, std::vector<std::string>>& missing) {
+                  const std::map<std::string, std::vector<MissingValue>>& missing) {
   std::map<std::string, int> counts;
-  for (const auto& [person, reasons] : missing) {
+  for (const auto& [person, attempts] : missing) {
     if (std::binary_search(present.begin(), present.end(), person)) {
       ++s.partial;
       continue;
     }
     ++s.missing;
-    ++counts[reasons.front()];
+    ++counts[attempts.front().reason];
+    ++s.missingOf[static_cast<std::size_t>(attempts.front().kind)];
   }
   int most = 0;
   for (const auto& [reason, count] : counts) {

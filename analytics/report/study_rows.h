@@ -35,11 +35,17 @@ struct StudyValue {
   double halfWidth = 0.0;           ///< of the interval
 };
 
+/// Why an attempt has no value.
+struct MissingValue {
+  Availability kind = Availability::notAvailable;
+  std::string reason;
+};
+
 /// One row's values by group.
 struct StudySample {
   std::array<std::vector<StudyValue>, 2> values;
-  /// Participants to attempts without a value, with the reason.
-  std::array<std::map<std::string, std::vector<std::string>>, 2> missing;
+  /// Participants to attempts without a value.
+  std::array<std::map<std::string, std::vector<MissingValue>>, 2> missing;
   /// Participants who have no value of an attempt that was not completed, where the protocol ranks them behind all.
   std::array<std::set<std::string>, 2> unfinished;
 };

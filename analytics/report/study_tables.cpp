@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "analytics/report/study_coverage.h"
+
 namespace calot::analytics {
 namespace {
 
@@ -19,6 +21,13 @@ std::string share(double a) { return fmt::format("{:.3f}", a); }
 
 bool hasCorrelation(const StudyRow& row) { return static_cast<bool>(row.withDuration); }
 
+std::string supportText(const Study& study, const StudyRow& row) {
+  if (!row.supported) return "no test";
+  const CoverageRow* coverage = coverageOf(study, row);
+  const char* but = coverage != nullptr && coverageDiffers(*coverage) ? ", but coverage differs" : "";
+  return fmt::format("{}{}", *row.supported ? "yes" : "no", *row.supported ? but : "");
+}
+
 ReportTable hypothesesTable(const Study& study) {
   ReportTable table{"Hypotheses",
                     {{"role", Align::left},
@@ -32,12 +41,9 @@ ReportTable hypothesesTable(const Study& study) {
     for (const StudyRow& row : study.rows) {
       if (row.role != role || !row.hypothesis) continue;
       const std::size_t larger = *row.hypothesis == Hypothesis::firstLarger ? 0 : 1;
-      table.rows.push_back({nameOf(role), rowName(row), study.groups[larger] + " larger",
-                            row.area ? share(row.area->value.a) : "-",
-                            pOrDash(role == Role::primary ? row.holm : row.benjaminiHochberg),
-                            !row.supported   ? "no test"
-                            : *row.supported ? "yes"
-                                             : "no"});
+      table.rows.push_back(
+          {nameOf(role), rowName(row), study.groups[larger] + " larger", row.area ? share(row.area->value.a) : "-",
+           pOrDash(role == Role::primary ? row.holm : row.benjaminiHochberg), supportText(study, row)});
     }
   }
   return table;
@@ -214,8 +220,8 @@ bool hasNoValue(const StudyRow& row) { return row.group[0].n == 0 && row.group[1
 
 std::vector<ReportTable> studyTables(const Study& study) {
   std::vector<ReportTable> tables;
-  for (ReportTable table : {hypothesesTable(study), valuesTable(study), comparisonTable(study), furtherTable(study),
-                            simulationTable(study), baselineTable(study)}) {
+  for (ReportTable table : {hypothesesTable(study), valuesTable(study), comparisonTable(study), coverageTable(study),
+                            furtherTable(study), simulationTable(study), baselineTable(study)}) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
   for (const FormReport& report : study.ratings) {

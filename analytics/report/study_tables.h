@@ -20,8 +20,8 @@ std::string studyMethods(const Study& study);
 
 /// Flow: numbers included, excluded with reasons, and analysed.
 ReportTable flowTable(const Study& study);
-/// "Hypotheses" (with a protocol), "Values", "Comparison", "Further": a row without any value is in none of them. Those
-/// without rows are left out.
+/// "Hypotheses" (with a protocol), "Values", "Comparison", "Coverage", "Further": a row without any value is in none of
+/// them. Those without rows are left out.
 std::vector<ReportTable> studyTables(const Study& study);
 /// What the columns mean, the family, remarks and warnings, published figures, missing values: whole sentences.
 std::vector<std::string> studyNotes(const Study& study);

@@ -97,7 +97,7 @@ StudySample sampleOf(const std::array<Rows, 2>& rows, std::size_t outcome) {
         if (r->values[outcome]) {
           sample.values[g].push_back({person, r->line, *r->values[outcome]});
         } else {
-          sample.missing[g][person].emplace_back("empty cell");
+          sample.missing[g][person].push_back({Availability::notAvailable, "empty cell"});
         }
       }
     }
@@ -224,7 +224,8 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
     StudySample sample = sampleOf(rows, o);
     for (const auto& [person, group] : groupOf) {
       const std::size_t g = group == study.groups[0] ? 0 : 1;
-      if (rows[g].count(person) == 0) sample.missing[g][person].push_back("no row at " + options.occasion);
+      if (rows[g].count(person) == 0)
+        sample.missing[g][person].push_back({Availability::notAvailable, "no row at " + options.occasion});
     }
     fillRow(row, sample);
     compareGroups(row, study, {});

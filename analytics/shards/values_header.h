@@ -12,7 +12,7 @@
 
 namespace calot::analytics {
 
-inline constexpr std::uint32_t valuesFormatVersion = 1;
+inline constexpr std::uint32_t valuesFormatVersion = 2;
 
 enum class SharedWork : std::uint8_t {
   regrade,  ///< recordings of a cohort's attempts

@@ -80,7 +80,7 @@ const ObjectRule& valueRule() {
                                                 textKeys("note"),
                                                 textKeys("unit"),
                                                 textKeys("filter"),
-                                                {{"origin"}}})};
+                                                {{"origin"}, {"coverage", false, 0.0, 1.0}}})};
   return rule;
 }
 
@@ -164,7 +164,7 @@ ordered_json jsonOfValue(const CheckpointValue& v, const ValuesHeader& header) {
   if (v.value) {
     json["value"] = *v.value;
   } else {
-    json["missing"] = v.availability == Availability::notApplicable ? "not applicable" : "not available";
+    json["missing"] = nameOf(v.availability);
   }
   putText(json, "reason", v.reason);
   putText(json, "note", v.note);
@@ -172,6 +172,7 @@ ordered_json jsonOfValue(const CheckpointValue& v, const ValuesHeader& header) {
   if (defined == nullptr || defined->unit != v.unit) putText(json, "unit", v.unit);
   if (defined == nullptr || defined->filter != v.filter) putText(json, "filter", v.filter);
   json["origin"] = nameOf(v.origin);
+  if (v.coverage) json["coverage"] = *v.coverage;
   return json;
 }
 
@@ -187,8 +188,10 @@ CheckpointValue valueOf(const JsonObject& o, const ValuesHeader& header) {
   if (o.has("value")) o.read("value", v.value.emplace());
   v.availability = Availability::value;
   if (o.has("missing")) {
-    v.availability = o.at("missing").word<Availability>(
-        {{"not applicable", Availability::notApplicable}, {"not available", Availability::notAvailable}});
+    v.availability = o.at("missing").word<Availability>({{"not applicable", Availability::notApplicable},
+                                                         {"not available", Availability::notAvailable},
+                                                         {"absent hand", Availability::absentHand},
+                                                         {"too little coverage", Availability::tooLittleCoverage}});
   }
   v.reason = takeText(o, "reason");
   v.note = takeText(o, "note");
@@ -199,6 +202,7 @@ CheckpointValue valueOf(const JsonObject& o, const ValuesHeader& header) {
   if (o.has("filter") || o.has("filter_hex")) v.filter = takeText(o, "filter");
   v.origin = o.at("origin").word<Origin>(
       {{"re-simulated", Origin::resimulated}, {"observables", Origin::observables}, {"samples", Origin::samples}});
+  if (o.has("coverage")) o.read("coverage", v.coverage.emplace());
   return v;
 }
 

@@ -33,6 +33,7 @@ nlohmann::ordered_json jsonOf(const CheckpointDefinition& d) {
           {"aggregation", nameOf(d.aggregation)},
           {"instruments", d.instruments},
           {"filter", d.filter},
+          {"min_coverage", d.minCoverage},
           {"origins", originNames(d)},
           {"finality", nameOf(d.finality)},
           {"version", d.version},
@@ -54,6 +55,7 @@ void print(const CheckpointDefinition& d) {
   line("instruments", d.instruments);
   line("window", d.window);
   line("filter", d.filter);
+  line("coverage", coverageText(d));
   line("origin", origins);
   line("known", d.finality == analytics::Finality::running ? "after every step" : "at the end");
   line("paper", d.paperReading);

@@ -43,7 +43,7 @@ std::string titleOf(const analytics::CheckpointValue& v) {
 
 std::string shown(const std::optional<analytics::CheckpointValue>& v) {
   if (!v) return "-";
-  if (!v->value) return v->availability == analytics::Availability::notApplicable ? "n/a" : "not available";
+  if (!v->value) return v->availability == analytics::Availability::notApplicable ? "n/a" : nameOf(v->availability);
   const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(v->name);
   return analytics::significant(*v->value * (definition != nullptr ? definition->displayFactor : 1.0), 6) + " " +
          (definition != nullptr ? definition->displayUnit : v->unit);

@@ -58,7 +58,7 @@ void addStudy(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("study", "Compare two groups of a cohort, or of a table from elsewhere");
   addStudySource(*command, options->source);
   command->add_flag("--json", options->json, "Print JSON");
-  command->add_option("--csv", options->csv, "Write study.csv, values.csv and flow.csv into this folder");
+  command->add_option("--csv", options->csv, "Write study.csv, values.csv, flow.csv and coverage.csv into this folder");
   command->add_option("--html", options->html, "Write one self-contained page with figures");
   addPdfOption(*command, options->pdf, "Write the same on A4 pages");
   command->add_flag("--force", options->force, "Replace files that are there");

@@ -42,10 +42,11 @@ nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& val
     row["origin"] = nameOf(v.origin);
     row["filter"] = v.filter;
     if (!v.value) {
-      row["missing"] = v.availability == analytics::Availability::notApplicable ? "not applicable" : "not available";
+      row["missing"] = nameOf(v.availability);
       row["reason"] = v.reason;
     }
     if (!v.note.empty()) row["note"] = v.note;
+    if (v.coverage) row["coverage"] = *v.coverage;
     if (const analytics::ValueInterval* interval = analytics::findInterval(intervals, v))
       row["interval"] = intervalJson(*interval);
     list.push_back(row);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/force.h"
-#include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/phases.h"
 #include "analytics/checkpoints/registry.h"
 #include "sim/math/random.h"

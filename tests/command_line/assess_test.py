@@ -144,7 +144,7 @@ class Study(program.ProgramTest):
         folder = self.path("csv")
         study = ("study", self.cohort, "--group-by", "performer", "--include-synthetic", "--csv", folder)
         self.well(*study)
-        self.assertEqual(sorted(p.name for p in folder.iterdir()), ["flow.csv", "study.csv", "values.csv"])
+        self.assertEqual(sorted(p.name for p in folder.iterdir()), ["coverage.csv", "flow.csv", "study.csv", "values.csv"])
         for file in folder.iterdir():
             rows = list(csv.reader(line for line in file.read_text().splitlines() if not line.startswith("#")))
             self.assertGreater(len(rows), 1)

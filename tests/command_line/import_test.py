@@ -112,7 +112,7 @@ class Reference:
         return numpy.linalg.norm(numpy.diff(self.p[first:last], axis=0), axis=1).sum()
 
     def movements(self):
-        return self.stretches(self.v >= 0.05, 20)
+        return self.stretches(self.v >= max(numpy.quantile(self.v, 0.95) / 2, 0.005), 20)
 
     def widened(self, movement):
         a, b = movement
@@ -310,6 +310,41 @@ class Identity(program.ProgramTest):
             with self.subTest(" ".join(wrong)):
                 self.refused(3, "import", other, *wrong, "--cohort", self.cohort, names=("other.txt", "conflict"))
         self.assertEqual(content(self.cohort), before)
+
+    def test_gaps_in_one_group_are_not_its_skill(self):
+        # The same motion in both groups; a tracker that loses a sixth of the time in one of them, then a sixtieth.
+        columns = self.path("map.json")
+        columns.write_text(json.dumps({"format": "calot-columns", "formatVersion": 1, "frame": "world", "length": "m",
+                                       "time": {"column": "t", "unit": "s"}, "left": {"position": ["x", "y", "z"]}}))
+        for every, shown in ((60, 0), (600, 6)):
+            cohort = self.path(f"gaps{every}.db")
+            generator = program.seeded("gaps")
+            for person in range(12):
+                group = "expert" if person % 2 else "novice"
+                if person % 2 == 0:
+                    place = synthetic(40.0, generator)[0][0]
+                path = self.path(f"{every}-{person}.csv")
+                with path.open("w", newline="") as out:
+                    out.write("t,x,y,z\n")
+                    for i, p in enumerate(place):
+                        if group == "novice" or i % every < every - 10:
+                            out.write(f"{i / 30!r},{float(p[0])!r},{float(p[1])!r},{float(p[2])!r}\n")
+                self.well("participant", "add", f"P{person}", "--group", group, "--cohort", cohort)
+                self.well("import", path, "--columns", columns, "--participant", f"P{person}", "--mode", "assessment", "--cohort", cohort)
+            answer = json.loads(self.well("study", cohort, "--json").out)
+            rows = {(r["checkpoint"], r["subject"]): r for r in answer["rows"]}
+            path = rows["path-length", "left"]
+            self.assertEqual([g["n"] for g in path["groups"]], [shown, 6])
+            self.assertEqual(path["groups"][0]["missing_kinds"], {} if shown else {"too little coverage": 6})
+            self.assertEqual(rows["path-length", "right"]["groups"][0]["missing_kinds"], {"absent hand": 6})
+            left = next(c for c in answer["coverage"] if c["subject"] == "left")
+            self.assertTrue(left["differs"])
+            self.assertAlmostEqual(left["mann_whitney"]["p"], 2 / 924, delta=1e-12)
+            text = self.well("study", cohort).out
+            self.assertIn("Warning: coverage differs (left hand)", " ".join(text.split()))
+            for name in ("path-length", "sparc", "log-dimensionless-jerk"):
+                if shown:
+                    self.assertGreater(rows[name, "left"]["mann_whitney"]["p"], 0.05, name)
 
     def test_a_study_over_imported_motion(self):
         generator = program.seeded("study")

@@ -79,11 +79,12 @@ struct ForceMeasure {
 
 CheckpointValue forceValue(const CheckpointDefinition& definition, std::string subject, const ForceTrack& track,
                            int hand, const ForceMeasure& measure, Origin origin) {
-  const auto missing = [&](const char* why) {
-    return makeMissing(definition, std::move(subject), origin, Availability::notApplicable, why);
+  const auto missing = [&](Availability kind, const char* why) {
+    return makeMissing(definition, std::move(subject), origin, kind, why);
   };
-  if (!track.mounted(hand)) return missing("no instrument in this hand");
-  if (measure.needsFelt && track.felt(hand).empty()) return missing("no force of 0.01 N or more");
+  if (!track.mounted(hand)) return missing(Availability::absentHand, "no instrument in this hand");
+  if (measure.needsFelt && track.felt(hand).empty())
+    return missing(Availability::notApplicable, "no force of 0.01 N or more");
   return makeValue(definition, std::move(subject), origin, measure.figure(track, hand));
 }
 

@@ -11,10 +11,11 @@ const CheckpointDefinition& motionRateDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition rate =
         motionDefinition("motion-rate", "Effective rate of the tracker", "Hz", Direction::none,
-                         "1 / mean of the intervals between samples that are at most 0.1 s and at most 1.5 times their "
-                         "median; a sample is a "
-                         "measured tick whose pose differs from the one before, or a row of a kinematics file");
+                         "intervals between samples by the time that they fill, those over 1.5 of the tracker's own "
+                         "intervals left out (in a file of motion: over 2.5); a sample is a measured tick whose pose "
+                         "differs from the one before, or a row of the file");
     rate.filter = "none";
+    rate.minCoverage = 0.0;
     rate.finality = Finality::running;
     return rate;
   }();

@@ -13,8 +13,8 @@ namespace {
 const CheckpointDefinition& countDefinition() {
   static const CheckpointDefinition d =
       motionDefinition("movements", "Number of movements", "1", Direction::lower,
-                       "#{maximal stretches of points with v(k) >= 50 mm/s that last 0.2 s or longer}, v as in "
-                       "speed-mean, a point lasting 10 ms");
+                       "#{maximal stretches of points with v(k) >= max(v_95 / 2, 5 mm/s) that last 0.2 s or longer}, "
+                       "v as in speed-mean, v_95 the hand's speed-p95 over the attempt, a point lasting 10 ms");
   return d;
 }
 
@@ -28,8 +28,8 @@ const CheckpointDefinition& straightnessDefinition() {
 
 Measured count(const Motion& motion) {
   std::size_t movements = 0;
-  for (const MotionSegment& segment : motion.segments) movements += movementsOf(segment).size();
-  return Measured::of(static_cast<double>(movements));
+  for (const MotionSegment& segment : motion.segments) movements += movementsOf(segment, motion.movementSpeed).size();
+  return Measured::of(static_cast<double>(movements), thresholdNote(motion));
 }
 
 /// The chord as a share of the path, not the path over the chord: a movement that returns to its start has a chord of
@@ -37,13 +37,13 @@ Measured count(const Motion& motion) {
 Measured straightness(const Motion& motion) {
   double chord = 0.0, path = 0.0;
   for (const MotionSegment& segment : motion.segments) {
-    for (const Stretch& movement : movementsOf(segment)) {
+    for (const Stretch& movement : movementsOf(segment, motion.movementSpeed)) {
       const Vec3 d = segment.filtered[movement.end - 1] - segment.filtered[movement.begin];
       chord += std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
       path += pathLength(segment, movement.begin, movement.end);
     }
   }
-  if (!(path > 0.0)) return Measured::notApplicable("no movement of 50 mm/s for 0.2 s");
+  if (!(path > 0.0)) return Measured::notApplicable(noMovement(motion));
   return Measured::of(chord / path);
 }
 

@@ -14,7 +14,7 @@ const CheckpointDefinition& pathLengthDefinition() {
                          "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, within segments");
     whole.displayUnit = "mm";
     whole.displayFactor = 1000.0;
-    whole.version = 2;
+    whole.version = 3;
     whole.paperReading =
         "Total trajectory dist. (left), (right) (mm): path of the real tip in the world, not of the "
         "device's handle nor of the simulated tip";

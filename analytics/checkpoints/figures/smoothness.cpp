@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 
+#include "analytics/checkpoints/gap_bridge.h"
 #include "analytics/checkpoints/hand_motion.h"
 #include "analytics/checkpoints/movements.h"
 #include "analytics/checkpoints/smoothness.h"
@@ -15,14 +17,20 @@ namespace {
 
 /// Shorter segments (s) say nothing of a band that begins near 0 Hz.
 constexpr double minSegment = 1.0;
+/// Its upper frequency follows the spectrum's tail, which a bridge lowers: docs/metrics.md has the simulation.
+constexpr double minSparcCoverage = 0.95;
 
 const CheckpointDefinition& sparcDefinition() {
-  static const CheckpointDefinition d = motionDefinition(
-      "sparc", "Spectral arc length (SPARC)", "1", Direction::higher,
-      "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, at most 10 Hz, with M >= "
-      "0.05; "
-      "M the amplitude spectrum of v as a share of M(0 Hz), zeros added up to 2^(ceil(log2 n) + 4) values; v as in "
-      "speed-mean; of segments of 1 s or longer, averaged by their length");
+  static const CheckpointDefinition d = [] {
+    CheckpointDefinition arc = motionDefinition(
+        "sparc", "Spectral arc length (SPARC)", "1", Direction::higher,
+        "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, at most 10 Hz, with M >= "
+        "0.05; "
+        "M the amplitude spectrum of v as a share of M(0 Hz), zeros added up to 2^(ceil(log2 n) + 4) values; v as in "
+        "speed-mean; of segments of 1 s or longer, averaged by their length");
+    arc.minCoverage = minSparcCoverage;
+    return arc;
+  }();
   return d;
 }
 
@@ -44,7 +52,17 @@ const CheckpointDefinition& movementDefinition() {
 
 using OfSpeed = std::optional<double> (*)(std::span<const double>, double);
 
+/// A figure of the whole speed profile depends on its length: averaged over pieces between gaps, it would count gaps.
+bool isBroken(const Motion& motion) {
+  return std::any_of(motion.segments.begin(), motion.segments.end(),
+                     [](const MotionSegment& segment) { return segment.continues; });
+}
+
 Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
+  if (isBroken(motion)) {
+    return Measured::none(Availability::tooLittleCoverage,
+                          fmt::format("a gap without samples of more than {:g} s", maxBridge));
+  }
   if (maxSpeed(motion) < minSpeed) return Measured::notApplicable("the hand did not move: no speed of 0.1 mm/s");
   double sum = 0.0, points = 0.0;
   std::size_t segments = 0;
@@ -61,8 +79,10 @@ Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
 }
 
 std::string tooSlow(const Motion& motion, double wanted) {
-  if (motion.rate >= wanted || (motion.rate == 0.0 && maxSpeed(motion) < minSpeed)) return {};
-  return fmt::format("effective rate {:.1f} Hz; {:g} Hz is wanted", motion.rate,
+  if (motion.interval == 0.0 && maxSpeed(motion) < minSpeed) return {};
+  const double rate = motion.interval > 0.0 ? 1.0 / motion.interval : 0.0;
+  if (rate >= wanted) return {};
+  return fmt::format("effective rate {:.1f} Hz; {:g} Hz is wanted", rate,
                      wanted < 30.0 && wanted > 29.0 ? 30.0 : wanted);
 }
 
@@ -78,7 +98,7 @@ Measured jerk(const Motion& motion) {
   return ofLongSegments(motion, logDimensionlessJerk);
 }
 
-/// A movement with its beginning and end: cut off at 50 mm/s it would seem smoother than any movement can be.
+/// A movement with its beginning and end: cut off at the threshold it would seem smoother than any movement can be.
 Stretch widened(const std::vector<double>& speed, Stretch movement) {
   while (movement.begin > 0 && speed[movement.begin - 1] < speed[movement.begin] &&
          speed[movement.begin - 1] >= idleSpeed)
@@ -94,7 +114,7 @@ Measured jerkOfMovements(const Motion& motion) {
   double sum = 0.0;
   std::size_t movements = 0;
   for (const MotionSegment& segment : motion.segments) {
-    for (const Stretch& movement : movementsOf(segment)) {
+    for (const Stretch& movement : movementsOf(segment, motion.movementSpeed)) {
       const Stretch whole = widened(segment.speed, movement);
       const std::span<const double> speed(segment.speed.data() + whole.begin, whole.points());
       const std::optional<double> value = logDimensionlessJerk(speed, motionRate);
@@ -103,7 +123,7 @@ Measured jerkOfMovements(const Motion& motion) {
       ++movements;
     }
   }
-  if (movements == 0) return Measured::notApplicable("no movement of 50 mm/s for 0.2 s");
+  if (movements == 0) return Measured::notApplicable(noMovement(motion));
   return Measured::of(sum / static_cast<double>(movements), fmt::format("{} movements", movements));
 }
 

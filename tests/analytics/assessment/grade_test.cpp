@@ -197,8 +197,10 @@ TEST_F(Grades, aMarkInsideTheIntervalIsNotDecided) {
   const double cut = *norm.checkpoints[0].cut;
   const auto withInterval = [&](unsigned n, double lower, double upper) {
     add(n, fmt::format("U{}", n), "", figures(100.0, 2.0));
-    cohort_.storeIntervals(uuidOf(n), {{"path-length", "left", 2, 100.0, 0, 0, 1.0, lower, upper, "", {}},
-                                       {"path-length", "right", 2, 2.0, 0, 0, 0.0, 2.0, 2.0, "", {}}});
+    cohort_.storeIntervals(
+        uuidOf(n),
+        {{"path-length", "left", findCheckpoint("path-length")->version, 100.0, 0, 0, 1.0, lower, upper, "", {}},
+         {"path-length", "right", findCheckpoint("path-length")->version, 2.0, 0, 0, 0.0, 2.0, 2.0, "", {}}});
     return graded(n, norm);
   };
   const Grade decided = withInterval(40, cut + 1.0, 150.0);

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/registry.h"
 #include "tests/analytics/checkpoints/support/steps.h"
 
@@ -109,6 +109,7 @@ TEST(Registry, docsAgree) {
     holds("instruments", d.instruments);
     holds("window", d.window);
     holds("filter", d.filter);
+    if (d.minCoverage > 0.0) holds("coverage", coverageText(d));
     std::string origins;
     for (const Origin origin : d.origins) origins += (origins.empty() ? "" : ", ") + nameOf(origin);
     holds("origin", origins);
@@ -183,13 +184,13 @@ TEST(PathLength, withstandsTheTrackersNoise) {
   EXPECT_NEAR(filtered, 1.2, 0.03 * 1.2);
 }
 
-TEST(PathLength, isNotApplicableWithoutAnInstrument) {
+TEST(PathLength, isAbsentWithoutAnInstrument) {
   CheckpointCollector collector(header(), scene());
   feed(collector, 100,
        [](std::uint64_t, TickSamples& s, TickOutcome&) { s.hand[1].instrument = InstrumentKind::none; });
   collector.onEnd(Outcome::completed);
-  EXPECT_EQ(valueOf(collector, "path-length", "right").availability, Availability::notApplicable);
-  EXPECT_EQ(valueOf(collector, "force-maximum", "right").availability, Availability::notApplicable);
+  EXPECT_EQ(valueOf(collector, "path-length", "right").availability, Availability::absentHand);
+  EXPECT_EQ(valueOf(collector, "force-maximum", "right").availability, Availability::absentHand);
   EXPECT_TRUE(valueOf(collector, "path-length", "left").value);
 }
 
@@ -208,12 +209,12 @@ TEST(PathLength, isNotAvailableForAnAttemptTooShort) {
 }
 
 TEST(Motion, shortGapsAreBridgedAndLongOnesSplit) {
-  // 1 m/s along x; not measured from tick 2000 to 2050 (bridged) and from 5000 to 6000 (split). Held poses are no
+  // 1 m/s along x; not measured from tick 2000 to 2050 (bridged) and from 5000 to 6200 (split). Held poses are no
   // points.
   MotionTrack track(0.001);
   for (int tick = 0; tick < 8000; ++tick) {
     InstrumentSample s;
-    s.valid = !((tick >= 2000 && tick < 2050) || (tick >= 5000 && tick < 6000));
+    s.valid = !((tick >= 2000 && tick < 2050) || (tick >= 5000 && tick < 6200));
     s.position = Vec3(s.valid ? 0.001 * tick : 99.0, 0.0, 0.0);
     track.add(s);
   }
@@ -221,17 +222,17 @@ TEST(Motion, shortGapsAreBridgedAndLongOnesSplit) {
   ASSERT_EQ(motion.segments.size(), 2U);
   EXPECT_EQ(motion.segments[0].first, 0);
   EXPECT_EQ(motion.segments[0].raw.size(), 500U);
-  EXPECT_EQ(motion.segments[1].first, 600);
-  EXPECT_EQ(motion.segments[1].raw.size(), 200U);
+  EXPECT_EQ(motion.segments[1].first, 620);
+  EXPECT_EQ(motion.segments[1].raw.size(), 180U);
   for (const MotionSegment& segment : motion.segments) {
     for (std::size_t i = 0; i < segment.raw.size(); ++i) {
       EXPECT_NEAR(segment.raw[i].x(), 0.01 * static_cast<double>(segment.first + static_cast<std::int64_t>(i)), 1e-12);
       EXPECT_NEAR(segment.filtered[i].x(), segment.raw[i].x(), 1e-6) << "a straight line passes unchanged";
     }
   }
-  EXPECT_EQ(motion.mountedTicks, 8000U);
-  EXPECT_EQ(motion.validTicks, 6950U);
-  EXPECT_NEAR(motion.unmeasured, 1.0, 1e-9);
+  EXPECT_NEAR(lengthOf(motion.coverage.mounted), 8.0, 1e-9);
+  EXPECT_NEAR(lengthOf(motion.coverage.lost), 0.05 + 1.2, 1e-9) << "of both, samples covering their own interval";
+  EXPECT_NEAR(*motion.coverage.share(), 6.75 / 8.0, 1e-9);
 }
 
 TEST(Motion, anExchangeOfInstrumentsAddsNoPath) {

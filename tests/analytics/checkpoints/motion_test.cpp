@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which ticks of a recording are samples of the tracker, and what is made of them.
-#include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/motion_track.h"
 
 #include <gtest/gtest.h>
 
@@ -95,10 +95,10 @@ TEST(SamplesOfATracker, aPoseThatStandsForLongerIsRest) {
 }
 
 TEST(SamplesOfATracker, aSourceThatMarksWhatItHoldsTooLongIsLost) {
-  // A device that goes away for a second: its source holds the last pose for 0.1 s and then says "not measured".
+  // A device that goes away for 1.2 s: its source holds the last pose for 0.1 s and then says "not measured".
   MotionTrack track(0.001);
   for (int tick = 0; tick < 4000; ++tick) {
-    const bool away = tick >= 1500 && tick < 2500;
+    const bool away = tick >= 1500 && tick < 2700;
     InstrumentSample s;
     s.valid = !away || tick < 1600;
     s.position = place(0.001 * (away ? 1499 : tick));
@@ -107,8 +107,8 @@ TEST(SamplesOfATracker, aSourceThatMarksWhatItHoldsTooLongIsLost) {
   const Motion motion = track.motion();
   ASSERT_EQ(motion.segments.size(), 2U);
   EXPECT_EQ(motion.segments[0].raw.size(), 150U) << "up to the last sample, tick 1499: not to what was held";
-  EXPECT_EQ(motion.segments[1].first, 250);
-  EXPECT_NEAR(motion.unmeasured, 1.0, 1e-9);
+  EXPECT_EQ(motion.segments[1].first, 270);
+  EXPECT_NEAR(lengthOf(motion.coverage.lost), 1.2, 1e-9);
 }
 
 TEST(SamplesOfATracker, rotationAloneIsASample) {

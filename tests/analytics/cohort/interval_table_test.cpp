@@ -31,7 +31,7 @@ TEST(Intervals, areOfPresentValues) {
       {"elapsed-time", "", 1, 10.0, 0.1, -0.2, 0.3, 9.0, 11.0, "", {9.5, 10.25, 0.1 + 0.2}},
       {"path-length",
        "left",
-       2,
+       findCheckpoint("path-length")->version,
        0.3,
        0.0,
        0.0,

@@ -528,8 +528,9 @@ TEST(Study, saysWhatTheSimulationDoesNotDecide) {
     const bool skilled = n < 3;
     const double value = 1.0 + n % 3 + (skilled ? 0.0 : 4.0);
     database.storeAttempt(attemptOf(n, skilled ? "skilled" : "unskilled"), valuesOf(value, value / 1000));
-    intervals.push_back({interval("elapsed-time", "", 1, value, 10.0),
-                         interval("path-length", "left", 2, value / 1000, skilled ? 0.01 : 0.0)});
+    intervals.push_back(
+        {interval("elapsed-time", "", 1, value, 10.0),
+         interval("path-length", "left", findCheckpoint("path-length")->version, value / 1000, skilled ? 0.01 : 0.0)});
     if (n < 5) database.storeIntervals(uuidOf(n), intervals.back());
   }
   const Study partly = makeStudy(database, performers);

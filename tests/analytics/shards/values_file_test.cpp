@@ -156,8 +156,8 @@ TEST_F(ValuesFiles, OtherDefinitionsAreRefusedByName) {
   EXPECT_NE(refusal({more}, ErrorKind::refused).find("does not know"), std::string::npos);
   const auto simulation = changed([](Json& h) { h["simulation_version"] = 3; });
   EXPECT_NE(refusal({simulation}, ErrorKind::undecided).find("values of simulation version 3"), std::string::npos);
-  const auto later = changed([](Json& h) { h["format_version"] = 2; });
-  EXPECT_NE(refusal({later}, ErrorKind::undecided).find("values of format 2"), std::string::npos);
+  const auto later = changed([](Json& h) { h["format_version"] = 3; });
+  EXPECT_NE(refusal({later}, ErrorKind::undecided).find("values of format 3"), std::string::npos);
   const auto results = changed([](Json& h) { h["step_result_version"] = 1; });
   EXPECT_NE(refusal({results}, ErrorKind::refused).find("step results"), std::string::npos);
 }
