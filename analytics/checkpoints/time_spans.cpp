@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/math/bounds.h"
+
 namespace calot::analytics {
 
 TimeSpans normalized(TimeSpans spans) {
@@ -49,7 +51,7 @@ double lengthOf(const TimeSpans& spans) {
 std::optional<double> MotionCoverage::share() const {
   const double whole = lengthOf(mounted);
   if (!(whole > 0.0)) return std::nullopt;
-  return std::clamp(1.0 - lengthOf(lost) / whole, 0.0, 1.0);
+  return notNegative(1.0 - lengthOf(lost) / whole);
 }
 
 MotionCoverage within(const MotionCoverage& coverage, const TimeSpans& window) {
