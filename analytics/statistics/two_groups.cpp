@@ -128,6 +128,13 @@ double smallestRankTestP(std::size_t nx, std::size_t ny) {
   return separated ? separated->p : 1.0;
 }
 
+std::size_t leastGroups(double p) {
+  assert(p > 0.0);
+  std::size_t n = 1;
+  while (smallestRankTestP(n, n) > p) ++n;
+  return n;
+}
+
 Expected<Superiority> superiority(std::span<const double> x, std::span<const double> y) {
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<Superiority>::none(reason);
   const double pairs = static_cast<double>(x.size()) * static_cast<double>(y.size());

@@ -39,6 +39,9 @@ Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const dou
 /// 1, up to exactRankTestLimit values. Ties make it larger. @pre nx, ny > 0
 double smallestRankTestP(std::size_t nx, std::size_t ny);
 
+/// Least n for which smallestRankTestP(n, n) is at most `p`. @pre p > 0
+std::size_t leastGroups(double p);
+
 /// Probability of superiority and its linear image; one statistic under two names.
 struct Superiority {
   double a = 0.5;      ///< Vargha and Delaney's A = U / (nx ny): P(X > Y) + P(X = Y) / 2, the area under the ROC curve

@@ -283,6 +283,11 @@ TEST(MannWhitney, smallestPIsThatOfTheFarthestAssignment) {
   EXPECT_NEAR(smallestRankTestP(4, 4), 2.0 / 70.0, 1e-15);
   EXPECT_NEAR(smallestRankTestP(5, 4), 2.0 / 126.0, 1e-15);
   EXPECT_DOUBLE_EQ(smallestRankTestP(1, 1), 1.0);
+  // 2 / C(10, 5) = .0079, 2 / C(12, 6) = .0022.
+  EXPECT_EQ(leastGroups(0.05), 4U);
+  EXPECT_EQ(leastGroups(0.05 / 8.0), 6U);
+  EXPECT_EQ(leastGroups(2.0 / 252.0 + 1e-15), 5U);
+  EXPECT_EQ(leastGroups(1.0), 1U);
   const unsigned seed = 23;
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
