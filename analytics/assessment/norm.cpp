@@ -184,6 +184,12 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
     if (group != study.groupOf.end()) norm.members.push_back({a.uuid, group->second == study.better, {}});
   }
   norm.membersMade = norm.members.size();
+  const auto competent = static_cast<std::size_t>(
+      std::count_if(norm.members.begin(), norm.members.end(), [](const NormMember& m) { return m.competent; }));
+  if (std::min(competent, norm.members.size() - competent) < minNormMembers)
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("a norm wants at least {} competent members and as many others; there are {} and {}",
+                            minNormMembers, competent, norm.members.size() - competent));
   const auto figures = collectValues(norm, values, request, name);
   for (std::size_t i = 0; i < figures.size(); ++i)
     norm.checkpoints.push_back(markOf(*figures[i].first, figures[i].second, norm, i));
@@ -208,6 +214,13 @@ std::string passMarkWarning(const Norm& norm) {
   const std::string text =
       coverageWarning(CoveredInterval::cut, "pass mark", competent, norm.members.size() - competent);
   return text.empty() ? text : "Warning: " + text + ".";
+}
+
+std::string ownFailureWarning(const Norm& norm) {
+  const auto [competent, others] = passRates(norm);
+  if (competent.passed == competent.members) return {};
+  return fmt::format("Warning: {} of the {} competent members fail by the norm's own rule.",
+                     competent.members - competent.passed, competent.members);
 }
 
 std::pair<PassRate, PassRate> passRates(const Norm& norm) {

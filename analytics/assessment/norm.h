@@ -2,6 +2,7 @@
 // Making a norm: who is in it, who of them is competent, and the pass mark of every figure by contrasting groups.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -28,12 +29,15 @@ struct NormRequest {
 /// Name of the form and its item by which raters judge competence.
 inline constexpr const char* competenceItem = "competent";
 
+/// Members that each side has at least: the spread of two is no estimate. Below five, reports warn of the intervals.
+inline constexpr std::size_t minNormMembers = 3;
+
 /// A norm from attempts at hand. A pass mark is the cut of contrasting groups with a bootstrap interval, of times on
 /// the log scale where all are positive; figures that judge nothing, and critical errors, which are asked first, have
 /// none.
 /// @param name of where they are from, for errors
-/// @throws Error (refused) as makeStudy(), where raters judged nobody or all alike, a figure of the rule has no cut, or
-/// the rule wants more than there are; Error (invalid) for a name that is none.
+/// @throws Error (refused) as makeStudy(), where raters judged nobody or all alike, a side has too few members, a
+/// figure of the rule has no cut, or the rule wants more than there are; Error (invalid) for a name that is none.
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
 
@@ -46,6 +50,9 @@ struct PassRate {
 };
 /// First of the competent, then of the others. A member without a value of a figure has not passed it.
 std::pair<PassRate, PassRate> passRates(const Norm& norm);
+
+/// Warning where competent members of the norm would fail by its own rule, with their number; or empty.
+std::string ownFailureWarning(const Norm& norm);
 
 /// What a report says of the pass marks' intervals where their published coverage is low at the norm's size; or empty.
 std::string passMarkWarning(const Norm& norm);

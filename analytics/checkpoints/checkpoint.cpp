@@ -67,6 +67,24 @@ std::string nameOf(Availability availability) {
   return "unknown";
 }
 
+std::string nameOf(CheckpointFamily family) {
+  switch (family) {
+    case CheckpointFamily::paper:
+      return "Table 2";
+    case CheckpointFamily::motion:
+      return "motion";
+    case CheckpointFamily::phases:
+      return "phases";
+    case CheckpointFamily::contact:
+      return "contact and force";
+    case CheckpointFamily::safety:
+      return "errors and safety";
+    case CheckpointFamily::exactness:
+      return "exactness of the simulation";
+  }
+  return "unknown";
+}
+
 void Checkpoint::onStep(const recorder::StepRecord& /*record*/, const Judgement& /*judgement*/) {}
 
 std::string whyTooOld(const AttemptContext& context, std::uint32_t needed) {

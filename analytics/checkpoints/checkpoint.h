@@ -59,6 +59,8 @@ struct CheckpointDefinition {
   std::uint32_t version = 1;  ///< changes whenever a value may change
   std::string definition;     ///< the formula in words and symbols, one line
   std::string paperReading;   ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
+  /// Why a study shows the figure apart and doesn't test it ("it describes the tracker"); empty: it is an outcome.
+  std::string notOutcome = {};
 };
 
 /// Whether there is a number, and what kind of missing it is. Numbers are stored and never reused.
@@ -148,6 +150,8 @@ enum class CheckpointFamily : std::uint8_t {
   safety,     ///< errors and safety
   exactness,  ///< how exact the simulation was
 };
+
+std::string nameOf(CheckpointFamily family);  ///< "Table 2", "motion", "contact and force"
 
 /// Where tables show a checkpoint.
 struct CheckpointPlace {

@@ -31,6 +31,13 @@ const CheckpointDefinition* findCheckpoint(std::string_view name) {
   return nullptr;
 }
 
+std::optional<CheckpointFamily> familyOf(std::string_view name) {
+  for (const CheckpointEntry& entry : checkpointRegistry()) {
+    if (entry.definition.name == name) return entry.place.family;
+  }
+  return std::nullopt;
+}
+
 bool isOfPhases(const CheckpointDefinition& definition) {
   return definition.aggregation == Aggregation::phase || definition.aggregation == Aggregation::handAndPhase;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +15,9 @@ const std::vector<CheckpointEntry>& checkpointRegistry();
 
 /// The definition of a name, or null.
 const CheckpointDefinition* findCheckpoint(std::string_view name);
+
+/// The family of a name, or none.
+std::optional<CheckpointFamily> familyOf(std::string_view name);
 
 /// Given for each phase of a procedure, not of the whole attempt.
 bool isOfPhases(const CheckpointDefinition& definition);

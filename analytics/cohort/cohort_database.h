@@ -187,4 +187,8 @@ class CohortDatabase {
 /// one checkpoint separates that checkpoint's values and no others.
 std::string comparabilityKey(const recorder::AttemptHeader& header);
 
+/// The same in words: "task touch-liver 1, device falcon, no calibration, simulation 1, step results 1, mode
+/// assessment"; imported motion has no simulation. A text that is no such key is given back as it is.
+std::string comparabilityWords(const std::string& key);
+
 }  // namespace calot::analytics

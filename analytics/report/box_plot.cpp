@@ -15,11 +15,10 @@ namespace calot::analytics {
 namespace {
 
 constexpr std::size_t maxGroup = 20;  // in letters
+constexpr std::size_t minBox = 5;     // values: quartiles of fewer are interpolations between two of them
 constexpr double boxHalf = 26.0, pointRadius = 2.6;
 
-void drawGroup(Drawing& drawing, std::span<const double> values, double x, const PlotScale& scale, std::size_t g) {
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
+void drawBox(Drawing& drawing, const std::vector<double>& sorted, double x, const PlotScale& scale, std::size_t g) {
   const double q1 = quantileOfSorted(sorted, 0.25), q2 = quantileOfSorted(sorted, 0.5),
                q3 = quantileOfSorted(sorted, 0.75);
   const double reach = 1.5 * (q3 - q1);
@@ -32,6 +31,12 @@ void drawGroup(Drawing& drawing, std::span<const double> values, double x, const
   drawing.box(g == 0 ? Ink::firstBox : Ink::secondBox, x - boxHalf, scale.y(q3), 2 * boxHalf,
               std::max(0.0, scale.y(q1) - scale.y(q3)));
   drawing.line(Ink::median, x - boxHalf, scale.y(q2), x + boxHalf, scale.y(q2));
+}
+
+void drawGroup(Drawing& drawing, std::span<const double> values, double x, const PlotScale& scale, std::size_t g) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted.size() >= minBox) drawBox(drawing, sorted, x, scale, g);
   // Side by side in five places in turn, so that equal values do not hide each other.
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     const double aside = (static_cast<double>(i * 2 % 5) - 2.0) * 7.0;

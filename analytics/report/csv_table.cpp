@@ -27,7 +27,8 @@ std::string_view trimmed(std::string_view cell) {
 /// Takes records off a text, one after the other.
 class Records {
  public:
-  Records(std::string_view text, const std::string& path) : rest_(text), path_(path) {}
+  Records(std::string_view text, const std::string& path, char separator)
+      : rest_(text), path_(path), separator_(separator), ends_{separator, '\n'} {}
 
   /// @return false at the end
   bool next(CsvRow& row) {
@@ -51,10 +52,10 @@ class Records {
       quoted = true;
       row.cells.push_back(takeQuoted(row.line));
       rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
-      if (!rest_.empty() && rest_[0] != ',' && rest_[0] != '\n' && rest_.substr(0, 2) != "\r\n")
+      if (!rest_.empty() && rest_[0] != separator_ && rest_[0] != '\n' && rest_.substr(0, 2) != "\r\n")
         fail(path_, line_, fmt::format("column {}: text behind a closing quote", row.cells.size()));
     } else {
-      const std::size_t end = std::min(rest_.find_first_of(",\n"), rest_.size());
+      const std::size_t end = std::min(rest_.find_first_of(ends_), rest_.size());
       std::string_view cell = rest_.substr(0, end);
       rest_.remove_prefix(end);
       if (!cell.empty() && cell.back() == '\r' && (rest_.empty() || rest_[0] == '\n')) cell.remove_suffix(1);
@@ -62,7 +63,7 @@ class Records {
     }
     if (rest_.substr(0, 2) == "\r\n") rest_.remove_prefix(1);
     if (rest_.empty()) return false;
-    const bool more = rest_[0] == ',';
+    const bool more = rest_[0] == separator_;
     if (!more) ++line_;
     rest_.remove_prefix(1);
     if (more && rest_.empty()) row.cells.emplace_back();
@@ -86,6 +87,8 @@ class Records {
 
   std::string_view rest_;
   const std::string& path_;
+  char separator_;
+  std::string ends_;  ///< of a cell without quotes
   std::size_t line_ = 1;
 };
 
@@ -114,15 +117,18 @@ CsvTable parseCsvTable(std::string_view text, const std::string& path) {
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
   if (text.find('\0') != std::string_view::npos)
     throw Error(ErrorKind::damaged, Where{path}, "is no table of text (CSV)");
-  Records records(text, path);
   CsvTable table;
   table.path = path;
+  const std::string_view header = text.substr(0, text.find('\n'));
+  if (header.find(',') == std::string_view::npos && header.find(';') != std::string_view::npos) table.separator = ';';
+  Records records(text, path, table.separator);
   CsvRow row;
   if (!records.next(row)) throw Error(ErrorKind::damaged, Where{path, "line 1"}, "is empty; a header is needed");
   table.columns = std::move(row.cells);
   if (table.columns.size() == 1) {
     fail(path, row.line,
-         fmt::format("one column only (\"{}\"); the separator is a comma", recorder::shown(table.columns[0])));
+         fmt::format("one column only (\"{}\"); the separator is a comma or a semicolon",
+                     recorder::shown(table.columns[0])));
   }
   while (records.next(row)) {
     if (row.cells.size() != table.columns.size()) {

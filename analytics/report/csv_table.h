@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table of text from elsewhere, read without trust: RFC 4180, a header line, commas.
+// A table of text from elsewhere, read without trust: RFC 4180, a header line, commas or semicolons.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,8 @@ struct CsvRow {
 };
 
 struct CsvTable {
-  std::string path;  ///< for messages
+  std::string path;      ///< for messages
+  char separator = ',';  ///< or ';', with which a number may have a decimal comma (R's write.csv2)
   std::vector<std::string> columns;
   std::vector<CsvRow> rows;  ///< each with as many cells as there are columns
 
@@ -25,8 +26,8 @@ struct CsvTable {
 };
 
 /// Reads a whole file: UTF-8 with or without a byte order mark, lines ending in LF or CRLF, cells in double quotes
-/// where they hold commas, quotes or line breaks. Blanks around a cell without quotes are dropped; empty lines are
-/// passed over.
+/// where they hold separators, quotes or line breaks. Blanks around a cell without quotes are dropped; empty lines are
+/// passed over. Cells are separated by semicolons where the header has some and no comma.
 /// @throws Error (damaged), naming file, line and what is wrong.
 CsvTable readCsvTable(const std::string& path);
 

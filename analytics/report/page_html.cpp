@@ -29,7 +29,7 @@ th { border-bottom: 2px solid #57606a; } .right { text-align: right; }
 .watermark { background: #b00020; color: #fff; font-weight: bold; padding: .5em 1em; }
 .behind { position: fixed; inset: 0; display: flex; align-items: center; justify-content: center; pointer-events: none;
   font: bold 14vw sans-serif; color: #b00020; opacity: .07; transform: rotate(-30deg); }
-@media print { body { max-width: none; } figure, svg { break-inside: avoid; } }
+@media print { .page { break-before: page; } body { max-width: none; } figure, svg { break-inside: avoid; } }
 )";
 
 std::string cells(const std::vector<std::string>& row, const ReportTable& table, const char* tag) {
@@ -52,7 +52,9 @@ std::string spans(const Paragraph& paragraph) {
 }
 
 struct Part {
-  std::string operator()(const Heading& heading) const { return fmt::format("<h2>{}</h2>\n", escaped(heading.text)); }
+  std::string operator()(const Heading& heading) const {
+    return fmt::format("<h2{}>{}</h2>\n", heading.newPage ? " class=\"page\"" : "", escaped(heading.text));
+  }
   std::string operator()(const Paragraph& paragraph) const { return fmt::format("<p>{}</p>\n", spans(paragraph)); }
   std::string operator()(const BulletList& list) const {
     std::string html = "<ul>\n";

@@ -12,8 +12,6 @@ namespace {
 
 using Align = TextTable::Align;
 
-std::string number(const std::optional<double>& value) { return value ? significant(*value, 3) : "-"; }
-
 std::string withInterval(double value, const Expected<Interval>& interval) {
   if (!interval) return fmt::format("{:.3f}", value);
   return fmt::format("{:.3f} [{:.3f}, {:.3f}]", value, interval->lower, interval->upper);
@@ -55,12 +53,12 @@ ReportTable answersTable(const FormReport& report) {
       std::string counts;
       for (const auto& [score, count] : s.counts)
         counts += fmt::format("{}{}: {}", counts.empty() ? "" : ", ", score, count);
-      table.rows.push_back({g == answered.front() ? item.text : "",
-                            report.groups[g].empty() ? "(no group)" : report.groups[g],
-                            report.groups[g] == item.primaryGroup && !item.primaryGroup.empty() ? "primary" : "",
-                            fmt::format("{}", s.n), s.blank == 0 ? "" : fmt::format("{}", s.blank), number(s.median),
-                            number(s.lowerQuartile), number(s.upperQuartile), number(s.mean),
-                            item.published[g] ? fmt::format("{}", *item.published[g]) : "", counts});
+      table.rows.push_back(
+          {g == answered.front() ? item.text : "", report.groups[g].empty() ? "(no group)" : report.groups[g],
+           report.groups[g] == item.primaryGroup && !item.primaryGroup.empty() ? "primary" : "", fmt::format("{}", s.n),
+           s.blank == 0 ? "" : fmt::format("{}", s.blank), significantOrDash(s.median, 3),
+           significantOrDash(s.lowerQuartile, 3), significantOrDash(s.upperQuartile, 3), significantOrDash(s.mean, 3),
+           item.published[g] ? fmt::format("{}", *item.published[g]) : "", counts});
     }
   }
   return table;
@@ -99,10 +97,13 @@ std::vector<std::string> ratingNotes(const FormReport& report) {
   if (report.filled == 0) return notes;
   notes.push_back(fmt::format("{}: {} forms, {} of people or attempts that are not analysed left out. {}Items: {}.",
                               report.name, report.filled, report.leftOut,
-                              report.ofAttempts ? fmt::format("Of an attempt the mean of its raters; agreement over "
-                                                              "the attempts that every rater rated ({} were not). ",
-                                                              report.incomplete)
-                                                : "primary: the group whose judgement counts first. ",
+                              report.ofAttempts
+                                  ? fmt::format("One value a participant: of an attempt the mean of its "
+                                                "raters, of several attempts the mean; agreement over the "
+                                                "first attempt of each that every rater rated ({} were "
+                                                "not, {} are later ones). ",
+                                                report.incomplete, report.repeated)
+                                  : "primary: the group whose judgement counts first. ",
                               report.source));
   const auto warn = [&](CoveredInterval interval, const std::string& name, std::uint64_t n, const char* unit) {
     if (const std::string text = coverageWarning(interval, name, n, n, unit); !text.empty())

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/rating_table.h"
@@ -10,11 +11,18 @@
 namespace calot::analytics {
 namespace {
 
-using Scores = std::map<std::string, std::vector<double>>;  ///< by attempt or participant
+/// By participant, then by attempt ("" where the form is the participant's).
+using Scores = std::map<std::string, std::map<std::string, std::vector<double>>>;
+using Attempts = std::map<std::string, AttemptOf>;
 
 constexpr std::size_t minSubscale = 3;
 
 const std::string& subjectOf(const Rating& r) { return r.attempt.empty() ? r.participant : r.attempt; }
+
+std::string participantOf(const std::string& subject, const Attempts& attempts) {
+  const auto at = attempts.find(subject);
+  return at == attempts.end() || at->second.participant.empty() ? subject : at->second.participant;
+}
 
 std::optional<double> taken(const Expected<double>& answer) {
   return answer ? std::optional<double>(*answer) : std::nullopt;
@@ -23,13 +31,17 @@ std::optional<double> taken(const Expected<double>& answer) {
 ItemSummary summary(const Scores& scores) {
   ItemSummary s;
   std::vector<double> values;
-  for (const auto& [subject, given] : scores) {
-    if (given.empty()) {
-      ++s.blank;
-      continue;
+  for (const auto& [participant, attempts] : scores) {
+    std::vector<double> means;
+    for (const auto& [attempt, given] : attempts) {
+      if (!given.empty()) means.push_back(*mean(given));
+      for (const double score : given) ++s.counts[static_cast<int>(score)];
     }
-    values.push_back(*mean(given));
-    for (const double score : given) ++s.counts[static_cast<int>(score)];
+    if (means.empty()) {
+      ++s.blank;
+    } else {
+      values.push_back(*mean(means));
+    }
   }
   s.n = values.size();
   s.median = taken(median(values));
@@ -39,13 +51,22 @@ ItemSummary summary(const Scores& scores) {
   return s;
 }
 
-/// A complete table of one figure; `figure` gives none where an item was left blank.
+struct RatedAttempt {
+  std::string startUtc, uuid, participant;
+  std::map<std::string, const Rating*> ratings;  ///< by rater
+};
+
+/// A complete table of one figure, a row a participant; `figure` gives none where an item was left blank.
+/// @param rated by start. @param[out] repeated complete attempts of those who have a row already
 template <class Figure>
-RatingTable tableOf(const std::map<std::string, std::map<std::string, const Rating*>>& byAttempt,
-                    const std::set<std::string>& raters, Figure figure) {
+RatingTable tableOf(const std::vector<RatedAttempt>& rated, const std::set<std::string>& raters, Figure figure,
+                    std::uint64_t& repeated) {
   RatingTable table;
   table.raters = raters.size();
-  for (const auto& [attempt, ratings] : byAttempt) {
+  std::set<std::string> seen;
+  repeated = 0;
+  for (const RatedAttempt& attempt : rated) {
+    const auto& ratings = attempt.ratings;
     std::vector<double> row;
     for (const std::string& rater : raters) {
       const auto at = ratings.find(rater);
@@ -53,6 +74,10 @@ RatingTable tableOf(const std::map<std::string, std::map<std::string, const Rati
       if (value) row.push_back(*value);
     }
     if (row.size() < raters.size()) continue;
+    if (!seen.insert(attempt.participant).second) {
+      ++repeated;
+      continue;
+    }
     ++table.subjects;
     table.values.insert(table.values.end(), row.begin(), row.end());
   }
@@ -69,13 +94,23 @@ Agreement agreementOn(const std::string& figure, const RatingTable& table) {
   return a;
 }
 
-void addAgreement(FormReport& report, const std::vector<FormItem>& items, const std::vector<const Rating*>& taken) {
+void addAgreement(FormReport& report, const std::vector<FormItem>& items, const std::vector<const Rating*>& taken,
+                  const Attempts& attempts) {
   std::map<std::string, std::map<std::string, const Rating*>> byAttempt;
   std::set<std::string> raters;
   for (const Rating* r : taken) {
     byAttempt[r->attempt][r->rater] = r;
     raters.insert(r->rater);
   }
+  std::vector<RatedAttempt> rated;
+  for (auto& [uuid, ratings] : byAttempt) {
+    const auto at = attempts.find(uuid);
+    rated.push_back({at == attempts.end() ? std::string() : at->second.startUtc, uuid, participantOf(uuid, attempts),
+                     std::move(ratings)});
+  }
+  std::sort(rated.begin(), rated.end(), [](const RatedAttempt& a, const RatedAttempt& b) {
+    return a.startUtc != b.startUtc ? a.startUtc < b.startUtc : a.uuid < b.uuid;
+  });
   const auto overall = [&](const Rating& r) -> std::optional<double> {
     double sum = 0.0;
     for (const FormItem& item : items) {
@@ -85,15 +120,16 @@ void addAgreement(FormReport& report, const std::vector<FormItem>& items, const 
     }
     return sum / static_cast<double>(items.size());
   };
-  const RatingTable whole = tableOf(byAttempt, raters, overall);
-  report.incomplete = byAttempt.size() - whole.subjects;
+  const RatingTable whole = tableOf(rated, raters, overall, report.repeated);
+  report.incomplete = rated.size() - whole.subjects - report.repeated;
   if (items.size() > 1) report.agreement.push_back(agreementOn("mean of all items", whole));
   for (const FormItem& item : items) {
     const auto one = [&](const Rating& r) -> std::optional<double> {
       const auto at = r.answers.find(item.key);
       return at == r.answers.end() ? std::nullopt : std::optional<double>(at->second);
     };
-    report.agreement.push_back(agreementOn(item.key, tableOf(byAttempt, raters, one)));
+    std::uint64_t repeated = 0;
+    report.agreement.push_back(agreementOn(item.key, tableOf(rated, raters, one, repeated)));
   }
 }
 
@@ -118,7 +154,8 @@ void addConsistency(FormReport& report, const RatingForm& form, const std::vecto
 }  // namespace
 
 FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings,
-                      const std::map<std::string, std::string>& groupOf, const std::vector<std::string>& groups) {
+                      const std::map<std::string, std::string>& groupOf, const std::vector<std::string>& groups,
+                      const Attempts& attemptOf) {
   FormReport report;
   report.name = form.name;
   report.version = form.version;
@@ -146,7 +183,7 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
       Scores scores;
       for (const Rating* r : taken) {
         if (groupOf.at(subjectOf(*r)) != group) continue;
-        std::vector<double>& given = scores[subjectOf(*r)];
+        std::vector<double>& given = scores[participantOf(subjectOf(*r), attemptOf)][r->attempt];
         if (const auto at = r->answers.find(item.key); at != r->answers.end()) given.push_back(at->second);
       }
       row.groups.push_back(summary(scores));
@@ -156,7 +193,7 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
     report.items.push_back(std::move(row));
   }
   if (form.ofAttempts) {
-    addAgreement(report, items, taken);
+    addAgreement(report, items, taken, attemptOf);
   } else {
     addConsistency(report, form, taken);
   }
@@ -165,13 +202,13 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
 
 std::vector<FormReport> reportForms(const AssessmentDatabase& database,
                                     const std::map<std::string, std::string>& groupOf,
-                                    const std::vector<std::string>& groups) {
+                                    const std::vector<std::string>& groups, const Attempts& attemptOf) {
   const std::vector<Rating> ratings = database.ratings();
   std::vector<FormReport> reports;
   for (const StoredDocument& stored : database.forms()) {
     const auto* bytes = reinterpret_cast<const std::byte*>(stored.text.data());
     const RatingForm form = parseRatingForm({bytes, stored.text.size()}, stored.name);
-    reports.push_back(reportForm(form, ratings, groupOf, groups));
+    reports.push_back(reportForm(form, ratings, groupOf, groups, attemptOf));
   }
   return reports;
 }

@@ -18,7 +18,13 @@
 
 namespace calot::analytics {
 
-/// One group's ratings of an item; for attempts, the mean over an attempt's raters.
+/// Whose attempt it is, and when it began: attempts of one participant are not independent.
+struct AttemptOf {
+  std::string participant, startUtc;
+};
+
+/// One group's ratings of an item, one value per participant: the mean of an attempt's raters, of a participant's
+/// several attempts the mean of these.
 struct ItemSummary {
   std::uint64_t n = 0, blank = 0;
   std::map<int, std::uint64_t> counts;  ///< how often each score was given
@@ -32,7 +38,7 @@ struct ItemReport {
   std::vector<std::optional<double>> published;  ///< mean by group
 };
 
-/// Agreement on one figure of the attempts that every rater rated.
+/// Agreement on one figure of the attempts that every rater rated; of a participant's several the earliest alone.
 struct Agreement {
   std::string figure;  ///< an item's key, or "mean of all items"
   std::uint64_t attempts = 0, raters = 0;
@@ -54,6 +60,7 @@ struct FormReport {
   std::vector<std::string> groups;
   std::uint64_t filled = 0;      ///< forms
   std::uint64_t leftOut = 0;     ///< of attempts or participants that are in none of the groups
+  std::uint64_t repeated = 0;    ///< attempts of participants of whom an earlier one is in the agreement
   std::uint64_t incomplete = 0;  ///< attempts that not every rater rated whole; out of the agreement
   std::vector<ItemReport> items;
   std::vector<SectionConsistency> sections;  ///< of a questionnaire: those of three items or more
@@ -62,13 +69,16 @@ struct FormReport {
 
 /// @param groupOf group of each attempt's uuid or of each participant; others are omitted
 /// @param groups in the order of the tables
+/// @param attemptOf of attempts by uuid; one that is missing there is a participant of its own
 FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings,
-                      const std::map<std::string, std::string>& groupOf, const std::vector<std::string>& groups);
+                      const std::map<std::string, std::string>& groupOf, const std::vector<std::string>& groups,
+                      const std::map<std::string, AttemptOf>& attemptOf = {});
 
 /// Reports of every form that a cohort holds, by name and version.
 std::vector<FormReport> reportForms(const AssessmentDatabase& database,
                                     const std::map<std::string, std::string>& groupOf,
-                                    const std::vector<std::string>& groups);
+                                    const std::vector<std::string>& groups,
+                                    const std::map<std::string, AttemptOf>& attemptOf);
 
 /// Remarks: population of the figures, warnings about intervals with low coverage, and the items' source; none without
 /// a form.

@@ -20,6 +20,7 @@ using Paragraph = std::vector<TextSpan>;
 
 struct Heading {
   std::string text;
+  bool newPage = false;  ///< begins a page where the report is printed
 };
 struct BulletList {
   std::vector<Paragraph> items;

@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/report/report_table.h"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace calot::analytics {
 namespace {
 
 constexpr std::size_t terminalWidth = 120;
 
 }  // namespace
+
+void dropEmptyColumns(ReportTable& table) {
+  for (std::size_t c = table.columns.size(); c-- > 0;) {
+    const auto column = static_cast<std::ptrdiff_t>(c);
+    if (std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return !row[c].empty(); })) continue;
+    table.columns.erase(table.columns.begin() + column);
+    for (auto& row : table.rows) row.erase(row.begin() + column);
+  }
+}
 
 void printTable(const ReportTable& content, std::ostream& out) {
   TextTable table(content.columns);

@@ -17,6 +17,9 @@ struct ReportTable {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// Leaves out columns of which every cell is empty.
+void dropEmptyColumns(ReportTable& table);
+
 /// Title, table and an empty line, for a terminal of 120 columns.
 void printTable(const ReportTable& content, std::ostream& out);
 /// A sentence over as many lines as it needs.

@@ -7,16 +7,16 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/report/study_coverage.h"
+#include "analytics/report/study_groups.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
+#include "analytics/report/study_setting.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_words.h"
 
@@ -89,9 +89,11 @@ std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow
         member.emplace(a->uuid, Member{g, person, static_cast<std::size_t>(a - attempts.data()),
                                        a->outcome == recorder::Outcome::completed});
         study.groupOf[person] = study.groupOf[a->uuid] = study.groups[g];
+        study.attemptOf[a->uuid] = {person, a->startUtc};
         ++study.attempts[g];
         ++study.analysed;
         keys.insert(a->comparabilityKey);
+        addToSetting(study.setting, *a);
         study.synthetic = study.synthetic || a->synthetic;
       }
     }
@@ -138,26 +140,12 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
     row.title = d->title;
     row.unit = d->displayUnit;
     row.direction = d->direction;
+    row.notOutcome = d->notOutcome;
   }
   row.versions.assign(column.versions.begin(), column.versions.end());
   row.origins.assign(column.origins.begin(), column.origins.end());
   row.sampled = column.sampled;
   return row;
-}
-
-void addPublished(Study& study) {
-  const nlohmann::json table = nlohmann::json::parse(publishedTable2());
-  study.publishedSource = table.at("source").get<std::string>();
-  for (const auto& published : table.at("rows")) {
-    for (StudyRow& row : study.rows) {
-      if (row.checkpoint != published.at("matches").get<std::string>() ||
-          row.subject != published.at("subject").get<std::string>())
-        continue;
-      if (row.unit != published.at("unit").get<std::string>()) continue;
-      row.publishedExpert = published.at("expert").get<double>();
-      row.publishedNovice = published.at("novice").get<double>();
-    }
-  }
 }
 
 constexpr const char* phaseDuration = "phase-duration";
@@ -293,6 +281,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     }
     StudyRow& row = study.rows.emplace_back(describedRow(key, column));
     if (options.protocol) declareRow(row, study, options.protocol->protocol);
+    if (row.hypothesis || isNamed(row, options.family)) row.notOutcome.clear();
     fillRow(row, column.sample);
     addSimulationRange(row, column.sample);
     if (row.checkpoint != "attempt-duration") continue;
@@ -305,13 +294,9 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   study.phasesLeftOut = phases && !unasked.empty();
   if (study.phasesLeftOut) study.remarks.emplace_back("Other checkpoints of single phases are left out.");
   for (StudyRow& row : study.rows) compareGroups(row, study, duration);
-  finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   addPublished(study);
+  finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   return study;
-}
-
-void addRatings(Study& study, const AssessmentDatabase& database) {
-  study.ratings = reportForms(database, study.groupOf, {study.groups[0], study.groups[1]});
 }
 
 }  // namespace calot::analytics

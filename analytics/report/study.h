@@ -26,6 +26,9 @@
 
 namespace calot::analytics {
 
+/// Level at which a study without a protocol speaks of a difference.
+inline constexpr double usualLevel = 0.05;
+
 enum class Grouping : std::uint8_t { performer, group };
 
 /// User's declarations for a study, made before looking at its figures.
@@ -119,7 +122,9 @@ struct StudyRow {
   std::string checkpoint;  ///< name; of a table: the column
   std::string subject;
   std::string title;
-  std::string unit;  ///< display unit
+  std::string unit;        ///< display unit
+  std::string notOutcome;  ///< why it is shown apart, without a test; empty: an outcome
+  bool leading = false;    ///< in the first table: a primary hypothesis, a figure of the paper's Table 2, or named
   Direction direction = Direction::none;
   std::vector<std::uint32_t> versions;  ///< of the values in it, ascending
   std::vector<std::string> origins;
@@ -131,7 +136,12 @@ struct StudyRow {
   Role role = Role::undeclared;                ///< by the protocol, where there is one
   std::optional<double> benjaminiHochberg;     ///< with a protocol: p adjusted over the rows that are not primary
   std::array<std::uint64_t, 2> worstRanked{};  ///< participants without a value who rank behind all in test and A
-  std::optional<bool> supported;         ///< a hypothesis of the protocol: adjusted p at most the level, as expected
+  /// Smallest adjusted p that these values could give, whatever their assignment to the groups: all tests of the family
+  /// at their MannWhitney::smallestP. Above the level, nothing could be found.
+  std::optional<double> attainableP;
+  /// A hypothesis of the protocol: adjusted p at most the level, as expected; none without a test or where no adjusted
+  /// p can reach the level.
+  std::optional<bool> supported;
   std::optional<Hypothesis> hypothesis;  ///< from the direction and the group that is expected to do better
   std::optional<bool> asHypothesised;    ///< A of the hypothesis above one half; none at one half, or without one
   Expected<Superiority> effect =
@@ -146,10 +156,13 @@ struct StudyRow {
   std::uint64_t withDurationPairs = 0;                     ///< participants in it
   std::optional<BaselineAdjustment> adjusted;              ///< of a table with a baseline
   std::vector<std::string> coverageWarnings;               ///< intervals whose published coverage is low at these sizes
-  std::optional<double> publishedExpert, publishedNovice;  ///< the paper's means, for reference
+  std::optional<double> publishedExpert, publishedNovice;  ///< the paper's means, where the task is the paper's
   std::optional<SimulationRange> simulation;               ///< where values have intervals
   bool sampled = false;                                    ///< of samples: Study::coverage has its subject
 };
+
+/// The smallest adjusted p that the row's groups can give is above the level.
+inline bool isOutOfReach(const StudyRow& row, double level) { return row.attainableP && *row.attainableP > level; }
 
 /// What samples cover of the attempts, for figures of one subject.
 struct CoverageRow {
@@ -157,6 +170,12 @@ struct CoverageRow {
   std::array<std::vector<double>, 2> share;  ///< in [0, 1], one per participant, the mean of several attempts
   std::array<std::uint64_t, 2> below{};      ///< participants with a figure that was refused for it
   Expected<MannWhitney> test = Expected<MannWhitney>::none("not computed");
+};
+
+/// Where and when the attempts of a study were made.
+struct StudySetting {
+  std::vector<std::string> tasks;           ///< scenes, or what was done in imported motion; ascending
+  std::string firstStartUtc, lastStartUtc;  ///< of those analysed; empty: not known
 };
 
 /// A participant without a row at an occasion where others have one.
@@ -170,6 +189,7 @@ struct Study {
   std::string source;      ///< "cohort" or "table"
   std::string counted;     ///< what the flow counts: "attempts" or "rows"
   std::string where;       ///< the file's name without its folder
+  StudySetting setting;    ///< of a cohort
   std::string cohort;      ///< the named cohort whose attempts alone were taken, or empty: all
   bool synthetic = false;  ///< contains what performers made: watermarked everywhere
   std::array<std::string, 2> groups;
@@ -189,7 +209,8 @@ struct Study {
   std::string publishedSource;        ///< of the paper's means
   /// Of a cohort: the group of every participant and attempt (uuid) that is analysed.
   std::map<std::string, std::string> groupOf;
-  std::vector<FormReport> ratings;  ///< addRatings()
+  std::map<std::string, AttemptOf> attemptOf;  ///< of a cohort: of every analysed attempt, by uuid
+  std::vector<FormReport> ratings;             ///< addRatings()
 };
 
 /// Two groups side by side, one value per participant. A participant with several attempts needs

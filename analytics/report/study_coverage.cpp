@@ -97,16 +97,15 @@ ReportTable coverageTable(const Study& study) {
   return table;
 }
 
-std::vector<std::string> coverageNotes(const Study& study) {
+std::string coverageNote(const Study& study) {
+  if (study.coverage.empty()) return {};
+  if (coverageTable(study).rows.empty()) return "Coverage: samples cover the whole of every attempt.";
+  return "Coverage: share of the time with an instrument that the tracker's samples cover, one value per participant. "
+         "too little: participants with a figure that was refused for it. p: Mann-Whitney, two-sided, not adjusted.";
+}
+
+std::vector<std::string> coverageWarnings(const Study& study) {
   std::vector<std::string> notes;
-  if (study.coverage.empty()) return notes;
-  if (coverageTable(study).rows.empty()) {
-    notes.emplace_back("Coverage: samples cover the whole of every attempt.");
-    return notes;
-  }
-  notes.emplace_back(
-      "Coverage: share of the time with an instrument that the tracker's samples cover, one value per participant. too "
-      "little: participants with a figure that was refused for it. p: Mann-Whitney, two-sided, not adjusted.");
   for (const CoverageRow& row : study.coverage) {
     if (!coverageDiffers(row) || !isShown(study, row)) continue;
     notes.push_back(fmt::format(

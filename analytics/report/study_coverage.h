@@ -41,7 +41,9 @@ bool coverageDiffers(const CoverageRow& row, double level = 0.05);
 /// One row a group of every subject whose samples don't cover everything; empty where all do.
 ReportTable coverageTable(const Study& study);
 
-/// Whole sentences: how coverage is counted, and a warning for each subject where it differs. Empty without samples.
-std::vector<std::string> coverageNotes(const Study& study);
+/// How coverage is counted, or that it is whole; empty without samples.
+std::string coverageNote(const Study& study);
+/// A warning for each subject of which coverage differs between the groups.
+std::vector<std::string> coverageWarnings(const Study& study);
 
 }  // namespace calot::analytics

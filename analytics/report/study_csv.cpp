@@ -65,7 +65,9 @@ std::string summaryTable(const Study& study) {
       "p_holm,g,g_lower,g_upper,rho_duration,rho_p,rho_n,partial_a,partial_b,baseline_difference,baseline_lower,"
       "baseline_upper,baseline_p,baseline_p_holm,baseline_slope,baseline_slope_p,coverage_warnings,role,p_benjamini_"
       "hochberg,supported,"
-      "worst_ranked_a,worst_ranked_b,simulation_half_width,first_larger_lower,first_larger_upper,simulation_decided\n";
+      "worst_ranked_a,worst_ranked_b,simulation_half_width,first_larger_lower,first_larger_upper,simulation_decided,"
+      "attainable_p,"
+      "not_outcome_because\n";
   for (const StudyRow& row : study.rows) {
     text += fmt::format("{},{},{},{}", csvCell(row.checkpoint), csvCell(row.subject), csvCell(row.unit),
                         nameOf(row.direction));
@@ -92,7 +94,7 @@ std::string summaryTable(const Study& study) {
                         : *row.supported ? "yes"
                                          : "no",
                         row.worstRanked[0], row.worstRanked[1]);
-    text += simulationCells(row) + "\n";
+    text += simulationCells(row) + fmt::format(",{},{}\n", numberCell(row.attainableP), csvCell(row.notOutcome));
   }
   return text;
 }

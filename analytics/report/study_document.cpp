@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <optional>
 #include <utility>
 
 #include "analytics/report/box_plot.h"
@@ -34,18 +35,21 @@ Figures scorePlots(const Study& study) {
 
 ReportDocument studyDocument(const Study& study) {
   ReportDocument document{studyTitle(study), study.synthetic, {}};
-  document.add(study.where);
-  for (const std::string& line : protocolLines(study)) document.add(line);
+  for (const std::string& line : studyHead(study)) document.add(line);
   document.parts.emplace_back(flowTable(study));
-  for (ReportTable& table : studyTables(study)) document.parts.emplace_back(std::move(table));
-  document.parts.emplace_back(Heading{"Notes"});
-  document.addList(studyNotes(study));
+  document.parts.emplace_back(primaryTable(study));
+  document.addList(primaryNotes(study));
+  if (std::optional<Drawing> forest = forestOf(study)) document.parts.emplace_back(Figures{{std::move(*forest)}});
   document.add(studyMethods(study));
+  document.parts.emplace_back(Heading{"Appendix", true});
+  for (ReportTable& table : appendixTables(study)) document.parts.emplace_back(std::move(table));
+  document.parts.emplace_back(Heading{"Notes"});
+  document.addList(appendixNotes(study));
   if (Figures figures = boxPlots(study); !figures.drawings.empty()) {
     document.parts.emplace_back(Heading{"Figures"});
     document.add(
         "Box: quartiles and median; whiskers: the outermost values within 1.5 times the box's height; a point for each "
-        "participant.");
+        "participant. A group of fewer than five is shown by its points alone.");
     document.parts.emplace_back(std::move(figures));
   }
   if (Figures figures = scorePlots(study); !figures.drawings.empty()) {

@@ -130,6 +130,9 @@ Json rowJson(const Study& study, const StudyRow& row) {
   j["groups"] = Json::array({groupJson(study.groups[0], row.group[0]), groupJson(study.groups[1], row.group[1])});
   j["sampled"] = row.sampled;
   j["role"] = nameOf(row.role);
+  j["not_outcome_because"] = row.notOutcome;
+  j["leading"] = row.leading;
+  j["attainable_p"] = numberOrNull(row.attainableP);
   j["supported"] = row.supported ? Json(*row.supported) : Json(nullptr);
   j["worst_ranked"] = row.worstRanked;
   j["hypothesis"] = hypothesisJson(study, row);
@@ -139,7 +142,8 @@ Json rowJson(const Study& study, const StudyRow& row) {
                 {"p_holm", numberOrNull(row.holm)},
                 {"p_benjamini_hochberg", numberOrNull(row.benjaminiHochberg)},
                 {"method", t.exact ? "exact" : "asymptotic"},
-                {"ties", t.ties}};
+                {"ties", t.ties},
+                {"smallest_p", t.smallestP}};
   });
   j["effect"] = answerJson(row.effect, [](const Superiority& e) {
     return Json{{"cliffs_delta", e.delta}, {"a", e.a}};
@@ -191,6 +195,9 @@ std::string studyJson(const Study& study) {
          {"family", study.family},
          {"quantile_type", 7},
          {"comparability_keys", study.keys},
+         {"tasks", study.setting.tasks},
+         {"first_start_utc", study.setting.firstStartUtc},
+         {"last_start_utc", study.setting.lastStartUtc},
          {"cohort_name", study.cohort},
          {"flow", {{"recruited", study.recruited}, {"analysed", study.analysed}}},
          {"remarks", study.remarks},

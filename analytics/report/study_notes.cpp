@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "analytics/report/study_coverage.h"
 #include "analytics/report/study_tables.h"
@@ -17,23 +18,12 @@ bool any(const Study& study, Test test) {
 
 void explainColumns(const Study& study, std::vector<std::string>& notes) {
   const std::string &a = study.groups[0], &b = study.groups[1];
-  notes.push_back(
-      fmt::format("none: participants without a value. shift: Hodges-Lehmann, {} - {}, with a distribution-free "
-                  "interval. p: Mann-Whitney, two-sided, exact with ties "
-                  "(~: normal approximation). {}",
-                  a, b, study.family));
-  if (study.better.empty()) {
-    notes.push_back(
-        fmt::format("A: P({} larger) + P(equal) / 2, the area under the ROC curve, score interval; no hypothesis: "
-                    "nobody said which group is expected to do better.",
-                    a));
-  } else {
-    notes.push_back(fmt::format(
-        "A: probability that one of {} is better than one of the other group, ties half, by {}the direction that the "
-        "checkpoint declares (without one: that one of {} is larger); the area under the ROC curve, score interval. "
-        "expected: whether A is above one half.",
-        study.better, study.protocol ? "the protocol's hypothesis or else " : "", a));
-  }
+  notes.emplace_back(
+      "none: participants without a value. The interval of the shift is distribution-free, that of A the score "
+      "interval; A is the area under the ROC curve. ~: p by normal approximation, else exact with ties. Without a "
+      "direction of its own, a figure's A is that of the first group's values being larger. expected: whether A is "
+      "above "
+      "one half, where p is below 1.");
   const bool correlated = any(study, [](const StudyRow& r) { return static_cast<bool>(r.withDuration); });
   notes.push_back(
       fmt::format("g: Hedges, {} - {}, interval by non-central t, which assumes normal groups.{}", a, b,
@@ -68,45 +58,80 @@ std::string whyMissing(const GroupSummary& s) {
   return fmt::format("{}; most: {}", kinds, s.missingReason);
 }
 
-void explainMissing(const Study& study, std::vector<std::string>& notes) {
-  for (const StudyRow& row : study.rows) {
-    const std::string name = rowName(row);
-    if (hasNoValue(row)) {
-      std::string why = row.group[0].missingReason;
-      if (row.group[1].missingReason != why) why += (why.empty() ? "" : "; ") + row.group[1].missingReason;
-      notes.push_back(fmt::format("{}: no value in either group ({})", name, why));
-      continue;
-    }
-    if (!row.test) notes.push_back(fmt::format("{}: no test, {}", name, row.test.reason()));
-    for (std::size_t g = 0; g < 2; ++g) {
-      const GroupSummary& s = row.group[g];
-      if (s.missing > 0) {
-        notes.push_back(fmt::format("{}: {} of {} {} without a value ({})", name, s.missing, s.missing + s.n,
-                                    study.groups[g], whyMissing(s)));
-      }
-      if (row.worstRanked[g] > 0) {
-        notes.push_back(
-            fmt::format("{}: {} of these {} did not complete the attempt and rank behind all others in p "
-                        "and A; shift and g are of the values alone",
-                        name, row.worstRanked[g], study.groups[g]));
-      }
-      if (s.partial > 0) {
-        notes.push_back(fmt::format("{}: the mean of {} of {} {} lacks some of their {}", name, s.partial, s.n,
-                                    study.groups[g], study.counted));
-      }
-      if (row.adjusted && row.adjusted->withoutBaseline[g] > 0) {
-        notes.push_back(fmt::format("{}: {} of {} {} have no baseline", name, row.adjusted->withoutBaseline[g], s.n,
-                                    study.groups[g]));
-      }
-    }
-    if (row.adjusted && !row.adjusted->analysis)
-      notes.push_back(fmt::format("{}: no analysis of covariance, {}", name, row.adjusted->analysis.reason()));
+/// Why a row has no value at all or an outcome no test; empty where it has one.
+std::string untested(const StudyRow& row) {
+  if (!hasNoValue(row)) return row.test || !row.notOutcome.empty() ? std::string() : "no test, " + row.test.reason();
+  std::string why = row.group[0].missingReason;
+  if (row.group[1].missingReason != why) why += (why.empty() ? "" : "; ") + row.group[1].missingReason;
+  return fmt::format("no value in either group ({})", why);
+}
+
+/// Rows of which nothing else is to be said, by what is.
+using UntestedRows = std::vector<std::pair<std::string, std::string>>;
+
+void addTo(UntestedRows& untestedRows, const std::string& reason, const std::string& name) {
+  const auto at =
+      std::find_if(untestedRows.begin(), untestedRows.end(), [&](const auto& u) { return u.first == reason; });
+  if (at == untestedRows.end()) {
+    untestedRows.emplace_back(reason, name);
+  } else {
+    at->second += ", " + name;
   }
 }
 
 }  // namespace
 
-std::vector<std::string> studyNotes(const Study& study) {
+std::vector<std::string> intervalWarnings(const Study& study, bool leading) {
+  std::vector<std::pair<std::string, std::size_t>> counts;
+  std::size_t rows = 0;
+  for (const StudyRow& row : study.rows) {
+    if (row.leading != leading) continue;
+    ++rows;
+    for (const std::string& text : row.coverageWarnings) {
+      const auto at = std::find_if(counts.begin(), counts.end(), [&](const auto& c) { return c.first == text; });
+      if (at == counts.end()) {
+        counts.emplace_back(text, 1);
+      } else {
+        ++at->second;
+      }
+    }
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [text, count] : counts)
+    warnings.push_back(fmt::format("Warning ({} of {} rows): {}.", count, rows, text));
+  return warnings;
+}
+
+void explainMissing(const Study& study, const StudyRow& row, std::vector<std::string>& notes) {
+  const std::string name = rowName(row);
+  if (const std::string reason = untested(row); !reason.empty()) notes.push_back(fmt::format("{}: {}", name, reason));
+  if (hasNoValue(row)) return;
+  for (std::size_t g = 0; g < 2; ++g) {
+    const GroupSummary& s = row.group[g];
+    if (s.missing > 0) {
+      notes.push_back(fmt::format("{}: {} of {} {} without a value ({})", name, s.missing, s.missing + s.n,
+                                  study.groups[g], whyMissing(s)));
+    }
+    if (row.worstRanked[g] > 0) {
+      notes.push_back(
+          fmt::format("{}: {} of these {} did not complete the attempt and rank behind all others in p "
+                      "and A; shift and g are of the values alone",
+                      name, row.worstRanked[g], study.groups[g]));
+    }
+    if (s.partial > 0) {
+      notes.push_back(fmt::format("{}: the mean of {} of {} {} lacks some of their {}", name, s.partial, s.n,
+                                  study.groups[g], study.counted));
+    }
+    if (row.adjusted && row.adjusted->withoutBaseline[g] > 0) {
+      notes.push_back(fmt::format("{}: {} of {} {} have no baseline", name, row.adjusted->withoutBaseline[g], s.n,
+                                  study.groups[g]));
+    }
+  }
+  if (row.adjusted && !row.adjusted->analysis)
+    notes.push_back(fmt::format("{}: no analysis of covariance, {}", name, row.adjusted->analysis.reason()));
+}
+
+std::vector<std::string> appendixNotes(const Study& study) {
   std::vector<std::string> notes;
   explainColumns(study, notes);
   if (any(study, [](const StudyRow& r) { return r.publishedExpert.has_value(); })) {
@@ -114,13 +139,20 @@ std::vector<std::string> studyNotes(const Study& study) {
         fmt::format("paper: published means of ten experts (E) and ten novices (N), for reference only ({}).",
                     study.publishedSource));
   }
-  for (std::string& note : coverageNotes(study)) notes.push_back(std::move(note));
-  notes.insert(notes.end(), study.remarks.begin(), study.remarks.end());
-  if (study.protocol) {
-    for (const std::string& deviation : study.protocol->deviations)
-      notes.push_back("Deviation from the protocol: " + deviation);
+  if (std::string note = coverageNote(study); !note.empty()) notes.push_back(std::move(note));
+  for (std::string& warning : intervalWarnings(study, false)) notes.push_back(std::move(warning));
+  UntestedRows untestedRows;
+  for (const StudyRow& row : study.rows) {
+    if (row.leading) continue;
+    std::vector<std::string> own;
+    explainMissing(study, row, own);
+    if (own.size() == 1 && !untested(row).empty()) {
+      addTo(untestedRows, untested(row), rowName(row));
+    } else {
+      notes.insert(notes.end(), own.begin(), own.end());
+    }
   }
-  explainMissing(study, notes);
+  for (const auto& [reason, names] : untestedRows) notes.push_back(fmt::format("{}: {}", reason, names));
   for (const FormReport& report : study.ratings) {
     for (std::string& note : ratingNotes(report)) notes.push_back(std::move(note));
   }

@@ -2,6 +2,7 @@
 // A study as text, JSON, CSV and a document. Numbers are written with a point, whatever the locale.
 #pragma once
 
+#include <cstdint>
 #include <ostream>
 #include <string>
 
@@ -10,8 +11,13 @@
 
 namespace calot::analytics {
 
-/// Heading, flow, tables and remarks for a terminal of 120 columns.
-void printStudy(const Study& study, std::ostream& out);
+enum class StudyDetail : std::uint8_t {
+  first,  ///< heading, flow, the first result and its notes: about one screen
+  all     ///< the appendix and the methods as well
+};
+
+/// For a terminal of 120 columns.
+void printStudy(const Study& study, std::ostream& out, StudyDetail detail = StudyDetail::all);
 
 /// The whole model as one JSON object; missing numbers are null, with a reason.
 std::string studyJson(const Study& study);
@@ -22,8 +28,8 @@ std::string studyJson(const Study& study);
 /// @throws Error (invalid) when a file is there already, Error (failure) when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
 
-/// The same content as the text, a box plot with all points for each row, and of each form that was filled in how its
-/// scores are spread.
+/// First page: heading, flow, the first result with its notes, its forest plot, methods. Appendix: all other tables, a
+/// box plot with all points for each row, and of each form that was filled in how its scores are spread.
 ReportDocument studyDocument(const Study& study);
 
 }  // namespace calot::analytics

@@ -180,25 +180,29 @@ void declareRow(StudyRow& row, const Study& study, const Protocol& protocol) {
 }
 
 void adjustByProtocol(Study& study, const Protocol& protocol) {
-  std::vector<double> family, rest;
+  std::vector<double> family, rest, smallestOfFamily, smallestOfRest;
   std::vector<StudyRow*> primary, others;
   for (StudyRow& row : study.rows) {
-    if (row.role == Role::primary && row.test) {
-      primary.push_back(&row);
-      family.push_back(row.test->p);
-    } else if (row.role != Role::primary && row.test) {
-      others.push_back(&row);
-      rest.push_back(row.test->p);
-    }
+    if (!row.test) continue;
+    const bool isPrimary = row.role == Role::primary;
+    (isPrimary ? primary : others).push_back(&row);
+    (isPrimary ? family : rest).push_back(row.test->p);
+    (isPrimary ? smallestOfFamily : smallestOfRest).push_back(row.test->smallestP);
   }
   const auto declared = static_cast<std::size_t>(
       std::count_if(protocol.hypotheses.begin(), protocol.hypotheses.end(), [](const auto& h) { return h.primary; }));
   const std::size_t untested = declared - family.size();
   family.resize(declared, 1.0);
+  smallestOfFamily.resize(declared, 1.0);
   spread(holm(family), primary, [](StudyRow& row, double p) { row.holm = p; });
   spread(benjaminiHochberg(rest), others, [](StudyRow& row, double p) { row.benjaminiHochberg = p; });
+  // Both adjustments rise with each p: the smallest p of all tests give the smallest adjusted ones.
+  const auto putAttainable = [](StudyRow& row, double p) { row.attainableP = p; };
+  spread(holm(smallestOfFamily), primary, putAttainable);
+  spread(benjaminiHochberg(smallestOfRest), others, putAttainable);
   for (StudyRow& row : study.rows) {
     if (row.role != Role::primary && row.role != Role::secondary) continue;
+    if (isOutOfReach(row, protocol.level)) continue;
     const std::optional<double>& p = row.role == Role::primary ? row.holm : row.benjaminiHochberg;
     if (p) row.supported = *p <= protocol.level && row.asHypothesised.value_or(false);
   }

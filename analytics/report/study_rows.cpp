@@ -15,15 +15,6 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t notALevel = 3;
-
-/// 0: expert, skilled; 1: intermediate; 2: novice, unskilled.
-std::size_t levelOf(const std::string& group) {
-  if (group == "expert" || group == "skilled") return 0;
-  if (group == "intermediate") return 1;
-  return group == "novice" || group == "unskilled" ? 2 : notALevel;
-}
-
 std::string joined(const std::vector<std::string>& parts) {
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
@@ -116,7 +107,8 @@ void warnOfCoverage(StudyRow& row) {
     warn(row, CoveredInterval::baseline, "difference at one baseline", row.adjusted->n[0], row.adjusted->n[1]);
 }
 
-/// The adjusted p of every p that `get` finds in the family's rows, put back by `put`. @returns how many there are.
+/// The p adjusted by Holm of every p that `get` finds in the family's rows, put back by `put`. @returns how many there
+/// are.
 template <class Get, class Put>
 std::size_t adjust(std::vector<StudyRow*>& family, Get get, Put put) {
   std::vector<double> p;
@@ -135,8 +127,7 @@ std::size_t adjust(std::vector<StudyRow*>& family, Get get, Put put) {
 void adjustFamily(Study& study, const StudyChoices& choices) {
   std::vector<StudyRow*> family;
   for (StudyRow& row : study.rows) {
-    const bool named = std::find(choices.family.begin(), choices.family.end(), row.checkpoint) != choices.family.end();
-    if (choices.family.empty() || named) family.push_back(&row);
+    if (choices.family.empty() || isNamed(row, choices.family)) family.push_back(&row);
   }
   for (const std::string& name : choices.family) {
     if (std::none_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return r.checkpoint == name; })) {
@@ -147,6 +138,9 @@ void adjustFamily(Study& study, const StudyChoices& choices) {
   const std::size_t tests = adjust(
       family, [](const StudyRow& r) { return r.test ? std::optional(r.test->p) : std::nullopt; },
       [](StudyRow& r, double p) { r.holm = p; });
+  adjust(
+      family, [](const StudyRow& r) { return r.test ? std::optional(r.test->smallestP) : std::nullopt; },
+      [](StudyRow& r, double p) { r.attainableP = p; });
   const std::size_t analyses = adjust(
       family,
       [](const StudyRow& r) {
@@ -159,58 +153,27 @@ void adjustFamily(Study& study, const StudyChoices& choices) {
   study.family += ".";
 }
 
+/// Primary hypotheses; without a protocol the rows of a named family, else what leads already (addPublished()), and
+/// where nothing of it has a value every outcome that has.
+void chooseLeading(Study& study, const StudyChoices& choices) {
+  const auto hasValue = [](const StudyRow& r) { return r.group[0].n + r.group[1].n > 0; };
+  const bool some =
+      std::any_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return r.leading && hasValue(r); });
+  for (StudyRow& row : study.rows) {
+    if (study.protocol) {
+      row.leading = row.role == Role::primary;
+    } else if (!choices.family.empty()) {
+      row.leading = isNamed(row, choices.family);
+    } else {
+      row.leading = hasValue(row) && row.notOutcome.empty() && (row.leading || !some);
+    }
+  }
+}
+
 }  // namespace
 
-bool groupBefore(const std::string& a, const std::string& b) {
-  const auto rank = [](const std::string& s) {
-    static const std::vector<std::string> known{"expert", "skilled", "intermediate", "novice", "unskilled"};
-    return std::find(known.begin(), known.end(), s) - known.begin();
-  };
-  return rank(a) != rank(b) ? rank(a) < rank(b) : a < b;
-}
-
-std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
-                                        const StudyChoices& choices, const std::string& path, const std::string& left) {
-  std::vector<std::string> names;
-  names.reserve(present.size());
-  for (const auto& item : present) names.push_back(item.first);
-  std::sort(names.begin(), names.end(), groupBefore);
-  if (!choices.groups.empty()) {
-    if (choices.groups.size() != 2 || choices.groups[0] == choices.groups[1]) {
-      throw Error(ErrorKind::invalid, "study: its groups are two, with different names", {Remedy::nameGroups});
-    }
-    for (const std::string& name : choices.groups) {
-      if (present.count(name) == 0) {
-        throw Error(ErrorKind::refused, Where{path},
-                    fmt::format("nothing for the study in group \"{}\" (there are: {}){}", name,
-                                names.empty() ? "none" : joined(names), left));
-      }
-    }
-    return {choices.groups[0], choices.groups[1]};
-  }
-  if (names.size() == 2) return {names[0], names[1]};
-  if (names.size() > 2) {
-    throw Error(ErrorKind::refused, Where{path}, fmt::format("{} groups ({})", names.size(), joined(names)),
-                {Remedy::nameGroups});
-  }
-  throw Error(ErrorKind::refused, Where{path},
-              fmt::format("a study needs two groups, {}{}",
-                          names.empty() ? "none is left" : "only " + names[0] + " is there", left));
-}
-
-std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices) {
-  if (!choices.better.empty()) {
-    if (choices.better != groups[0] && choices.better != groups[1]) {
-      throw Error(ErrorKind::invalid,
-                  fmt::format("study: the better group is to be \"{}\", but the groups are {} and {}", choices.better,
-                              groups[0], groups[1]),
-                  {Remedy::nameBetterGroup});
-    }
-    return choices.better;
-  }
-  const std::size_t a = levelOf(groups[0]), b = levelOf(groups[1]);
-  if (a == notALevel || b == notALevel || a == b) return {};
-  return a < b ? groups[0] : groups[1];
+bool isNamed(const StudyRow& row, const std::vector<std::string>& family) {
+  return std::find(family.begin(), family.end(), row.checkpoint) != family.end();
 }
 
 void fillRow(StudyRow& row, const StudySample& sample) {
@@ -252,6 +215,10 @@ void addSimulationRange(StudyRow& row, const StudySample& sample) {
 }
 
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
+  if (!row.notOutcome.empty()) {
+    row.test = Expected<MannWhitney>::none(row.notOutcome);
+    return;
+  }
   const std::vector<double>&x = row.values[0], &y = row.values[1];
   const bool firstBetter = study.better == study.groups[0];
   if (!row.hypothesis && row.direction != Direction::none && !study.better.empty()) {
@@ -277,20 +244,8 @@ void finishRows(Study& study, const StudyChoices& choices, const Protocol* proto
   } else {
     adjustFamily(study, choices);
   }
+  chooseLeading(study, choices);
   for (StudyRow& row : study.rows) warnOfCoverage(row);
-  std::vector<std::pair<std::string, std::size_t>> warnings;
-  for (const StudyRow& row : study.rows) {
-    for (const std::string& text : row.coverageWarnings) {
-      const auto at = std::find_if(warnings.begin(), warnings.end(), [&](const auto& w) { return w.first == text; });
-      if (at == warnings.end()) {
-        warnings.emplace_back(text, 1);
-      } else {
-        ++at->second;
-      }
-    }
-  }
-  for (const auto& [text, count] : warnings)
-    study.remarks.push_back(fmt::format("Warning ({} of {} rows): {}.", count, study.rows.size(), text));
 }
 
 }  // namespace calot::analytics

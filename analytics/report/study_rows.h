@@ -13,18 +13,8 @@
 
 namespace calot::analytics {
 
-/// Names of groups: levels of skill first, best first; others behind them, by name.
-bool groupBefore(const std::string& a, const std::string& b);
-
-/// The two groups to compare.
-/// @param present units by group; @param left what the error says of those that stay out, or empty
-/// @throws Error (invalid) for names that are not two different ones, Error (refused) where there are not two groups.
-std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
-                                        const StudyChoices& choices, const std::string& path, const std::string& left);
-
-/// The group that is expected to do better, or empty. @throws Error (invalid) where `choices.better` is none of the
-/// two.
-std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices);
+/// A row that `family` names.
+bool isNamed(const StudyRow& row, const std::vector<std::string>& family);
 
 /// One value of a participant's attempt.
 struct StudyValue {
@@ -54,16 +44,17 @@ struct StudySample {
 /// meant to have their mean.
 void fillRow(StudyRow& row, const StudySample& sample);
 
-/// Tests, effects and intervals of the available values, in the direction of the row's hypothesis or, without one, of
-/// the row. Participants ranked behind all enter test, A and delta; shift and g use values only.
+/// Of a figure that isn't an outcome nothing is compared. Tests, effects and intervals of the available values, in the
+/// direction of the row's hypothesis or, without one, of the row. Participants ranked behind all enter test, A and
+/// delta; shift and g use values only.
 /// @param duration participants' durations by group, empty where they are not known
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration);
 
 /// What the simulation's intervals say of the row, where values have any.
 void addSimulationRange(StudyRow& row, const StudySample& sample);
 
-/// Adjusts over the family of the protocol, or without one of the choices, says which it is, and turns warnings of rows
-/// into remarks.
+/// Adjusts over the family of the protocol, or without one of the choices, says which it is, decides which rows lead,
+/// and which intervals need a warning.
 /// @throws Error (invalid) where a name of `choices.family` is no row.
 void finishRows(Study& study, const StudyChoices& choices, const Protocol* protocol = nullptr);
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "analytics/report/study_coverage.h"
 
@@ -12,45 +14,17 @@ namespace {
 
 using Align = TextTable::Align;
 
-std::string number(const std::optional<double>& value) { return value ? significant(*value) : "-"; }
 std::string brackets(double lower, double upper) {
   return fmt::format("[{}, {}]", significant(lower), significant(upper));
 }
-std::string pOrDash(const std::optional<double>& p) { return p ? pText(*p) : "-"; }
 std::string share(double a) { return fmt::format("{:.3f}", a); }
+
+using ShownRows = std::vector<const StudyRow*>;
 
 bool hasCorrelation(const StudyRow& row) { return static_cast<bool>(row.withDuration); }
 
-std::string supportText(const Study& study, const StudyRow& row) {
-  if (!row.supported) return "no test";
-  const CoverageRow* coverage = coverageOf(study, row);
-  const char* but = coverage != nullptr && coverageDiffers(*coverage) ? ", but coverage differs" : "";
-  return fmt::format("{}{}", *row.supported ? "yes" : "no", *row.supported ? but : "");
-}
-
-ReportTable hypothesesTable(const Study& study) {
-  ReportTable table{"Hypotheses",
-                    {{"role", Align::left},
-                     {"checkpoint", Align::left},
-                     {"expected", Align::left},
-                     {"A", Align::right},
-                     {"adjusted p", Align::right},
-                     {"supported", Align::left}},
-                    {}};
-  for (const Role role : {Role::primary, Role::secondary}) {
-    for (const StudyRow& row : study.rows) {
-      if (row.role != role || !row.hypothesis) continue;
-      const std::size_t larger = *row.hypothesis == Hypothesis::firstLarger ? 0 : 1;
-      table.rows.push_back(
-          {nameOf(role), rowName(row), study.groups[larger] + " larger", row.area ? share(row.area->value.a) : "-",
-           pOrDash(role == Role::primary ? row.holm : row.benjaminiHochberg), supportText(study, row)});
-    }
-  }
-  return table;
-}
-
-ReportTable valuesTable(const Study& study) {
-  ReportTable table{"Values",
+ReportTable valuesTable(const Study& study, const std::string& title, const ShownRows& rows) {
+  ReportTable table{title,
                     {{"checkpoint", Align::left},
                      {"unit", Align::left},
                      {"group", Align::left},
@@ -63,24 +37,31 @@ ReportTable valuesTable(const Study& study) {
                      {"sd", Align::right},
                      {"paper", Align::right}},
                     {}};
-  for (const StudyRow& row : study.rows) {
-    if (hasNoValue(row)) continue;
+  for (const StudyRow* shown : rows) {
+    const StudyRow& row = *shown;
     for (std::size_t g = 0; g < 2; ++g) {
       const GroupSummary& s = row.group[g];
       std::string paper;
       if (row.publishedExpert)
         paper = g == 0 ? fmt::format("E {}", *row.publishedExpert) : fmt::format("N {}", *row.publishedNovice);
       table.rows.push_back({g == 0 ? rowName(row) : "", g == 0 ? row.unit : "", study.groups[g], fmt::format("{}", s.n),
-                            s.missing == 0 ? "" : fmt::format("{}", s.missing), number(s.median),
-                            number(s.lowerQuartile), number(s.upperQuartile), number(s.mean),
-                            number(s.standardDeviation), paper});
+                            s.missing == 0 ? "" : fmt::format("{}", s.missing), significantOrDash(s.median),
+                            significantOrDash(s.lowerQuartile), significantOrDash(s.upperQuartile),
+                            significantOrDash(s.mean), significantOrDash(s.standardDeviation), paper});
     }
   }
   return table;
 }
 
-ReportTable comparisonTable(const Study& study) {
-  ReportTable table{"Comparison",
+/// No word about the expected direction beside a p that prints as 1.
+std::string expectedText(const StudyRow& row) {
+  const double p = row.holm.value_or(row.benjaminiHochberg.value_or(row.test ? row.test->p : 1.0));
+  if (!row.hypothesis || !row.area || p > 0.99995) return {};
+  return !row.asHypothesised ? "neither" : *row.asHypothesised ? "yes" : "no";
+}
+
+ReportTable comparisonTable(const Study& study, const std::string& title, const ShownRows& rows) {
+  ReportTable table{title,
                     {{"checkpoint", Align::left},
                      {"better", Align::left},
                      {"shift", Align::right},
@@ -93,10 +74,8 @@ ReportTable comparisonTable(const Study& study) {
                      {"expected", Align::left}},
                     {}};
   if (!study.protocol) table.columns.erase(table.columns.end() - 2);
-  for (const StudyRow& row : study.rows) {
-    if (hasNoValue(row)) continue;
-    std::string expected;
-    if (row.hypothesis && row.area) expected = !row.asHypothesised ? "neither" : *row.asHypothesised ? "yes" : "no";
+  for (const StudyRow* shown : rows) {
+    const StudyRow& row = *shown;
     table.rows.push_back({rowName(row), row.direction == Direction::none ? "" : nameOf(row.direction),
                           row.shift ? significant(*row.shift) : "-",
                           row.shiftInterval ? brackets(row.shiftInterval->lower, row.shiftInterval->upper) : "-",
@@ -104,7 +83,7 @@ ReportTable comparisonTable(const Study& study) {
                           row.area ? fmt::format("[{}, {}]", share(row.area->a.lower), share(row.area->a.upper)) : "-",
                           row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-", pOrDash(row.holm)});
     if (study.protocol) table.rows.back().push_back(pOrDash(row.benjaminiHochberg));
-    table.rows.back().push_back(expected);
+    table.rows.back().push_back(expectedText(row));
   }
   return table;
 }
@@ -120,7 +99,7 @@ ReportTable furtherTable(const Study& study) {
                     {}};
   const bool known = std::any_of(study.rows.begin(), study.rows.end(), hasCorrelation);
   for (const StudyRow& row : study.rows) {
-    if (hasNoValue(row)) continue;
+    if (hasNoValue(row) || !row.notOutcome.empty()) continue;
     const bool interval = row.hedges && row.hedges->interval, rho = hasCorrelation(row);
     table.rows.push_back({rowName(row), row.hedges ? significant(row.hedges->g, 3) : "-",
                           interval ? fmt::format("[{}, {}]", significant(row.hedges->interval->lower, 3),
@@ -218,14 +197,29 @@ ReportTable flowTable(const Study& study) {
 
 bool hasNoValue(const StudyRow& row) { return row.group[0].n == 0 && row.group[1].n == 0; }
 
-std::vector<ReportTable> studyTables(const Study& study) {
+std::vector<ReportTable> appendixTables(const Study& study) {
   std::vector<ReportTable> tables;
-  for (ReportTable table : {hypothesesTable(study), valuesTable(study), comparisonTable(study), coverageTable(study),
-                            furtherTable(study), simulationTable(study), baselineTable(study)}) {
-    if (!table.rows.empty()) tables.push_back(std::move(table));
+  const auto add = [&](ReportTable table) {
+    if (table.rows.empty()) return;
+    dropEmptyColumns(table);
+    tables.push_back(std::move(table));
+  };
+  add(secondaryTable(study));
+  std::map<std::optional<CheckpointFamily>, ShownRows> families;  // columns of a table have none, and stand first
+  ShownRows apart;
+  for (const StudyRow& row : study.rows) {
+    if (!hasNoValue(row)) (row.notOutcome.empty() ? families[familyOf(row.checkpoint)] : apart).push_back(&row);
   }
+  for (const auto& [family, rows] : families) {
+    const std::string of = family ? ": " + nameOf(*family) : "";
+    add(valuesTable(study, "Values" + of, rows));
+    add(comparisonTable(study, "Comparison" + of, rows));
+  }
+  add(valuesTable(study, "No outcomes: not tested", apart));
+  for (ReportTable table : {coverageTable(study), furtherTable(study), simulationTable(study), baselineTable(study)})
+    add(std::move(table));
   for (const FormReport& report : study.ratings) {
-    for (ReportTable& table : ratingTables(report)) tables.push_back(std::move(table));
+    for (ReportTable& table : ratingTables(report)) add(std::move(table));
   }
   return tables;
 }

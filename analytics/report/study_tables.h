@@ -2,9 +2,11 @@
 // A study as tables and sentences, the same on the terminal and in a page.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analytics/checkpoints/registry.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 
@@ -13,17 +15,35 @@ namespace calot::analytics {
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"
 std::string rowName(const StudyRow& row);    ///< checkpoint and subject
 bool hasNoValue(const StudyRow& row);        ///< nobody of either group has one
-/// Under the title: the protocol, when it was registered, why the study is exploratory all the same; or empty.
+/// The protocol, when it was registered, why the study is exploratory all the same; or empty.
 std::vector<std::string> protocolLines(const Study& study);
+/// Under the title: the protocol, task, device and versions in words, dates, and the unit of analysis.
+std::vector<std::string> studyHead(const Study& study);
 /// Methods paragraph for a paper: states only what was done.
 std::string studyMethods(const Study& study);
 
 /// Flow: numbers included, excluded with reasons, and analysed.
 ReportTable flowTable(const Study& study);
-/// "Hypotheses" (with a protocol), "Values", "Comparison", "Coverage", "Further": a row without any value is in none of
-/// them. Those without rows are left out.
-std::vector<ReportTable> studyTables(const Study& study);
-/// What the columns mean, the family, remarks and warnings, published figures, missing values: whole sentences.
-std::vector<std::string> studyNotes(const Study& study);
+/// The first result: the primary hypotheses; without a protocol the rows that lead (StudyRow::leading). With n, shift,
+/// A, their intervals, p, adjusted p and the smallest adjusted p that the groups can give.
+ReportTable primaryTable(const Study& study);
+/// The same of the secondary hypotheses; without rows where there are none.
+ReportTable secondaryTable(const Study& study);
+/// A of the first result's rows with intervals, one below the other; none where there is none.
+std::optional<Drawing> forestOf(const Study& study);
+/// What belongs to the first result: its columns, whether the groups can reach the level at all, warnings, remarks,
+/// deviations from the protocol, and what its rows lack.
+std::vector<std::string> primaryNotes(const Study& study);
+
+/// Everything else: secondary hypotheses, values and comparison of every row by the checkpoints' families, figures that
+/// are no outcomes, coverage, correlation, forms. A row without any value is in none of them, nor is an empty table.
+std::vector<ReportTable> appendixTables(const Study& study);
+/// What the appendix's columns mean, published figures, and what the other rows lack.
+std::vector<std::string> appendixNotes(const Study& study);
+/// Intervals whose published coverage is low at these sizes, and how many of the rows that lead, or of the others, have
+/// them.
+std::vector<std::string> intervalWarnings(const Study& study, bool leading);
+/// Why the row has no test, and who has no value of it: sentences for `notes`.
+void explainMissing(const Study& study, const StudyRow& row, std::vector<std::string>& notes);
 
 }  // namespace calot::analytics

@@ -4,16 +4,24 @@
 
 namespace calot::analytics {
 
-void printStudy(const Study& study, std::ostream& out) {
+void printStudy(const Study& study, std::ostream& out, StudyDetail detail) {
+  const auto print = [&](const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) printWrapped(line, out);
+  };
   if (study.synthetic) out << watermarkText << '\n';
   printWrapped(studyTitle(study), out);
-  for (const std::string& line : protocolLines(study)) printWrapped(line, out);
+  print(studyHead(study));
   out << '\n';
   for (const auto& row : flowTable(study).rows) printWrapped(row[0] + " " + study.counted + " " + row[1], out);
   out << '\n';
-  for (const ReportTable& table : studyTables(study)) printTable(table, out);
-  for (const std::string& note : studyNotes(study)) printWrapped(note, out);
-  printWrapped(studyMethods(study), out);
+  printTable(primaryTable(study), out);
+  print(primaryNotes(study));
+  if (detail == StudyDetail::all) {
+    out << '\n';
+    for (const ReportTable& table : appendixTables(study)) printTable(table, out);
+    print(appendixNotes(study));
+    printWrapped(studyMethods(study), out);
+  }
   if (study.synthetic) out << watermarkText << '\n';
 }
 

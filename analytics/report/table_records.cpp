@@ -18,6 +18,16 @@ using recorder::shown;
 /// Squares of what is larger, and their sums, might not be finite.
 constexpr double largest = 1e100;
 
+constexpr const char* missingWord = "NA";  // R's
+
+/// A decimal comma, which only cells between semicolons can have, as a point.
+std::string withPoint(const std::string& cell, char separator) {
+  std::string number = cell;
+  if (separator == ';' && std::count(cell.begin(), cell.end(), ',') == 1 && cell.find('.') == std::string::npos)
+    number[cell.find(',')] = '.';
+  return number;
+}
+
 [[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
   throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", line)},
               fmt::format("column \"{}\": {}", shown(column), what));
@@ -85,13 +95,13 @@ std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& op
     for (const Outcome& outcome : outcomes) {
       const std::string& cell = row.cells[outcome.column];
       std::optional<double> value;
-      if (!cell.empty()) {
+      if (!cell.empty() && cell != missingWord) {
         std::string fault;
-        value = recorder::readFiniteNumber(cell, fault);
+        value = recorder::readFiniteNumber(withPoint(cell, table.separator), fault);
         if (fault.empty() && std::abs(*value) > largest)
           failAt(table, row.line, outcome.name, fmt::format("\"{}\" is larger than {}", shown(cell), largest));
         if (!fault.empty())
-          failAt(table, row.line, outcome.name, fault + "; leave the cell empty where a value is missing");
+          failAt(table, row.line, outcome.name, fault + "; leave the cell empty, or NA, where a value is missing");
       }
       record.values.push_back(value);
     }

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <set>
 
+#include "analytics/report/study_groups.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "analytics/report/table_records.h"

@@ -139,4 +139,10 @@ std::string significant(double value, int digits) {
 
 std::string pText(double p) { return p < 0.0001 ? "<0.0001" : fmt::format("{:.4f}", p); }
 
+std::string significantOrDash(const std::optional<double>& value, int digits) {
+  return value ? significant(*value, digits) : "-";
+}
+
+std::string pOrDash(const std::optional<double>& p) { return p ? pText(*p) : "-"; }
+
 }  // namespace calot::analytics

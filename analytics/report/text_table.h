@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -33,7 +34,12 @@ std::string cutTo(const std::string& text, std::size_t width);
 /// `digits` significant digits, never in a locale's way, no exponent between 1e-4 and 1e7: "0.0432", "113", "12.5".
 std::string significant(double value, int digits = 4);
 
+/// The same, or "-" where there is none.
+std::string significantOrDash(const std::optional<double>& value, int digits = 4);
+
 /// "p" with what a reader may believe: "< 0.0001", "0.0433".
 std::string pText(double p);
+/// The same, or "-" where there is none.
+std::string pOrDash(const std::optional<double>& p);
 
 }  // namespace calot::analytics

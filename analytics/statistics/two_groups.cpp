@@ -11,6 +11,7 @@
 
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/rank_sum_distribution.h"
+#include "analytics/statistics/rank_sum_quantile.h"
 #include "analytics/statistics/samples.h"
 
 namespace calot::analytics {
@@ -92,17 +93,46 @@ Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const dou
   result.ties = r.tieTerm > 0.0;
   result.exact =
       method == RankTest::exact || (method == RankTest::automatic && x.size() + y.size() <= exactRankTestLimit);
+  // Rank sums of the assignments in which one group has the smallest or the largest values.
+  std::vector<double> ordered = r.ranks;
+  std::sort(ordered.begin(), ordered.end());
+  const auto lowestSum = [&](std::size_t k) {
+    return std::accumulate(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(k), 0.0);
+  };
+  const double whole = n * (n + 1.0) / 2.0;
   if (result.exact) {
     // The smaller group's sum has the shorter distribution; both sums give the same p, since they add up to a constant.
     const bool byX = x.size() <= y.size();
-    const RankSumDistribution distribution(r.ranks, byX ? x.size() : y.size());
-    result.p = distribution.asFarAs(byX ? r.sumX : n * (n + 1.0) / 2.0 - r.sumX);
+    const std::size_t fewer = byX ? x.size() : y.size(), more = x.size() + y.size() - fewer;
+    const RankSumDistribution distribution(r.ranks, fewer);
+    result.p = distribution.asFarAs(byX ? r.sumX : whole - r.sumX);
+    result.smallestP = std::min(distribution.asFarAs(lowestSum(fewer)), distribution.asFarAs(whole - lowestSum(more)));
     return result;
   }
   const double variance = nx * ny / 12.0 * (n + 1.0 - r.tieTerm / (n * (n - 1.0)));
-  const double distance = std::max(0.0, std::abs(r.u - nx * ny / 2.0) - 0.5);
-  result.p = normalTwoSided(distance / std::sqrt(variance));
+  const auto asymptotic = [&](double u) {
+    return normalTwoSided(std::max(0.0, std::abs(u - nx * ny / 2.0) - 0.5) / std::sqrt(variance));
+  };
+  const double least = nx * (nx + 1.0) / 2.0;
+  result.p = asymptotic(r.u);
+  result.smallestP = std::min(asymptotic(lowestSum(x.size()) - least), asymptotic(whole - lowestSum(y.size()) - least));
   return result;
+}
+
+double smallestRankTestP(std::size_t nx, std::size_t ny) {
+  assert(nx > 0 && ny > 0);
+  std::vector<double> x(nx), y(ny);
+  std::iota(x.begin(), x.end(), 0.0);
+  std::iota(y.begin(), y.end(), static_cast<double>(nx));
+  const Expected<MannWhitney> separated = mannWhitney(x, y);
+  return separated ? separated->p : 1.0;
+}
+
+std::size_t leastGroups(double p) {
+  assert(p > 0.0);
+  std::size_t n = 1;
+  while (smallestRankTestP(n, n) > p) ++n;
+  return n;
 }
 
 Expected<Superiority> superiority(std::span<const double> x, std::span<const double> y) {
@@ -142,17 +172,12 @@ Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::sp
   // Rank u of the difference that ends the interval, from below and from above.
   std::size_t u = 0;
   ShiftInterval result;
-  if (x.size() + y.size() <= exactRankTestLimit) {
+  if (x.size() + y.size() <= exactShiftLimit) {
     // The distribution without ties, whether there are any or not: that makes the closed interval conservative.
-    std::vector<double> ranks(x.size() + y.size());
-    std::iota(ranks.begin(), ranks.end(), 1.0);
-    const std::size_t fewer = std::min(x.size(), y.size());
-    const RankSumDistribution distribution(ranks, fewer);
-    const double minSum = static_cast<double>(fewer) * static_cast<double>(fewer + 1) / 2.0;
-    // Lowest u with P(U <= u) >= alpha / 2, as R's qwilcox; U and nx ny - U have the same distribution.
-    while (distribution.atMost(minSum + static_cast<double>(u)) < (1.0 - level) / 2.0) ++u;
+    const RankSumQuantile quantile = rankSumQuantile(x.size(), y.size(), (1.0 - level) / 2.0);
+    u = quantile.u;
     if (u == 0) return Result::none("the groups are too small for an interval of this level");
-    result.attained = 1.0 - 2.0 * distribution.atMost(minSum + static_cast<double>(u) - 1.0);
+    result.attained = 1.0 - 2.0 * quantile.below;
     result.method = ties > 0.0 ? ShiftMethod::conservative : ShiftMethod::exact;
   } else {
     const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size());

@@ -14,10 +14,16 @@ enum class RankTest { automatic, exact, asymptotic };
 
 /// Pooled sizes up to which `automatic` counts the exact distribution (some ten milliseconds at the limit).
 inline constexpr std::size_t exactRankTestLimit = 80;
+/// Pooled sizes up to which the interval of the shift is exact: its distribution is that without ties, which is counted
+/// once for each pair of sizes.
+inline constexpr std::size_t exactShiftLimit = 300;
 
 struct MannWhitney {
-  double u = 0.0;      ///< of x
-  double p = 1.0;      ///< two-sided
+  double u = 0.0;  ///< of x
+  double p = 1.0;  ///< two-sided
+  /// Smallest p of all assignments of these values to groups of these sizes: no difference between the groups could
+  /// have given less.
+  double smallestP = 1.0;
   bool exact = false;  ///< permutation distribution of the mid-rank sum, ties included; else normal approximation
   bool ties = false;
 };
@@ -28,6 +34,13 @@ struct MannWhitney {
 /// group, values that are not finite, or when all values are tied.
 Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y,
                                   RankTest method = RankTest::automatic);
+
+/// p of mannWhitney() where groups of these sizes are separated completely, without ties: 2 / C(nx + ny, nx), at most
+/// 1, up to exactRankTestLimit values. Ties make it larger. @pre nx, ny > 0
+double smallestRankTestP(std::size_t nx, std::size_t ny);
+
+/// Least n for which smallestRankTestP(n, n) is at most `p`. @pre p > 0
+std::size_t leastGroups(double p);
 
 /// Probability of superiority and its linear image; one statistic under two names.
 struct Superiority {
@@ -43,7 +56,7 @@ enum class ShiftMethod {
   exact,         ///< without ties
   conservative,  ///< ties: the closed interval at the quantiles of the distribution without ties covers at least as
                  ///< often
-  asymptotic     ///< beyond exactRankTestLimit values: the quantile of U by its normal approximation
+  asymptotic     ///< beyond exactShiftLimit values: the quantile of U by its normal approximation
 };
 
 const char* nameOf(ShiftMethod method);

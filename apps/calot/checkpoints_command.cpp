@@ -38,7 +38,9 @@ nlohmann::ordered_json jsonOf(const CheckpointDefinition& d) {
           {"finality", nameOf(d.finality)},
           {"version", d.version},
           {"definition", d.definition},
-          {"paper", d.paperReading}};
+          {"paper", d.paperReading},
+          {"outcome", d.notOutcome.empty()},
+          {"not_outcome_because", d.notOutcome}};
 }
 
 void print(const CheckpointDefinition& d) {
@@ -59,6 +61,7 @@ void print(const CheckpointDefinition& d) {
   line("origin", origins);
   line("known", d.finality == analytics::Finality::running ? "after every step" : "at the end");
   line("paper", d.paperReading);
+  line("outcome", d.notOutcome.empty() ? "" : "no: " + d.notOutcome);
 }
 
 }  // namespace

@@ -125,8 +125,9 @@ void print(const analytics::Norm& norm) {
                           c.inRule ? "counts" : "", c.reason});
   }
   analytics::printTable(table, std::cout);
-  if (const std::string warning = analytics::passMarkWarning(norm); !warning.empty())
-    analytics::printWrapped(warning, std::cout);
+  for (const std::string& warning : {analytics::ownFailureWarning(norm), analytics::passMarkWarning(norm)}) {
+    if (!warning.empty()) analytics::printWrapped(warning, std::cout);
+  }
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
 }
 

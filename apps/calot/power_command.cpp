@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "analytics/report/study_tables.h"
+#include "analytics/statistics/two_groups.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/power_plan.h"
@@ -34,6 +35,11 @@ struct Sized {
   std::size_t nx, ny;
   analytics::Power power;
 };
+
+/// p that the first rejection needs: Holm asks for the level over the number of tests, else some test for the level.
+double markOf(const PowerOptions& o, const PlannedStudy& planned) {
+  return o.adjustment == "holm" ? o.level / static_cast<double>(planned.names.size()) : o.level;
+}
 
 void print(const PowerOptions& o, const PlannedStudy& planned, const std::vector<Sized>& results, std::size_t enough) {
   if (planned.synthetic) std::cout << analytics::watermarkText << '\n';
@@ -63,6 +69,15 @@ void print(const PowerOptions& o, const PlannedStudy& planned, const std::vector
   }
   table.print(std::cout);
   std::cout << '\n';
+  for (const Sized& r : results) {
+    const double smallest = analytics::smallestRankTestP(r.nx, r.ny);
+    if (smallest <= markOf(o, planned)) continue;
+    analytics::printWrapped(
+        fmt::format("n = {} + {}: nothing can be rejected, the smallest p of a rank test is {:.2g} and "
+                    "{:.2g} is needed.",
+                    r.nx, r.ny, smallest, markOf(o, planned)),
+        std::cout);
+  }
   if (untestable > 0) std::cout << fmt::format("{} tests had no answer and count as not rejected.\n", untestable);
   if (enough > 0) {
     std::cout << fmt::format("From n = {} ({}) on all effects together reach {:g} with the whole interval.\n", enough,
@@ -112,6 +127,8 @@ int power(PowerOptions& o) {
       one["checkpoint"] = planned.names[c];
       row["checkpoints"].push_back(one);
     }
+    row["smallest_p"] = analytics::smallestRankTestP(r.nx, r.ny);
+    row["needed_p"] = markOf(o, planned);
     row["any_effect"] = shareJson(r.power.anyEffect);
     row["all_effects"] = shareJson(r.power.allEffects);
     row["untestable"] = r.power.untestable;

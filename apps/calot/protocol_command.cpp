@@ -10,6 +10,7 @@
 
 #include "analytics/assessment/protocol.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/statistics/two_groups.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/common/exit_code.h"
@@ -30,6 +31,12 @@ int check(const ProtocolOptions& o) {
   const auto primary = std::count_if(p.hypotheses.begin(), p.hypotheses.end(), [](const auto& h) { return h.primary; });
   std::cout << fmt::format("{}: protocol {} version {}, {} hypotheses, {} of them primary, SHA-256 {}\n", p.file,
                            p.name, p.version, p.hypotheses.size(), primary, p.sha256);
+  const double mark = p.level / static_cast<double>(primary);
+  const std::size_t least = analytics::leastGroups(mark);
+  std::cout << fmt::format(
+      "Support of any primary hypothesis needs p <= {:.3g} ({:g}, Holm over {}). Groups of {} and {} are the smallest "
+      "equal ones that can reach it (smallest p {:.2g}, without ties); smaller ones can support none.\n",
+      mark, p.level, primary, least, least, analytics::smallestRankTestP(least, least));
   return static_cast<int>(ExitCode::yes);
 }
 

@@ -116,13 +116,17 @@ int show(const RateOptions& o) {
   std::map<std::string, std::string> groupOf;
   std::set<std::string> groups;
   for (const analytics::Participant& p : cohort.participants()) groupOf[p.pseudonym] = p.group;
-  for (const analytics::AttemptRow& a : cohort.listAttempts()) groupOf[a.uuid] = a.group;
+  std::map<std::string, analytics::AttemptOf> attemptOf;
+  for (const analytics::AttemptRow& a : cohort.listAttempts()) {
+    groupOf[a.uuid] = a.group;
+    attemptOf[a.uuid] = {a.participant, a.startUtc};
+  }
   for (const analytics::Rating& r : database.ratings()) {
     const auto at = groupOf.find(r.attempt.empty() ? r.participant : r.attempt);
     if (at != groupOf.end()) groups.insert(at->second);
   }
   const std::vector<analytics::FormReport> reports =
-      analytics::reportForms(database, groupOf, {groups.begin(), groups.end()});
+      analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
   if (o.json) {
     std::cout << analytics::ratingsJson(reports).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     return static_cast<int>(ExitCode::yes);

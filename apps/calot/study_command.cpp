@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot study: two groups side by side, of a cohort or of a table from elsewhere.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -10,6 +12,7 @@
 
 #include "analytics/cohort/withdraw.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/report_files.h"
 #include "apps/calot/study_options.h"
@@ -24,7 +27,7 @@ namespace {
 struct ParsedStudyOptions {
   StudySource source;
   std::string csv, html, pdf;
-  bool json = false, force = false;
+  bool json = false, force = false, all = false;
 };
 
 /// Notes in the cohort whose attempts went into files: a withdrawal lists them.
@@ -51,6 +54,15 @@ void noteExports(const ParsedStudyOptions& options, const analytics::Study& stud
   }
 }
 
+void print(const analytics::Study& study, bool all) {
+  analytics::printStudy(study, std::cout, all ? analytics::StudyDetail::all : analytics::StudyDetail::first);
+  if (all) return;
+  const auto others = std::count_if(study.rows.begin(), study.rows.end(), [](const analytics::StudyRow& row) {
+    return !row.leading && !analytics::hasNoValue(row);
+  });
+  std::cout << fmt::format("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
+}
+
 }  // namespace
 
 void addStudy(CLI::App& app, Run& run) {
@@ -58,6 +70,7 @@ void addStudy(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("study", "Compare two groups of a cohort, or of a table from elsewhere");
   addStudySource(*command, options->source);
   command->add_flag("--json", options->json, "Print JSON");
+  command->add_flag("--all", options->all, "Print every figure and the methods, not only the first result");
   command->add_option("--csv", options->csv, "Write study.csv, values.csv, flow.csv and coverage.csv into this folder");
   command->add_option("--html", options->html, "Write one self-contained page with figures");
   addPdfOption(*command, options->pdf, "Write the same on A4 pages");
@@ -74,7 +87,7 @@ void addStudy(CLI::App& app, Run& run) {
       if (options->json) {
         std::cout << analytics::studyJson(study) << '\n';
       } else {
-        analytics::printStudy(study, std::cout);
+        print(study, options->all);
       }
       return static_cast<int>(ExitCode::yes);
     };

@@ -93,15 +93,12 @@ std::string studyText(const analytics::Study& study) {
     html += "<p style=\"background-color:#f0e442; color:#000000\"><b>&nbsp;" +
             analytics::escaped(analytics::watermarkText) + "&nbsp;</b></p>";
   html += "<h2>" + analytics::escaped(analytics::studyTitle(study)) + "</h2>";
-  for (const std::string& line : analytics::protocolLines(study)) html += paragraph(line);
-  html += tableText(analytics::flowTable(study));
-  for (const analytics::ReportTable& table : analytics::studyTables(study)) html += tableText(table);
-  for (const analytics::FormReport& report : study.ratings) {
-    for (const analytics::ReportTable& table : analytics::ratingTables(report)) html += tableText(table);
-  }
-  html += "<h3>Notes</h3>";
-  for (const std::string& note : analytics::studyNotes(study)) html += paragraph(note);
-  html += "<h3>Methods</h3>" + paragraph(analytics::studyMethods(study));
+  for (const std::string& line : analytics::studyHead(study)) html += paragraph(line);
+  html += tableText(analytics::flowTable(study)) + tableText(analytics::primaryTable(study));
+  for (const std::string& note : analytics::primaryNotes(study)) html += paragraph(note);
+  html += "<h3>Methods</h3>" + paragraph(analytics::studyMethods(study)) + "<h2>Appendix</h2>";
+  for (const std::string& note : analytics::appendixNotes(study)) html += paragraph(note);
+  for (const analytics::ReportTable& table : analytics::appendixTables(study)) html += tableText(table);
   return html;
 }
 

@@ -86,7 +86,9 @@ struct ReportTextDocument::Writer {
   }
 
   void operator()(const analytics::Heading& heading) {
-    begin(block(5.0, 1.5), letters(headingPoints, true));
+    QTextBlockFormat format = block(5.0, 1.5);
+    if (heading.newPage) format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+    begin(format, letters(headingPoints, true));
     cursor.insertText(QString::fromStdString(heading.text), letters(headingPoints, true));
   }
 

@@ -129,7 +129,7 @@ class Study(program.ProgramTest):
         self.well("assess", *attempts(), "--cohort", self.cohort)
 
     def test_two_groups_side_by_side(self):
-        table = self.well("study", self.cohort, "--group-by", "performer", "--include-synthetic").out
+        table = self.well("study", self.cohort, "--group-by", "performer", "--include-synthetic", "--all").out
         for word in ("skilled against unskilled", "exploratory", "median", "mean", "Holm", "SYNTHETIC"):
             self.assertIn(word, table)
         said = json.loads(self.well("study", self.cohort, "--group-by", "performer", "--include-synthetic", "--json").out)

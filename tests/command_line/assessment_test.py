@@ -90,7 +90,9 @@ class Protocols(Assessment):
         self.refused(3, "protocol", "register", self.write("p2.json", {**PROTOCOL, "level": 0.01}), self.database, "--by", "test",
                      names=("a changed protocol has a higher version",))
         self.assertEqual(len(json.loads(self.well("protocol", "list", self.database, "--json").out)), 1)
-        self.well("protocol", "check", "cholecystectomy-2014-table2")
+        said = " ".join(self.well("protocol", "check", "cholecystectomy-2014-table2").out.split())
+        # .05 over eight; 2 / C(10, 5) is .0079, 2 / C(12, 6) is .0022.
+        self.assertIn("needs p <= 0.00625 (0.05, Holm over 8). Groups of 6 and 6 are the smallest", said)
 
 
 class Power(Assessment):
@@ -102,6 +104,10 @@ class Power(Assessment):
         self.assertAlmostEqual(powers[1], 0.85184, delta=0.03)  # R 4.2.2, tests/analytics/statistics/power_test.cpp
         self.assertEqual(said["enough"], 10)
         self.assertEqual(said, json.loads(self.well(*ask).out))
+        self.assertAlmostEqual(said["sizes"][0]["smallest_p"], 2 / 252, 12)
+        three = self.well("power", "--effect", "9,9", "--n", "3,5", "--simulations", 100).out
+        self.assertIn("n = 3 + 3: nothing can be rejected, the smallest p of a rank test is 0.1 and 0.025 is needed.", " ".join(three.split()))
+        self.assertNotIn("n = 5 + 5", three)
         self.assertNotEqual(said["sizes"], json.loads(self.well(*ask, "--seed", 2).out)["sizes"])
 
     def test_from_people_at_hand(self):
@@ -140,7 +146,7 @@ class Ratings(Assessment):
         self.assertEqual(said[0]["incomplete"], 1)
         shown = self.well("rate", self.database).out
         self.assertIn("Agreement between raters on goals", shown)
-        self.assertIn("agreement over the attempts that every rater rated (1 were not)", " ".join(shown.split()))
+        self.assertIn("agreement over the first attempt of each that every rater rated (1 were not, 0 are later ones)", " ".join(shown.split()))
 
     def test_answers_in_one_option(self):
         attempt = self.attempts()[0]

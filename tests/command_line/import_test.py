@@ -340,7 +340,7 @@ class Identity(program.ProgramTest):
             left = next(c for c in answer["coverage"] if c["subject"] == "left")
             self.assertTrue(left["differs"])
             self.assertAlmostEqual(left["mann_whitney"]["p"], 2 / 924, delta=1e-12)
-            text = self.well("study", cohort).out
+            text = self.well("study", cohort, "--all").out
             self.assertIn("Warning: coverage differs (left hand)", " ".join(text.split()))
             for name in ("path-length", "sparc", "log-dimensionless-jerk"):
                 if shown:

@@ -162,7 +162,7 @@ class Tables(program.ProgramTest):
 
     def test_wrong_cells(self):
         for wrong, says in (("fast", "is not a number"), ("nan", "is not a finite number"), ("inf", "is not a finite number"),
-                            ("1e999", "is not a number"), ("12,5", "is not a number"), ("0x10", "is not a number"), ("NA", "leave the cell empty"),
+                            ("1e999", "is not a number"), ("12,5", "is not a number"), ("0x10", "is not a number"), ("N/A", "leave the cell empty"),
                             ("-1e200", "is larger than")):
             with self.subTest(wrong):
                 rows = [dict(r) for r in self.rows]
@@ -182,9 +182,20 @@ class Tables(program.ProgramTest):
                 self.write(rows)
                 self.refused(4, *self.study(*AT_LAST, *OUTCOMES), names=("line 6", '"arm"', "control character"))
 
+    def test_semicolons_decimal_commas_and_na(self):
+        self.rows[3]["seconds"] = ""
+        self.write()
+        want = json.loads(self.well(*self.study(*AT_LAST, *OUTCOMES, "--json")).out)
+        lines = [line.replace(",", ";").replace(".", ",") for line in text_of([dict(r, seconds=r["seconds"] or "NA") for r in self.rows]).splitlines()]
+        self.table.write_text("\n".join(lines) + "\n")
+        self.assertIn("NA", self.table.read_text())
+        said = json.loads(self.well(*self.study(*AT_LAST, *OUTCOMES, "--json")).out)
+        self.assertEqual(said["rows"], want["rows"])
+        self.assertEqual(sum(g["missing"] for g in said["rows"][1]["groups"]), 1)
+
     def test_wrong_files(self):
         draw = program.seeded("wrong tables")
-        for name, content in {"empty": b"", "only a header": b"id,arm,score\n", "semicolons": b"id;arm;score\n1;a;2\n",
+        for name, content in {"empty": b"", "only a header": b"id,arm,score\n", "tabs": b"id\tarm\tscore\n1\ta\t2\n",
                               "uneven": b"id,arm,score\n1,a\n", "bytes": b"id,arm,score\n" + draw.randbytes(300) + b"\0",
                               "quote": b'id,arm,score\n"1,a,2\n'}.items():
             with self.subTest(name):
@@ -241,7 +252,8 @@ class Tables(program.ProgramTest):
         self.write()
         page = self.path("p.html")
         command = self.study(*AT_LAST, *OUTCOMES, "--html", page)
-        shown = self.well(*command).out
+        shown = self.well(*command, "--all").out
+        said = json.loads(self.well(*command, "--force", "--json").out)
         self.refused(2, *command, names=(page, "--force"))
         self.well(*command, "--force")
         self.refused(2, *self.study(*AT_LAST, *OUTCOMES, "--html", self.path("no/where.html")), names=("where.html",))
@@ -277,7 +289,8 @@ class Tables(program.ProgramTest):
         reader = Reader()
         reader.feed(content)
         self.assertEqual(reader.open_tags, [])
-        self.assertEqual([len(points) for points in figures], [PEOPLE, PEOPLE])
+        # The forest plot, then a figure for each outcome.
+        self.assertEqual([len(points) for points in figures], [len(said["rows"]), PEOPLE, PEOPLE])
         self.assertNotIn("SYNTHETIC", content)
         self.assertIn("exploratory", content)
         # Whatever figure the terminal shows is on the page.
@@ -290,7 +303,7 @@ class Tables(program.ProgramTest):
     def test_width_and_csv(self):
         self.write()
         folder = self.path("out")
-        shown = self.well(*self.study(*AT_LAST, "--baseline-occasion", "first", *OUTCOMES, "--csv", folder)).out
+        shown = self.well(*self.study(*AT_LAST, "--baseline-occasion", "first", *OUTCOMES, "--csv", folder, "--all")).out
         self.assertLessEqual(max(map(len, shown.splitlines())), 120)
         with open(folder / "study.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))

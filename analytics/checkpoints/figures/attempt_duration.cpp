@@ -22,6 +22,7 @@ const CheckpointDefinition& attemptDurationDefinition() {
       .version = 1,
       .definition = "D = steps * ticks per step * tick length",
       .paperReading = "",
+      .notOutcome = "it repeats the elapsed time",
   };
   return d;
 }

@@ -17,6 +17,7 @@ const CheckpointDefinition& motionRateDefinition() {
     rate.filter = "none";
     rate.minCoverage = 0.0;
     rate.finality = Finality::running;
+    rate.notOutcome = "it describes the tracker";
     return rate;
   }();
   return d;

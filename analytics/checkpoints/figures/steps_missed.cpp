@@ -25,6 +25,7 @@ const CheckpointDefinition& stepsMissedDefinition() {
           "#{steps whose linear solve or contact problem was left above its tolerance, or that held tissue back} / "
           "#{steps}",
       .paperReading = "",
+      .notOutcome = "it describes the simulation",
   };
   return d;
 }

@@ -91,6 +91,15 @@ TEST_F(Grades, aPassMarkIsWhereTheCurvesCross) {
   EXPECT_EQ(competent.passed, 7U);
   EXPECT_EQ(competent.members, 8U);
   EXPECT_EQ(others.passed, 0U);
+  EXPECT_EQ(ownFailureWarning(norm), "Warning: 1 of the 8 competent members fail by the norm's own rule.");
+}
+
+TEST_F(Grades, aNormWantsSomeMembersOfEachSide) {
+  for (unsigned i = 0; i < 5; ++i) cohort_.excludeAttempt(uuidOf(i), "test", "me");
+  EXPECT_EQ(made().members.size(), 11U);
+  cohort_.excludeAttempt(uuidOf(5), "test", "me");
+  expectRefusal(ErrorKind::refused, "a norm wants at least 3 competent members and as many others; there are 2 and 8",
+                [&] { (void)made(); });
 }
 
 TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {

@@ -118,6 +118,8 @@ TEST(Registry, docsAgree) {
     EXPECT_NE(section.find("| source | "), std::string::npos) << d.name;
     EXPECT_NE(section.find("| pitfall | "), std::string::npos) << d.name;
     if (!d.paperReading.empty()) holds("paper", d.paperReading);
+    EXPECT_EQ(d.notOutcome.empty(), section.find("| outcome | ") == std::string::npos) << d.name;
+    if (!d.notOutcome.empty()) holds("outcome", "no: " + d.notOutcome);
   }
   EXPECT_EQ(documented, known);
 }

@@ -183,6 +183,23 @@ TEST_F(ProtocolStudy, holmIsOverThePrimaryHypothesesAlone) {
   EXPECT_TRUE(absent);
 }
 
+/// Five against five give 2 / 252 at least: over seven hypotheses that is .0556.
+TEST_F(ProtocolStudy, aHypothesisOutOfReachIsNotDecided) {
+  json text = document();
+  for (const char* name : {"angular-path", "speed-mean", "movements", "sparc"})
+    text["hypotheses"].push_back({{"checkpoint", name}, {"subject", "left"}, {"larger", "novice"}, {"primary", true}});
+  const Study s = study(text);
+  const StudyRow& time = row(s, "elapsed-time", "");
+  EXPECT_NEAR(*time.holm, 7.0 * 2.0 / 252.0, 1e-15);
+  EXPECT_NEAR(*time.attainableP, 7.0 * 2.0 / 252.0, 1e-15);
+  EXPECT_FALSE(time.supported) << "as far apart as can be, and neither supported nor not";
+  std::ostringstream out;
+  printStudy(s, out, StudyDetail::first);
+  EXPECT_NE(out.str().find("out of reach"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("neither support nor evidence against"), std::string::npos);
+  EXPECT_EQ(row(study(document()), "elapsed-time", "").supported, true) << "three are within reach";
+}
+
 TEST_F(ProtocolStudy, theDirectionIsTheProtocolsEvenAgainstTheCheckpoints) {
   json text = document();
   text["hypotheses"][0]["larger"] = "expert";

@@ -142,6 +142,40 @@ TEST(Ratings, agreementIsThatOfShroutAndFleiss) {
   EXPECT_EQ(report.items[0].groups[1].n, 4U);
 }
 
+/// A participant's later attempts are no further subjects: the agreement is that of the first ones.
+TEST(Ratings, agreementIsOverOneAttemptOfEachParticipant) {
+  constexpr int scores[6][4] = {{9, 2, 5, 8}, {6, 1, 3, 2}, {8, 4, 6, 8}, {7, 1, 2, 6}, {10, 5, 6, 9}, {6, 2, 4, 7}};
+  json text = support::jsonOf("assets/forms/competence.json");
+  text["scale"] = {{"least", 1}, {"most", 10}};
+  const RatingForm form = parseRatingForm(bytesOf(text.dump()), "f.json");
+  std::vector<Rating> ratings;
+  std::map<std::string, std::string> groupOf;
+  std::map<std::string, AttemptOf> attemptOf;
+  for (unsigned a = 0; a < 12; ++a) {
+    // The second attempts have the lower uuids, and started later.
+    const unsigned person = a % 6, uuid = a < 6 ? 20 + a : a - 6;
+    groupOf[uuidOf(uuid)] = person < 3 ? "expert" : "novice";
+    attemptOf[uuidOf(uuid)] = {fmt::format("P{}", person), a < 6 ? "2026-01-01T00:00:00Z" : "2026-01-02T00:00:00Z"};
+    for (unsigned r = 0; r < 4; ++r)
+      ratings.push_back({form.name,
+                         1,
+                         uuidOf(uuid),
+                         fmt::format("R{}", r),
+                         "",
+                         {{"competent", a < 6 ? scores[person][r] : 1 + (a * r) % 9}},
+                         ""});
+  }
+  const FormReport report = reportForm(form, ratings, groupOf, {"expert", "novice"}, attemptOf);
+  EXPECT_EQ(report.repeated, 6U);
+  EXPECT_EQ(report.incomplete, 0U);
+  EXPECT_EQ(report.agreement[0].attempts, 6U);
+  EXPECT_NEAR(report.agreement[0].single->value, 0.2897637795, 1e-9) << "Shrout and Fleiss (1979), table 2";
+  EXPECT_EQ(report.items[0].groups[0].n, 3U) << "one value a participant";
+  const FormReport apart = reportForm(form, ratings, groupOf, {"expert", "novice"});
+  EXPECT_EQ(apart.agreement[0].attempts, 12U);
+  EXPECT_EQ(apart.items[0].groups[0].n, 6U);
+}
+
 TEST(Ratings, questionnairesKeepBlanksAndCountAnswers) {
   const RatingForm form = shipped("questionnaire-2014");
   std::vector<Rating> ratings;

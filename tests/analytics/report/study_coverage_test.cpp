@@ -37,7 +37,9 @@ Study studyWith(const std::vector<double>& expertCoverage) {
 
 std::string notesOf(const Study& study) {
   std::string text;
-  for (const std::string& note : studyNotes(study)) text += note + "\n";
+  for (const auto& notes : {primaryNotes(study), appendixNotes(study)}) {
+    for (const std::string& note : notes) text += note + "\n";
+  }
   return text;
 }
 

@@ -101,7 +101,8 @@ TEST(TableStudy, warnsWhereACoverageIsLow) {
   const Study few = studyOf("id,drug,v\n1,a,1\n2,a,2\n3,b,3\n4,b,4\n", optionsFor("v"));
   ASSERT_FALSE(few.rows[0].coverageWarnings.empty());
   EXPECT_NE(few.rows[0].coverageWarnings[0].find("not known for fewer than 5"), std::string::npos);
-  EXPECT_NE(few.remarks.back().find("Warning (1 of 1 rows)"), std::string::npos);
+  EXPECT_EQ(intervalWarnings(few, true)[0].find("Warning (1 of 1 rows)"), 0U);
+  EXPECT_TRUE(intervalWarnings(few, false).empty());
 }
 
 /// A clock that is the same but for its last bits has no group in which it is the faster one.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analytics/statistics/rank_sum_distribution.h"
+#include "analytics/statistics/rank_sum_quantile.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {
@@ -237,13 +238,87 @@ TEST(HodgesLehmannInterval, attainedLevelIsThatOfTheEnumeration) {
   EXPECT_NEAR(interval->attained, 1.0 - 4.0 / 126.0, 1e-14);
 }
 
-TEST(HodgesLehmannInterval, beyondTheLimitTheNormalQuantileOfU) {
-  // R: 41 and 72 values of aSAH's s100b; d <- sort(outer(x, y, "-")); u <- floor(41 * 72 / 2 - qnorm(.975) * sqrt(41 *
-  // 72 * 114 / 12)) is 1147; d[u] .06, d[41 * 72 + 1 - u] .25, median(d) .16. wilcox.test's search gives the same to
-  // 1e-4.
+/// Counted in whole numbers of any size by the generating function, the product of (1 - q^(ny + i)) / (1 - q^i) over i
+/// from 1 to nx.
+TEST(RankSumQuantile, isThatOfTheGeneratingFunction) {
+  const struct {
+    std::size_t nx, ny, u;
+    double below;
+  } cases[] = {{10, 10, 24, 0.02162852627248912},
+               {41, 40, 613, 0.0248076888990636},
+               {90, 60, 2190, 0.02498880397639896},
+               {20, 280, 2067, 0.024920249195548142},
+               {150, 150, 9778, 0.02494527502999322}};
+  for (const auto& c : cases) {
+    const RankSumQuantile quantile = rankSumQuantile(c.nx, c.ny, 0.025);
+    EXPECT_EQ(quantile.u, c.u) << c.nx << " and " << c.ny;
+    EXPECT_NEAR(quantile.below, c.below, 1e-13) << c.nx << " and " << c.ny;
+  }
+  // One against one: U is 0 or 1, each half the time.
+  EXPECT_EQ(rankSumQuantile(1, 1, 0.025).u, 0U);
+  EXPECT_DOUBLE_EQ(rankSumQuantile(1, 1, 0.025).below, 0.0);
+}
+
+TEST(HodgesLehmannInterval, beyondItsLimitTheNormalQuantileOfU) {
+  // x_i - y_j are all different: the k-th of them in order tells the rank that was taken.
+  Values x(160), y(150), all;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(1000 * i);
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] = static_cast<double>(i) + 0.5;
+  for (const double a : x) {
+    for (const double b : y) all.push_back(a - b);
+  }
+  std::sort(all.begin(), all.end());
+  const auto interval = hodgesLehmannInterval(x, y);
+  ASSERT_TRUE(interval);
+  EXPECT_EQ(interval->method, ShiftMethod::asymptotic);
+  // 12000 - 1.959963984540054 sqrt(160 * 150 * 311 / 12)
+  EXPECT_DOUBLE_EQ(interval->lower, all[10454 - 1]);
+  EXPECT_DOUBLE_EQ(interval->upper, all[all.size() - 10454]);
+  x.resize(150);
+  EXPECT_EQ(hodgesLehmannInterval(x, y)->method, ShiftMethod::exact);
+}
+
+TEST(MannWhitney, smallestPIsThatOfTheFarthestAssignment) {
+  EXPECT_NEAR(smallestRankTestP(3, 3), 0.1, 1e-15);
+  EXPECT_NEAR(smallestRankTestP(4, 4), 2.0 / 70.0, 1e-15);
+  EXPECT_NEAR(smallestRankTestP(5, 4), 2.0 / 126.0, 1e-15);
+  EXPECT_DOUBLE_EQ(smallestRankTestP(1, 1), 1.0);
+  // 2 / C(10, 5) = .0079, 2 / C(12, 6) = .0022.
+  EXPECT_EQ(leastGroups(0.05), 4U);
+  EXPECT_EQ(leastGroups(0.05 / 8.0), 6U);
+  EXPECT_EQ(leastGroups(2.0 / 252.0 + 1e-15), 5U);
+  EXPECT_EQ(leastGroups(1.0), 1U);
+  const unsigned seed = 23;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (int round = 0; round < 60; ++round) {
+    const std::size_t nx = 1 + random() % 5, ny = 1 + random() % 5;
+    Values all(nx + ny);
+    for (double& v : all) v = static_cast<double>(random() % (round % 2 == 0 ? 3 : 1000000));
+    for (const RankTest method : {RankTest::exact, RankTest::asymptotic}) {
+      const auto test = mannWhitney(Values(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(nx)),
+                                    Values(all.begin() + static_cast<std::ptrdiff_t>(nx), all.end()), method);
+      if (!test) continue;
+      // Every choice of nx of the values, as bits.
+      double least = 1.0;
+      for (unsigned bits = 0; bits < 1U << all.size(); ++bits) {
+        if (static_cast<std::size_t>(std::popcount(bits)) != nx) continue;
+        Values x, y;
+        for (std::size_t i = 0; i < all.size(); ++i) ((bits >> i & 1U) != 0 ? x : y).push_back(all[i]);
+        least = std::min(least, mannWhitney(x, y, method)->p);
+      }
+      EXPECT_NEAR(test->smallestP, least, 1e-12);
+    }
+  }
+}
+
+TEST(HodgesLehmannInterval, isExactBeyondTheSizesOfTheExactTest) {
+  // R: 41 and 72 values of aSAH's s100b; d <- sort(outer(x, y, "-")); d[u] .06 and d[41 * 72 + 1 - u] .25 at u 1148,
+  // the quantile by the generating function (above); median(d) .16.
   const auto interval = hodgesLehmannInterval(data::s100bPoor, data::s100bGood);
   ASSERT_TRUE(interval) << interval.reason();
-  EXPECT_EQ(interval->method, ShiftMethod::asymptotic);
+  EXPECT_EQ(interval->method, ShiftMethod::conservative);
+  EXPECT_NEAR(interval->attained, 0.950485055928, 5e-12);
   EXPECT_NEAR(interval->lower, 0.06, 1e-14);
   EXPECT_NEAR(interval->upper, 0.25, 1e-14);
   EXPECT_NEAR(*hodgesLehmann(data::s100bPoor, data::s100bGood), 0.16, 1e-14);
