@@ -97,6 +97,7 @@ std::vector<std::string> intervalWarnings(const Study& study, bool leading) {
     }
   }
   std::vector<std::string> warnings;
+  warnings.reserve(counts.size());
   for (const auto& [text, count] : counts)
     warnings.push_back(fmt::format("Warning ({} of {} rows): {}.", count, rows, text));
   return warnings;
