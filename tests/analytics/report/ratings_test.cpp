@@ -162,7 +162,7 @@ TEST(Ratings, agreementIsOverOneAttemptOfEachParticipant) {
                          uuidOf(uuid),
                          fmt::format("R{}", r),
                          "",
-                         {{"competent", a < 6 ? scores[person][r] : 1 + (a * r) % 9}},
+                         {{"competent", a < 6 ? scores[person][r] : static_cast<int>(1 + (a * r) % 9)}},
                          ""});
   }
   const FormReport report = reportForm(form, ratings, groupOf, {"expert", "novice"}, attemptOf);
