@@ -33,7 +33,7 @@ FOREIGN = {"Eigen": "eigen3/Eigen", "xxhash.h": "xxhash.h", "fmt": "fmt", "nlohm
 
 
 def fail(text):
-    raise SystemExit(f"engine: {text}")
+    raise SystemExit(f"{pathlib.Path(sys.argv[0]).stem}: {text}")
 
 
 def run(command, **options):
@@ -68,22 +68,34 @@ def check_out(version, folder):
         fail(f"commit {entry['commit'][:12]} is of simulation version {version_of(folder)}")
 
 
-def sources(folder, kind):
+def matching(folder, patterns):
+    """Files of these patterns below `folder`; those of a pattern after "- " are left out."""
     found = []
+    for pattern in patterns:
+        matched = sorted(folder.glob(pattern.removeprefix("- ")))
+        if not matched:
+            fail(f"{pattern} is no file")
+        found = [f for f in found if f not in matched] if pattern.startswith("- ") else found + matched
+    return sorted(set(found))
+
+
+def source_patterns(folder, kind):
+    """What an engine of this kind consists of, by apps/calot-engine/sources.txt."""
+    patterns = []
     for line in (folder / "apps/calot-engine/sources.txt").read_text().splitlines():
         words = line.split()
-        if not words or words[0].startswith("#"):
+        if not words or words[0].startswith("#") or words[0] in {"native", "module"} - {kind}:
             continue
-        if words[0] in ("native", "module"):
-            if words[0] != kind:
-                continue
-            words = words[1:]
-        remove = words[0] == "-"
-        matched = sorted(folder.glob(words[-1]))
-        if not matched:
-            fail(f"apps/calot-engine/sources.txt: {words[-1]} is no file")
-        found = [f for f in found if f not in matched] if remove else found + matched
-    return sorted(set(found))
+        patterns.append(" ".join(words[words[0] == kind:]))
+    return patterns
+
+
+def link_headers(include, names):
+    """Other people's headers alone, apart from this machine's own C library."""
+    include.mkdir(parents=True, exist_ok=True)
+    for name, place in names.items():
+        if not (include / name).is_symlink():
+            (include / name).symlink_to(f"/usr/include/{place}")
 
 
 # Comparisons with 0 in LLVM's form whose either zero clang 14 loses in WebAssembly, where its maximum and minimum order -0 below 0 and
@@ -140,10 +152,7 @@ def build(folder, kind, output, work, jobs):
     """Compiles and links an engine of the source in `folder`."""
     module = kind == "module"
     include = work / "include"
-    include.mkdir(parents=True, exist_ok=True)
-    for name, place in FOREIGN.items():
-        if not (include / name).is_symlink():
-            (include / name).symlink_to(f"/usr/include/{place}")
+    link_headers(include, FOREIGN)
     compiler = "clang++-14" if module else "g++"
     flags = [*CONTRACT, *(MODULE if module else []), f'-DCALOT_VERSION=\\"{program_version(folder)}\\"', f"-I{folder}",
              f"-ffile-prefix-map={folder}=."]
@@ -158,7 +167,7 @@ def build(folder, kind, output, work, jobs):
                  "$out.bc -o $out" if module else f"{compiler} {' '.join(flags)} -MMD -MF $out.d -c $in -o $out")
     lines = ["rule compile", f"  command = {compiling}", "  depfile = $out.d", "  deps = gcc", "rule link", f"  command = {compiler} {' '.join(link)} -o $out"]
     objects = []
-    for source in sources(folder, kind):
+    for source in matching(folder, source_patterns(folder, kind)):
         objects.append(str(source.relative_to(folder).with_suffix(".o")))
         lines.append(f"build {objects[-1]}: compile {source}")
     lines.append(f"build engine: link {' '.join(objects)}")

@@ -21,6 +21,7 @@ import sys
 import zlib
 
 import engine
+from engine import fail, link_headers, matching, run, source_patterns
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "gui/page"
@@ -33,10 +34,8 @@ MODULES = {
     "proof": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/proof_module.cpp", "gui/page/wasm/blake2b.cpp", "recorder/recording/keyframe_code.cpp", "sim/math/digest.cpp"],
     "judge": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/judge_module.cpp", "gui/words/event_words.cpp", "analytics/checkpoints/phases.cpp",
               "sim/judgement/judge.cpp", "recorder/engine/wire_forms.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp", "sim/geometry/*.cpp",
-              "sim/scene/step_result.cpp", "sim/tissue/connective/connective_kind.cpp", "recorder/formats/csv_numbers.cpp", "recorder/formats/json_reader.cpp",
-              "recorder/formats/mesh_report.cpp", "recorder/formats/obj.cpp", "recorder/formats/ply*.cpp", "recorder/formats/scene_*.cpp",
-              "- recorder/formats/scene_file.cpp", "- recorder/formats/scene_folders.cpp", "recorder/formats/stl.cpp",
-              "recorder/formats/surface_bytes.cpp", "recorder/formats/surface_limits.cpp", "recorder/formats/text_words.cpp"],
+              "sim/scene/step_result.cpp", "sim/tissue/connective/connective_kind.cpp",
+              *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p]],
     "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/web_context.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
                 "gui/render/instruments/*.cpp", "- gui/render/osmesa_context.cpp", "- gui/render/picture.cpp", "- gui/render/png_file.cpp",
                 "- gui/render/renderer.cpp", "recorder/engine/wire_forms.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp"],
@@ -45,42 +44,17 @@ POLICY = ("default-src 'none'; script-src 'sha256-{script}' 'wasm-unsafe-eval'; 
           "connect-src 'none'; base-uri 'none'; form-action 'none'")
 
 
-def fail(text):
-    raise SystemExit(f"page: {text}")
-
-
-def run(command, **options):
-    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False, **options)
-    if done.returncode != 0:
-        fail(f"{' '.join(map(str, command[:3]))}: {(done.stderr or done.stdout).strip()[-3000:]}")
-    return done.stdout
-
-
-def sources(patterns):
-    found = []
-    for pattern in patterns:
-        remove = pattern.startswith("- ")
-        matched = sorted(ROOT.glob(pattern.removeprefix("- ")))
-        if not matched:
-            fail(f"{pattern} is no file")
-        found = [f for f in found if f not in matched] if remove else found + matched
-    return sorted(set(found))
-
-
 def build_modules(work, jobs):
-    """Compiles what changed, and links both modules."""
+    """Compiles what changed, and links the modules."""
     include = work / "include"
-    include.mkdir(parents=True, exist_ok=True)
-    for name, place in FOREIGN.items():
-        if not (include / name).is_symlink():
-            (include / name).symlink_to(f"/usr/include/{place}")
+    link_headers(include, FOREIGN)
     flags = " ".join([*FLAGS, f"-I{ROOT}", f"-isystem {include}"])
     lines = ["rule compile", f"  command = clang++-14 {flags} -MMD -MF $out.d -c $in -o $out", "  depfile = $out.d", "  deps = gcc", "rule link",
              f"  command = clang++-14 {' '.join(LINK)} $in -o $out"]
     made = set()
     for name, patterns in MODULES.items():
         objects = []
-        for source in sources(patterns):
+        for source in matching(ROOT, patterns):
             objects.append(str(source.relative_to(ROOT).with_suffix(".o")))
             if objects[-1] not in made:
                 lines.append(f"build {objects[-1]}: compile {source}")
@@ -93,7 +67,7 @@ def build_modules(work, jobs):
 
 
 def kept_engine():
-    version = int(re.search(r"simulationVersion = (\d+);", (ROOT / "sim/scene/version.h").read_text()).group(1))
+    version = engine.version_of(ROOT)
     file = ROOT / f"assets/engines/engine-{version}.wasm"
     if not file.exists():
         fail(f"there is no kept engine of simulation version {version}: name one with --engine (scripts/engine.py builds it)")
