@@ -47,9 +47,13 @@ int CohortDatabase::schemaVersion() const {
   return guarded(path(), [&] { return storage_->db->execAndGet("PRAGMA user_version").getInt(); });
 }
 
-void CohortDatabase::addParticipant(const Participant& p) {
+void checkParticipant(const Participant& p) {
   checkPseudonym(p.pseudonym);
   checkDetails(p.experience, p.consent);
+}
+
+void CohortDatabase::addParticipant(const Participant& p) {
+  checkParticipant(p);
   guarded(path(), [&] {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);

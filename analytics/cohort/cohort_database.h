@@ -44,6 +44,9 @@ struct Participant {
   std::map<std::string, std::string> consent;  ///< purpose -> date (YYYY-MM-DD)
 };
 
+/// @throws Error (invalid) for an empty or malformed pseudonym, a criterion or purpose without name, or no date.
+void checkParticipant(const Participant& participant);
+
 /// Fields that setParticipant() changes; empty ones are left unchanged.
 struct ParticipantChange {
   std::optional<std::string> group, arm, site;
