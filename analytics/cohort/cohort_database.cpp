@@ -255,7 +255,14 @@ std::vector<ValueInterval> CohortDatabase::intervals(const std::string& attempt)
 }
 
 std::vector<AttemptValue> CohortDatabase::allValues(const std::vector<std::string>& without) const {
-  return guarded(path(), [&] { return readAllValues(*storage_->db, without); });
+  std::vector<AttemptValue> values;
+  eachValue(without, [&](const AttemptValue& value) { values.push_back(value); });
+  return values;
+}
+
+void CohortDatabase::eachValue(const std::vector<std::string>& without,
+                               const std::function<void(const AttemptValue&)>& take) const {
+  guarded(path(), [&] { readAllValues(*storage_->db, without, take); });
 }
 
 std::vector<GroupCount> CohortDatabase::groups() const {

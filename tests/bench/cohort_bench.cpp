@@ -125,7 +125,7 @@ class Cohort {
              "JOIN verification ON attempt = 1");
     bare.run(numbers +
              "INSERT INTO checkpoint_value SELECT i, position, name, subject, version, availability, "
-             "1.0 + (i * 7919 + position * 104729) % 1009 / 100.0, reason, note, unit, origin, filter FROM n "
+             "1.0 + (i * 7919 + position * 104729) % 1009 / 100.0, reason, note, unit, origin, filter, coverage FROM n "
              "JOIN checkpoint_value ON attempt = 1 ORDER BY 1, 2");
     bare.run("COMMIT; ANALYZE; PRAGMA wal_checkpoint(TRUNCATE)");
   }
