@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "recorder/formats/text_words.h"
 
 namespace calot::analytics {
 
-ManifestTable::ManifestTable(const std::string& path, const std::vector<std::string>& known)
-    : table_(readCsvTable(path)) {
+ManifestTable::ManifestTable(CsvTable table, const std::vector<std::string>& known) : table_(std::move(table)) {
   const auto isKnown = [&](const std::string& column) {
     return column == "note" || std::any_of(known.begin(), known.end(), [&](const std::string& name) {
              return name.back() == ':' ? column.size() > name.size() && column.substr(0, name.size()) == name
@@ -21,7 +21,7 @@ ManifestTable::ManifestTable(const std::string& path, const std::vector<std::str
     if (!isKnown(column)) {
       std::string list;
       for (const std::string& name : known) list += name + (name.back() == ':' ? "..., " : ", ");
-      throw Error(ErrorKind::invalid, Where{path, "line 1"},
+      throw Error(ErrorKind::invalid, Where{table_.path, "line 1"},
                   fmt::format("a column \"{}\" is not known here; rename or remove it (there are: {}note)",
                               recorder::shown(column), list));
     }

@@ -15,9 +15,9 @@ namespace calot::analytics {
 class ManifestTable {
  public:
   /// @param known columns that a manifest of its kind may have; a name that ends with ":" stands for all that begin so.
-  /// A column "note" is passed over. @throws Error as readCsvTable(); (invalid) for a column that is not known, so that
+  /// A column "note" is passed over. @throws Error (invalid) for a column that is not known, so that
   /// a misspelt one is not lost without a word, or one that is there twice.
-  ManifestTable(const std::string& path, const std::vector<std::string>& known);
+  ManifestTable(CsvTable table, const std::vector<std::string>& known);
 
   [[nodiscard]] const std::string& path() const { return table_.path; }
   [[nodiscard]] const std::vector<std::string>& columns() const { return table_.columns; }

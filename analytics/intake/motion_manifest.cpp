@@ -155,7 +155,7 @@ MotionManifest readMotionManifest(const std::string& path, const MotionDeclarati
                                   const std::string& columns, std::vector<Error>& faults) {
   std::vector<std::string> known{"file", "columns", "group", "arm", "site", "experience", "experience:", "consent"};
   known.insert(known.end(), std::begin(declared), std::end(declared));
-  const ManifestTable table(path, known);
+  const ManifestTable table(readCsvTable(path), known);
   if (!table.has("file"))
     throw Error(ErrorKind::invalid, Where{path, "line 1"}, "there is no column \"file\"; a manifest names its files");
   MotionManifest manifest;

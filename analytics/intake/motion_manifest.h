@@ -35,7 +35,8 @@ struct MotionManifest {
 /// `consent` ("study:2026-01-31"), and those of declareMotion(). Files and maps are relative to the manifest.
 /// @param otherwise what an empty cell or an absent column stands for. @param columns the map for rows without one
 /// @param[out] faults one for each wrong row (damaged), naming line and column; with any, the manifest is not whole
-/// @throws Error as ManifestTable; (invalid) where there is no column `file`; as recorder::readColumnMap for `columns`.
+/// @throws Error as readCsvTable() and ManifestTable; (invalid) where there is no column `file`; as
+/// recorder::readColumnMap for `columns`.
 MotionManifest readMotionManifest(const std::string& path, const MotionDeclaration& otherwise,
                                   const std::string& columns, std::vector<Error>& faults);
 

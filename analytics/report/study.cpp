@@ -305,12 +305,16 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
 
 }  // namespace
 
-Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
-  StudyOptions known = options;
-  if (known.cohort) known.cohort->participants = participantsOf(database.path(), known.cohort->name);
-  if (known.protocol) {
-    for (const Participant& p : database.participants()) known.protocol->experience[p.pseudonym] = p.experience;
+StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options) {
+  if (options.cohort) options.cohort->participants = participantsOf(database.path(), options.cohort->name);
+  if (options.protocol) {
+    for (const Participant& p : database.participants()) options.protocol->experience[p.pseudonym] = p.experience;
   }
+  return options;
+}
+
+Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
+  const StudyOptions known = withCohortData(database, options);
   const auto each = [&](const TakeValue& take) { database.eachValue(unaskedPhases(known), take); };
   return studyOf(database.listAttempts(), each, known, database.path());
 }

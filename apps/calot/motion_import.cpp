@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iostream>
 #include <map>
 #include <set>
@@ -12,6 +11,7 @@
 #include "analytics/intake/enrolment.h"
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/manifest_faults.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
 #include "recorder/errors.h"
@@ -19,19 +19,6 @@
 
 namespace calot::apps {
 namespace {
-
-constexpr std::size_t mostFaults = 20;
-
-/// One line on stderr for each wrong row. @return the exit code
-int refuseRows(const std::vector<Error>& faults) {
-  std::vector<ExitCode> codes;
-  for (const Error& fault : faults) codes.push_back(codeOf(fault.kind()));
-  for (std::size_t i = 0; i < std::min(faults.size(), mostFaults); ++i)
-    fmt::print(stderr, "calot: {}\n", messageOf(faults[i]));
-  if (faults.size() > mostFaults)
-    fmt::print(stderr, "calot: and {} more wrong rows; nothing was stored\n", faults.size() - mostFaults);
-  return static_cast<int>(worstOf(codes));
-}
 
 /// "expert 6, novice 6", or empty without groups.
 std::string groupsOf(const analytics::MotionManifest& manifest) {

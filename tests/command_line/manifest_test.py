@@ -196,5 +196,69 @@ class Motion(Manifest):
         self.assertEqual(len(done.stdout.splitlines()), 1)
 
 
+class Ratings(Manifest):
+    def setUp(self):
+        super().setUp()
+        self.motion = self.make(4, 1)
+        self.write(self.motion)
+        self.well("import", "--manifest", self.table, "--cohort", self.cohort)
+        with closing(sqlite3.connect(self.cohort)) as database:
+            self.uuids = dict(database.execute("SELECT r.file_name, a.uuid FROM attempt a JOIN recording r ON r.attempt = a.id"))
+        self.rows = [{"file": r["file"], "rater": rater, **{item: 1 + (i + k) % 5 for k, item in enumerate(ITEMS)}}
+                     for i, r in enumerate(self.motion) for rater in ("R1", "R2")]
+
+    def rate(self, *more):
+        return ("rate", self.cohort, "--manifest", self.table, "--form", "goals", *more)
+
+    def ratings(self):
+        with closing(sqlite3.connect(f"file:{self.cohort}?mode=ro", uri=True)) as database:
+            return (database.execute("SELECT a.uuid, rater, item, score FROM rating r JOIN attempt a ON a.id = r.attempt ORDER BY 1, 2, 3").fetchall(),
+                    database.execute("SELECT count(*) FROM audit").fetchone())
+
+    def test_a_table_of_ratings(self):
+        self.rows[0]["efficiency"] = "NA"
+        self.write(self.rows, ";")
+        self.assertEqual(self.well(*self.rate()).out, f"{self.table}: 8 ratings: 8 added, 0 unchanged, 0 replaced\n")
+        stored = self.ratings()
+        self.assertEqual(len(stored[0]), 8 * 5 - 1)
+        scores = {(u, r, i): s for u, r, i, s in stored[0]}
+        for row in self.rows:
+            uuid = self.uuids[row["file"].split("/")[1]]
+            self.assertEqual([scores.get((uuid, row["rater"], i), "NA") for i in ITEMS], [row[i] for i in ITEMS])
+        self.assertIn("8 unchanged", self.well(*self.rate()).out)
+        self.assertEqual(self.ratings(), stored)
+        self.assertEqual(json.loads(self.well("rate", self.cohort, "--json").out)[0]["filled"], 8)
+        self.rows[3]["autonomy"] = 6 - self.rows[3]["autonomy"] + (self.rows[3]["autonomy"] == 3)
+        self.write(self.rows)
+        self.refused(3, *self.rate(), names=(self.table, "line 5", "--force"))
+        self.assertEqual(self.ratings(), stored)
+        self.assertEqual(json.loads(self.well(*self.rate("--force", "--json")).out)["replaced"], 1)
+
+    def test_attempts_and_participants(self):
+        file = self.rows[0]["file"].split("/")[1]
+        rest = {k: v for k, v in self.rows[0].items() if k != "file"}
+        self.write([{"attempt": self.uuids[file][:9], **rest, "form": "goals"}])
+        self.well("rate", self.cohort, "--manifest", self.table)
+        self.write([{"participant": "P0", **rest}])
+        self.assertIn("1 unchanged", self.well(*self.rate()).out)
+
+    def test_a_wrong_row_stores_nothing(self):
+        for change, code, names in (({"file": "none.txt"}, 4, ('"file"', "none.txt", "no attempt")), ({"file": ""}, 4, ("name what was rated",)),
+                                    ({"rater": ""}, 4, ('"rater"', "is empty")), ({"rater": "R1"}, 4, ("line 2 rates the same",)),
+                                    ({"efficiency": 6}, 4, ("line 3", "efficiency")), ({"efficiency": "good"}, 4, ("efficiency",)),
+                                    ({"efficiency": "2,5"}, 4, ("efficiency",)), ({i: "" for i in ITEMS}, 4, ("line 3",))):
+            with self.subTest(str(change)):
+                self.write([self.rows[0], {**self.rows[1], **change}, *self.rows[2:]])
+                self.refused(code, *self.rate(), names=(self.table, "line 3", *names))
+                self.assertEqual(self.ratings()[0], [])
+        self.write([{k: v for k, v in r.items() if k != "autonomy"} for r in self.rows[:1]])
+        self.refused(4, *self.rate(), names=("autonomy", "no such column"))
+        self.write([{**r, "comment": "x"} for r in self.rows])
+        self.refused(2, *self.rate(), names=("line 1", '"comment"'))
+        self.write(self.rows)
+        self.refused(2, "rate", self.cohort, "--manifest", self.table, names=("--form",))
+        self.refused(2, *self.rate("--rater", "R1"), names=("--manifest",))
+
+
 if __name__ == "__main__":
     program.main()
