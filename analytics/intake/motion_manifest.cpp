@@ -95,7 +95,7 @@ class Reader {
     taken.columns = map.empty() ? columns_ : table_.fileNamed(map).string();
     if (taken.columns.empty() && taken.file.extension() == ".csv")
       throw table_.fault(row, table_.has("columns") ? "columns" : "file",
-                         "a CSV file needs its map: a column \"columns\", or --columns MAP.json");
+                         "a CSV file needs a map of its columns; name it in a column \"columns\", or for all files");
     if (!taken.columns.empty() && manifest_.maps.count(taken.columns) == 0) {
       try {
         manifest_.maps.emplace(taken.columns, recorder::readColumnMap(taken.columns));

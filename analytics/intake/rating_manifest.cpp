@@ -164,7 +164,7 @@ RatingManifest readRatingManifest(const std::string& path, const std::string& fo
     const std::string name = nameIn(row);
     if (name.empty()) {
       throw Error(ErrorKind::invalid, Where{path, fmt::format("line {}", row.line)},
-                  "names no form; name one in a column \"form\", or with --form");
+                  "names no form; name one in a column \"form\", or for all rows");
     }
     if (!numberOf.emplace(name, forms.size()).second) continue;
     forms.push_back(readRatingForm(find(name)));

@@ -109,7 +109,7 @@ class Motion(Manifest):
         self.write([{"file": "a.csv", "columns": "maps/m.json", "participant": "P1"}])
         self.well("import", "--manifest", self.table, "--cohort", self.cohort)
         self.write([{"file": "a.csv", "participant": "P1"}])
-        self.refused(4, "import", "--manifest", self.table, "--cohort", self.cohort, names=(self.table, "line 2", "--columns"))
+        self.refused(4, "import", "--manifest", self.table, "--cohort", self.cohort, names=(self.table, "line 2", "map of its columns"))
         self.well("import", "--manifest", self.table, "--cohort", self.cohort, "--columns", self.path("maps/m.json"))
 
     def test_a_wrong_row_stores_nothing(self):
@@ -256,7 +256,7 @@ class Ratings(Manifest):
         self.write([{**r, "comment": "x"} for r in self.rows])
         self.refused(2, *self.rate(), names=("line 1", '"comment"'))
         self.write(self.rows)
-        self.refused(2, "rate", self.cohort, "--manifest", self.table, names=("--form",))
+        self.refused(2, "rate", self.cohort, "--manifest", self.table, names=("line 2", "names no form"))
         self.refused(2, *self.rate("--rater", "R1"), names=("--manifest",))
 
 

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/report/rating_page.h"
-
-namespace calot::analytics {
-
-const char* ratingPageScript() {
-  return R"~(
+// The page in which a rater watches films and fills in a form for each (docs/statistics.md, "Blinded raters").
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);
@@ -136,7 +131,3 @@ at("film").addEventListener("error", () => say("The film films/" + data.films[sh
 window.addEventListener("beforeunload", event => { if (!saved) event.preventDefault(); });
 const first = data.films.findIndex(film => !isWhole(film));
 show(first < 0 ? 0 : first, false);
-)~";
-}
-
-}  // namespace calot::analytics
