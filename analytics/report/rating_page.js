@@ -60,6 +60,7 @@ function option(parent, film, item, score, words) {
 }
 function show(number, move) {
   shown = number;
+  say("");
   const film = data.films[number];
   at("heading").textContent = "Film " + (number + 1) + " of " + data.films.length;
   at("film").src = "films/" + film + ".mp4";
