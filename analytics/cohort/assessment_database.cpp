@@ -98,54 +98,64 @@ std::vector<RegisteredProtocol> AssessmentDatabase::protocols(const std::string&
   });
 }
 
-void AssessmentDatabase::storeRating(const StoredDocument& form, const Rating& rating, bool replace) {
+void tables::putRating(SQLite::Database& db, const std::string& path, const StoredDocument& form, const Rating& rating,
+                       bool replace) {
   checkPseudonym(rating.attempt.empty() ? rating.participant : rating.rater);
+  const std::int64_t formRow = formId(db, path, form);
+  const bool ofAttempt = !rating.attempt.empty();
+  const std::int64_t subject = ofAttempt ? attemptId(db, rating.attempt) : participantId(db, rating.participant);
+  const std::string about =
+      ofAttempt ? "attempt " + recorder::shown(rating.attempt) : fmt::format("participant \"{}\"", rating.participant);
+  if (subject < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no {}", about));
+  const char* table = ofAttempt ? "rating" : "questionnaire";
+  const char* whose = ofAttempt ? "form = ?1 AND attempt = ?2 AND rater = ?3" : "form = ?1 AND participant = ?2";
+  const auto bind = [&](SQLite::Statement& statement) {
+    statement.bind(1, formRow);
+    statement.bind(2, subject);
+    if (ofAttempt) statement.bind(3, rating.rater);
+  };
+  SQLite::Statement find(db, fmt::format("SELECT rated_utc FROM {} WHERE {} LIMIT 1", table, whose));
+  bind(find);
+  if (find.executeStep()) {
+    if (!replace) {
+      throw Error(ErrorKind::refused, Where{path},
+                  fmt::format("{} was rated with {} on {} already{}", about, form.name, text(find.getColumn(0)),
+                              ofAttempt ? fmt::format(" by \"{}\"", rating.rater) : ""),
+                  {Remedy::replaceExisting});
+    }
+    find.reset();
+    SQLite::Statement clear(db, fmt::format("DELETE FROM {} WHERE {}", table, whose));
+    bind(clear);
+    clear.exec();
+  }
+  const std::string now = nowUtc();
+  SQLite::Statement put(
+      db, ofAttempt
+              ? "INSERT INTO rating (form, attempt, rater, item, score, rated_utc) VALUES (?1, ?2, ?3, ?4, ?5, ?6)"
+              : "INSERT INTO questionnaire (form, participant, item, score, rated_utc) VALUES (?1, ?2, ?4, ?5, "
+                "?6)");
+  for (const auto& [item, score] : rating.answers) {
+    put.reset();
+    bind(put);
+    put.bind(4, item);
+    put.bind(5, score);
+    put.bind(6, now);
+    put.exec();
+  }
+  audit(db, "rating", ofAttempt ? rating.attempt : rating.participant,
+        fmt::format("{} {}{}", form.name, form.version, ofAttempt ? " by " + rating.rater : ""));
+}
+
+void AssessmentDatabase::storeRating(const StoredDocument& form, const Rating& rating, bool replace) {
+  storeRatings({form}, {{0, rating}}, replace);
+}
+
+void AssessmentDatabase::storeRatings(const std::vector<StoredDocument>& forms,
+                                      const std::vector<std::pair<std::size_t, Rating>>& ratings, bool replace) {
   guarded(storage_->path, [&] {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const std::int64_t formRow = formId(db, storage_->path, form);
-    const bool ofAttempt = !rating.attempt.empty();
-    const std::int64_t subject = ofAttempt ? attemptId(db, rating.attempt) : participantId(db, rating.participant);
-    const std::string about = ofAttempt ? "attempt " + recorder::shown(rating.attempt)
-                                        : fmt::format("participant \"{}\"", rating.participant);
-    if (subject < 0) throw Error(ErrorKind::refused, Where{storage_->path}, fmt::format("no {}", about));
-    const char* table = ofAttempt ? "rating" : "questionnaire";
-    const char* whose = ofAttempt ? "form = ?1 AND attempt = ?2 AND rater = ?3" : "form = ?1 AND participant = ?2";
-    const auto bind = [&](SQLite::Statement& statement) {
-      statement.bind(1, formRow);
-      statement.bind(2, subject);
-      if (ofAttempt) statement.bind(3, rating.rater);
-    };
-    SQLite::Statement find(db, fmt::format("SELECT rated_utc FROM {} WHERE {} LIMIT 1", table, whose));
-    bind(find);
-    if (find.executeStep()) {
-      if (!replace) {
-        throw Error(ErrorKind::refused, Where{storage_->path},
-                    fmt::format("{} was rated with {} on {} already{}", about, form.name, text(find.getColumn(0)),
-                                ofAttempt ? fmt::format(" by \"{}\"", rating.rater) : ""),
-                    {Remedy::replaceExisting});
-      }
-      find.reset();
-      SQLite::Statement clear(db, fmt::format("DELETE FROM {} WHERE {}", table, whose));
-      bind(clear);
-      clear.exec();
-    }
-    const std::string now = nowUtc();
-    SQLite::Statement put(
-        db, ofAttempt
-                ? "INSERT INTO rating (form, attempt, rater, item, score, rated_utc) VALUES (?1, ?2, ?3, ?4, ?5, ?6)"
-                : "INSERT INTO questionnaire (form, participant, item, score, rated_utc) VALUES (?1, ?2, ?4, ?5, "
-                  "?6)");
-    for (const auto& [item, score] : rating.answers) {
-      put.reset();
-      bind(put);
-      put.bind(4, item);
-      put.bind(5, score);
-      put.bind(6, now);
-      put.exec();
-    }
-    audit(db, "rating", ofAttempt ? rating.attempt : rating.participant,
-          fmt::format("{} {}{}", form.name, form.version, ofAttempt ? " by " + rating.rater : ""));
+    for (const auto& [form, rating] : ratings) putRating(db, storage_->path, forms[form], rating, replace);
     transaction.commit();
   });
 }

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -99,6 +101,9 @@ class AssessmentDatabase {
   /// participant, or the same rater (participant) has filled it before and `replace` is not set; Error (invalid) for a
   /// malformed rater.
   void storeRating(const StoredDocument& form, const Rating& rating, bool replace);
+  /// Several in one transaction: all of them or none. @param ratings each with the number of its form
+  void storeRatings(const std::vector<StoredDocument>& forms,
+                    const std::vector<std::pair<std::size_t, Rating>>& ratings, bool replace);
   [[nodiscard]] std::vector<Rating> ratings() const;        ///< by form, version, attempt, rater, participant
   [[nodiscard]] std::vector<StoredDocument> forms() const;  ///< by name, version
 

@@ -15,4 +15,13 @@ struct AssessmentDatabase::Storage {
   std::unique_ptr<SQLite::Database> db;
 };
 
+namespace tables {
+
+/// A filled form, and the form itself where it is not there yet; begins no transaction. @throws Error as
+/// AssessmentDatabase::storeRating().
+void putRating(SQLite::Database& db, const std::string& path, const StoredDocument& form, const Rating& rating,
+               bool replace);
+
+}  // namespace tables
+
 }  // namespace calot::analytics

@@ -47,9 +47,13 @@ int CohortDatabase::schemaVersion() const {
   return guarded(path(), [&] { return storage_->db->execAndGet("PRAGMA user_version").getInt(); });
 }
 
-void CohortDatabase::addParticipant(const Participant& p) {
+void checkParticipant(const Participant& p) {
   checkPseudonym(p.pseudonym);
   checkDetails(p.experience, p.consent);
+}
+
+void CohortDatabase::addParticipant(const Participant& p) {
+  checkParticipant(p);
   guarded(path(), [&] {
     SQLite::Database& db = *storage_->db;
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
@@ -251,7 +255,14 @@ std::vector<ValueInterval> CohortDatabase::intervals(const std::string& attempt)
 }
 
 std::vector<AttemptValue> CohortDatabase::allValues(const std::vector<std::string>& without) const {
-  return guarded(path(), [&] { return readAllValues(*storage_->db, without); });
+  std::vector<AttemptValue> values;
+  eachValue(without, [&](const AttemptValue& value) { values.push_back(value); });
+  return values;
+}
+
+void CohortDatabase::eachValue(const std::vector<std::string>& without,
+                               const std::function<void(const AttemptValue&)>& take) const {
+  guarded(path(), [&] { readAllValues(*storage_->db, without, take); });
 }
 
 std::vector<GroupCount> CohortDatabase::groups() const {

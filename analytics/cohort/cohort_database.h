@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -43,6 +44,9 @@ struct Participant {
   std::map<std::string, std::string> experience;
   std::map<std::string, std::string> consent;  ///< purpose -> date (YYYY-MM-DD)
 };
+
+/// @throws Error (invalid) for an empty or malformed pseudonym, a criterion or purpose without name, or no date.
+void checkParticipant(const Participant& participant);
 
 /// Fields that setParticipant() changes; empty ones are left unchanged.
 struct ParticipantChange {
@@ -175,6 +179,9 @@ class CohortDatabase {
   /// Values of all attempts with their intervals, by attempt, then in stored order. @param without names of checkpoints
   /// to leave out.
   [[nodiscard]] std::vector<AttemptValue> allValues(const std::vector<std::string>& without = {}) const;
+  /// The same one after the other, for cohorts whose values need not be in memory at once. @param take may throw, which
+  /// ends it; what it is given is good until it returns
+  void eachValue(const std::vector<std::string>& without, const std::function<void(const AttemptValue&)>& take) const;
   [[nodiscard]] std::vector<GroupCount> groups() const;  ///< by name
 
  private:

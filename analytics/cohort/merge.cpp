@@ -26,6 +26,9 @@ bool ofAttempts(const std::string& table) {
   return names.count(table) > 0;
 }
 
+/// Tables of one cohort as it was: the merged one is another, with a mask and a lock of its own.
+bool belongsToOneCohort(const std::string& table) { return table == "group_mask" || table == "analysis_lock"; }
+
 /// Tables whose empty entries say "not known".
 bool mayBeFilled(const std::string& table) {
   static const std::set<std::string> names{"participant", "site", "arm", "station", "cohort"};
@@ -48,7 +51,7 @@ class Merge {
     for (const TableFacts& table : readTables(into_)) {
       if (table.name == "attempt") {
         mergeAttempts();
-      } else if (!ofAttempts(table.name)) {
+      } else if (!ofAttempts(table.name) && !belongsToOneCohort(table.name)) {
         mergeTable(table);
       }
     }

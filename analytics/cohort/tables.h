@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -73,7 +74,8 @@ std::array<std::byte, 32> withdrawalDigest(const std::string& uuid);
 bool isWithdrawn(SQLite::Database& db, const std::string& uuid);
 
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
-std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<std::string>& without);
+void readAllValues(SQLite::Database& db, const std::vector<std::string>& without,
+                   const std::function<void(const AttemptValue&)>& take);
 /// Columns of intervalRow(), of value_interval as i.
 inline constexpr const char* intervalColumns =
     "i.name, i.subject, i.version, i.value, i.step_effect, i.mesh_effect, i.constants_spread, i.lower, i.upper, "

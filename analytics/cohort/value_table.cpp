@@ -10,20 +10,24 @@ constexpr const char* valueColumns =
     "c.name, c.subject, c.version, c.availability, c.value, c.reason, c.note, c.unit, c.origin, c.filter, c.coverage ";
 constexpr int valueColumnCount = 11;
 
-CheckpointValue valueRow(SQLite::Statement& row, int c) {
-  CheckpointValue v;
-  v.name = text(row.getColumn(c++));
-  v.subject = text(row.getColumn(c++));
+/// Reuses the text's memory: a large cohort has millions of cells.
+void assignText(std::string& to, const SQLite::Column& column) {
+  const char* from = column.getText();
+  to.assign(from, static_cast<std::size_t>(column.getBytes()));
+}
+
+void readValueRow(SQLite::Statement& row, int c, CheckpointValue& v) {
+  assignText(v.name, row.getColumn(c++));
+  assignText(v.subject, row.getColumn(c++));
   v.version = row.getColumn(c++).getUInt();
   v.availability = enumeration<Availability>(row.getColumn(c++));
   v.value = optional(row.getColumn(c++));
-  v.reason = text(row.getColumn(c++));
-  v.note = text(row.getColumn(c++));
-  v.unit = text(row.getColumn(c++));
+  assignText(v.reason, row.getColumn(c++));
+  assignText(v.note, row.getColumn(c++));
+  assignText(v.unit, row.getColumn(c++));
   v.origin = enumeration<Origin>(row.getColumn(c++));
-  v.filter = text(row.getColumn(c++));
+  assignText(v.filter, row.getColumn(c++));
   v.coverage = optional(row.getColumn(c));
-  return v;
 }
 
 }  // namespace
@@ -33,7 +37,7 @@ std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t id) {
       db, fmt::format("SELECT {} FROM checkpoint_value c WHERE c.attempt = ? ORDER BY c.position", valueColumns));
   select.bind(1, id);
   std::vector<CheckpointValue> values;
-  while (select.executeStep()) values.push_back(valueRow(select, 0));
+  while (select.executeStep()) readValueRow(select, 0, values.emplace_back());
   return values;
 }
 
@@ -83,7 +87,8 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
   return true;
 }
 
-std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<std::string>& without) {
+void readAllValues(SQLite::Database& db, const std::vector<std::string>& without,
+                   const std::function<void(const AttemptValue&)>& take) {
   std::string places;
   for (std::size_t i = 0; i < without.size(); ++i) places += i == 0 ? "?" : ", ?";
   // Most cohorts have no intervals; looking for one beside each value costs as much as reading the values.
@@ -95,12 +100,14 @@ std::vector<AttemptValue> readAllValues(SQLite::Database& db, const std::vector<
                       intervals ? "LEFT JOIN value_interval i ON " + intervalIsOfValue() : "", places));
   for (std::size_t i = 0; i < without.size(); ++i) select.bind(static_cast<int>(i) + 1, without[i]);
   constexpr int first = 1 + valueColumnCount;
-  std::vector<AttemptValue> values;
+  AttemptValue value;
   while (select.executeStep()) {
-    AttemptValue& value = values.emplace_back(AttemptValue{text(select.getColumn(0)), valueRow(select, 1), {}});
+    assignText(value.attempt, select.getColumn(0));
+    readValueRow(select, 1, value.value);
+    value.interval.reset();
     if (intervals && !select.getColumn(first).isNull()) value.interval = intervalRow(select, first + 1);
+    take(value);
   }
-  return values;
 }
 
 }  // namespace calot::analytics::tables

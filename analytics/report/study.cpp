@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -30,13 +31,16 @@ std::string leftOut(const Study& study) {
   return fmt::format(" of {} attempts{}", study.recruited, left.empty() ? "" : " (left out: " + left + ")");
 }
 
-/// Values of one checkpoint and subject.
+/// Values of one checkpoint and subject. What depends on them alone is looked up once: a large cohort has millions of
+/// values.
 struct Column {
   StudySample sample;
   std::set<std::uint32_t> versions;
-  std::set<std::string> origins;
-  std::string unit;      ///< of a checkpoint that the registry does not know
-  bool sampled = false;  ///< its values have a coverage
+  std::set<Origin> origins;
+  std::string unit;        ///< of a checkpoint that the registry does not know
+  bool sampled = false;    ///< its values have a coverage
+  bool leftAside = false;  ///< of a phase, and not requested
+  double factor = 1.0;     ///< to display units
 };
 
 using ColumnKey = std::pair<std::string, std::string>;  ///< checkpoint, subject
@@ -143,7 +147,9 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
     row.notOutcome = d->notOutcome;
   }
   row.versions.assign(column.versions.begin(), column.versions.end());
-  row.origins.assign(column.origins.begin(), column.origins.end());
+  std::set<std::string> origins;
+  for (const Origin origin : column.origins) origins.insert(nameOf(origin));
+  row.origins.assign(origins.begin(), origins.end());
   row.sampled = column.sampled;
   return row;
 }
@@ -177,19 +183,11 @@ std::set<std::string> participantsOf(const std::string& path, const std::string&
       {Remedy::nameCohort});
 }
 
-}  // namespace
+using TakeValue = std::function<void(const AttemptValue&)>;
 
-Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
-  StudyOptions known = options;
-  if (known.cohort) known.cohort->participants = participantsOf(database.path(), known.cohort->name);
-  if (known.protocol) {
-    for (const Participant& p : database.participants()) known.protocol->experience[p.pseudonym] = p.experience;
-  }
-  return makeStudy(database.listAttempts(), database.allValues(unaskedPhases(known)), known, database.path());
-}
-
-Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
-                const StudyOptions& asked, const std::string& name) {
+/// @param eachValue gives every value to what it is called with, by attempt
+Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void(const TakeValue&)>& eachValue,
+              const StudyOptions& asked, const std::string& name) {
   const StudyOptions options = asked.protocol ? byProtocol(asked) : asked;
   Study study;
   study.heading = "exploratory";
@@ -228,18 +226,24 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   std::map<ColumnKey, Column> columns;
   std::vector<ColumnKey> order;
   CoverageCollector coverage;
-  for (const AttemptValue& item : values) {
-    const auto at = member.find(item.attempt);
-    if (at == member.end() || leftAside.count(item.value.name) > 0) continue;
-    const ColumnKey key{item.value.name, item.value.subject};
-    if (columns.count(key) == 0) order.push_back(key);
-    Column& column = columns[key];
+  std::string attempt;  // values come by attempt
+  auto at = member.end();
+  eachValue([&](const AttemptValue& item) {
+    if (attempt != item.attempt) at = member.find(attempt = item.attempt);
+    if (at == member.end()) return;
+    const auto [place, isNew] = columns.try_emplace(ColumnKey{item.value.name, item.value.subject});
+    Column& column = place->second;
+    if (isNew) {
+      column.leftAside = leftAside.count(item.value.name) > 0;
+      if (!column.leftAside) order.push_back(place->first);
+      if (const CheckpointDefinition* d = findCheckpoint(item.value.name)) column.factor = d->displayFactor;
+    }
+    if (column.leftAside) return;
     column.unit = item.value.unit;
     const Member& m = at->second;
     column.sampled = column.sampled || item.value.coverage;
     coverage.add(item.value, m.group, m.participant, item.attempt);
-    const CheckpointDefinition* definition = findCheckpoint(item.value.name);
-    const double factor = definition != nullptr ? definition->displayFactor : 1.0;
+    const double factor = column.factor;
     const double shown = item.value.value.value_or(0.0) * factor;
     if (!item.value.value || !std::isfinite(shown)) {
       column.sample.missing[m.group][m.participant].push_back(
@@ -248,24 +252,24 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
       if (item.value.availability == Availability::notAvailable && !m.completed && options.protocol &&
           options.protocol->protocol.missing == MissingRule::worstRank)
         column.sample.unfinished[m.group].insert(m.participant);
-      continue;
+      return;
     }
     column.versions.insert(item.value.version);
-    column.origins.insert(nameOf(item.value.origin));
+    column.origins.insert(item.value.origin);
     StudyValue& value = column.sample.values[m.group].emplace_back(StudyValue{m.participant, m.number, shown, {}, 0.0});
     if (item.interval && item.interval->lower) {
       value.halfWidth = 0.5 * factor * (*item.interval->upper - *item.interval->lower);
       for (const double world : item.interval->worlds()) value.worlds.push_back(world * factor);
     }
-  }
-  const auto place = [](const std::string& checkpoint) {
+  });
+  const auto rankOf = [](const std::string& checkpoint) {
     const auto& registry = checkpointRegistry();
     return std::find_if(registry.begin(), registry.end(),
                         [&](const CheckpointEntry& e) { return e.definition.name == checkpoint; }) -
            registry.begin();
   };
   std::stable_sort(order.begin(), order.end(),
-                   [&](const auto& a, const auto& b) { return place(a.first) < place(b.first); });
+                   [&](const auto& a, const auto& b) { return rankOf(a.first) < rankOf(b.first); });
   study.coverage = coverage.rows();
   std::array<std::map<std::string, double>, 2> duration;
   for (const ColumnKey& key : order) {
@@ -297,6 +301,28 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   addPublished(study);
   finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   return study;
+}
+
+}  // namespace
+
+StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options) {
+  if (options.cohort) options.cohort->participants = participantsOf(database.path(), options.cohort->name);
+  if (options.protocol) {
+    for (const Participant& p : database.participants()) options.protocol->experience[p.pseudonym] = p.experience;
+  }
+  return options;
+}
+
+Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
+  const StudyOptions known = withCohortData(database, options);
+  const auto each = [&](const TakeValue& take) { database.eachValue(unaskedPhases(known), take); };
+  return studyOf(database.listAttempts(), each, known, database.path());
+}
+
+Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
+                const StudyOptions& asked, const std::string& name) {
+  const auto each = [&](const TakeValue& take) { std::for_each(values.begin(), values.end(), take); };
+  return studyOf(recruited, each, asked, name);
 }
 
 }  // namespace calot::analytics

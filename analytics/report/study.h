@@ -66,6 +66,7 @@ struct StudyOptions : StudyChoices {
   /// make the family large; without this only the phases' durations and what a protocol or the family names.
   bool includePhases = false;
   std::string key;       ///< only attempts of this comparability key; empty: all, which must then have one
+  bool masked = false;   ///< groups have no names: hypotheses have no direction and no verdict
   bool mixKeys = false;  ///< compare across comparability keys and checkpoint versions, and say so
 };
 
@@ -80,6 +81,12 @@ struct ProtocolVersion {
   std::vector<std::string> changed;  ///< JSON pointers where it differs from the version before
 };
 
+/// When the analysis was locked, before which its groups were masked.
+struct StudyLock {
+  std::string lockedUtc, by;
+  std::vector<std::string> changed;  ///< since then: "data", "options", "software (...)"
+};
+
 /// A report's information about its protocol.
 struct StudyProtocol {
   std::string name, title, question, sha256;
@@ -92,6 +99,8 @@ struct StudyProtocol {
   std::string whyExploratory;              ///< empty: it was registered before the first attempt
   std::vector<ProtocolVersion> versions;
   std::vector<std::string> deviations;  ///< whole sentences
+  bool masked = false;                  ///< the groups have drawn names, hypotheses no directions
+  std::optional<StudyLock> lock;        ///< none: not locked
 };
 
 /// A reason for exclusion of attempts (or a table's rows), in the order in which reasons are checked.
@@ -220,6 +229,10 @@ struct Study {
 /// @throws Error (refused) when there are not two groups, a participant has several attempts and there is no rule, or
 /// comparability keys or checkpoint versions would mix; Error (invalid) for a name that is none, of a cohort too.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
+
+/// What makeStudy() of a database adds to the options: the named cohort's participants, recorded experience.
+/// @throws Error (invalid) where there is no such cohort
+StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options);
 
 /// The same of attempts and values at hand: CohortDatabase::listAttempts() and allValues(). @param name of where they
 /// are from, for errors

@@ -92,6 +92,8 @@ Json protocolJson(const Study& study) {
                         {"by", v.by},
                         {"changed", v.changed}});
   }
+  Json lock = nullptr;
+  if (p.lock) lock = {{"locked_utc", p.lock->lockedUtc}, {"by", p.lock->by}, {"changed", p.lock->changed}};
   return {{"name", p.name},
           {"version", p.version},
           {"title", p.title},
@@ -103,7 +105,9 @@ Json protocolJson(const Study& study) {
           {"missing", p.missing == MissingRule::worstRank ? "worst-rank" : "complete-cases"},
           {"populations", {p.populations[0], p.populations[1]}},
           {"versions", versions},
-          {"deviations", p.deviations}};
+          {"deviations", p.deviations},
+          {"masked", p.masked},
+          {"lock", lock}};
 }
 
 Json simulationJson(const StudyRow& row) {

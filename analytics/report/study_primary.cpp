@@ -28,6 +28,9 @@ std::string supportText(const Study& study, const StudyRow& row) {
   return coverage != nullptr && coverageDiffers(*coverage) ? "yes, but coverage differs" : "yes";
 }
 
+/// The study says which values its hypotheses expect to be larger.
+bool isDirected(const Study& study) { return study.protocol && !study.protocol->masked; }
+
 std::string resultTitle(const Study& study) {
   if (study.protocol) return "Primary hypotheses";
   const bool table2 = std::all_of(study.rows.begin(), study.rows.end(), [](const StudyRow& row) {
@@ -39,9 +42,9 @@ std::string resultTitle(const Study& study) {
 /// One line of the table; `adjusted` by Holm for what leads, by Benjamini and Hochberg for secondary hypotheses.
 std::vector<std::string> resultLine(const Study& study, const StudyRow& row, const std::optional<double>& adjusted) {
   std::vector<std::string> line{withUnit(row)};
-  if (study.protocol) line.push_back(row.hypothesis == Hypothesis::firstLarger ? study.groups[0] : study.groups[1]);
+  if (isDirected(study)) line.push_back(row.hypothesis == Hypothesis::firstLarger ? study.groups[0] : study.groups[1]);
   line.push_back(fmt::format("{} + {}", row.group[0].n, row.group[1].n));
-  if (!study.protocol) {
+  if (!isDirected(study)) {
     line.push_back(significantOrDash(row.group[0].median, 3));
     line.push_back(significantOrDash(row.group[1].median, 3));
   }
@@ -54,20 +57,20 @@ std::vector<std::string> resultLine(const Study& study, const StudyRow& row, con
   line.push_back(row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-");
   line.push_back(pOrDash(adjusted));
   line.push_back(pOrDash(row.attainableP));
-  if (study.protocol) line.push_back(supportText(study, row));
+  if (isDirected(study)) line.push_back(supportText(study, row));
   return line;
 }
 
 ReportTable resultTable(const Study& study, std::string title, const char* adjustment) {
   ReportTable table{std::move(title), {{study.protocol ? "hypothesis" : "figure", Align::left}}, {}};
-  if (study.protocol) table.columns.emplace_back("larger", Align::left);
+  if (isDirected(study)) table.columns.emplace_back("larger", Align::left);
   table.columns.emplace_back("n", Align::right);
-  if (!study.protocol) {
+  if (!isDirected(study)) {
     for (const std::string& group : study.groups) table.columns.emplace_back(cutTo(group, 10), Align::right);
   }
   for (const char* name : {"shift", "95 %", "A", "95 %", "p", adjustment, "smallest"})
     table.columns.emplace_back(name, Align::right);
-  if (study.protocol) table.columns.emplace_back("supported", Align::left);
+  if (isDirected(study)) table.columns.emplace_back("supported", Align::left);
   return table;
 }
 
@@ -75,14 +78,15 @@ std::string resultLegend(const Study& study) {
   const std::string &a = study.groups[0], &b = study.groups[1];
   const std::string superiority =
       study.better.empty()
-          ? fmt::format("that one of {} has the larger value (nobody said who is expected to do better)", a)
+          ? fmt::format("that one of {} has the larger value ({})", a,
+                        study.protocol ? "directions are masked" : "nobody said who is expected to do better")
           : fmt::format("that one of {} is better than one of {}, by {}", study.better, study.better == a ? b : a,
                         study.protocol ? "the hypothesis" : "the figure's own direction");
   return fmt::format(
       "{}shift: {} - {}, Hodges-Lehmann. A: probability {}, ties half. p: Mann-Whitney, two-sided. {} smallest: least "
       "adjusted p that groups of these sizes and these ties can give.",
-      study.protocol ? "larger: the group whose values are expected to be larger. "
-                     : fmt::format("{}, {}: medians. ", a, b),
+      isDirected(study) ? "larger: the group whose values are expected to be larger. "
+                        : fmt::format("{}, {}: medians. ", a, b),
       a, b, superiority, study.family);
 }
 
@@ -144,7 +148,7 @@ std::optional<Drawing> forestOf(const Study& study) {
                   .above = study.better.empty() ? study.groups[0] + " larger" : study.better + " better, as expected",
                   .rows = {},
                   .synthetic = study.synthetic};
-  if (study.protocol) plot.above = "as the hypothesis says";
+  if (isDirected(study)) plot.above = "as the hypothesis says";
   for (const StudyRow& row : study.rows) {
     if (row.leading && row.area)
       plot.rows.push_back({rowName(row), row.area->value.a, row.area->a.lower, row.area->a.upper});

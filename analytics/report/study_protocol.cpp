@@ -149,6 +149,7 @@ void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, 
   }
   listVersions(report, options.protocol->registered);
   listDeviations(report, data, options);
+  report.masked = options.masked;
   report.whyExploratory = whyExploratory(report, unknownStart);
   study.heading = report.whyExploratory.empty() ? "confirmatory" : "exploratory";
   study.protocol = std::move(report);
@@ -175,7 +176,8 @@ void declareRow(StudyRow& row, const Study& study, const Protocol& protocol) {
   for (const DirectedHypothesis& h : protocol.hypotheses) {
     if (!matches(h, row)) continue;
     row.role = h.primary ? Role::primary : Role::secondary;
-    row.hypothesis = h.larger == study.groups[0] ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
+    if (!study.protocol->masked)
+      row.hypothesis = h.larger == study.groups[0] ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
   }
 }
 
@@ -202,7 +204,7 @@ void adjustByProtocol(Study& study, const Protocol& protocol) {
   spread(benjaminiHochberg(smallestOfRest), others, putAttainable);
   for (StudyRow& row : study.rows) {
     if (row.role != Role::primary && row.role != Role::secondary) continue;
-    if (isOutOfReach(row, protocol.level)) continue;
+    if (study.protocol->masked || isOutOfReach(row, protocol.level)) continue;
     const std::optional<double>& p = row.role == Role::primary ? row.holm : row.benjaminiHochberg;
     if (p) row.supported = *p <= protocol.level && row.asHypothesised.value_or(false);
   }

@@ -2,6 +2,7 @@
 // calot import: motion without a scene into a cohort.
 #include <fmt/format.h>
 
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,17 +11,14 @@
 #include "analytics/assess.h"
 #include "analytics/checkpoints/from_samples.h"
 #include "analytics/import_motion.h"
+#include "analytics/motion_words.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/replay_report.h"
+#include "apps/calot/motion_import.h"
 #include "apps/calot/value_report.h"
-#include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/sources/column_map.h"
-#include "recorder/sources/devices/calibration.h"
-#include "recorder/sources/kinematics_file.h"
-#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 
@@ -28,67 +26,31 @@ namespace {
 
 struct ImportOptions {
   std::vector<std::string> files;
-  std::string cohort, columns, mode = "practice", outcome = "stopped";
+  std::string manifest, cohort, columns, mode = "practice", outcome = "stopped";
   analytics::MotionDeclaration declaration;
   double cutoff = 0.0;
   bool json = false;
 };
 
-/// What came of one file.
-struct Result {
-  ExitCode code = ExitCode::yes;
-  std::string how = "not stored", error;
-  std::optional<recorder::TrackedMotion> motion;
-  std::vector<analytics::CheckpointValue> values;
-};
-
-recorder::TrackedMotion read(const std::string& file, const std::optional<recorder::ColumnMap>& map) {
-  if (map) return recorder::readCsvMotion(file, *map);
-  if (std::filesystem::path(file).extension() == ".csv")
-    throw Error(ErrorKind::invalid, Where{file}, "a CSV file needs --columns MAP.json, which says what is in it");
-  return recorder::trackedMotion(recorder::readKinematics(file));
-}
-
 /// Reads first, so that a file that cannot be read makes no database.
-Result importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
-                 std::optional<analytics::CohortDatabase>& database) {
-  Result result;
-  try {
-    result.motion = read(file, map);
-    if (o.cohort.empty()) {
-      result.values =
-          analytics::valuesFromSamples(*result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
-      return result;
-    }
-    if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
-    analytics::StoredMotion stored = analytics::storeMotion(*database, *result.motion, o.declaration);
-    result.how = importedName(stored.imported);
-    result.values = std::move(stored.values);
-  } catch (const Error& e) {
-    // A wrong command line and a database that cannot be used end it all; a bad file is its own answer.
-    if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
-        (result.motion && e.kind() != ErrorKind::refused))
-      throw;
-    result.code = codeOf(e.kind());
-    result.error = messageOf(e);
-  }
-  return result;
+ImportedFile importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
+                       std::optional<analytics::CohortDatabase>& database) {
+  return importFile([&] { return readMotion(file, map ? &*map : nullptr); },
+                    [&](ImportedFile& result) {
+                      if (o.cohort.empty()) {
+                        result.values = analytics::valuesFromSamples(
+                            *result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
+                        return;
+                      }
+                      if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+                      analytics::StoredMotion stored = analytics::storeMotion(*database, *result.motion, o.declaration);
+                      result.how = importedName(stored.imported);
+                      result.values = std::move(stored.values);
+                    });
 }
 
 std::string summaryOf(const recorder::TrackedMotion& motion) {
   return fmt::format("{:.2f} s, {} rows", motion.time.back(), motion.time.size());
-}
-
-nlohmann::ordered_json jsonOf(const std::string& file, const Result& result) {
-  nlohmann::ordered_json row = {{"file", file}, {"stored", result.how}};
-  if (!result.error.empty()) row["error"] = result.error;
-  if (result.motion) {
-    row["sha256"] = result.motion->sha256;
-    row["rows"] = result.motion->time.size();
-    row["seconds"] = result.motion->time.back();
-  }
-  row["checkpoints"] = apps::jsonOf(result.values);
-  return row;
 }
 
 int import(const ImportOptions& o) {
@@ -100,7 +62,7 @@ int import(const ImportOptions& o) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   Progress progress("importing, files", o.json);
   for (const std::string& file : o.files) {
-    const Result result = importOne(file, o, map, database);
+    const ImportedFile result = importOne(file, o, map, database);
     codes.push_back(result.code);
     progress.show(codes.size(), o.files.size());
     if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
@@ -123,12 +85,12 @@ int import(const ImportOptions& o) {
   return static_cast<int>(worstOf(codes));
 }
 
-std::string isWord(const std::string& text) {
-  if (text.empty() || text.size() > 60) return "1 to 60 characters are wanted";
-  for (const char c : text) {
-    if (c <= ' ' || c > '~') return "a word without blanks is wanted";
-  }
-  return {};
+/// For CLI::Option::check.
+std::function<std::string(const std::string&)> wordOf(const char* field) {
+  return [field](const std::string& word) {
+    analytics::MotionDeclaration ignored;
+    return analytics::declareMotion(ignored, field, word);
+  };
 }
 
 }  // namespace
@@ -137,16 +99,18 @@ void addImport(CLI::App& app, Run& run) {
   auto o = std::make_shared<ImportOptions>();
   CLI::App* command = app.add_subcommand(
       "import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.");
+  CLI::Option* manifest = command->add_option(
+      "--manifest", o->manifest,
+      "A CSV table instead of files: a row each with file, participant, group, task, start, outcome, experience and "
+      "what the options below say; these stand for what it leaves out");
   command->add_option("files", o->files, "two-handed motion, 76 columns at 30 Hz; or CSV files with --columns")
-      ->required();
+      ->excludes(manifest);
   addStoring(*command, o->cohort, o->cutoff);
   command->add_option("--columns", o->columns, "what the columns of the CSV files are (schemas/columns.schema.json)");
   command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
-      ->check(isWord)
+      ->check(wordOf("task"))
       ->capture_default_str();
-  command->add_option("--participant", o->declaration.participant, "pseudonym")->check([](const std::string& p) {
-    return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
-  });
+  command->add_option("--participant", o->declaration.participant, "pseudonym")->check(wordOf("participant"));
   command->add_option("--mode", o->mode, "practice or assessment")
       ->check(CLI::IsMember({"practice", "assessment"}))
       ->capture_default_str();
@@ -160,17 +124,18 @@ void addImport(CLI::App& app, Run& run) {
       ->check(CLI::IsMember({"completed", "abandoned", "stopped"}))
       ->capture_default_str();
   command->add_option("--start", o->declaration.startUtc, "when it began: 2026-01-31T12:00:00Z")
-      ->check([](const std::string& text) {
-        return recorder::isDate(text) ? std::string() : std::string("2026-01-31T12:00:00Z is wanted");
-      });
+      ->check(wordOf("start"));
   command->add_flag("--json", o->json, "print the result as JSON");
   command->callback([o, &run] {
     run = [o] {
-      o->declaration.mode = o->mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
-      o->declaration.outcome = o->outcome == "completed"   ? recorder::Outcome::completed
-                               : o->outcome == "abandoned" ? recorder::Outcome::abandoned
-                                                           : recorder::Outcome::stopped;
-      return import(*o);
+      analytics::declareMotion(o->declaration, "mode", o->mode);
+      analytics::declareMotion(o->declaration, "outcome", o->outcome);
+      if (o->files.empty() && o->manifest.empty())
+        throw Error(ErrorKind::invalid, "import: name motion files, or a table of them with --manifest");
+      if (o->manifest.empty()) return import(*o);
+      if (o->cohort.empty() || o->cutoff > 0.0)
+        throw Error(ErrorKind::invalid, "import: --manifest stores what it names: give --cohort, and no --cutoff");
+      return importManifest({o->manifest, o->cohort, o->columns, o->declaration, o->json});
     };
   });
 }

@@ -9,10 +9,13 @@
 #include <string>
 
 #include "analytics/assessment/protocol.h"
+#include "analytics/cohort/analysis_locks.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/report/masked_study.h"
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/study_options.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
@@ -23,6 +26,7 @@ using Access = analytics::CohortDatabase::Access;
 
 struct ProtocolOptions {
   std::string protocol, database, by;
+  StudySource study;  ///< choices beside the protocol
   bool json = false;
 };
 
@@ -52,6 +56,31 @@ int registerIt(const ProtocolOptions& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
+int lock(const ProtocolOptions& o) {
+  const analytics::AssessmentDatabase assessment(o.database, Access::read);
+  StudySource source = o.study;
+  source.protocol = o.protocol;
+  const analytics::StudyOptions options = protocolStudyOptions(source, assessment);
+  const analytics::Protocol& protocol = options.protocol->protocol;
+  const auto& registered = options.protocol->registered;
+  if (std::none_of(registered.begin(), registered.end(), [&](const auto& r) { return r.sha256 == protocol.sha256; })) {
+    throw Error(ErrorKind::refused, Where{o.database},
+                fmt::format("protocol {} version {} is not registered here with this text; register it first (calot "
+                            "protocol register)",
+                            protocol.name, protocol.version));
+  }
+  const analytics::CohortDatabase cohort(o.database, Access::read);
+  // What the study would refuse cannot be locked.
+  static_cast<void>(analytics::makeMaskedStudy(cohort, assessment, options, false));
+  analytics::AnalysisLock present = presentAnalysis(cohort, assessment, options);
+  present.by = o.by;
+  bool added = false;
+  const analytics::AnalysisLock stored = analytics::storeAnalysisLock(o.database, present, added);
+  std::cout << fmt::format("{}: analysis of protocol {} {} {} by {}, values SHA-256 {}\n", o.database, stored.protocol,
+                           added ? "locked on" : "was locked on", stored.lockedUtc, stored.by, stored.valuesSha256);
+  return static_cast<int>(ExitCode::yes);
+}
+
 int list(const ProtocolOptions& o) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   std::string text;
@@ -76,7 +105,7 @@ int list(const ProtocolOptions& o) {
 
 void addProtocol(CLI::App& app, Run& run) {
   const auto o = std::make_shared<ProtocolOptions>();
-  CLI::App* command = app.add_subcommand("protocol", "Check, register and list the protocols of studies");
+  CLI::App* command = app.add_subcommand("protocol", "Check, register, lock and list the protocols of studies");
   command->require_subcommand(1);
   const auto add = [&](const char* name, const char* what, int (*call)(const ProtocolOptions&)) {
     CLI::App* sub = command->add_subcommand(name, what);
@@ -90,6 +119,14 @@ void addProtocol(CLI::App& app, Run& run) {
   registered->add_option("protocol", o->protocol, file)->required();
   registered->add_option("cohort", o->database, "Cohort database; made where there is none")->required();
   registered->add_option("--by", o->by, "Who registers it")->required();
+  CLI::App* locked = add("lock", "Fix a study's analysis, after which its groups are named", lock);
+  locked->add_option("protocol", o->protocol, file)->required();
+  locked->add_option("cohort", o->database, "Cohort database")->required();
+  locked->add_option("--by", o->by, "Who locks it")->required();
+  locked->add_option("--cohort-name", o->study.cohortName, "As the study's option of this name");
+  locked->add_option("--key", o->study.cohort.key, "As the study's option of this name");
+  locked->add_flag("--mix-keys", o->study.cohort.mixKeys, "As the study's option of this name");
+  locked->add_flag("--phases", o->study.cohort.includePhases, "As the study's option of this name");
   CLI::App* listed = add("list", "List the protocols that a cohort holds", list);
   listed->add_option("cohort", o->database, "Cohort database")->required();
   listed->add_flag("--json", o->json, "Print JSON");

@@ -15,6 +15,7 @@
 #include "analytics/report/ratings_json.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/rate_files.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -29,7 +30,7 @@ using Json = nlohmann::ordered_json;
 using Given = std::vector<std::pair<std::string, std::string>>;
 
 struct RateOptions {
-  std::string database, form, attempt, rater, participant, answersFile;
+  std::string database, form, attempt, rater, participant, answersFile, manifest, taken;
   std::vector<std::string> answers;
   bool forms = false, json = false, force = false;
 };
@@ -157,15 +158,26 @@ void addRate(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--answers", o->answersFile, "The same as a JSON object of items and scores, null for blank");
+  command->add_option("--manifest", o->manifest,
+                      "A CSV table of completed forms: attempt, file or participant, rater, and one column an item");
+  command->add_option("--take", o->taken, "The answers to a pack as the rater's page saved them");
   command->add_flag("--force", o->force, "Replace what the same rater or participant has given before");
   command->add_flag("--json", o->json, "Print JSON");
-  command->callback([o, &run] {
+  const CLI::App* pack = addRatePack(*command, run);
+  command->callback([o, pack, &run] {
+    if (pack->parsed()) return;
     run = [o] {
       if (o->forms) return listForms(*o);
       if (o->database.empty()) fail("name a cohort database, or ask for --forms");
+      const bool one = !(o->attempt + o->rater + o->participant + o->answersFile).empty() || !o->answers.empty();
+      if (!o->manifest.empty() || !o->taken.empty()) {
+        if (one || (!o->manifest.empty() && !o->taken.empty()) || (!o->taken.empty() && !o->form.empty()))
+          fail("--manifest and --take say themselves what was rated, by whom and how");
+        return o->manifest.empty() ? takePackAnswers(o->database, o->taken, o->force)
+                                   : storeRatingManifest(o->database, o->manifest, o->form, o->force, o->json);
+      }
       if (!o->form.empty()) return store(*o);
-      if (!(o->attempt + o->rater + o->participant + o->answersFile).empty() || !o->answers.empty())
-        fail("name the form that was filled in with --form");
+      if (one) fail("name the form that was filled in with --form");
       return show(*o);
     };
   });

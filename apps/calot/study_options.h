@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "analytics/report/masked_study.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"
 
@@ -12,6 +13,7 @@ namespace calot::apps {
 
 struct StudySource {
   std::string database, groupBy = "group", table, attemptRule, protocol, cohortName;
+  bool masked = false;  ///< until the protocol's analysis is locked
   analytics::StudyChoices choices;
   analytics::StudyOptions cohort;
   analytics::TableStudyOptions elsewhere;
@@ -19,6 +21,14 @@ struct StudySource {
 
 /// Adds the cohort or --table, and who and what of it is compared.
 void addStudySource(CLI::App& command, StudySource& source);
+
+/// The cohort's study as its protocol and the options choose it. @pre there are a cohort and a protocol
+analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::AssessmentDatabase& database);
+
+/// What a lock of that study's analysis fixes, without time and name.
+analytics::AnalysisLock presentAnalysis(const analytics::CohortDatabase& cohort,
+                                        const analytics::AssessmentDatabase& assessment,
+                                        const analytics::StudyOptions& options);
 
 /// @throws Error as makeStudy() and makeTableStudy(); (invalid) where neither a cohort nor a table is named.
 analytics::Study studyOf(StudySource& source);

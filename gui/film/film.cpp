@@ -102,7 +102,7 @@ class Cutter {
   void add(const std::filesystem::path& recording) {
     sources_.push_back(std::make_unique<FilmSource>(recording, settings_.overlays));
     const FilmSource& source = *sources_.back();
-    captions_.push_back({settings_.beside ? source.title() : "", source.mark()});
+    captions_.push_back({settings_.beside ? source.title() : "", source.mark(settings_.blinded)});
   }
 
   FilmSettings settings_;

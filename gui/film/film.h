@@ -27,6 +27,7 @@ struct FilmSettings {
   Overlays overlays;
   std::optional<std::filesystem::path> beside;  ///< a second recording, in the right half
   Alignment alignment = Alignment::start;
+  bool blinded = false;  ///< the mark of a synthetic attempt does not name its profile
 };
 
 /// What the functions below would refuse of their arguments, before anything is done.

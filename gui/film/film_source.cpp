@@ -31,7 +31,7 @@ FilmSource::Scene FilmSource::at(std::uint64_t step) {
   return scene;
 }
 
-std::string FilmSource::mark() const {
+std::string FilmSource::mark(bool blinded) const {
   const recorder::Provenance& source = recording_.header().provenance;
   switch (source.kind) {
     case recorder::OperatorKind::human:
@@ -39,7 +39,7 @@ std::string FilmSource::mark() const {
     case recorder::OperatorKind::kinematics:
       return "from recorded kinematics";
     case recorder::OperatorKind::performer:
-      return "synthetic: performer " + source.profile;
+      return blinded ? "synthetic" : "synthetic: performer " + source.profile;
   }
   return "";
 }

@@ -32,7 +32,8 @@ class FilmSource {
   [[nodiscard]] Scene at(std::uint64_t step);
 
   /// "synthetic: performer skilled", "kinematics", or empty for a human operator.
-  [[nodiscard]] std::string mark() const;
+  /// @param blinded "synthetic" alone, without the profile
+  [[nodiscard]] std::string mark(bool blinded) const;
   /// Operator for a title: pseudonym or kind of operator.
   [[nodiscard]] std::string title() const;
 

@@ -96,7 +96,7 @@ std::vector<CheckpointValue> oneOfEach() {
 /// The database, in a folder that goes away.
 class Cohort {
  public:
-  Cohort() {
+  explicit Cohort(int people) {
     std::string pattern = (std::filesystem::temp_directory_path() / "calot-bench-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error(pattern + ": cannot be made");
     folder_ = pattern;
@@ -110,10 +110,13 @@ class Cohort {
     bare.run("BEGIN; UPDATE participant SET study_group = 'expert'");
     bare.run(numbers +
              "INSERT INTO participant (id, pseudonym, study_group, created_utc) SELECT i, printf('P%03d', i), "
-             "iif(i % 2, 'expert', 'novice'), '2026-01-01T00:00:00Z' FROM n WHERE i <= 400");
+             "iif(i % 2, 'expert', 'novice'), '2026-01-01T00:00:00Z' FROM n WHERE i <= " +
+             std::to_string(people));
     bare.run(numbers +
              "INSERT INTO attempt SELECT i, printf('%08x-0000-4000-8000-%012x', i * 2654435761 % 4294967296, i), "
-             "parent_uuid, 1 + i % 400, scene, scene_major, scene_minor, operator_kind, profile, "
+             "parent_uuid, 1 + i % " +
+             std::to_string(people) +
+             ", scene, scene_major, scene_minor, operator_kind, profile, "
              "profile_version, mode, purpose, outcome, printf('2026-01-%02dT00:00:%02dZ', 1 + i % 28, i % 60), seed, "
              "device, calibration, simulation_version, comparability_key, synthetic, imported_utc, station "
              "FROM n JOIN attempt ON attempt.id = 1");
@@ -125,7 +128,7 @@ class Cohort {
              "JOIN verification ON attempt = 1");
     bare.run(numbers +
              "INSERT INTO checkpoint_value SELECT i, position, name, subject, version, availability, "
-             "1.0 + (i * 7919 + position * 104729) % 1009 / 100.0, reason, note, unit, origin, filter FROM n "
+             "1.0 + (i * 7919 + position * 104729) % 1009 / 100.0, reason, note, unit, origin, filter, coverage FROM n "
              "JOIN checkpoint_value ON attempt = 1 ORDER BY 1, 2");
     bare.run("COMMIT; ANALYZE; PRAGMA wal_checkpoint(TRUNCATE)");
   }
@@ -143,7 +146,13 @@ class Cohort {
 };
 
 Cohort& cohort() {
-  static Cohort one;
+  static Cohort one(400);
+  return one;
+}
+
+/// Each attempt by somebody else: groups of thousands.
+Cohort& crowd() {
+  static Cohort one(attempts);
   return one;
 }
 
@@ -182,17 +191,18 @@ void import(benchmark::State& bench) {
 }
 
 /// A study of two groups, every checkpoint, the mean of each participant's attempts; against reading every value once.
-void study(benchmark::State& bench) {
+void study(benchmark::State& bench, Cohort& (*of)(), const std::string& name) {
   StudyOptions options;
   options.attemptRule = AttemptRule::mean;
+  const std::string& path = of().path;
   for (auto _ : bench) {
     const double start = threadSeconds();
-    const CohortDatabase database(cohort().path, CohortDatabase::Access::read);
+    const CohortDatabase database(path, CohortDatabase::Access::read);
     const Study made = makeStudy(database, options);
     const double middle = threadSeconds();
-    Bare bare(cohort().path);
+    Bare bare(path);
     benchmark::DoNotOptimize(bare.read("SELECT * FROM checkpoint_value"));
-    tell(bench, "cohort.study", middle - start, threadSeconds() - middle);
+    tell(bench, name, middle - start, threadSeconds() - middle);
     bench.counters["rows"] = static_cast<double>(made.rows.size());
   }
 }
@@ -219,7 +229,10 @@ void list(benchmark::State& bench) {
 
 void registerCohort() {
   repeated(benchmark::RegisterBenchmark("cohort/import/10k", import), 9)->Unit(benchmark::kMillisecond);
-  repeated(benchmark::RegisterBenchmark("cohort/study/10k", study), 3)->Unit(benchmark::kMillisecond);
+  repeated(benchmark::RegisterBenchmark("cohort/study/10k", study, cohort, "cohort.study"), 3)
+      ->Unit(benchmark::kMillisecond);
+  repeated(benchmark::RegisterBenchmark("cohort/study/10k-people", study, crowd, "cohort.study_people"), 3)
+      ->Unit(benchmark::kMillisecond);
   repeated(benchmark::RegisterBenchmark("cohort/list/10k", list), 9)->Unit(benchmark::kMillisecond);
 }
 

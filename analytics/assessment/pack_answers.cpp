@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/assessment/pack_answers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/formats/json_reader.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::analytics {
+namespace {
+
+using recorder::JsonObject;
+using recorder::JsonPlace;
+using recorder::shown;
+
+constexpr std::size_t maxAnswerBytes = std::size_t{4} << 20U, maxAnswerWord = 80, maxPackFilms = 10000;
+
+const recorder::ObjectRule answersRule{
+    "", {{"format"}, {"formatVersion", true, 1, 1}, {"pack"}, {"rater"}, {"films"}, {"seal"}}};
+const recorder::ObjectRule filmRule{"film", {{"film"}, {"scores"}}};
+
+using Scores = std::vector<std::pair<std::string, std::string>>;  ///< item and score, in the form's order
+
+[[noreturn]] void refuse(const std::string& file, const std::string& what) {
+  throw Error(ErrorKind::refused, Where{file}, what);
+}
+
+Scores scoresOf(const JsonPlace& place, const RatingForm& form) {
+  recorder::ObjectRule rule{"scores", {}};
+  for (const FormItem& item : form.items()) rule.keys.push_back({item.key});
+  const JsonObject object = place.object(rule);
+  Scores scores;
+  for (const FormItem& item : form.items()) scores.emplace_back(item.key, object.at(item.key).text(maxAnswerWord));
+  return scores;
+}
+
+RatingForm formOf(const RatingPack& pack) {
+  return parseRatingForm(std::as_bytes(std::span(pack.form.text)), "form " + pack.form.name);
+}
+
+}  // namespace
+
+PackAnswers readPackAnswers(const std::filesystem::path& file,
+                            const std::function<std::optional<RatingPack>(const std::string& id)>& find) {
+  const std::string name = file.filename().string();
+  const nlohmann::json json = recorder::parseStrictJson(recorder::readFileBytes(file, name, maxAnswerBytes), name);
+  const JsonObject root = JsonPlace(json, name).object(answersRule);
+  if (root.at("format").text(maxAnswerWord) != "calot-answers") root.at("format").fail("calot-answers is wanted");
+  static_cast<void>(root.at("formatVersion").integer(answersRule.keys[1]));
+  const std::string id = root.at("pack").text(maxAnswerWord);
+  std::optional<RatingPack> pack = find(id);
+  if (!pack) refuse(name, fmt::format("answers to a pack ({}) that was not made from this cohort", shown(id)));
+
+  PackAnswers answers;
+  answers.form = formOf(*pack);
+  answers.rater = root.at("rater").text(maxAnswerWord);
+  const auto rater = std::find_if(pack->raters.begin(), pack->raters.end(),
+                                  [&](const PackedRater& r) { return r.rater == answers.rater; });
+  if (rater == pack->raters.end()) refuse(name, fmt::format("no rater \"{}\" has this pack", shown(answers.rater)));
+
+  std::string sealed = "calot-answers 1\n" + id + "\n" + answers.rater;
+  std::vector<std::pair<std::string, Scores>> films;
+  for (const JsonPlace& place : root.at("films").list(1, maxPackFilms)) {
+    const JsonObject film = place.object(filmRule);
+    films.emplace_back(film.at("film").text(maxAnswerWord), scoresOf(film.at("scores"), answers.form));
+    sealed += "\n" + films.back().first;
+    for (const auto& [item, score] : films.back().second) sealed += fmt::format(" {}={}", item, score);
+  }
+  if (sealOf(rater->sealKey, sealed) != root.at("seal").text(maxAnswerWord))
+    refuse(name, "was changed after the rater's page saved it; ask the rater to save it again");
+
+  std::map<std::string, std::string> attemptOf;
+  for (const PackedFilm& film : rater->films) attemptOf[film.name] = film.attempt;
+  std::set<std::string> seen;
+  for (const auto& [film, scores] : films) {
+    if (!seen.insert(film).second) refuse(name, fmt::format("film {} is there twice", shown(film)));
+    const auto at = attemptOf.find(film);
+    if (at == attemptOf.end()) {  // sealed by the page, so it was in the pack
+      ++answers.withdrawn;
+      continue;
+    }
+    Rating rating{answers.form.name, answers.form.version, at->second, answers.rater, "", {}, ""};
+    attemptOf.erase(at);
+    if (std::all_of(scores.begin(), scores.end(), [](const auto& s) { return s.second == "-"; })) {
+      ++answers.notJudged;
+      continue;
+    }
+    rating.answers = answersOf(answers.form, scores);
+    answers.ratings.push_back(std::move(rating));
+  }
+  if (!attemptOf.empty()) refuse(name, fmt::format("{} films of the pack have no answers", attemptOf.size()));
+  answers.pack = std::move(*pack);
+  return answers;
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/assessment/rating_form.h"
+#include "analytics/cohort/rating_packs.h"
+
+namespace calot::analytics {
+
+/// What a rater's page saved, with the films' names resolved.
+struct PackAnswers {
+  RatingPack pack;
+  RatingForm form;
+  std::string rater;
+  std::vector<Rating> ratings;
+  std::size_t notJudged = 0;  ///< films of which the rater could judge no item
+  std::size_t withdrawn = 0;  ///< films of attempts that were withdrawn since
+};
+
+/// Reads and checks the file that a rating page saved: {"format": "calot-answers", "formatVersion": 1, "pack", "rater",
+/// "films": [{"film", "scores": {ITEM: "SCORE" or "-"}}], "seal"}. The seal is HMAC-SHA-256 of the lines "calot-answers
+/// 1", pack, rater and, for each film, "FILM ITEM=SCORE ...", joined by line feeds.
+/// @param find the pack of that id, if there is one
+/// @throws Error (damaged) for a file that is none; (refused) for a pack or rater that is not known, a seal that does
+/// not fit, a film that is missing or there twice.
+PackAnswers readPackAnswers(const std::filesystem::path& file,
+                            const std::function<std::optional<RatingPack>(const std::string& id)>& find);
+
+}  // namespace calot::analytics

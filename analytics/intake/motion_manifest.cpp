@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/intake/motion_manifest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "analytics/intake/manifest_table.h"
+#include "analytics/motion_words.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::analytics {
+namespace {
+
+namespace fs = std::filesystem;
+using recorder::shown;
+
+constexpr std::string_view criterionPrefix = "experience:";
+constexpr const char* declared[] = {"task", "participant", "mode", "purpose", "handedness", "outcome", "start"};
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+/// "name<mark>value" pairs between semicolons. @return empty, or the fault
+std::string readPairs(const std::string& cell, char mark, const char* form, std::map<std::string, std::string>& out) {
+  for (std::size_t from = 0; from <= cell.size();) {
+    const std::size_t end = std::min(cell.find(';', from), cell.size());
+    const std::string item = trimmed(cell.substr(from, end - from));
+    from = end + 1;
+    if (item.empty()) continue;
+    const std::size_t at = item.find(mark);
+    if (at == std::string::npos || at == 0 || at + 1 == item.size())
+      return fmt::format("\"{}\": {} is wanted, several between semicolons", shown(item), form);
+    if (!out.emplace(trimmed(item.substr(0, at)), trimmed(item.substr(at + 1))).second)
+      return fmt::format("{} is given twice", shown(item.substr(0, at)));
+  }
+  return {};
+}
+
+/// Adds what one row says of a participant. @return empty, or what contradicts
+std::string combine(std::string& known, const std::string& more) {
+  if (more.empty() || known == more) return {};
+  if (!known.empty()) return fmt::format("\"{}\", and \"{}\" before", shown(more), shown(known));
+  known = more;
+  return {};
+}
+
+std::string combine(std::map<std::string, std::string>& known, const std::map<std::string, std::string>& more) {
+  for (const auto& [name, value] : more) {
+    if (const std::string fault = combine(known[name], value); !fault.empty()) return shown(name) + " " + fault;
+  }
+  return {};
+}
+
+/// Reads rows in turn, with what earlier ones said.
+class Reader {
+ public:
+  Reader(const ManifestTable& table, MotionManifest& manifest, const MotionDeclaration& otherwise, std::string columns)
+      : table_(table), manifest_(manifest), otherwise_(otherwise), columns_(std::move(columns)) {}
+
+  /// @throws Error (damaged) for a wrong row.
+  void take(const CsvRow& row) {
+    MotionRow taken{row.line, {}, {}, otherwise_};
+    readFile(row, taken);
+    for (const char* field : declared) {
+      const std::string word = table_.cell(row, field);
+      if (const std::string wanted = declareMotion(taken.declaration, field, word); !wanted.empty())
+        throw table_.fault(row, field, fmt::format("\"{}\": {}", shown(word), wanted));
+    }
+    readParticipant(row, taken.declaration.participant);
+    manifest_.rows.push_back(std::move(taken));
+  }
+
+ private:
+  void readFile(const CsvRow& row, MotionRow& taken) {
+    const std::string cell = table_.cell(row, "file");
+    if (cell.empty()) throw table_.fault(row, "file", "is empty; every row needs its file");
+    taken.file = table_.fileNamed(cell);
+    std::error_code ignored;
+    if (!fs::is_regular_file(taken.file, ignored)) {
+      throw table_.fault(row, "file",
+                         fmt::format("there is no file \"{}\"; paths are relative to the manifest", shown(cell)));
+    }
+    const auto [other, fresh] = files_.emplace(fs::weakly_canonical(taken.file, ignored), row.line);
+    if (!fresh) {
+      throw table_.fault(row, "file",
+                         fmt::format("\"{}\" is that of line {} already; remove one", shown(cell), other->second));
+    }
+    const std::string map = table_.cell(row, "columns");
+    taken.columns = map.empty() ? columns_ : table_.fileNamed(map).string();
+    if (taken.columns.empty() && taken.file.extension() == ".csv")
+      throw table_.fault(row, table_.has("columns") ? "columns" : "file",
+                         "a CSV file needs a map of its columns; name it in a column \"columns\", or for all files");
+    if (!taken.columns.empty() && manifest_.maps.count(taken.columns) == 0) {
+      try {
+        manifest_.maps.emplace(taken.columns, recorder::readColumnMap(taken.columns));
+      } catch (const Error& e) {
+        throw table_.fault(row, "columns", e.what());
+      }
+    }
+  }
+
+  void readParticipant(const CsvRow& row, const std::string& pseudonym) {
+    Participant p{pseudonym, table_.cell(row, "group"), table_.cell(row, "arm"), table_.cell(row, "site"), {}, {}};
+    const auto ask = [&](const char* column, const std::string& fault) {
+      if (!fault.empty()) throw table_.fault(row, column, fault);
+    };
+    ask("experience", readPairs(table_.cell(row, "experience"), '=', "CRITERION=VALUE", p.experience));
+    ask("consent", readPairs(table_.cell(row, "consent"), ':', "PURPOSE:YYYY-MM-DD", p.consent));
+    for (const std::string& column : table_.columns()) {
+      const std::string value = table_.cell(row, column);
+      if (column.substr(0, criterionPrefix.size()) != criterionPrefix || value.empty()) continue;
+      if (!p.experience.emplace(column.substr(criterionPrefix.size()), value).second)
+        throw table_.fault(row, column, "is given in column \"experience\", too");
+    }
+    for (const auto& [column, value] : {std::pair("group", &p.group), {"arm", &p.arm}, {"site", &p.site}}) {
+      if (holdsControl(*value)) throw table_.fault(row, column, "holds a line break or a control character");
+    }
+    const bool saysAnything = !(p.group + p.arm + p.site).empty() || !p.experience.empty() || !p.consent.empty();
+    if (pseudonym.empty()) {
+      if (saysAnything) throw table_.fault(row, "participant", "is empty; a group or experience is a participant's");
+      return;
+    }
+    try {
+      checkParticipant(p);
+    } catch (const Error& e) {
+      throw table_.fault(row, "participant", e.what());
+    }
+    const auto [at, fresh] = manifest_.participants.emplace(pseudonym, p);
+    manifest_.lineOf.emplace(pseudonym, row.line);
+    if (fresh) return;
+    Participant& known = at->second;
+    ask("group", combine(known.group, p.group));
+    ask("arm", combine(known.arm, p.arm));
+    ask("site", combine(known.site, p.site));
+    ask("experience", combine(known.experience, p.experience));
+    ask("consent", combine(known.consent, p.consent));
+  }
+
+  const ManifestTable& table_;
+  MotionManifest& manifest_;
+  const MotionDeclaration& otherwise_;
+  std::string columns_;
+  std::map<fs::path, std::size_t> files_;  ///< line of each
+};
+
+}  // namespace
+
+MotionManifest readMotionManifest(const std::string& path, const MotionDeclaration& otherwise,
+                                  const std::string& columns, std::vector<Error>& faults) {
+  std::vector<std::string> known{"file", "columns", "group", "arm", "site", "experience", "experience:", "consent"};
+  known.insert(known.end(), std::begin(declared), std::end(declared));
+  const ManifestTable table(readCsvTable(path), known);
+  if (!table.has("file"))
+    throw Error(ErrorKind::invalid, Where{path, "line 1"}, "there is no column \"file\"; a manifest names its files");
+  MotionManifest manifest;
+  manifest.path = path;
+  if (!columns.empty()) manifest.maps.emplace(columns, recorder::readColumnMap(columns));
+  Reader reader(table, manifest, otherwise, columns);
+  for (const CsvRow& row : table.rows()) {
+    try {
+      reader.take(row);
+    } catch (const Error& e) {
+      faults.push_back(e);
+    }
+  }
+  return manifest;
+}
+
+}  // namespace calot::analytics

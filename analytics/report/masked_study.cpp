@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/report/masked_study.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace calot::analytics {
+namespace {
+
+constexpr const char* maskedNames[] = {"group 1", "group 2"};
+constexpr const char* untilLocked = "masked until the analysis is locked";
+
+/// The masked name of a group; another group is of no study.
+std::string maskedName(const std::string& group, const Protocol& protocol, bool swapped) {
+  for (std::size_t g = 0; g < 2; ++g) {
+    if (protocol.populations[g].group == group) return maskedNames[(g == 0) == swapped ? 1 : 0];
+  }
+  return group.empty() ? group : "another";
+}
+
+StudyOptions maskedOptions(const StudyOptions& options, bool swapped) {
+  StudyOptions masked = options;
+  Protocol& protocol = masked.protocol->protocol;
+  if (swapped) std::swap(protocol.populations[0], protocol.populations[1]);
+  for (std::size_t g = 0; g < 2; ++g) {
+    protocol.populations[g].group = maskedNames[g];
+    protocol.populations[g].definition = untilLocked;
+  }
+  protocol.better.clear();
+  for (DirectedHypothesis& h : protocol.hypotheses) h.larger.clear();
+  masked.masked = true;
+  return masked;
+}
+
+}  // namespace
+
+Study makeMaskedStudy(const CohortDatabase& database, const AssessmentDatabase& assessment, const StudyOptions& options,
+                      bool swapped) {
+  const Protocol& protocol = options.protocol->protocol;
+  StudyOptions masked = withCohortData(database, maskedOptions(options, swapped));
+  std::vector<AttemptRow> attempts = database.listAttempts();
+  for (AttemptRow& a : attempts) {
+    std::string& group = protocol.performers ? a.profile : a.group;
+    group = maskedName(group, protocol, swapped);
+  }
+  Study study = makeStudy(attempts, database.allValues(), masked, database.path());
+  addRatings(study, assessment);
+  for (StudyRow& row : study.rows) {
+    row.publishedExpert = row.publishedNovice = std::nullopt;
+    for (auto& people : row.participants) {
+      for (std::size_t i = 0; i < people.size(); ++i) people[i] = fmt::format("{:05d}", i + 1);
+    }
+  }
+  study.publishedSource.clear();
+  study.remarks.emplace_back(
+      "Groups are masked: their names are drawn, and directions, verdicts and published values are left out until the "
+      "analysis is locked (calot protocol lock). The groups' sizes remain and may tell them apart.");
+  if (protocol.missing == MissingRule::worstRank)
+    study.remarks.emplace_back("Who did not complete is ranked behind all others only once directions are shown.");
+  return study;
+}
+
+std::string analysisOptions(const StudyOptions& options) {
+  return fmt::format("cohort: {}\nkey: {}\nmixed keys: {}\nphases: {}\n",
+                     options.cohort ? options.cohort->name : "all participants",
+                     options.key.empty() ? "any" : options.key, options.mixKeys ? "yes" : "no",
+                     options.includePhases ? "all" : "durations");
+}
+
+void describeLock(Study& study, const AnalysisLock& lock, const AnalysisLock& now) {
+  StudyLock& told = study.protocol->lock.emplace();
+  told.lockedUtc = lock.lockedUtc;
+  told.by = lock.by;
+  if (lock.valuesSha256 != now.valuesSha256) told.changed.emplace_back("data");
+  if (lock.options != now.options) told.changed.emplace_back("options");
+  if (lock.software != now.software)
+    told.changed.push_back(fmt::format("software ({}, now {})", lock.software, now.software));
+}
+
+}  // namespace calot::analytics

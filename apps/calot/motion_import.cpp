@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/calot/motion_import.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "analytics/intake/enrolment.h"
+#include "analytics/intake/motion_manifest.h"
+#include "apps/calot/environment.h"
+#include "apps/calot/manifest_faults.h"
+#include "apps/calot/value_report.h"
+#include "apps/common/advice.h"
+#include "recorder/errors.h"
+#include "recorder/sources/kinematics_file.h"
+
+namespace calot::apps {
+namespace {
+
+/// "expert 6, novice 6", or empty without groups.
+std::string groupsOf(const analytics::MotionManifest& manifest) {
+  std::map<std::string, std::size_t> groups;
+  for (const auto& entry : manifest.participants) ++groups[entry.second.group];
+  if (groups.size() == 1 && groups.begin()->first.empty()) return {};
+  std::string text;
+  for (const auto& [group, people] : groups)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", group.empty() ? "without group" : group, people);
+  return " (" + text + ")";
+}
+
+void printSummary(const analytics::MotionManifest& manifest, const std::map<std::string, std::size_t>& counts,
+                  std::size_t practice) {
+  std::string how;
+  for (const auto& [word, files] : counts) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", files, word);
+  std::cout << fmt::format("{}: {} files: {}; {} participants{}\n", manifest.path, manifest.rows.size(), how,
+                           manifest.participants.size(), groupsOf(manifest));
+  if (practice > 0) {
+    std::cout << fmt::format(
+        "{} in practice mode: studies leave these out (a column \"mode\", or --mode assessment, says otherwise)\n",
+        practice);
+  }
+}
+
+}  // namespace
+
+recorder::TrackedMotion readMotion(const std::filesystem::path& file, const recorder::ColumnMap* map) {
+  if (map != nullptr) return recorder::readCsvMotion(file, *map);
+  if (file.extension() == ".csv") {
+    throw Error(ErrorKind::invalid, Where{file.string()},
+                "a CSV file needs --columns MAP.json, which says what is in it");
+  }
+  return recorder::trackedMotion(recorder::readKinematics(file));
+}
+
+ImportedFile importFile(const std::function<recorder::TrackedMotion()>& read,
+                        const std::function<void(ImportedFile&)>& store) {
+  ImportedFile result;
+  try {
+    result.motion = read();
+    store(result);
+  } catch (const Error& e) {
+    if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
+        (result.motion && e.kind() != ErrorKind::refused))
+      throw;
+    result.code = codeOf(e.kind());
+    result.error = messageOf(e);
+  }
+  return result;
+}
+
+nlohmann::ordered_json jsonOf(const std::string& file, const ImportedFile& result) {
+  nlohmann::ordered_json row = {{"file", file}, {"stored", result.how}};
+  if (!result.error.empty()) row["error"] = result.error;
+  if (result.motion) {
+    row["sha256"] = result.motion->sha256;
+    row["rows"] = result.motion->time.size();
+    row["seconds"] = result.motion->time.back();
+  }
+  row["checkpoints"] = apps::jsonOf(result.values);
+  return row;
+}
+
+int importManifest(const ManifestOptions& o) {
+  std::vector<Error> faults;
+  const analytics::MotionManifest manifest = analytics::readMotionManifest(o.manifest, o.otherwise, o.columns, faults);
+  std::optional<analytics::CohortDatabase> database;
+  std::optional<analytics::Enrolment> enrolment;
+  if (std::filesystem::exists(o.cohort)) {
+    enrolment.emplace(analytics::CohortDatabase(o.cohort, analytics::CohortDatabase::Access::read));
+    const std::vector<Error> conflicts = enrolment->conflicts(manifest);
+    faults.insert(faults.end(), conflicts.begin(), conflicts.end());
+  }
+  if (!faults.empty()) return refuseRows(faults);
+
+  std::vector<ExitCode> codes;
+  std::vector<std::string> errors;
+  std::map<std::string, std::size_t> counts;
+  std::set<std::string> enrolled;
+  std::size_t practice = 0;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  {
+    Progress progress("importing, files", o.json);
+    for (const analytics::MotionRow& row : manifest.rows) {
+      progress.show(codes.size(), manifest.rows.size());
+      const auto map = manifest.maps.find(row.columns);
+      const ImportedFile result = importFile(
+          [&] { return readMotion(row.file, map == manifest.maps.end() ? nullptr : &map->second); },
+          [&](ImportedFile& stored) {
+            // Only now, so that files none of which can be read make no database.
+            if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+            if (!enrolment) enrolment.emplace(*database);
+            const std::string& who = row.declaration.participant;
+            if (!who.empty() && enrolled.insert(who).second) enrolment->add(*database, manifest.participants.at(who));
+            analytics::StoredMotion motion = analytics::storeMotion(*database, *stored.motion, row.declaration);
+            stored.how = importedName(motion.imported);
+            stored.values = std::move(motion.values);
+          });
+      codes.push_back(result.code);
+      ++counts[result.how];
+      if (result.error.empty() && row.declaration.mode == recorder::Mode::practice) ++practice;
+      if (!result.error.empty())
+        errors.push_back(fmt::format("{}: line {}: {}", manifest.path, row.line, result.error));
+      if (o.json) list.push_back(jsonOf(row.file.string(), result));
+    }
+  }
+  if (o.json) {
+    std::cout << list.dump(2) << '\n';
+  } else {
+    printSummary(manifest, counts, practice);
+  }
+  std::cout.flush();
+  for (const std::string& error : errors) fmt::print(stderr, "calot: {}\n", error);
+  return static_cast<int>(worstOf(codes));
+}
+
+}  // namespace calot::apps
