@@ -11,7 +11,7 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t maxTitle = 42;  // in letters: what fits at the size of page_html.cpp
+constexpr std::size_t maxPlotTitle = 42;  // in letters: what fits at the size of page_html.cpp
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::optional<PlotScale> plotScale(std::span<const double> values) {
 
 Drawing beginPlot(const std::string& title, const std::string& axis, const PlotScale& scale) {
   Drawing drawing{title, plotWidth, plotHeight, {}};
-  drawing.text(Ink::heading, 12.0, 18.0, cutTo(title, maxTitle));
+  drawing.text(Ink::heading, 12.0, 18.0, cutTo(title, maxPlotTitle));
   for (const double tick : roundTicks(scale.low, scale.high)) {
     drawing.line(Ink::grid, plotLeft, scale.y(tick), plotRight, scale.y(tick));
     drawing.text(Ink::tick, plotLeft - 6.0, scale.y(tick) + 4.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));

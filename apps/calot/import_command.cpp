@@ -12,6 +12,7 @@
 #include "analytics/import_motion.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/metric_options.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
@@ -30,6 +31,7 @@ struct ImportOptions {
   std::vector<std::string> files;
   std::string cohort, columns, mode = "practice", outcome = "stopped";
   analytics::MotionDeclaration declaration;
+  MetricOptions metrics;
   double cutoff = 0.0;
   bool json = false;
 };
@@ -40,6 +42,9 @@ struct Result {
   std::string how = "not stored", error;
   std::optional<recorder::TrackedMotion> motion;
   std::vector<analytics::CheckpointValue> values;
+  analytics::MetricOutcomes external;
+
+  void addExternal() { values.insert(values.end(), external.values.begin(), external.values.end()); }
 };
 
 recorder::TrackedMotion read(const std::string& file, const std::optional<recorder::ColumnMap>& map) {
@@ -51,19 +56,30 @@ recorder::TrackedMotion read(const std::string& file, const std::optional<record
 
 /// Reads first, so that a file that cannot be read makes no database.
 Result importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
+                 const std::vector<analytics::MetricScript>& metrics,
                  std::optional<analytics::CohortDatabase>& database) {
   Result result;
   try {
     result.motion = read(file, map);
+    result.external = analytics::externalOf(*result.motion, o.declaration, metrics);
     if (o.cohort.empty()) {
       result.values =
           analytics::valuesFromSamples(*result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
+      result.addExternal();
       return result;
     }
-    if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+    if (!database) {
+      database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+      checkMetrics(metrics, *database);
+    }
     analytics::StoredMotion stored = analytics::storeMotion(*database, *result.motion, o.declaration);
     result.how = importedName(stored.imported);
     result.values = std::move(stored.values);
+    const std::string attempt = analytics::recordOf(*result.motion, o.declaration).uuid;
+    if (analytics::storeExternal(*database, attempt, result.external, metrics) &&
+        stored.imported == analytics::Imported::unchanged)
+      result.how = importedName(analytics::Imported::extended);
+    result.addExternal();
   } catch (const Error& e) {
     // A wrong command line and a database that cannot be used end it all; a bad file is its own answer.
     if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
@@ -88,6 +104,7 @@ nlohmann::ordered_json jsonOf(const std::string& file, const Result& result) {
     row["seconds"] = result.motion->time.back();
   }
   row["checkpoints"] = apps::jsonOf(result.values);
+  if (!result.external.failures.empty()) row["failed_metrics"] = failuresJson(result.external);
   return row;
 }
 
@@ -95,13 +112,14 @@ int import(const ImportOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
+  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
   std::optional<analytics::CohortDatabase> database;
   std::vector<ExitCode> codes;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   Progress progress("importing, files", o.json);
   for (const std::string& file : o.files) {
-    const Result result = importOne(file, o, map, database);
-    codes.push_back(result.code);
+    const Result result = importOne(file, o, map, metrics, database);
+    codes.push_back(worstOf({result.code, reportFailures(result.external, file)}));
     progress.show(codes.size(), o.files.size());
     if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
     if (o.json) {
@@ -140,6 +158,7 @@ void addImport(CLI::App& app, Run& run) {
   command->add_option("files", o->files, "two-handed motion, 76 columns at 30 Hz; or CSV files with --columns")
       ->required();
   addStoring(*command, o->cohort, o->cutoff);
+  addMetrics(*command, o->metrics);
   command->add_option("--columns", o->columns, "what the columns of the CSV files are (schemas/columns.schema.json)");
   command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
       ->check(isWord)
