@@ -27,8 +27,10 @@ class InputColumns {
   void whole(const std::string& name, std::int64_t value);
   void vector(const std::string& name, const char* unit, const char* frame, const Vec3& value);
   void rotation(const std::string& name, const char* frame, const Quat& value);  ///< w x y z
+  /// A number of each of several; no column where there are none. @pre as many in each row
   template <class List, class Read>
   void list(const std::string& name, const char* unit, const List& values, Read read) {
+    if (values.empty()) return;
     using T = std::remove_cvref_t<decltype(read(values.front()))>;
     constexpr bool isWhole = !std::is_floating_point_v<T>;
     NpyColumn& c = column(name, unit, "", isWhole, values.size(), true);

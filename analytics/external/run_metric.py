@@ -6,6 +6,7 @@ usage: run_metric.py SCRIPT SHOWN_NAME [FOLDER]
 Without FOLDER the script's declarations are read; with it, compute() is called on the attempt that lies there. What is found is one line of
 JSON on file descriptor 3: {"name": ...}, {"value": ...}, {"missing": REASON}, or {"fault": TEXT, "line": N}.
 """
+import difflib
 import json
 import math
 import os
@@ -26,8 +27,10 @@ class Columns(dict):
     def __missing__(self, name):
         import numpy
         if name not in self._names:
-            there = ", ".join(self._names) if self._names else self._why
-            raise KeyError(f"{self._table} have no {name!r}; there are: {there}" if self._names else f"{self._table}: {there}")
+            if not self._names:
+                raise KeyError(f"there are no {self._table}: {self._why}")
+            near = difflib.get_close_matches(str(name), self._names, 3, 0.5) or self._names[:3] + ["..."]
+            raise KeyError(f"{self._table} have no {name!r}; there are {len(self._names)}, such as {', '.join(near)}")
         self[name] = column = numpy.load(os.path.join(self._folder, self._table, name + ".npy"), mmap_mode="r")
         return column
 
@@ -53,7 +56,7 @@ class Attempt:
         self.header = described["attempt"]
         self.structures = described["structures"]
         self.columns = described["columns"]
-        for table, why in (("results", "motion without a scene has none"), ("samples", "none"), ("events", "motion without a scene has none")):
+        for table, why in (("results", "the motion is without a scene"), ("samples", "the attempt is empty"), ("events", "the motion is without a scene")):
             names = [c["name"] for c in self.columns if c["table"] == table]
             setattr(self, table, Columns(folder, table, names, why))
 

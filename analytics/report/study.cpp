@@ -37,6 +37,7 @@ struct Column {
   std::set<std::string> origins;
   std::string unit;      ///< of a checkpoint that the registry does not know
   bool sampled = false;  ///< its values have a coverage
+  ExternalMetricRef metric;
 };
 
 using ColumnKey = std::pair<std::string, std::string>;  ///< checkpoint, subject
@@ -136,7 +137,9 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
   row.subject = key.second;
   row.title = key.first;
   row.unit = column.unit;
-  if (const CheckpointDefinition* d = findCheckpoint(key.first)) {
+  if (column.metric) row.source = column.metric->sha256;
+  const CheckpointDefinition* d = column.metric ? &column.metric->definition : findCheckpoint(key.first);
+  if (d != nullptr) {
     row.title = d->title;
     row.unit = d->displayUnit;
     row.direction = d->direction;
@@ -238,7 +241,8 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
     const Member& m = at->second;
     column.sampled = column.sampled || item.value.coverage;
     coverage.add(item.value, m.group, m.participant, item.attempt);
-    const CheckpointDefinition* definition = findCheckpoint(item.value.name);
+    column.metric = item.value.metric;
+    const CheckpointDefinition* definition = definitionOf(item.value);
     const double factor = definition != nullptr ? definition->displayFactor : 1.0;
     const double shown = item.value.value.value_or(0.0) * factor;
     if (!item.value.value || !std::isfinite(shown)) {

@@ -49,7 +49,7 @@ MAY_SEE = {
     "gui/words": ("sim", "recorder contracts", "analytics"),
     "gui/film": ("sim", "recorder", "analytics", "gui/render", "gui/words"),
     "gui/view": ("sim", "recorder contracts", "gui/render"),
-    "gui/dashboard": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
+    "gui/dashboard": ("sim", "recorder", "analytics", "gui/render", "gui/report", "gui/view", "gui/words"),
     "gui/page": ("sim", "recorder", "gui/render", "gui/words"),
     "gui/trainer": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
