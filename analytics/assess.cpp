@@ -12,8 +12,10 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/from_observables.h"
 #include "analytics/checkpoints/registry.h"
+#include "analytics/external/metric_input.h"
 #include "analytics/report/text_table.h"
 #include "recorder/attempt.h"
+#include "recorder/formats/scene_file.h"
 #include "recorder/words.h"
 
 namespace calot::analytics {
@@ -106,6 +108,8 @@ Verdict verdictOf(recorder::ReplayVerdict verdict) {
 Assessment assessRecording(const std::string& file, const AssessSettings& wanted) {
   recorder::AttemptHeader header;
   std::unique_ptr<CheckpointCollector> collector;
+  std::unique_ptr<MetricInput> input;
+  const bool hasMetrics = wanted.metrics != nullptr && !wanted.metrics->empty();
   recorder::ReplaySettings settings;
   settings.threads = wanted.threads;
   settings.engine = wanted.engine;
@@ -113,7 +117,12 @@ Assessment assessRecording(const std::string& file, const AssessSettings& wanted
   settings.observers = [&](const recorder::AttemptHeader& h, const SceneDescription& scene) {
     header = h;
     collector = std::make_unique<CheckpointCollector>(h, scene, Origin::resimulated, wanted.cutoff);
-    return std::vector<recorder::Observer*>{collector.get()};
+    std::vector<recorder::Observer*> observers{collector.get()};
+    if (hasMetrics) {
+      input = std::make_unique<MetricInput>(h, scene, Origin::resimulated);
+      observers.push_back(input.get());
+    }
+    return observers;
   };
   Assessment result;
   result.report = recorder::replayRecording(file, settings);
@@ -135,11 +144,20 @@ Assessment assessRecording(const std::string& file, const AssessSettings& wanted
   }
   const bool exact = report.verdict == recorder::ReplayVerdict::exact;
   assessed.verification = {verdictOf(report.verdict), exact ? "" : report.message, recorder::softwareName()};
-  if (exact && collector) assessed.values = collector->values();
+  if (exact && collector) {
+    assessed.values = collector->values();
+    if (input) assessed.external = computeMetrics(*wanted.metrics, input->folder());
+  }
   // An engine whose results are of an earlier version proves what is recorded; the values are of that.
   const bool ofRecord = exact && !collector;
-  if (ofRecord || (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact))
-    assessed.values = valuesFromObservables(recording, wanted.cutoff);
+  if (ofRecord || (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact)) {
+    if (hasMetrics)
+      input = std::make_unique<MetricInput>(
+          recording.header(), recorder::sceneFromAssets(recording.header().assets).description, Origin::observables);
+    assessed.values = valuesFromObservables(recording, wanted.cutoff, input.get());
+    if (input)
+      assessed.external = computeMetrics(*wanted.metrics, input->folder(), "from recorded results, not re-simulated");
+  }
   assessed.fileName = file;
   return result;
 }
@@ -184,12 +202,33 @@ JudgedRecording judgedRecording(Assessment assessment) {
   if (assessment.attempt) {
     judged.record = recordOf(*assessment.attempt);
     judged.values = std::move(assessment.attempt->values);
+    judged.external = std::move(assessment.attempt->external);
   }
   return judged;
 }
 
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed) {
   return database.storeAttempt(recordOf(assessed), assessed.values);
+}
+
+bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricOutcomes& external,
+                   const std::vector<MetricScript>& metrics) {
+  bool added = false;
+  std::vector<CheckpointValue> stored;
+  for (CheckpointValue& value : external.values) {
+    try {
+      added = database.storeExternal(attempt, {value}) == Imported::added || added;
+      stored.push_back(std::move(value));
+    } catch (const Error& e) {
+      if (e.kind() != ErrorKind::refused) throw;
+      const auto script = std::find_if(metrics.begin(), metrics.end(),
+                                       [&](const MetricScript& m) { return m.metric() == value.metric; });
+      external.failures.emplace_back(e.kind(), Where{script != metrics.end() ? script->file() : "", e.where().place},
+                                     e.fault());
+    }
+  }
+  external.values = std::move(stored);
+  return added;
 }
 
 void printValues(const std::vector<CheckpointValue>& values, const std::vector<ValueInterval>& intervals,
@@ -202,7 +241,7 @@ void printValues(const std::vector<CheckpointValue>& values, const std::vector<V
                    {"origin", Align::left},
                    {"", Align::left}});
   for (const CheckpointValue& v : values) {
-    const CheckpointDefinition* definition = findCheckpoint(v.name);
+    const CheckpointDefinition* definition = definitionOf(v);
     const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
     if (!v.value) {
       table.add({name, "-", "", "", "", "", fmt::format("{}: {}", nameOf(v.availability), v.reason)});

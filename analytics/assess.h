@@ -14,6 +14,7 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/external/metric_script.h"
 #include "recorder/engine/observer.h"
 #include "recorder/identity.h"
 #include "recorder/replay.h"
@@ -30,6 +31,7 @@ struct AssessedAttempt {
   std::optional<RecordingSignature> signature;  ///< valid
   Verification verification;
   std::vector<CheckpointValue> values;  ///< of CheckpointCollector::values(); empty where the replay diverged
+  MetricOutcomes external;              ///< of AssessSettings::metrics; nothing where the replay diverged
   std::string fileName;                 ///< base name or path; the base name is kept
 };
 
@@ -43,6 +45,7 @@ struct AssessSettings {
   unsigned threads = 1;          ///< segments that are verified at a time
   double cutoff = motionCutoff;  ///< of the motion filter (Hz); values that are stored are of the default
   recorder::EngineWish engine = {};
+  const std::vector<MetricScript>* metrics = nullptr;  ///< users' own, computed as well; null: none
   /// May throw, which ends it: what is thrown leaves assessRecording().
   std::function<void(std::uint64_t step, std::uint64_t of)> progress = {};
 };
@@ -57,11 +60,17 @@ struct JudgedRecording {
   recorder::ReplayReport report;
   std::optional<AttemptRecord> record;  ///< none of a damaged file
   std::vector<CheckpointValue> values;
+  MetricOutcomes external;  ///< never of a values file
 };
 JudgedRecording judgedRecording(Assessment assessment);
 
 /// One transaction; idempotent. @throws Error (refused) on a conflict (CohortDatabase::storeAttempt).
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed);
+
+/// Stores the values of external metrics, each for itself: one that the cohort refuses becomes a failure.
+/// @return whether any is new
+bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricOutcomes& external,
+                   const std::vector<MetricScript>& metrics);
 
 /// The row that store() writes.
 AttemptRecord recordOf(const AssessedAttempt& assessed);

@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "analytics/checkpoints/from_samples.h"
+#include "analytics/external/metric_input.h"
 #include "recorder/attempt.h"
 
 namespace calot::analytics {
@@ -69,6 +70,13 @@ StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion
   stored.values = valuesFromSamples(motion, {declaration.outcome, declaration.handedness, motionCutoff});
   stored.imported = database.storeAttempt(recordOf(motion, declaration), stored.values);
   return stored;
+}
+
+MetricOutcomes externalOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration,
+                          const std::vector<MetricScript>& metrics) {
+  if (metrics.empty()) return {};
+  const TemporaryFolder input = writeMetricInput(motion, declaration.outcome, declaration.handedness, declaration.task);
+  return computeMetrics(metrics, input.path());
 }
 
 }  // namespace calot::analytics

@@ -7,6 +7,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/external/metric_script.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {
@@ -36,5 +37,9 @@ struct StoredMotion {
 };
 StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion& motion,
                          const MotionDeclaration& declaration);
+
+/// What external metrics make of the motion.
+MetricOutcomes externalOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration,
+                          const std::vector<MetricScript>& metrics);
 
 }  // namespace calot::analytics

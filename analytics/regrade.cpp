@@ -25,6 +25,13 @@ std::vector<CheckpointValue> keepResimulated(const std::vector<CheckpointValue>&
   return now;
 }
 
+/// Without those of external metrics, whose scripts are not here.
+std::vector<CheckpointValue> ownValues(const CohortDatabase& database, const std::string& attempt) {
+  std::vector<CheckpointValue> values = database.values(attempt);
+  std::erase_if(values, [](const CheckpointValue& v) { return v.origin == Origin::external; });
+  return values;
+}
+
 }  // namespace
 
 RegradedAttempt withoutRecording(const AttemptRow& row) {
@@ -56,7 +63,7 @@ RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, c
     r.message = fmt::format("{}: {}", r.file, report.message);
     return r;
   }
-  const std::vector<CheckpointValue> before = database.values(r.uuid);
+  const std::vector<CheckpointValue> before = ownValues(database, r.uuid);
   const bool undecided = report.verdict == recorder::ReplayVerdict::undecided;
   if (undecided) judged.values = keepResimulated(before, std::move(judged.values));
   try {
@@ -67,7 +74,7 @@ RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, c
     } else {
       imported = database.storeAttempt(*judged.record, judged.values);
     }
-    r.changes = changesOf(before, database.values(r.uuid));
+    r.changes = changesOf(before, ownValues(database, r.uuid));
     r.how = imported == Imported::unchanged && r.changes.empty() ? Regraded::unchanged : Regraded::changed;
   } catch (const Error& e) {
     if (e.kind() != ErrorKind::refused) throw;

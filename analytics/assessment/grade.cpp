@@ -189,7 +189,9 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
     GradedFigure figure;
     figure.mark = norm.checkpoints[i];
     figure.title = figure.unit = figure.mark.checkpoint;
-    if (const CheckpointDefinition* d = findCheckpoint(figure.mark.checkpoint)) {
+    const CheckpointDefinition* d =
+        figure.mark.metric ? &figure.mark.metric->definition : findCheckpoint(figure.mark.checkpoint);
+    if (d != nullptr) {
       figure.title = d->title;
       figure.unit = d->displayUnit;
       figure.displayFactor = d->displayFactor;

@@ -98,6 +98,10 @@ std::vector<FigureMoments> findMoments(recorder::Recording& recording,
     const CheckpointDefinition* definition = findCheckpoint(figures[f].first);
     FigureMoments moments = momentsOf(series[f], static_cast<double>(window) * stepSeconds,
                                       definition == nullptr ? Direction::lower : definition->direction);
+    if (definition == nullptr) {
+      moments = {};
+      moments.none = "a metric of a script has one value of the whole attempt";
+    }
     moments.checkpoint = figures[f].first;
     moments.subject = figures[f].second;
     for (Moment& m : moments.moments) m.end = std::min(m.end, static_cast<double>(steps) * stepSeconds);

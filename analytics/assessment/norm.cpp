@@ -49,9 +49,24 @@ std::vector<AttemptRow> judged(std::vector<AttemptRow> attempts, const std::vect
   return attempts;
 }
 
-NormCheckpoint markOf(const CheckpointDefinition& definition, const std::string& subject, const Norm& norm,
+/// A figure of the norm: a checkpoint or an external metric, and its subject. The definition is that of a value.
+struct NormFigure {
+  const CheckpointDefinition* definition = nullptr;
+  std::string subject;
+  ExternalMetricRef metric;
+};
+
+bool isNamed(const std::vector<std::string>& named, const std::string& checkpoint, const std::string& subject) {
+  return std::any_of(named.begin(), named.end(), [&](const std::string& wanted) {
+    return wanted == checkpoint || wanted == figureName(checkpoint, subject);
+  });
+}
+
+NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& figure, const Norm& norm,
                       std::size_t position) {
-  NormCheckpoint mark{definition.name, subject, definition.version, definition.direction, false, false, {}, {}, {}, ""};
+  NormCheckpoint mark{
+      definition.name, figure.subject, definition.version, definition.direction, false, false, {}, {}, {}, "",
+      figure.metric};
   std::vector<double> competent, others;
   bool positive = true;
   for (const NormMember& m : norm.members) {
@@ -79,24 +94,18 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const std::string&
 
 /// Whether a figure is in the norm: those of phases, which repeat the whole attempt's, where they are asked for.
 bool isAskedFor(const CheckpointDefinition& definition, const std::string& subject, const NormRequest& request) {
-  const std::vector<std::string>& named = request.checkpoints;
-  return !isOfPhases(definition) || request.who.includePhases ||
-         std::any_of(named.begin(), named.end(), [&](const std::string& wanted) {
-           return wanted == definition.name || wanted == figureName(definition.name, subject);
-         });
+  return !isOfPhases(definition) || request.who.includePhases || isNamed(request.checkpoints, definition.name, subject);
 }
 
 /// Which figures members have that judge, in the registry's order; their values, once a member.
-std::vector<std::pair<const CheckpointDefinition*, std::string>> collectValues(Norm& norm,
-                                                                               const std::vector<AttemptValue>& values,
-                                                                               const NormRequest& request,
-                                                                               const std::string& name) {
-  std::vector<std::pair<const CheckpointDefinition*, std::string>> figures;
+std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue>& values, const NormRequest& request,
+                                      const std::string& name) {
+  std::vector<NormFigure> figures;
   std::map<std::string, NormMember*> member;
   for (NormMember& m : norm.members) member[m.attempt] = &m;
   for (const AttemptValue& item : values) {
     const auto whose = member.find(item.attempt);
-    const CheckpointDefinition* definition = findCheckpoint(item.value.name);
+    const CheckpointDefinition* definition = definitionOf(item.value);
     if (whose == member.end() || definition == nullptr || definition->direction == Direction::none) continue;
     if (!item.value.value || !std::isfinite(*item.value.value) || definition->name == "critical-errors") continue;
     if (!isAskedFor(*definition, item.value.subject, request)) continue;
@@ -104,16 +113,35 @@ std::vector<std::pair<const CheckpointDefinition*, std::string>> collectValues(N
       throw Error(ErrorKind::refused, Where{name},
                   fmt::format("attempt {} has {} of version {}, this program computes {}; assess its recording again",
                               item.attempt, definition->name, item.value.version, definition->version));
-    const std::pair figure(definition, item.value.subject);
-    std::size_t position =
-        static_cast<std::size_t>(std::find(figures.begin(), figures.end(), figure) - figures.begin());
+    const auto known = std::find_if(figures.begin(), figures.end(), [&](const NormFigure& f) {
+      return f.definition->name == definition->name && f.subject == item.value.subject;
+    });
+    if (known != figures.end() && known->definition->version != definition->version)
+      throw Error(ErrorKind::refused, Where{name},
+                  fmt::format("members have {} of versions {} and {}; run its newest script over all recordings",
+                              definition->name, known->definition->version, definition->version));
+    const auto position = static_cast<std::size_t>(known - figures.begin());
     if (position == figures.size()) {
-      figures.push_back(figure);
+      figures.push_back({definition, item.value.subject, item.value.metric});
       for (NormMember& m : norm.members) m.values.emplace_back();
     }
     whose->second->values[position] = item.value.value;
   }
   return figures;
+}
+
+/// Before any mark is made: a rule that asks for more figures than there can be in it.
+void checkCount(const std::vector<NormFigure>& figures, const NormRequest& request, const std::string& name) {
+  const auto candidates =
+      static_cast<std::size_t>(std::count_if(figures.begin(), figures.end(), [&](const NormFigure& f) {
+        return request.checkpoints.empty() || isNamed(request.checkpoints, f.definition->name, f.subject);
+      }));
+  if (request.leastPassed > candidates)
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("the rule asks for {} figures, {}", request.leastPassed,
+                            request.checkpoints.empty()
+                                ? fmt::format("and the members have {} that judge", candidates)
+                                : fmt::format("and the checkpoints that are named give {}", candidates)));
 }
 
 void declareRule(Norm& norm, const NormRequest& request, const std::string& name) {
@@ -138,7 +166,23 @@ void declareRule(Norm& norm, const NormRequest& request, const std::string& name
   norm.leastPassed = request.leastPassed;
   if (norm.leastPassed > inRule)
     throw Error(ErrorKind::refused, Where{name},
-                fmt::format("the rule asks for {} of {} figures", norm.leastPassed, inRule));
+                fmt::format("the rule asks for {} figures, and {} of {} have a pass mark", norm.leastPassed, inRule,
+                            norm.checkpoints.size()));
+}
+
+/// makeStudy(), whose advice is cut to what a norm can take: of several attempts the first, never their mean.
+Study studyOfMembers(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+                     const StudyOptions& who, const std::string& name) {
+  try {
+    return makeStudy(attempts, values, who, name);
+  } catch (const Error& e) {
+    std::vector<Remedy> remedies;
+    for (const Remedy remedy : e.remedies()) {
+      if (remedy == Remedy::takeMean || remedy == Remedy::mixKeys) continue;
+      remedies.push_back(remedy == Remedy::chooseAttemptRule ? Remedy::takeFirst : remedy);
+    }
+    throw Error(e.kind(), e.where(), e.fault(), std::move(remedies));
+  }
 }
 
 }  // namespace
@@ -152,6 +196,9 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
   if (!plain)
     throw Error(ErrorKind::invalid,
                 "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
+  if (request.who.protocol && request.who.protocol->protocol.attemptRule == AttemptRule::mean)
+    throw Error(ErrorKind::refused, Where{request.who.protocol->protocol.file},
+                "its attempt rule is the mean, and a mean of attempts is no attempt that others are held against");
   if (request.who.attemptRule == AttemptRule::mean)
     throw Error(ErrorKind::invalid, "norm: a mean of attempts is no attempt", {Remedy::takeFirst});
   StudyOptions who = request.who;
@@ -163,7 +210,7 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
     who.better = competentGroup;
     norm.judgedBy = fmt::format("form {}, majority of raters", request.judgedBy);
   }
-  const Study study = makeStudy(candidates, values, who, name);
+  const Study study = studyOfMembers(candidates, values, who, name);
   if (study.better.empty())
     throw Error(ErrorKind::invalid,
                 fmt::format("norm: which of {} and {} is competent is not said", study.groups[0], study.groups[1]),
@@ -191,8 +238,9 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
                 fmt::format("a norm wants at least {} competent members and as many others; there are {} and {}",
                             minNormMembers, competent, norm.members.size() - competent));
   const auto figures = collectValues(norm, values, request, name);
+  checkCount(figures, request, name);
   for (std::size_t i = 0; i < figures.size(); ++i)
-    norm.checkpoints.push_back(markOf(*figures[i].first, figures[i].second, norm, i));
+    norm.checkpoints.push_back(markOf(*figures[i].definition, figures[i], norm, i));
   declareRule(norm, request, name);
   return norm;
 }

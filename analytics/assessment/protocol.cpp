@@ -48,8 +48,14 @@ const ObjectRule criterionRule{"criterion",
                                 {"atMost", false, -maxBound, maxBound},
                                 {"equals", false}}};
 const ObjectRule exclusionsRule{"exclusions", {{"outcomes"}, {"reasons"}}};
-const ObjectRule hypothesisRule{
-    "hypothesis", {{"checkpoint", false}, {"outcome", false}, {"subject", false}, {"larger"}, {"primary"}}};
+const ObjectRule hypothesisRule{"hypothesis",
+                                {{"checkpoint", false},
+                                 {"external", false},
+                                 {"sha256", false},
+                                 {"outcome", false},
+                                 {"subject", false},
+                                 {"larger"},
+                                 {"primary"}}};
 
 PopulationCriterion criterionAt(const JsonPlace& place) {
   const JsonObject o = place.object(criterionRule);
@@ -91,9 +97,23 @@ void askForGroup(const Protocol& protocol, const JsonPlace& place, const std::st
 DirectedHypothesis hypothesisAt(const Protocol& protocol, const JsonPlace& place) {
   const JsonObject o = place.object(hypothesisRule);
   DirectedHypothesis hypothesis;
-  if (o.has("checkpoint") == o.has("outcome"))
-    o.fail("either \"checkpoint\" or, for a table from elsewhere, \"outcome\" is wanted");
-  if (o.has("outcome")) {
+  const int named = (o.has("checkpoint") ? 1 : 0) + (o.has("external") ? 1 : 0) + (o.has("outcome") ? 1 : 0);
+  if (named != 1)
+    o.fail(
+        "one of \"checkpoint\", \"external\" (a metric of your own) and \"outcome\" (a column of a table from "
+        "elsewhere) is wanted");
+  if (o.has("sha256") && !o.has("external")) o.at("sha256").fail("only an external metric has a script");
+  if (o.has("external")) {
+    hypothesis.external = true;
+    o.read("external", hypothesis.checkpoint, maxName);
+    if (findCheckpoint(hypothesis.checkpoint) != nullptr)
+      o.at("external").fail("a checkpoint of the program; name it as \"checkpoint\"");
+    if (o.has("subject")) o.at("subject").fail("an external metric has none");
+    o.read("sha256", hypothesis.sha256, maxName);
+    if (o.has("sha256") && (hypothesis.sha256.size() != 64 ||
+                            hypothesis.sha256.find_first_not_of("0123456789abcdef") != std::string::npos))
+      o.at("sha256").fail("64 hexadecimal digits in small letters are wanted");
+  } else if (o.has("outcome")) {
     o.read("outcome", hypothesis.checkpoint, maxName);
     if (o.has("subject")) o.at("subject").fail("an outcome has none: it is a column of a table");
   } else {

@@ -34,7 +34,9 @@ struct Population {
 
 /// "Novices take longer": which group's values of one figure are expected to be the larger ones.
 struct DirectedHypothesis {
-  std::string checkpoint, subject;  ///< of an outcome: the table's column, and nothing
+  std::string checkpoint, subject;  ///< of an outcome or external metric: its name, and nothing
+  bool external = false;            ///< a metric of a user's own script
+  std::string sha256;               ///< of that script, or empty: any
   std::string larger;               ///< one of both groups
   bool primary = false;             ///< in the family that Holm's adjustment holds
 };

@@ -30,11 +30,13 @@ const ObjectRule formRule{"",
                            {"source"},
                            {"about"},
                            {"scale"},
-                           {"sections"}}};
+                           {"sections"},
+                           {"subscales", false}}};
 const ObjectRule scaleRule{"scale", {{"least", true, 0, 1}, {"most", true, 1, 100}, {"words", false}}};
 const ObjectRule sectionRule{"section", {{"name"}, {"items"}}};
 const ObjectRule itemRule{"item",
                           {{"key"}, {"text"}, {"primaryGroup", false}, {"anchors", false}, {"published", false}}};
+const ObjectRule subscaleRule{"subscale", {{"name"}, {"items"}}};
 const ObjectRule publishedRule{"published", {{"expert", true, 0, 100}, {"novice", true, 0, 100}}};
 
 std::vector<std::string> wordsAt(const JsonPlace& place, const RatingForm& form) {
@@ -67,7 +69,7 @@ std::vector<FormItem> RatingForm::items() const {
 }
 
 const std::vector<ObjectRule>& ratingFormRules() {
-  static const std::vector<ObjectRule> rules{formRule, scaleRule, sectionRule, itemRule, publishedRule};
+  static const std::vector<ObjectRule> rules{formRule, scaleRule, sectionRule, itemRule, subscaleRule, publishedRule};
   return rules;
 }
 
@@ -101,6 +103,22 @@ RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& 
       if (!keys.insert(section.items.back().key).second) item.fail("an item of this key stands above already");
     }
     form.sections.push_back(section);
+  }
+  if (o.has("subscales")) {
+    std::set<std::string> names;
+    for (const JsonPlace& place : o.at("subscales").list(1, maxSections)) {
+      const JsonObject part = place.object(subscaleRule);
+      FormSubscale subscale;
+      part.read("name", subscale.name, maxText);
+      if (!names.insert(subscale.name).second) part.fail("a subscale of this name stands above already");
+      std::set<std::string> seen;
+      for (const JsonPlace& item : part.at("items").list(1, maxItems)) {
+        subscale.items.push_back(item.text(maxName));
+        if (keys.count(subscale.items.back()) == 0) item.fail("no item of the form has this key");
+        if (!seen.insert(subscale.items.back()).second) item.fail("named twice");
+      }
+      form.subscales.push_back(std::move(subscale));
+    }
   }
   return form;
 }

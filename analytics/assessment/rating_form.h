@@ -28,12 +28,19 @@ struct FormSection {
   std::vector<FormItem> items;
 };
 
+/// Items whose scores are added up.
+struct FormSubscale {
+  std::string name;
+  std::vector<std::string> items;  ///< keys
+};
+
 struct RatingForm : DeclaredDocument {
   std::string source;
   bool ofAttempts = true;  ///< raters judge attempts; else participants judge what they took part in
   int least = 1, most = 5;
   std::vector<std::string> words;  ///< of the scores, from the least; or empty
   std::vector<FormSection> sections;
+  std::vector<FormSubscale> subscales;  ///< as declared; or none
 
   [[nodiscard]] std::vector<FormItem> items() const;  ///< of all sections
 };

@@ -29,6 +29,8 @@ std::string nameOf(Origin origin) {
       return "observables";
     case Origin::samples:
       return "samples";
+    case Origin::external:
+      return "external";
   }
   return "unknown";
 }

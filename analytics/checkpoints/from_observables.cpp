@@ -10,7 +10,8 @@
 
 namespace calot::analytics {
 
-std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording, double cutoff) {
+std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording, double cutoff,
+                                                   recorder::Observer* also) {
   const recorder::AttemptHeader& header = recording.header();
   const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
   CheckpointCollector collector(header, scene, Origin::observables, cutoff);
@@ -23,9 +24,13 @@ std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recordin
       throw Error(ErrorKind::damaged, Where{recording.path().string(), "/observables"},
                   "has other organs or connective tissues than the scene in /scene");
     }
-    collector.onStep({step.step, step.samples, step.ticks, results.of(step), step.digest, step.lateness, {}, {}});
+    const recorder::StepRecord record{step.step,   step.samples,  step.ticks, results.of(step),
+                                      step.digest, step.lateness, {},         {}};
+    collector.onStep(record);
+    if (also != nullptr) also->onStep(record);
   }
   collector.onEnd(recording.outcome());
+  if (also != nullptr) also->onEnd(recording.outcome());
   return collector.values();
 }
 

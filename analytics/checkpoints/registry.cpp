@@ -31,6 +31,10 @@ const CheckpointDefinition* findCheckpoint(std::string_view name) {
   return nullptr;
 }
 
+const CheckpointDefinition* definitionOf(const CheckpointValue& value) {
+  return value.metric ? &value.metric->definition : findCheckpoint(value.name);
+}
+
 std::optional<CheckpointFamily> familyOf(std::string_view name) {
   for (const CheckpointEntry& entry : checkpointRegistry()) {
     if (entry.definition.name == name) return entry.place.family;

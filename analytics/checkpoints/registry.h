@@ -16,6 +16,10 @@ const std::vector<CheckpointEntry>& checkpointRegistry();
 /// The definition of a name, or null.
 const CheckpointDefinition* findCheckpoint(std::string_view name);
 
+/// The definition that a value stands on: the registry's, or of an external metric its script's; or null. It lives as
+/// long as the value.
+const CheckpointDefinition* definitionOf(const CheckpointValue& value);
+
 /// The family of a name, or none.
 std::optional<CheckpointFamily> familyOf(std::string_view name);
 

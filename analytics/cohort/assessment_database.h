@@ -50,7 +50,8 @@ struct NormCheckpoint {
   bool logScale = false;                   ///< curves of the logarithms
   bool inRule = false;                     ///< counts for the overall judgement
   std::optional<double> cut, lower, upper;
-  std::string reason;  ///< why there is no cut, or no interval; else empty
+  std::string reason;             ///< why there is no cut, or no interval; else empty
+  ExternalMetricRef metric = {};  ///< of a user's own script; none: a checkpoint
 };
 
 struct NormMember {

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 
@@ -176,6 +180,27 @@ void CohortDatabase::storeIntervals(const std::string& attempt, const std::vecto
   });
 }
 
+Imported CohortDatabase::storeExternal(const std::string& attempt, const std::vector<CheckpointValue>& values) {
+  return guarded(path(), [&] {
+    SQLite::Database& db = *storage_->db;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::int64_t id = attemptId(db, attempt);
+    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
+    const std::size_t added = writeExternalValues(db, path(), id, values);
+    if (added > 0) audit(db, "attempt-external", attempt, fmt::format("{} values", added));
+    transaction.commit();
+    return added > 0 ? Imported::added : Imported::unchanged;
+  });
+}
+
+void CohortDatabase::checkMetric(const ExternalMetric& metric) const {
+  guarded(path(), [&] { checkExternalMetric(*storage_->db, path(), metric); });
+}
+
+std::vector<ExternalMetric> CohortDatabase::externalMetrics() const {
+  return guarded(path(), [&] { return readExternalMetrics(*storage_->db); });
+}
+
 namespace {
 
 void checkDecision(const std::string& reason, const std::string& by) {
@@ -247,7 +272,12 @@ std::optional<AttemptRow> CohortDatabase::attempt(const std::string& uuid) const
 }
 
 std::vector<CheckpointValue> CohortDatabase::values(const std::string& attempt) const {
-  return guarded(path(), [&] { return readValues(*storage_->db, attemptId(*storage_->db, attempt)); });
+  return guarded(path(), [&] {
+    const std::int64_t id = attemptId(*storage_->db, attempt);
+    std::vector<CheckpointValue> all = readValues(*storage_->db, id);
+    for (CheckpointValue& v : readExternalValues(*storage_->db, id)) all.push_back(std::move(v));
+    return all;
+  });
 }
 
 std::vector<ValueInterval> CohortDatabase::intervals(const std::string& attempt) const {
@@ -257,12 +287,20 @@ std::vector<ValueInterval> CohortDatabase::intervals(const std::string& attempt)
 std::vector<AttemptValue> CohortDatabase::allValues(const std::vector<std::string>& without) const {
   std::vector<AttemptValue> values;
   eachValue(without, [&](const AttemptValue& value) { values.push_back(value); });
+  const auto external = [](const AttemptValue& v) { return v.value.metric.has_value(); };
+  if (std::any_of(values.begin(), values.end(), external)) {
+    std::stable_sort(values.begin(), values.end(),
+                     [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; });
+  }
   return values;
 }
 
 void CohortDatabase::eachValue(const std::vector<std::string>& without,
                                const std::function<void(const AttemptValue&)>& take) const {
-  guarded(path(), [&] { readAllValues(*storage_->db, without, take); });
+  guarded(path(), [&] {
+    readAllValues(*storage_->db, without, take);
+    for (const AttemptValue& value : readAllExternalValues(*storage_->db, without)) take(value);
+  });
 }
 
 std::vector<GroupCount> CohortDatabase::groups() const {

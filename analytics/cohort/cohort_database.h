@@ -162,6 +162,18 @@ class CohortDatabase {
   /// Replaces the intervals of the attempt's values. @throws Error (refused) if there is no such attempt.
   void storeIntervals(const std::string& attempt, const std::vector<ValueInterval>& intervals);
 
+  /// Stores what external metrics gave of an attempt, in one transaction; a metric that is new here is registered with
+  /// its SHA-256. A value of an earlier version is kept and hidden by the newer one's. Running it again changes
+  /// nothing.
+  /// @pre values are of origin `external`
+  /// @throws Error (refused) as checkMetric(), where the stored value of this version is another one, or there is no
+  /// such attempt.
+  Imported storeExternal(const std::string& attempt, const std::vector<CheckpointValue>& values);
+  /// @throws Error (refused) where the version is registered with another source, or a later one is. The message is
+  /// about the script.
+  void checkMetric(const ExternalMetric& metric) const;
+  [[nodiscard]] std::vector<ExternalMetric> externalMetrics() const;  ///< all versions, by name and version
+
   /// Marks an attempt as excluded from studies, or replaces the mark; audited. @throws Error (invalid) without reason
   /// or name; (refused) if there is no such attempt.
   void excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
@@ -172,12 +184,13 @@ class CohortDatabase {
   [[nodiscard]] std::string attemptNamed(const std::string& text) const;
   [[nodiscard]] std::vector<AttemptRow> listAttempts() const;  ///< by start, then uuid
   [[nodiscard]] std::optional<AttemptRow> attempt(const std::string& uuid) const;
-  /// An attempt's values in the order in which they were stored (the registry's).
+  /// An attempt's values in the order in which they were stored (the registry's), then those of external metrics by
+  /// name.
   [[nodiscard]] std::vector<CheckpointValue> values(const std::string& attempt) const;
   /// Intervals of the attempt's present values, in their order; none of a value that has changed since.
   [[nodiscard]] std::vector<ValueInterval> intervals(const std::string& attempt) const;
-  /// Values of all attempts with their intervals, by attempt, then in stored order. @param without names of checkpoints
-  /// to leave out.
+  /// Values of all attempts with their intervals, by attempt, then in the order of values(). @param without names of
+  /// checkpoints to leave out.
   [[nodiscard]] std::vector<AttemptValue> allValues(const std::vector<std::string>& without = {}) const;
   /// The same one after the other, for cohorts whose values need not be in memory at once. @param take may throw, which
   /// ends it; what it is given is good until it returns

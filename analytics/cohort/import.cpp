@@ -193,6 +193,8 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
       changed = true;
     }
     if (values != nullptr && replaceValues(db, id, *values)) changed = true;
+    // Those of external metrics are of the shorter content, or of one that does not verify.
+    if ((longer || (values != nullptr && values->empty())) && removeExternalValues(db, id)) changed = true;
   }
   if (!changed) return Imported::unchanged;
   audit(db, "attempt-update", a.uuid,

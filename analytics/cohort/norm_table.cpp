@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -60,6 +61,7 @@ void readCheckpoints(SQLite::Database& db, std::int64_t id, Norm& norm) {
                            "SELECT checkpoint, subject, version, direction, log_scale, in_rule, cut, lower, upper, "
                            "reason FROM norm_checkpoint WHERE norm = ? ORDER BY position");
   select.bind(1, id);
+  const std::vector<ExternalMetric> metrics = readExternalMetrics(db);
   while (select.executeStep()) {
     NormCheckpoint& c = norm.checkpoints.emplace_back();
     c.checkpoint = text(select.getColumn(0));
@@ -72,6 +74,10 @@ void readCheckpoints(SQLite::Database& db, std::int64_t id, Norm& norm) {
     c.lower = optional(select.getColumn(7));
     c.upper = optional(select.getColumn(8));
     c.reason = text(select.getColumn(9));
+    const auto metric = std::find_if(metrics.begin(), metrics.end(), [&](const ExternalMetric& m) {
+      return m.definition.name == c.checkpoint && m.definition.version == c.version;
+    });
+    if (metric != metrics.end()) c.metric = ExternalMetricRef(*metric);
   }
 }
 

@@ -87,6 +87,17 @@ std::string intervalIsOfValue();
 std::vector<ValueInterval> readIntervals(SQLite::Database& db, std::int64_t attempt);
 /// @returns whether anything changed.
 bool replaceIntervals(SQLite::Database& db, std::int64_t attempt, const std::vector<ValueInterval>& intervals);
+/// Those of external metrics that have the newest version of their name, by name.
+std::vector<CheckpointValue> readExternalValues(SQLite::Database& db, std::int64_t attempt);
+std::vector<AttemptValue> readAllExternalValues(SQLite::Database& db, const std::vector<std::string>& without);
+std::vector<ExternalMetric> readExternalMetrics(SQLite::Database& db);
+/// CohortDatabase::checkMetric().
+void checkExternalMetric(SQLite::Database& db, const std::string& path, const ExternalMetric& metric);
+/// CohortDatabase::storeExternal() without its transaction. @returns how many rows are new.
+std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, std::int64_t attempt,
+                                const std::vector<CheckpointValue>& values);
+/// Of an attempt whose content is another one now. @returns whether there were any.
+bool removeExternalValues(SQLite::Database& db, std::int64_t attempt);
 /// @returns whether anything changed.
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
 

@@ -14,6 +14,7 @@ BundleSource readBundleSource(const std::string& path) {
   source.attempts = cohort.listAttempts();
   for (Participant& p : cohort.participants()) source.participants.emplace(p.pseudonym, std::move(p));
   for (AttemptValue& v : cohort.allValues()) source.values[v.attempt].push_back(std::move(v.value));
+  source.metrics = cohort.externalMetrics();
   source.ratings = AssessmentDatabase(path, read).ratings();
   source.registers = readRegisters(path);
   return source;

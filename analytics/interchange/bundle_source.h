@@ -23,6 +23,7 @@ struct BundleSource {
   std::map<std::string, std::vector<CheckpointValue>> values;
   std::vector<Rating> ratings;
   Registers registers;
+  std::vector<ExternalMetric> metrics;  ///< of external values
 };
 
 BundleSource readBundleSource(const std::string& database);

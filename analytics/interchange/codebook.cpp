@@ -21,7 +21,7 @@ std::string typeWord(const std::string& type) {
 
 }  // namespace
 
-std::vector<CodebookEntry> checkpointEntries() {
+std::vector<CodebookEntry> checkpointEntries(const std::vector<ExternalMetric>& external) {
   std::vector<CodebookEntry> entries;
   for (const CheckpointEntry& known : checkpointRegistry()) {
     const CheckpointDefinition& d = known.definition;
@@ -43,6 +43,25 @@ std::vector<CodebookEntry> checkpointEntries() {
     e.formula = d.definition;
     e.filter = d.filter;
     for (const Origin origin : d.origins) e.origins += (e.origins.empty() ? "" : ", ") + nameOf(origin);
+    e.version = d.version;
+    entries.push_back(std::move(e));
+  }
+  for (const ExternalMetric& metric : external) {
+    const CheckpointDefinition& d = metric.definition;
+    CodebookEntry e;
+    e.table = "checkpoint";
+    e.name = d.name;
+    e.title = d.title;
+    e.type = "number";
+    e.unit = d.unit;
+    e.allowed = "finite";
+    e.missing = "availability 2: the script gave none; the value is empty and a reason stands beside it";
+    e.direction = nameOf(d.direction);
+    e.window = d.window;
+    e.subjects = "each attempt";
+    e.formula = "a script of the site, SHA-256 " + metric.sha256;
+    e.filter = d.filter;
+    e.origins = nameOf(Origin::external);
     e.version = d.version;
     entries.push_back(std::move(e));
   }

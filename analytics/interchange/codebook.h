@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "analytics/checkpoints/external_metric.h"
+
 namespace calot::analytics {
 
 /// A variable: a checkpoint (a row of `checkpoint_value`, or of a bundle's values.csv), or a column of a table.
@@ -26,8 +28,8 @@ struct CodebookEntry {
   std::uint32_t version = 0;
 };
 
-/// Every checkpoint of the registry, in its order.
-std::vector<CodebookEntry> checkpointEntries();
+/// Every checkpoint of the registry, in its order, then external metrics, whose origin says so.
+std::vector<CodebookEntry> checkpointEntries(const std::vector<ExternalMetric>& external = {});
 
 /// Columns of a table in the file's order. Unknown columns have an empty title.
 struct TableColumns {

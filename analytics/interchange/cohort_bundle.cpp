@@ -59,7 +59,7 @@ class Writer {
     put(output, "ratings.csv", ratings());
     put(output, "questionnaires.csv", questionnaires());
     std::vector<CodebookEntry> entries = columnEntries(columns_);
-    for (CodebookEntry& e : checkpointEntries()) entries.push_back(std::move(e));
+    for (CodebookEntry& e : checkpointEntries(source_.metrics)) entries.push_back(std::move(e));
     output.add("codebook.csv", codebookCsv(entries));
     output.add("codebook.json", codebookJson(entries));
     bundle.participants = people_.size();

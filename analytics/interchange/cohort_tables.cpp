@@ -8,6 +8,7 @@
 
 #include "analytics/cohort/connection.h"
 #include "analytics/cohort/row_cells.h"
+#include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/codebook.h"
 #include "analytics/interchange/folder_output.h"
@@ -82,7 +83,7 @@ std::vector<ExportedTable> exportCohort(const std::string& database, const std::
       for (const Row& row : rows) attempts.push_back(textOf(row.at("uuid")));
     }
     std::vector<CodebookEntry> entries = columnEntries(columns);
-    for (CodebookEntry& e : checkpointEntries()) entries.push_back(std::move(e));
+    for (CodebookEntry& e : checkpointEntries(tables::readExternalMetrics(*db))) entries.push_back(std::move(e));
     output.add("codebook.csv", codebookCsv(entries));
     output.add("codebook.json", codebookJson(entries));
   });

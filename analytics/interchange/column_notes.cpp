@@ -11,7 +11,7 @@ constexpr const char* kindsOfMissing =
     "0 value, 1 not applicable, 2 not available, 3 absent hand, 4 too little coverage";
 
 // table, column, title, unit, allowed values, what stands where there is none
-constexpr std::array<ColumnNote, 241> notes{{
+constexpr std::array<ColumnNote, 255> notes{{
     {"participant", "id", "number of the row, which other tables name"},
     {"participant", "pseudonym", "pseudonym"},
     {"participant", "study_group", "study group", "", "", "empty"},
@@ -86,6 +86,20 @@ constexpr std::array<ColumnNote, 241> notes{{
     {"checkpoint_value", "filter", "resampling and filter when the value was made"},
     {"checkpoint_value", "coverage", "share of the window that samples cover", "1", "0 to 1",
      "empty: not of samples, or not known"},
+    {"external_metric", "id", "number of the row, which other tables name"},
+    {"external_metric", "name", "name of the metric, as its script declares it"},
+    {"external_metric", "version", "version of the metric"},
+    {"external_metric", "title", "what it is"},
+    {"external_metric", "unit", "unit of its values"},
+    {"external_metric", "direction", "which way is better", "", "0 none, 1 lower, 2 higher"},
+    {"external_metric", "sha256", "SHA-256 of the script"},
+    {"external_metric", "registered_utc", "when its first value came in", "", "ISO 8601 UTC with Z"},
+    {"external_value", "attempt", "row of attempt"},
+    {"external_value", "metric", "row of external_metric"},
+    {"external_value", "availability", "whether there is a value", "", "0 value, 2 not available"},
+    {"external_value", "value", "the value, in the metric's unit", "", "finite", "empty where availability is not 0"},
+    {"external_value", "reason", "why there is no value", "", "", "empty where availability is 0"},
+    {"external_value", "note", "what a reader of the value must know", "", "", "empty"},
     {"value_interval", "attempt", "row of attempt"},
     {"value_interval", "name", "checkpoint"},
     {"value_interval", "subject", "hand, organ or phase", "", "", "empty: the attempt as a whole"},
@@ -250,7 +264,7 @@ constexpr std::array<ColumnNote, 241> notes{{
     {"values", "value", "the value, in unit", "", "finite", "empty where availability is not 0"},
     {"values", "reason", "why there is no value", "", "", "empty where availability is 0"},
     {"values", "unit", "SI unit of the value"},
-    {"values", "origin", "what it was computed from", "", "re-simulated, observables, samples"},
+    {"values", "origin", "what it was computed from", "", "re-simulated, observables, samples, external"},
     {"values", "filter", "resampling and filter when the value was made"},
     {"values", "coverage", "share of the window that samples cover", "1", "0 to 1",
      "empty: not of samples, or not known"},

@@ -16,6 +16,7 @@ using Align = TextTable::Align;
 using Json = nlohmann::ordered_json;
 
 std::string nameOf(const GradedFigure& f) {
+  if (f.mark.metric) return f.mark.checkpoint + " (external)";
   return f.mark.subject.empty() ? f.mark.checkpoint : f.mark.checkpoint + " " + f.mark.subject;
 }
 
@@ -96,6 +97,11 @@ std::vector<std::string> notes(const Grade& g) {
         "mark lies within it, so that the figure is not decided by this simulation. exact: no simulation changes it. "
         "not "
         "known: the figure does not exist in one of the runs.");
+  }
+  for (const GradedFigure& f : g.figures) {
+    if (f.mark.metric)
+      lines.push_back(fmt::format("{}: computed by a script of the site, version {}, SHA-256 {}.", nameOf(f),
+                                  f.mark.version, f.mark.metric->sha256));
   }
   if (std::string warning = passMarkWarning(g.norm); !warning.empty()) lines.push_back(std::move(warning));
   for (const GradedFigure& f : g.figures) {

@@ -64,6 +64,36 @@ ReportTable answersTable(const FormReport& report) {
   return table;
 }
 
+ReportTable scalesTable(const FormReport& report) {
+  ReportTable table{fmt::format("Sums of {}", report.name),
+                    {{"scale", Align::left},
+                     {"range", Align::left},
+                     {"group", Align::left},
+                     {"n", Align::right},
+                     {"blank", Align::right},
+                     {"median", Align::right},
+                     {"quartile 1", Align::right},
+                     {"quartile 3", Align::right},
+                     {"mean", Align::right},
+                     {"mean of an item", Align::right}},
+                    {}};
+  const std::vector<std::size_t> answered = groupsThatAnswered(report);
+  for (const ScaleReport& scale : report.scales) {
+    const auto items = static_cast<int>(scale.items);
+    for (const std::size_t g : answered) {
+      const ItemSummary& s = scale.groups[g];
+      const bool first = g == answered.front();
+      table.rows.push_back(
+          {first ? scale.name : "", first ? fmt::format("{} to {}", report.least * items, report.most * items) : "",
+           report.groups[g].empty() ? "(no group)" : report.groups[g], fmt::format("{}", s.n),
+           s.blank == 0 ? "" : fmt::format("{}", s.blank), significantOrDash(s.median, 3),
+           significantOrDash(s.lowerQuartile, 3), significantOrDash(s.upperQuartile, 3), significantOrDash(s.mean, 3),
+           significantOrDash(s.mean ? std::optional(*s.mean / static_cast<double>(scale.items)) : std::nullopt, 3)});
+    }
+  }
+  return table;
+}
+
 ReportTable consistencyTable(const FormReport& report) {
   ReportTable table{fmt::format("Internal consistency of {}", report.name),
                     {{"subscale", Align::left}, {"n", Align::right}, {"Cronbach's alpha", Align::left}},
@@ -130,7 +160,8 @@ std::vector<std::string> ratingNotes(const FormReport& report) {
 std::vector<ReportTable> ratingTables(const FormReport& report) {
   std::vector<ReportTable> tables;
   if (report.filled == 0) return tables;
-  for (ReportTable table : {answersTable(report), consistencyTable(report), agreementTable(report)}) {
+  for (ReportTable table :
+       {answersTable(report), scalesTable(report), consistencyTable(report), agreementTable(report)}) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
   return tables;

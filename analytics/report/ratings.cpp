@@ -94,8 +94,47 @@ Agreement agreementOn(const std::string& figure, const RatingTable& table) {
   return a;
 }
 
-void addAgreement(FormReport& report, const std::vector<FormItem>& items, const std::vector<const Rating*>& taken,
-                  const Attempts& attempts) {
+constexpr const char* allItems = "Global rating (all items)";
+
+/// The sum of a form's items with these keys; none where one was left blank.
+std::optional<double> sumOf(const Rating& rating, const std::vector<std::string>& keys) {
+  double sum = 0.0;
+  for (const std::string& key : keys) {
+    const auto at = rating.answers.find(key);
+    if (at == rating.answers.end()) return std::nullopt;
+    sum += at->second;
+  }
+  return sum;
+}
+
+/// The form's subscales, then all of its items.
+std::vector<FormSubscale> scalesOf(const RatingForm& form) {
+  std::vector<FormSubscale> scales = form.subscales;
+  FormSubscale whole{allItems, {}};
+  for (const FormItem& item : form.items()) whole.items.push_back(item.key);
+  if (whole.items.size() > 1) scales.push_back(std::move(whole));
+  return scales;
+}
+
+void addScales(FormReport& report, const RatingForm& form, const std::vector<const Rating*>& taken,
+               const std::map<std::string, std::string>& groupOf, const Attempts& attempts) {
+  for (const FormSubscale& scale : scalesOf(form)) {
+    ScaleReport row{scale.name, scale.items.size(), {}};
+    for (const std::string& group : report.groups) {
+      Scores scores;
+      for (const Rating* r : taken) {
+        if (groupOf.at(subjectOf(*r)) != group) continue;
+        std::vector<double>& given = scores[participantOf(subjectOf(*r), attempts)][r->attempt];
+        if (const std::optional<double> sum = sumOf(*r, scale.items)) given.push_back(*sum);
+      }
+      row.groups.push_back(summary(scores));
+    }
+    report.scales.push_back(std::move(row));
+  }
+}
+
+void addAgreement(FormReport& report, const RatingForm& form, const std::vector<FormItem>& items,
+                  const std::vector<const Rating*>& taken, const Attempts& attempts) {
   std::map<std::string, std::map<std::string, const Rating*>> byAttempt;
   std::set<std::string> raters;
   for (const Rating* r : taken) {
@@ -111,18 +150,21 @@ void addAgreement(FormReport& report, const std::vector<FormItem>& items, const 
   std::sort(rated.begin(), rated.end(), [](const RatedAttempt& a, const RatedAttempt& b) {
     return a.startUtc != b.startUtc ? a.startUtc < b.startUtc : a.uuid < b.uuid;
   });
+  std::vector<std::string> keys;
+  for (const FormItem& item : items) keys.push_back(item.key);
   const auto overall = [&](const Rating& r) -> std::optional<double> {
-    double sum = 0.0;
-    for (const FormItem& item : items) {
-      const auto at = r.answers.find(item.key);
-      if (at == r.answers.end()) return std::nullopt;
-      sum += at->second;
-    }
-    return sum / static_cast<double>(items.size());
+    const std::optional<double> sum = sumOf(r, keys);
+    return sum ? std::optional(*sum / static_cast<double>(keys.size())) : std::nullopt;
   };
   const RatingTable whole = tableOf(rated, raters, overall, report.repeated);
   report.incomplete = rated.size() - whole.subjects - report.repeated;
   if (items.size() > 1) report.agreement.push_back(agreementOn("mean of all items", whole));
+  for (const FormSubscale& scale : form.subscales) {
+    std::uint64_t repeated = 0;
+    report.agreement.push_back(
+        agreementOn(scale.name, tableOf(
+                                    rated, raters, [&](const Rating& r) { return sumOf(r, scale.items); }, repeated)));
+  }
   for (const FormItem& item : items) {
     const auto one = [&](const Rating& r) -> std::optional<double> {
       const auto at = r.answers.find(item.key);
@@ -193,7 +235,8 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
     report.items.push_back(std::move(row));
   }
   if (form.ofAttempts) {
-    addAgreement(report, items, taken, attemptOf);
+    addScales(report, form, taken, groupOf, attemptOf);
+    addAgreement(report, form, items, taken, attemptOf);
   } else {
     addConsistency(report, form, taken);
   }

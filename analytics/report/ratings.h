@@ -38,9 +38,17 @@ struct ItemReport {
   std::vector<std::optional<double>> published;  ///< mean by group
 };
 
+/// Sums of a subscale's items, or of all items of the form: of forms that have them all.
+struct ScaleReport {
+  std::string name;  ///< "Global rating (all items)" for all of them
+  std::uint64_t items = 0;
+  std::vector<ItemSummary>
+      groups;  ///< of the sums, by FormReport::groups; `blank`: participants without a complete one
+};
+
 /// Agreement on one figure of the attempts that every rater rated; of a participant's several the earliest alone.
 struct Agreement {
-  std::string figure;  ///< an item's key, or "mean of all items"
+  std::string figure;  ///< an item's key, a subscale, or "mean of all items"
   std::uint64_t attempts = 0, raters = 0;
   Expected<IntraclassCorrelation> single = Expected<IntraclassCorrelation>::none("not computed");   ///< ICC(2,1)
   Expected<IntraclassCorrelation> average = Expected<IntraclassCorrelation>::none("not computed");  ///< ICC(2,k)
@@ -63,6 +71,7 @@ struct FormReport {
   std::uint64_t repeated = 0;    ///< attempts of participants of whom an earlier one is in the agreement
   std::uint64_t incomplete = 0;  ///< attempts that not every rater rated whole; out of the agreement
   std::vector<ItemReport> items;
+  std::vector<ScaleReport> scales;           ///< of attempts: the form's subscales, then all items; none of one item
   std::vector<SectionConsistency> sections;  ///< of a questionnaire: those of three items or more
   std::vector<Agreement> agreement;          ///< of attempts
 };

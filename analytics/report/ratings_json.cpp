@@ -48,6 +48,23 @@ nlohmann::ordered_json ratingsJson(const std::vector<FormReport>& reports) {
            {"source", r.source}, {"filled", r.filled},         {"left_out", r.leftOut},
            {"groups", r.groups}, {"incomplete", r.incomplete}, {"items", Json::array()}};
     for (const ItemReport& item : r.items) j["items"].push_back(itemJson(r, item));
+    j["scales"] = Json::array();
+    for (const ScaleReport& s : r.scales) {
+      Json groups = Json::array();
+      for (std::size_t g = 0; g < r.groups.size(); ++g) {
+        const ItemSummary& of = s.groups[g];
+        groups.push_back({{"group", r.groups[g]},
+                          {"n", of.n},
+                          {"blank", of.blank},
+                          {"median", orNull(of.median)},
+                          {"lower_quartile", orNull(of.lowerQuartile)},
+                          {"upper_quartile", orNull(of.upperQuartile)},
+                          {"mean", orNull(of.mean)},
+                          {"mean_of_an_item",
+                           orNull(of.mean ? std::optional(*of.mean / static_cast<double>(s.items)) : std::nullopt)}});
+      }
+      j["scales"].push_back({{"scale", s.name}, {"items", s.items}, {"groups", groups}});
+    }
     j["consistency"] = Json::array();
     for (const SectionConsistency& s : r.sections)
       j["consistency"].push_back({{"section", s.section}, {"n", s.n}, {"alpha", estimateJson(s.alpha)}});

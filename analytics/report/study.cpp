@@ -41,6 +41,7 @@ struct Column {
   bool sampled = false;    ///< its values have a coverage
   bool leftAside = false;  ///< of a phase, and not requested
   double factor = 1.0;     ///< to display units
+  ExternalMetricRef metric;
 };
 
 using ColumnKey = std::pair<std::string, std::string>;  ///< checkpoint, subject
@@ -140,7 +141,9 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
   row.subject = key.second;
   row.title = key.first;
   row.unit = column.unit;
-  if (const CheckpointDefinition* d = findCheckpoint(key.first)) {
+  if (column.metric) row.source = column.metric->sha256;
+  const CheckpointDefinition* d = column.metric ? &column.metric->definition : findCheckpoint(key.first);
+  if (d != nullptr) {
     row.title = d->title;
     row.unit = d->displayUnit;
     row.direction = d->direction;
@@ -243,6 +246,7 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
     const Member& m = at->second;
     column.sampled = column.sampled || item.value.coverage;
     coverage.add(item.value, m.group, m.participant, item.attempt);
+    column.metric = item.value.metric;
     const double factor = column.factor;
     const double shown = item.value.value.value_or(0.0) * factor;
     if (!item.value.value || !std::isfinite(shown)) {

@@ -132,6 +132,7 @@ struct StudyRow {
   std::string subject;
   std::string title;
   std::string unit;        ///< display unit
+  std::string source;      ///< of an external metric: SHA-256 of its script; empty: the program's own, or a column
   std::string notOutcome;  ///< why it is shown apart, without a test; empty: an outcome
   bool leading = false;    ///< in the first table: a primary hypothesis, a figure of the paper's Table 2, or named
   Direction direction = Direction::none;

@@ -67,7 +67,7 @@ std::string summaryTable(const Study& study) {
       "hochberg,supported,"
       "worst_ranked_a,worst_ranked_b,simulation_half_width,first_larger_lower,first_larger_upper,simulation_decided,"
       "attainable_p,"
-      "not_outcome_because\n";
+      "not_outcome_because,source_sha256\n";
   for (const StudyRow& row : study.rows) {
     text += fmt::format("{},{},{},{}", csvCell(row.checkpoint), csvCell(row.subject), csvCell(row.unit),
                         nameOf(row.direction));
@@ -94,7 +94,8 @@ std::string summaryTable(const Study& study) {
                         : *row.supported ? "yes"
                                          : "no",
                         row.worstRanked[0], row.worstRanked[1]);
-    text += simulationCells(row) + fmt::format(",{},{}\n", numberCell(row.attainableP), csvCell(row.notOutcome));
+    text += simulationCells(row) +
+            fmt::format(",{},{},{}\n", numberCell(row.attainableP), csvCell(row.notOutcome), row.source);
   }
   return text;
 }

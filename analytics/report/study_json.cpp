@@ -133,6 +133,7 @@ Json rowJson(const Study& study, const StudyRow& row) {
          {"direction", nameOf(row.direction)}, {"versions", row.versions}, {"origins", row.origins}};
   j["groups"] = Json::array({groupJson(study.groups[0], row.group[0]), groupJson(study.groups[1], row.group[1])});
   j["sampled"] = row.sampled;
+  if (!row.source.empty()) j["source_sha256"] = row.source;
   j["role"] = nameOf(row.role);
   j["not_outcome_because"] = row.notOutcome;
   j["leading"] = row.leading;

@@ -59,6 +59,19 @@ std::string missing(const Study& study) {
                                        worst));
 }
 
+/// Which scripts the figures of external metrics are of.
+std::string externalMetrics(const Study& study) {
+  std::string list;
+  for (const StudyRow& row : study.rows) {
+    if (row.source.empty()) continue;
+    std::string versions;
+    for (const std::uint32_t version : row.versions)
+      versions += fmt::format("{}{}", versions.empty() ? "" : ", ", version);
+    list += fmt::format("{}{} version {} (SHA-256 {})", list.empty() ? "" : "; ", row.checkpoint, versions, row.source);
+  }
+  return list.empty() ? list : fmt::format("External metrics are of scripts of the site: {}. ", list);
+}
+
 }  // namespace
 
 std::vector<std::string> protocolLines(const Study& study) {
@@ -104,7 +117,7 @@ std::string studyMethods(const Study& study) {
       fmt::format("Of {} {} in the {}, {} of {} {} and {} {} were analysed ({}); {} were left out. ", study.recruited,
                   study.counted, study.source, study.analysed, study.participants[0], study.groups[0],
                   study.participants[1], study.groups[1], study.attemptRule, study.recruited - study.analysed);
-  text += comparisons(study) + effects(study) + missing(study);
+  text += comparisons(study) + externalMetrics(study) + effects(study) + missing(study);
   text += study.family;
   return text + fmt::format(" Quartiles are of type 7. Computed by {}.", recorder::softwareName());
 }

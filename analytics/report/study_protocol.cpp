@@ -16,7 +16,9 @@ namespace {
 /// "2026-01-01T00:00:00": seconds are what both times have, and text orders them.
 std::string instant(const std::string& utc) { return utc.substr(0, 19); }
 
-bool matches(const DirectedHypothesis& h, const StudyRow& row) { return figureOf(h) == rowName(row); }
+bool matches(const DirectedHypothesis& h, const StudyRow& row) {
+  return figureOf(h) == figureOfRow(row) && (h.sha256.empty() || h.sha256 == row.source);
+}
 
 std::string whyExploratory(const StudyProtocol& protocol, bool unknownStart) {
   if (protocol.registeredUtc.empty()) return "the protocol is not registered in this cohort (calot protocol register)";
@@ -212,8 +214,9 @@ void adjustByProtocol(Study& study, const Protocol& protocol) {
     const bool there =
         std::any_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return matches(h, r); });
     if (there) continue;
-    study.remarks.push_back(fmt::format("{} {}, of which the protocol has a {} hypothesis.",
+    study.remarks.push_back(fmt::format("{} {}{}, of which the protocol has a {} hypothesis.",
                                         study.source == "table" ? "No outcome is" : "No attempt has", figureOf(h),
+                                        h.sha256.empty() ? "" : " of the script with SHA-256 " + h.sha256,
                                         h.primary ? "primary" : "secondary"));
   }
   study.family = fmt::format(

@@ -21,7 +21,7 @@ const std::vector<std::string>& protocolReasons();
 /// The choices that the protocol makes of any study.
 void chooseByProtocol(StudyChoices& choices, const Protocol& protocol);
 
-/// The figure of a hypothesis as rowName() has it: "path-length left".
+/// The figure of a hypothesis as figureOfRow() has it: "path-length left".
 std::string figureOf(const DirectedHypothesis& hypothesis);
 
 /// Of a table: `study.protocol`, the reason why it is exploratory, and what of the protocol a table cannot answer, as

@@ -179,7 +179,9 @@ std::string studyTitle(const Study& study) {
   return fmt::format("Study ({}): {} against {}", study.heading, study.groups[0], study.groups[1]);
 }
 
-std::string rowName(const StudyRow& row) {
+std::string rowName(const StudyRow& row) { return figureOfRow(row) + (row.source.empty() ? "" : " (external)"); }
+
+std::string figureOfRow(const StudyRow& row) {
   return row.subject.empty() ? row.checkpoint : fmt::format("{} {}", row.checkpoint, row.subject);
 }
 
@@ -207,14 +209,21 @@ std::vector<ReportTable> appendixTables(const Study& study) {
   add(secondaryTable(study));
   std::map<std::optional<CheckpointFamily>, ShownRows> families;  // columns of a table have none, and stand first
   ShownRows apart;
+  ShownRows external;
   for (const StudyRow& row : study.rows) {
-    if (!hasNoValue(row)) (row.notOutcome.empty() ? families[familyOf(row.checkpoint)] : apart).push_back(&row);
+    if (hasNoValue(row)) continue;
+    ShownRows& shown = !row.notOutcome.empty() ? apart
+                       : row.source.empty()    ? families[familyOf(row.checkpoint)]
+                                               : external;
+    shown.push_back(&row);
   }
   for (const auto& [family, rows] : families) {
     const std::string of = family ? ": " + nameOf(*family) : "";
     add(valuesTable(study, "Values" + of, rows));
     add(comparisonTable(study, "Comparison" + of, rows));
   }
+  add(valuesTable(study, "Values: external metrics (scripts of the site)", external));
+  add(comparisonTable(study, "Comparison: external metrics", external));
   add(valuesTable(study, "No outcomes: not tested", apart));
   for (ReportTable table : {coverageTable(study), furtherTable(study), simulationTable(study), baselineTable(study)})
     add(std::move(table));

@@ -13,8 +13,10 @@
 namespace calot::analytics {
 
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"
-std::string rowName(const StudyRow& row);    ///< checkpoint and subject
-bool hasNoValue(const StudyRow& row);        ///< nobody of either group has one
+/// Checkpoint and subject, "path-length left"; external metrics are marked, "mean-grasp-force (external)".
+std::string rowName(const StudyRow& row);
+std::string figureOfRow(const StudyRow& row);  ///< the same without the mark
+bool hasNoValue(const StudyRow& row);          ///< nobody of either group has one
 /// The protocol, when it was registered, why the study is exploratory all the same; or empty.
 std::vector<std::string> protocolLines(const Study& study);
 /// Under the title: the protocol, task, device and versions in words, dates, and the unit of analysis.

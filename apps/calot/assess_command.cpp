@@ -15,6 +15,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/key_fault.h"
+#include "apps/calot/metric_options.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/share_options.h"
 #include "apps/calot/value_report.h"
@@ -31,6 +32,7 @@ struct AssessOptions {
   std::optional<unsigned> threads;
   bool uncertainty = false;
   double cutoff = 0.0;  ///< 0: values are stored
+  MetricOptions metrics;
   ShareOptions share;
   unsigned jobs = 0;
   bool apart = false, json = false;
@@ -52,6 +54,7 @@ struct Stored {
   std::string how = "not stored";
   std::vector<analytics::CheckpointValue> values;
   std::vector<analytics::ValueInterval> intervals;
+  analytics::MetricOutcomes external;
 };
 
 /// The intervals that the cohort has of these values, or else new ones.
@@ -73,7 +76,8 @@ std::vector<analytics::ValueInterval> intervalsOf(const std::string& file, const
 /// Stores what judging one recording gave. A damaged file is no attempt of the cohort. A conflict with what the cohort
 /// holds is this file's answer: it takes the place of the report.
 void storeJudged(const std::string& file, const AssessOptions& o, analytics::CohortDatabase& database,
-                 analytics::JudgedRecording& judged, Stored& stored) {
+                 const std::vector<analytics::MetricScript>& metrics, analytics::JudgedRecording& judged,
+                 Stored& stored) {
   if (!judged.record) return;
   try {
     stored.how = importedName(database.storeAttempt(*judged.record, judged.values));
@@ -81,6 +85,10 @@ void storeJudged(const std::string& file, const AssessOptions& o, analytics::Coh
     if (o.uncertainty && judged.report.verdict == recorder::ReplayVerdict::exact)
       stored.intervals = intervalsOf(file, o, judged.record->uuid, judged.values, database);
     stored.values = std::move(judged.values);
+    const bool isNew = analytics::storeExternal(database, judged.record->uuid, judged.external, metrics);
+    if (isNew && stored.how == importedName(analytics::Imported::unchanged))
+      stored.how = importedName(analytics::Imported::extended);
+    stored.external = std::move(judged.external);
   } catch (const Error& e) {
     if (e.kind() != ErrorKind::refused) throw;
     judged.report = {};
@@ -98,11 +106,13 @@ class AssessOutput {
 
   void add(const recorder::ReplayReport& report, const Stored& stored) {
     reports_.push_back(report);
+    metrics_.push_back(reportFailures(stored.external, report.path.string()));
     if (options_.json) {
       nlohmann::json row = reportJson(report);
       row["stored"] = stored.how;
       if (!stored.keyFault.empty()) row["key"] = stored.keyFault;
       row["checkpoints"] = jsonOf(stored.values, stored.intervals);
+      if (!stored.external.failures.empty()) row["failed_metrics"] = failuresJson(stored.external);
       list_.push_back(row);
       return;
     }
@@ -122,7 +132,7 @@ class AssessOutput {
       std::fflush(stdout);
       if (database != nullptr) analytics::printAttempts(*database, std::cout);
     }
-    return worstOf(reports_);
+    return worstOf({worstOf(reports_), worstOf(metrics_)});
   }
 
   [[nodiscard]] std::size_t count() const { return reports_.size(); }
@@ -131,6 +141,7 @@ class AssessOutput {
   const AssessOptions& options_;
   bool everyValue_;
   std::vector<recorder::ReplayReport> reports_;
+  std::vector<ExitCode> metrics_;
   nlohmann::json list_ = nlohmann::json::array();
 };
 
@@ -153,7 +164,7 @@ int takeAssessShares(const AssessOptions& o) {
         if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
         analytics::JudgedRecording judged = *row.judged;
         Stored stored;
-        storeJudged(row.file, o, *database, judged, stored);
+        storeJudged(row.file, o, *database, {}, judged, stored);
         output.add(judged.report, stored);
         progress.show(output.count(), 0);
       });
@@ -174,20 +185,25 @@ int assess(const AssessOptions& o) {
   checkStored(o.cohort, o.cutoff);
   const std::vector<std::string> files = filesOf(o.files);
   std::optional<analytics::CohortDatabase> database;
+  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
   if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+  if (database) checkMetrics(metrics, *database);
   AssessOutput output(o, files.size() == 1 || !database);
   Progress progress("assessing, recordings", o.json);
   analytics::AssessSettings settings{.threads = o.threads.value_or(1)};
   if (o.cutoff > 0.0) settings.cutoff = o.cutoff;
   settings.engine.apart = o.apart;
+  settings.metrics = &metrics;
   for (const std::string& file : files) {
     analytics::JudgedRecording judged = analytics::judgedRecording(analytics::assessRecording(file, settings));
     Stored stored;
     if (database) {
-      storeJudged(file, o, *database, judged, stored);
+      storeJudged(file, o, *database, metrics, judged, stored);
     } else {
       stored.values = std::move(judged.values);
+      stored.external = std::move(judged.external);
     }
+    for (const analytics::CheckpointValue& v : stored.external.values) stored.values.push_back(v);
     output.add(judged.report, stored);
     progress.show(output.count(), files.size());
   }
@@ -203,6 +219,7 @@ void addAssess(CLI::App& app, Run& run) {
   command->add_option("recordings", o->files, "recordings, or folders that hold them");
   addStoring(*command, o->cohort, o->cutoff);
   addSharing(*command, o->share);
+  addMetrics(*command, o->metrics)->excludes("--shard")->excludes("--take");
   command->add_option("--jobs", o->jobs, "with --shard: recordings at a time; 0: one a processor")
       ->check(CLI::Range(0U, 64U))
       ->needs("--shard")

@@ -14,6 +14,7 @@
 #include "analytics/motion_words.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/metric_options.h"
 #include "apps/calot/motion_import.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/exit_code.h"
@@ -28,24 +29,25 @@ struct ImportOptions {
   std::vector<std::string> files;
   std::string manifest, cohort, columns, mode = "practice", outcome = "stopped";
   analytics::MotionDeclaration declaration;
+  MetricOptions metrics;
   double cutoff = 0.0;
   bool json = false;
 };
 
 /// Reads first, so that a file that cannot be read makes no database.
 ImportedFile importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
+                       const std::vector<analytics::MetricScript>& metrics,
                        std::optional<analytics::CohortDatabase>& database) {
   return importFile([&] { return readMotion(file, map ? &*map : nullptr); },
                     [&](ImportedFile& result) {
-                      if (o.cohort.empty()) {
-                        result.values = analytics::valuesFromSamples(
-                            *result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
+                      if (!o.cohort.empty()) {
+                        storeImported(o.cohort, database, o.declaration, metrics, result);
                         return;
                       }
-                      if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
-                      analytics::StoredMotion stored = analytics::storeMotion(*database, *result.motion, o.declaration);
-                      result.how = importedName(stored.imported);
-                      result.values = std::move(stored.values);
+                      result.external = analytics::externalOf(*result.motion, o.declaration, metrics);
+                      result.values = analytics::valuesFromSamples(
+                          *result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
+                      result.addExternal();
                     });
 }
 
@@ -57,13 +59,15 @@ int import(const ImportOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
+  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
+  checkMetrics(metrics, o.cohort);
   std::optional<analytics::CohortDatabase> database;
   std::vector<ExitCode> codes;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   Progress progress("importing, files", o.json);
   for (const std::string& file : o.files) {
-    const ImportedFile result = importOne(file, o, map, database);
-    codes.push_back(result.code);
+    const ImportedFile result = importOne(file, o, map, metrics, database);
+    codes.push_back(worstOf({result.code, reportFailures(result.external, file)}));
     progress.show(codes.size(), o.files.size());
     if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
     if (o.json) {
@@ -106,6 +110,7 @@ void addImport(CLI::App& app, Run& run) {
   command->add_option("files", o->files, "two-handed motion, 76 columns at 30 Hz; or CSV files with --columns")
       ->excludes(manifest);
   addStoring(*command, o->cohort, o->cutoff);
+  addMetrics(*command, o->metrics);
   command->add_option("--columns", o->columns, "what the columns of the CSV files are (schemas/columns.schema.json)");
   command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
       ->check(wordOf("task"))
@@ -135,7 +140,7 @@ void addImport(CLI::App& app, Run& run) {
       if (o->manifest.empty()) return import(*o);
       if (o->cohort.empty() || o->cutoff > 0.0)
         throw Error(ErrorKind::invalid, "import: --manifest stores what it names: give --cohort, and no --cutoff");
-      return importManifest({o->manifest, o->cohort, o->columns, o->declaration, o->json});
+      return importManifest({o->manifest, o->cohort, o->columns, o->declaration, o->metrics, o->json});
     };
   });
 }

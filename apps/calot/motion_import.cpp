@@ -71,6 +71,21 @@ ImportedFile importFile(const std::function<recorder::TrackedMotion()>& read,
   return result;
 }
 
+void storeImported(const std::string& cohort, std::optional<analytics::CohortDatabase>& database,
+                   const analytics::MotionDeclaration& declaration, const std::vector<analytics::MetricScript>& metrics,
+                   ImportedFile& file) {
+  file.external = analytics::externalOf(*file.motion, declaration, metrics);
+  if (!database) database.emplace(cohort, analytics::CohortDatabase::Access::create);
+  analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
+  file.how = importedName(stored.imported);
+  file.values = std::move(stored.values);
+  const std::string attempt = analytics::recordOf(*file.motion, declaration).uuid;
+  if (analytics::storeExternal(*database, attempt, file.external, metrics) &&
+      stored.imported == analytics::Imported::unchanged)
+    file.how = importedName(analytics::Imported::extended);
+  file.addExternal();
+}
+
 nlohmann::ordered_json jsonOf(const std::string& file, const ImportedFile& result) {
   nlohmann::ordered_json row = {{"file", file}, {"stored", result.how}};
   if (!result.error.empty()) row["error"] = result.error;
@@ -80,6 +95,7 @@ nlohmann::ordered_json jsonOf(const std::string& file, const ImportedFile& resul
     row["seconds"] = result.motion->time.back();
   }
   row["checkpoints"] = apps::jsonOf(result.values);
+  if (!result.external.failures.empty()) row["failed_metrics"] = failuresJson(result.external);
   return row;
 }
 
@@ -89,11 +105,13 @@ int importManifest(const ManifestOptions& o) {
   std::optional<analytics::CohortDatabase> database;
   std::optional<analytics::Enrolment> enrolment;
   if (std::filesystem::exists(o.cohort)) {
-    enrolment.emplace(analytics::CohortDatabase(o.cohort, analytics::CohortDatabase::Access::read));
+    enrolment.emplace(analytics::CohortDatabase(o.cohort, analytics::CohortDatabase::Access::write));
     const std::vector<Error> conflicts = enrolment->conflicts(manifest);
     faults.insert(faults.end(), conflicts.begin(), conflicts.end());
   }
   if (!faults.empty()) return refuseRows(faults);
+  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
+  checkMetrics(metrics, o.cohort);
 
   std::vector<ExitCode> codes;
   std::vector<std::string> errors;
@@ -106,19 +124,18 @@ int importManifest(const ManifestOptions& o) {
     for (const analytics::MotionRow& row : manifest.rows) {
       progress.show(codes.size(), manifest.rows.size());
       const auto map = manifest.maps.find(row.columns);
-      const ImportedFile result = importFile(
-          [&] { return readMotion(row.file, map == manifest.maps.end() ? nullptr : &map->second); },
-          [&](ImportedFile& stored) {
-            // Only now, so that files none of which can be read make no database.
-            if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
-            if (!enrolment) enrolment.emplace(*database);
-            const std::string& who = row.declaration.participant;
-            if (!who.empty() && enrolled.insert(who).second) enrolment->add(*database, manifest.participants.at(who));
-            analytics::StoredMotion motion = analytics::storeMotion(*database, *stored.motion, row.declaration);
-            stored.how = importedName(motion.imported);
-            stored.values = std::move(motion.values);
-          });
-      codes.push_back(result.code);
+      const ImportedFile result =
+          importFile([&] { return readMotion(row.file, map == manifest.maps.end() ? nullptr : &map->second); },
+                     [&](ImportedFile& stored) {
+                       // Only now, so that files none of which can be read make no database.
+                       if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+                       if (!enrolment) enrolment.emplace(*database);
+                       const std::string& who = row.declaration.participant;
+                       if (!who.empty() && enrolled.insert(who).second)
+                         enrolment->add(*database, manifest.participants.at(who));
+                       storeImported(o.cohort, database, row.declaration, metrics, stored);
+                     });
+      codes.push_back(worstOf({result.code, reportFailures(result.external, row.file.string())}));
       ++counts[result.how];
       if (result.error.empty() && row.declaration.mode == recorder::Mode::practice) ++practice;
       if (!result.error.empty())

@@ -11,6 +11,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/import_motion.h"
+#include "apps/calot/metric_options.h"
 #include "apps/common/exit_code.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/tracked_motion.h"
@@ -23,6 +24,9 @@ struct ImportedFile {
   std::string how = "not stored", error;
   std::optional<recorder::TrackedMotion> motion;
   std::vector<analytics::CheckpointValue> values;
+  analytics::MetricOutcomes external;
+
+  void addExternal() { values.insert(values.end(), external.values.begin(), external.values.end()); }
 };
 
 /// @param map of a CSV file, or null. @throws Error as the readers; (invalid) for a CSV file without a map.
@@ -33,12 +37,19 @@ recorder::TrackedMotion readMotion(const std::filesystem::path& file, const reco
 ImportedFile importFile(const std::function<recorder::TrackedMotion()>& read,
                         const std::function<void(ImportedFile&)>& store);
 
+/// Computes the users' own metrics of `file.motion`, makes or opens the cohort if it is not open yet, stores all values
+/// and says in `file` what came of it.
+void storeImported(const std::string& cohort, std::optional<analytics::CohortDatabase>& database,
+                   const analytics::MotionDeclaration& declaration, const std::vector<analytics::MetricScript>& metrics,
+                   ImportedFile& file);
+
 /// A row of the output with --json.
 nlohmann::ordered_json jsonOf(const std::string& file, const ImportedFile& result);
 
 struct ManifestOptions {
   std::string manifest, cohort, columns;
   analytics::MotionDeclaration otherwise;  ///< where the manifest says nothing
+  MetricOptions metrics;
   bool json = false;
 };
 

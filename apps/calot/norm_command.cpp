@@ -33,7 +33,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t maxEvidence = std::size_t{1} << 30U;
 
 struct NormOptions {
-  std::string database, name, by, groupBy = "group", attemptRule, rule, seed = "1", statement, file;
+  std::string database, name, by, groupBy = "group", attemptRule, rule, seed = "1", statement, file, protocol;
   analytics::NormRequest request;
   unsigned version = 0;
   bool json = false;
@@ -53,6 +53,7 @@ std::uint32_t minOf(const std::string& rule) {
 }
 
 std::string figureName(const analytics::NormCheckpoint& c) {
+  if (c.metric) return c.checkpoint + " (external)";
   return c.subject.empty() ? c.checkpoint : c.checkpoint + " " + c.subject;
 }
 
@@ -85,6 +86,7 @@ Json jsonOf(const analytics::Norm& norm) {
                                 {"lower_si", number(c.lower)},
                                 {"upper_si", number(c.upper)},
                                 {"reason", c.reason}});
+    if (c.metric) j["checkpoints"].back()["source_sha256"] = c.metric->sha256;
   }
   return j;
 }
@@ -116,7 +118,8 @@ void print(const analytics::Norm& norm) {
                                 {"", Align::left}},
                                {}};
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
-    const analytics::CheckpointDefinition* d = analytics::findCheckpoint(c.checkpoint);
+    const analytics::CheckpointDefinition* d =
+        c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);
     const double factor = d != nullptr ? d->displayFactor : 1.0;
     const auto number = [&](double v) { return analytics::significant(v * factor); };
     table.rows.push_back({figureName(c), d == nullptr || d->displayUnit == "1" ? "" : d->displayUnit,
@@ -140,6 +143,11 @@ int create(NormOptions& o) {
   if (!o.attemptRule.empty()) o.request.who.attemptRule = analytics::AttemptRule::first;
   analytics::AssessmentDatabase database(o.database, Access::write);
   const analytics::CohortDatabase cohort(o.database, Access::read);
+  if (!o.protocol.empty()) {
+    analytics::ProtocolInUse& use = o.request.who.protocol.emplace();
+    use.protocol = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
+    for (const analytics::Participant& p : cohort.participants()) use.experience[p.pseudonym] = p.experience;
+  }
   const analytics::Norm norm =
       analytics::makeNorm(cohort.listAttempts(), cohort.allValues(), database.ratings(), o.request, o.database);
   const std::uint32_t version = database.storeNorm(norm);
@@ -195,6 +203,10 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
           "Figures in the rule, A,B: a checkpoint, or one of it (\"path-length left\"); default: all with a mark")
       ->delimiter(',')
       ->allow_extra_args(false);
+  CLI::Option* protocol = command.add_option(
+      "--protocol", o.protocol,
+      "A study's protocol, a file or the name of one that comes with the program: its groups, the better one, its "
+      "criteria and attempt rule");
   command.add_option("--groups", who.groups, "The two groups, A,B")->delimiter(',')->allow_extra_args(false);
   command.add_option("--better", who.better, "Which of them is competent");
   command.add_option("--judged-by", o.request.judgedBy,
@@ -209,6 +221,11 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
   command.add_flag("--include-practice", who.includePractice, "Take in attempts in practice mode");
   command.add_flag("--phases", who.includePhases,
                    "The checkpoints of each phase of the procedure, too (else those that --checkpoints names)");
+  for (const char* name : {"--groups", "--better", "--judged-by", "--group-by", "--attempt-rule", "--include-synthetic",
+                           "--include-practice"})
+    protocol->excludes(command.get_option(name));
+  for (const char* name : {"--groups", "--better", "--group-by"})
+    command.get_option("--judged-by")->excludes(command.get_option(name));
   command.add_option("--seed", o.seed, "Of the bootstrap")->check(wholeNumber)->capture_default_str();
 }
 

@@ -38,7 +38,7 @@ struct Sized {
 
 /// p that the first rejection needs: Holm asks for the level over the number of tests, else some test for the level.
 double markOf(const PowerOptions& o, const PlannedStudy& planned) {
-  return o.adjustment == "holm" ? o.level / static_cast<double>(planned.names.size()) : o.level;
+  return o.adjustment == "holm" ? o.level / static_cast<double>(planned.family) : o.level;
 }
 
 void print(const PowerOptions& o, const PlannedStudy& planned, const std::vector<Sized>& results, std::size_t enough) {
@@ -180,6 +180,8 @@ void addPower(CLI::App& app, Run& run) {
       ->check(CLI::Range(std::uint64_t{100}, std::uint64_t{1000000}));
   command->add_option("--seed", o->seed, "Of the simulation")->check(wholeNumber)->capture_default_str();
   command->add_flag("--json", o->json, "Print JSON");
+  // These are the protocol's.
+  for (const char* name : {"--level", "--adjustment"}) command->get_option(name)->excludes("--protocol");
   command->callback([o, &run] { run = [o] { return power(*o); }; });
 }
 

@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 
+#include "analytics/assessment/protocol.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/study_tables.h"
+#include "apps/calot/environment.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_words.h"
 
@@ -87,6 +91,23 @@ void drawFrom(PlannedStudy& planned, StudySource& source) {
       population.people[0].size(), study.groups[0], population.people[1].size(), study.groups[1], study.where);
 }
 
+/// Effects on the protocol's primary hypotheses, without anybody's data: one for all, or one each.
+void planByProtocol(PlannedStudy& planned, PowerOptions& o) {
+  const analytics::Protocol protocol = analytics::readProtocol(findAsset(o.source.protocol, "protocols", "protocol"));
+  for (const analytics::DirectedHypothesis& h : protocol.hypotheses) {
+    if (h.primary) planned.names.push_back(analytics::figureOf(h));
+  }
+  if (o.effects.size() == 1) o.effects.resize(planned.names.size(), o.effects.front());
+  if (!o.checkpoints.empty() || o.effects.size() != planned.names.size())
+    failPower(fmt::format("protocol {} has {} primary hypotheses: --effect wants one number for all, or {}",
+                          protocol.name, planned.names.size(), planned.names.size()));
+  planned.plan.checkpoints = analytics::shifts(o.effects);
+  planned.groups = {protocol.populations[0].group, protocol.populations[1].group};
+  planned.origin =
+      fmt::format("{} groups, primary hypotheses of protocol {} version {}", o.shape, protocol.name, protocol.version);
+  o.level = protocol.level;
+}
+
 }  // namespace
 
 void failPower(const std::string& what) { throw Error(ErrorKind::invalid, "power: " + what); }
@@ -128,12 +149,22 @@ PlannedStudy planOf(PowerOptions& o) {
     failPower(fmt::format("more than {} checkpoints", maxCheckpoints));
   if (data) {
     drawFrom(planned, o.source);
+    if (!o.source.protocol.empty()) {
+      const analytics::Protocol protocol =
+          analytics::readProtocol(findAsset(o.source.protocol, "protocols", "protocol"));
+      o.level = protocol.level;
+      planned.family = static_cast<std::size_t>(std::count_if(protocol.hypotheses.begin(), protocol.hypotheses.end(),
+                                                              [](const auto& h) { return h.primary; }));
+    }
+  } else if (!o.source.protocol.empty()) {
+    planByProtocol(planned, o);
   } else {
     planned.origin = fmt::format("{} groups", o.shape);
     planned.plan.checkpoints = analytics::shifts(o.effects);
     for (const double effect : o.effects) planned.names.push_back(fmt::format("shift {} sd", effect));
     for (const std::string& text : o.checkpoints) addCheckpoint(planned, text, lognormal);
   }
+  if (planned.family == 0) planned.family = planned.names.size();
   planned.plan.shape = lognormal ? analytics::PowerShape::lognormal : analytics::PowerShape::normal;
   planned.plan.correlation = o.correlation;
   planned.plan.step = o.step;

@@ -30,6 +30,8 @@ struct PowerOptions {
 struct PlannedStudy {
   analytics::PowerPlan plan;
   std::vector<std::string> names;  ///< of its checkpoints
+  /// Tests in the family of Holm's adjustment: a protocol's primary hypotheses, those without a test too; else names.
+  std::size_t family = 0;
   std::array<std::string, 2> groups{"first group", "second group"};
   std::string origin;  ///< where the distributions are from, a sentence
   bool synthetic = false;

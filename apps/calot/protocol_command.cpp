@@ -81,7 +81,25 @@ int lock(const ProtocolOptions& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
+/// Those that come with the program.
+int listShipped(const ProtocolOptions& o) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  std::string text;
+  for (const std::filesystem::path& file : listAssets("protocols")) {
+    const analytics::Protocol p = analytics::readProtocol(file);
+    rows.push_back({{"name", p.name}, {"version", p.version}, {"sha256", p.sha256}, {"title", p.title}});
+    text += fmt::format("{} version {}: {}, SHA-256 {}\n", p.name, p.version, p.title, p.sha256);
+  }
+  if (o.json) {
+    std::cout << rows.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << (text.empty() ? "no protocols (CALOT_ASSETS names the folder that has them)\n" : text);
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
 int list(const ProtocolOptions& o) {
+  if (o.database.empty()) return listShipped(o);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   std::string text;
   for (const auto& p : analytics::AssessmentDatabase(o.database, Access::read).protocols()) {
@@ -127,8 +145,8 @@ void addProtocol(CLI::App& app, Run& run) {
   locked->add_option("--key", o->study.cohort.key, "As the study's option of this name");
   locked->add_flag("--mix-keys", o->study.cohort.mixKeys, "As the study's option of this name");
   locked->add_flag("--phases", o->study.cohort.includePhases, "As the study's option of this name");
-  CLI::App* listed = add("list", "List the protocols that a cohort holds", list);
-  listed->add_option("cohort", o->database, "Cohort database")->required();
+  CLI::App* listed = add("list", "List the protocols that a cohort holds, or those that come with the program", list);
+  listed->add_option("cohort", o->database, "Cohort database; none: what comes with the program");
   listed->add_flag("--json", o->json, "Print JSON");
 }
 

@@ -40,6 +40,7 @@ nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& val
     row["value"] = v.value ? nlohmann::ordered_json(*v.value) : nlohmann::ordered_json();
     row["unit"] = v.unit;
     row["origin"] = nameOf(v.origin);
+    if (v.metric) row["sha256"] = v.metric->sha256;
     row["filter"] = v.filter;
     if (!v.value) {
       row["missing"] = nameOf(v.availability);

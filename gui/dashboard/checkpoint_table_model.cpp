@@ -34,7 +34,7 @@ QString momentText(const analytics::Moment& moment) {
 }
 
 double factorOf(const analytics::CheckpointValue& value) {
-  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
+  const analytics::CheckpointDefinition* const definition = analytics::definitionOf(value);
   return definition != nullptr ? definition->displayFactor : 1.0;
 }
 
@@ -105,10 +105,11 @@ int CheckpointTableModel::columnCount(const QModelIndex& parent) const { return 
 
 QString CheckpointTableModel::text(int row, int column) const {
   const analytics::CheckpointValue& shown = value(row);
-  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(shown.name);
+  const analytics::CheckpointDefinition* const definition = analytics::definitionOf(shown);
   switch (column) {
     case nameColumn:
-      return figureTitle(shown.name, {});
+      return shown.metric ? QString::fromStdString(shown.metric->definition.title) + " (external)"
+                          : figureTitle(shown.name, {});
     case subjectColumn:
       return shown.subject.empty() ? QStringLiteral("attempt") : QString::fromStdString(shown.subject);
     case valueColumn:
@@ -153,7 +154,7 @@ QString CheckpointTableModel::toolTip(int row, int column) const {
     for (const analytics::Moment& moment : found->moments) lines += momentText(moment);
     return lines.join('\n');
   }
-  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(shown.name);
+  const analytics::CheckpointDefinition* const definition = analytics::definitionOf(shown);
   QString tip = QString::fromStdString(shown.name);
   if (definition != nullptr) tip += ": " + QString::fromStdString(definition->definition);
   if (!shown.filter.empty()) tip += "\nFilter: " + QString::fromStdString(shown.filter);

@@ -21,6 +21,10 @@ const std::vector<analytics::Norm>& CohortDocument::norms() const {
   return *norms_;
 }
 
+std::vector<analytics::RegisteredProtocol> CohortDocument::protocols() const {
+  return analytics::AssessmentDatabase(path(), Access::read).protocols();
+}
+
 std::vector<std::string> CohortDocument::participants() const {
   std::vector<std::string> names;
   for (const analytics::Participant& participant : database_.participants()) names.push_back(participant.pseudonym);

@@ -31,6 +31,8 @@ class CohortDocument {
   [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
   /// Read when they are first asked for. @throws calot::Error
   [[nodiscard]] const std::vector<analytics::Norm>& norms() const;
+  /// Registered, as they are now. @throws calot::Error
+  [[nodiscard]] std::vector<analytics::RegisteredProtocol> protocols() const;
   [[nodiscard]] std::vector<std::string> participants() const;   ///< pseudonyms, by name. @throws calot::Error
   [[nodiscard]] std::vector<analytics::Rating> ratings() const;  ///< as they are now. @throws calot::Error
 

@@ -86,7 +86,8 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
   }
   for (std::size_t f = 0; f < norm.checkpoints.size(); ++f) {
     const analytics::NormCheckpoint& mark = norm.checkpoints[f];
-    const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(mark.checkpoint);
+    const analytics::CheckpointDefinition* definition =
+        mark.metric ? &mark.metric->definition : analytics::findCheckpoint(mark.checkpoint);
     const double factor =
         definition != nullptr && definition->version == mark.version ? definition->displayFactor : 1.0;
     FigureStanding figure;

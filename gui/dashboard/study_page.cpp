@@ -2,20 +2,31 @@
 #include "gui/dashboard/study_page.h"
 
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+
 #include <QBoxLayout>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFileDialog>
+#include <QImage>
 #include <QLabel>
+#include <QPainter>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QSplitter>
+#include <QStandardItemModel>
 #include <QTextBrowser>
+#include <QTextDocument>
 #include <QTextOption>
+#include <QUrl>
 
+#include "analytics/report/study_tables.h"
 #include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/roc_chart.h"
 #include "gui/dashboard/words.h"
+#include "gui/report/drawing_painter.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
@@ -114,6 +125,9 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   upper->addWidget(html_);
   layout.addLayout(upper);
   auto* lower = new QHBoxLayout;
+  protocol_ = add(*lower, "study-protocol", "Pro&tocol", 0);
+  protocol_->setMinimumContentsLength(20);
+  protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
   key_ = add(*lower, "study-key", "Comparable &within", 1);
   synthetic_ = new QCheckBox("S&ynthetic attempts");
   synthetic_->setObjectName("study-synthetic");
@@ -131,6 +145,11 @@ void StudyPage::connectParts() {
   });
   for (QComboBox* box : {first_, second_, rule_, key_})
     connect(box, &QComboBox::currentIndexChanged, this, [this] { make(); });
+  connect(protocol_, &QComboBox::currentIndexChanged, this, [this] {
+    allowChoices();
+    make();
+  });
+  connect(first_, &QComboBox::currentIndexChanged, this, [this] { allowChoices(); });
   for (QCheckBox* box : {synthetic_, practice_}) connect(box, &QCheckBox::toggled, this, [this] { make(); });
   connect(row_, &QComboBox::currentIndexChanged, this, [this] { showRow(); });
   connect(csv_, &QPushButton::clicked, this, [this] { saveAs(false); });
@@ -142,6 +161,7 @@ void StudyPage::setDocument(std::shared_ptr<const CohortDocument> document) {
   document_ = std::move(document);
   made_ = false;
   if (another) fillChoices();
+  fillProtocols();
   if (isVisible()) make();
 }
 
@@ -179,6 +199,31 @@ void StudyPage::fillGroups() {
   second_->setCurrentIndex(second_->count() > 1 ? 1 : -1);
 }
 
+void StudyPage::fillProtocols() {
+  const QSignalBlocker quiet(protocol_);
+  const QVariant before = protocol_->currentData();
+  protocol_->clear();
+  protocol_->addItem("none", QString());
+  for (const analytics::RegisteredProtocol& p : document_->protocols())
+    protocol_->addItem(QString("%1, version %2").arg(QString::fromStdString(p.name)).arg(p.version),
+                       QString::fromStdString(p.sha256));
+  protocol_->setCurrentIndex(std::max(0, protocol_->findData(before)));
+  protocol_->setEnabled(protocol_->count() > 1);
+  allowChoices();
+}
+
+/// Only what can make a study: a protocol leaves the key alone, and a group is not compared with itself.
+void StudyPage::allowChoices() {
+  const bool free = protocol_->currentData().toString().isEmpty();
+  for (QWidget* choice : std::initializer_list<QWidget*>{groupBy_, first_, second_, rule_, synthetic_, practice_})
+    choice->setEnabled(free);
+  auto* groups = qobject_cast<QStandardItemModel*>(second_->model());
+  for (int i = 0; groups != nullptr && i < groups->rowCount(); ++i)
+    groups->item(i)->setEnabled(i != first_->currentIndex());
+  if (second_->count() > 1 && second_->currentIndex() == first_->currentIndex())
+    second_->setCurrentIndex(first_->currentIndex() == 0 ? 1 : 0);
+}
+
 void StudyPage::make() {
   if (!document_ || !isVisible()) return;
   made_ = true;
@@ -194,6 +239,7 @@ void StudyPage::make() {
   request.attemptRule = static_cast<analytics::AttemptRule>(rule_->currentData().toInt());
   request.first = first_->currentText().toStdString();
   request.second = second_->currentText().toStdString();
+  request.protocol = protocol_->currentData().toString().toStdString();
   background_.run([this, request, database = document_->path()]() -> Background::Completion {
     auto answer = std::make_shared<StudyAnswer>(studyOf(database, request));
     return [this, answer] { take(std::move(*answer)); };
@@ -209,12 +255,19 @@ void StudyPage::take(StudyAnswer answer) {
     const QString before = row_->currentText();
     row_->clear();
     if (study_) {
-      for (const analytics::StudyRow& row : study_->rows) row_->addItem(figureTitle(row.checkpoint, row.subject));
-      row_->setCurrentIndex(std::max(0, row_->findText(before)));
+      for (const analytics::StudyRow& row : study_->rows)
+        row_->addItem(row.source.empty() ? figureTitle(row.checkpoint, row.subject)
+                                         : QString::fromStdString(row.title) + " (external)");
+      const auto leading = std::find_if(study_->rows.begin(), study_->rows.end(),
+                                        [](const analytics::StudyRow& row) { return row.leading; });
+      const auto first = leading == study_->rows.end() ? 0 : static_cast<int>(leading - study_->rows.begin());
+      const int again = row_->findText(before);
+      row_->setCurrentIndex(again < 0 ? first : again);
     }
   }
   if (study_) {
     state_->setText(QString("%1 of %2 attempts are analysed.").arg(study_->analysed).arg(study_->recruited));
+    showForest();
     text_->setHtml(QString::fromStdString(studyText(*study_)));
   } else {
     state_->setText("There is no study with these choices: " + QString::fromStdString(answer.refusal));
@@ -222,6 +275,21 @@ void StudyPage::take(StudyAnswer answer) {
   }
   showRow();
   emit studyShown();
+}
+
+void StudyPage::showForest() {
+  const std::optional<analytics::Drawing> forest = analytics::forestOf(*study_);
+  if (!forest) return;
+  const double ratio = devicePixelRatioF();
+  QImage image(static_cast<int>(std::ceil(forest->width * ratio)), static_cast<int>(std::ceil(forest->height * ratio)),
+               QImage::Format_ARGB32_Premultiplied);
+  image.setDevicePixelRatio(ratio);
+  image.fill(Qt::white);
+  QPainter painter(&image);
+  painter.setRenderHint(QPainter::Antialiasing);
+  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height));
+  painter.end();
+  text_->document()->addResource(QTextDocument::ImageResource, QUrl(forestAddress), image);
 }
 
 void StudyPage::showRow() {

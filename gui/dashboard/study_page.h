@@ -45,8 +45,11 @@ class StudyPage : public QWidget {
   void connectParts();
   void fillChoices();
   void fillGroups();
+  void fillProtocols();
+  void allowChoices();
   void make();
   void take(StudyAnswer answer);
+  void showForest();
   void showRow();
   void saveAs(bool html);
 
@@ -60,6 +63,7 @@ class StudyPage : public QWidget {
   QComboBox* second_ = nullptr;
   QComboBox* key_ = nullptr;
   QComboBox* rule_ = nullptr;
+  QComboBox* protocol_ = nullptr;
   QCheckBox* synthetic_ = nullptr;
   QCheckBox* practice_ = nullptr;
   QLabel* state_ = nullptr;

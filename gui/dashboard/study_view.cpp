@@ -8,6 +8,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/report/html_text.h"
 #include "analytics/report/page_html.h"
+#include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 #include "analytics/statistics/descriptive.h"
@@ -69,9 +70,19 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request) {
     options.includePractice = request.includePractice;
     options.key = request.key;
     options.attemptRule = request.attemptRule;
-    if (!request.first.empty() && !request.second.empty()) options.groups = {request.first, request.second};
+    const analytics::AssessmentDatabase assessment(database, Access::read);
+    if (!request.protocol.empty()) {
+      for (const analytics::RegisteredProtocol& p : assessment.protocols()) {
+        if (p.sha256 != request.protocol) continue;
+        const auto* bytes = reinterpret_cast<const std::byte*>(p.text.data());
+        analytics::ProtocolInUse use{
+            analytics::parseProtocol({bytes, p.text.size()}, p.name), assessment.protocols(p.name), {}};
+        options.protocol = std::move(use);
+      }
+    } else if (!request.first.empty() && !request.second.empty())
+      options.groups = {request.first, request.second};
     analytics::Study study = analytics::makeStudy(analytics::CohortDatabase(database, Access::read), options);
-    analytics::addRatings(study, analytics::AssessmentDatabase(database, Access::read));
+    analytics::addRatings(study, assessment);
     return {std::move(study), {}};
   } catch (const std::exception& error) {
     return {std::nullopt, problemText(error)};
@@ -87,18 +98,37 @@ std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& atte
   return {names.begin(), names.end()};
 }
 
+std::string registrationText(const analytics::Study& study) {
+  if (!study.protocol)
+    return "No protocol: the choices on this page were made after the data, so that the study is exploratory.";
+  const analytics::StudyProtocol& p = *study.protocol;
+  if (p.whyExploratory.empty())
+    return "Confirmatory: protocol " + p.name + " version " + std::to_string(p.version) + " was registered on " +
+           p.registeredUtc + ", before the first attempt (" + p.firstAttemptUtc + ").";
+  return "Exploratory, by protocol " + p.name + " version " + std::to_string(p.version) + ": " + p.whyExploratory + ".";
+}
+
 std::string studyText(const analytics::Study& study) {
   std::string html;
   if (study.synthetic)
     html += "<p style=\"background-color:#f0e442; color:#000000\"><b>&nbsp;" +
             analytics::escaped(analytics::watermarkText) + "&nbsp;</b></p>";
   html += "<h2>" + analytics::escaped(analytics::studyTitle(study)) + "</h2>";
-  for (const std::string& line : analytics::studyHead(study)) html += paragraph(line);
-  html += tableText(analytics::flowTable(study)) + tableText(analytics::primaryTable(study));
+  html +=
+      "<p><b>" + analytics::escaped(registrationText(study)) + "</b></p>" + tableText(analytics::primaryTable(study));
+  if (analytics::forestOf(study)) html += std::string("<p><img src=\"") + forestAddress + "\"></p>";
+  const analytics::ReportTable coverage = analytics::coverageTable(study);
+  if (!study.coverage.empty())
+    html += coverage.rows.empty() ? paragraph(analytics::coverageNote(study)) : tableText(coverage);
   for (const std::string& note : analytics::primaryNotes(study)) html += paragraph(note);
+  html += "<h3>Population</h3>";
+  for (const std::string& line : analytics::studyHead(study)) html += paragraph(line);
+  html += tableText(analytics::flowTable(study));
   html += "<h3>Methods</h3>" + paragraph(analytics::studyMethods(study)) + "<h2>Appendix</h2>";
   for (const std::string& note : analytics::appendixNotes(study)) html += paragraph(note);
-  for (const analytics::ReportTable& table : analytics::appendixTables(study)) html += tableText(table);
+  for (const analytics::ReportTable& table : analytics::appendixTables(study)) {
+    if (table.title != coverage.title) html += tableText(table);
+  }
   return html;
 }
 

@@ -19,6 +19,8 @@ struct StudyRequest {
   std::string key;  ///< only attempts of this comparability key; empty: all, which must then have one
   analytics::AttemptRule attemptRule = analytics::AttemptRule::first;
   std::string first, second;  ///< groups to compare, or both empty: the only two that are there
+  /// SHA-256 of a registered protocol, which makes all choices but the key; empty: none
+  std::string protocol;
 };
 
 /// The study, with ratings; or why there is none.
@@ -32,7 +34,14 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request);
 /// Groups that attempts have, by name, for the choice of two.
 std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, GroupBy groupBy);
 
-/// Title, methods, flow, tables and notes as HTML for a text widget; every text is escaped.
+/// Address under which a page shows the forest plot of studyText().
+inline constexpr const char* forestAddress = "study:forest";
+
+/// Whether a protocol was registered before the first attempt, in one line.
+std::string registrationText(const analytics::Study& study);
+
+/// Title, registration, first result with its forest plot (forestAddress, where there is one), coverage by group, then
+/// notes, flow, methods and all other tables, as HTML for a text widget; every text is escaped.
 std::string studyText(const analytics::Study& study);
 
 /// One row's values as a box plot with points.

@@ -103,7 +103,7 @@ QString numberText(double value) {
 }
 
 DisplayedValue displayedValue(const analytics::CheckpointValue& value) {
-  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
+  const analytics::CheckpointDefinition* const definition = analytics::definitionOf(value);
   if (definition == nullptr || definition->version != value.version || definition->unit != value.unit)
     return {value.value.value_or(0.0), value.unit == "1" ? QString() : QString::fromStdString(value.unit)};
   return {value.value.value_or(0.0) * definition->displayFactor,
@@ -117,7 +117,7 @@ QString valueText(const analytics::CheckpointValue& value) {
 }
 
 QString directionText(const analytics::CheckpointValue& value) {
-  const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(value.name);
+  const analytics::CheckpointDefinition* const definition = analytics::definitionOf(value);
   if (definition == nullptr) return "unknown to this version";
   switch (definition->direction) {
     case analytics::Direction::none:

@@ -84,6 +84,21 @@ TEST(StudyView, ARefusalIsOneLine) {
   EXPECT_EQ(answer.refusal.find('\n'), std::string::npos);
 }
 
+TEST(StudyView, RegistrationIsSaidInOneLine) {
+  analytics::Study study;
+  EXPECT_NE(registrationText(study).find("No protocol"), std::string::npos);
+  analytics::StudyProtocol& p = study.protocol.emplace();
+  p.name = "table2";
+  p.version = 3;
+  p.registeredUtc = "2026-01-01T00:00:00Z";
+  p.firstAttemptUtc = "2026-02-01T00:00:00Z";
+  EXPECT_NE(registrationText(study).find("Confirmatory: protocol table2 version 3 was registered on 2026-01-01"),
+            std::string::npos);
+  p.whyExploratory = "the protocol was registered on a later day";
+  EXPECT_EQ(registrationText(study),
+            "Exploratory, by protocol table2 version 3: the protocol was registered on a later day.");
+}
+
 TEST(StudyView, TextsAreEscaped) {
   analytics::Study study;
   study.groups = {"<b>x</b>", "y"};

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a checkpoint declares of itself.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace calot::analytics {
+
+/// Which way is better. `none`: the figure describes, it doesn't judge.
+enum class Direction : std::uint8_t { none, lower, higher };
+
+/// Where a value comes from (section 6 of the design). Numbers are stored and never reused.
+enum class Origin : std::uint8_t {
+  resimulated = 0,  ///< the simulation ran again, bit for bit, in the same simulation version
+  observables = 1,  ///< recorded StepResults and forces, read by any later software
+  samples = 2,      ///< motion of the operator's hands alone (the real tip)
+  external = 3,     ///< a user's own script (external_metric.h)
+};
+
+/// What the figure is given for: once for the attempt, for each hand, organ of the scene, phase of the procedure, or
+/// hand and phase.
+enum class Aggregation : std::uint8_t { attempt, hand, organ, phase, handAndPhase };
+
+/// `running`: known after every step. `final`: its filter looks ahead, so before the end it is provisional.
+enum class Finality : std::uint8_t { running, final };
+
+std::string nameOf(Direction direction);      ///< "none", "lower", "higher"
+std::string nameOf(Origin origin);            ///< "re-simulated", "observables", "samples", "external"
+std::string nameOf(Aggregation aggregation);  ///< "attempt", "hand", "organ", "phase", "hand and phase"
+std::string nameOf(Finality finality);        ///< "running", "final"
+
+/// What a checkpoint declares of itself.
+struct CheckpointDefinition {
+  std::string name;            ///< "path-length": key in the database, never reused for another meaning
+  std::string title;           ///< "Path length of the instrument's tip"
+  std::string unit;            ///< SI, of stored values: "s", "m", "N", "1"
+  std::string displayUnit;     ///< at the edges: "mm"
+  double displayFactor = 1.0;  ///< displayed = stored * displayFactor
+  Direction direction = Direction::none;
+  std::string window;  ///< part of the attempt that is covered: "whole attempt"
+  Aggregation aggregation = Aggregation::attempt;
+  std::string
+      instruments;     ///< how several instruments are joined: "each hand by itself", "union over instruments", ...
+  std::string filter;  ///< resampling and filter with all their constants, or "none"
+  double minCoverage = 0.0;     ///< share of the window that samples must cover for a value; 0: not of samples
+  std::vector<Origin> origins;  ///< allowed ones
+  Finality finality = Finality::running;
+  std::uint32_t version = 1;  ///< changes whenever a value may change
+  std::string definition;     ///< the formula in words and symbols, one line
+  std::string paperReading;   ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
+  /// Why a study shows the figure apart and doesn't test it ("it describes the tracker"); empty: it is an outcome.
+  std::string notOutcome = {};
+};
+
+}  // namespace calot::analytics

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What external metrics read of an attempt: a folder of arrays (schemas/metric-input.md).
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "analytics/checkpoints/definition.h"
+#include "analytics/external/temporary_folder.h"
+#include "recorder/engine/observer.h"
+#include "recorder/identity.h"
+#include "recorder/sources/tracked_motion.h"
+
+namespace calot::analytics {
+
+/// The observer that writes them: results once a step, samples and forces once a tick, events as they are judged. It
+/// says nothing of who acted: a metric can't go by participant or group.
+class MetricInput final : public recorder::Observer {
+ public:
+  /// @param scene the attempt's own. @param origin `resimulated` or `observables`. @throws Error (failure), as all
+  /// functions here, where the folder cannot be written
+  MetricInput(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin origin);
+  ~MetricInput() override;
+  MetricInput(const MetricInput&) = delete;
+  MetricInput& operator=(const MetricInput&) = delete;
+
+  void onStep(const recorder::StepRecord& record) override;
+  void onEnd(recorder::Outcome outcome) override;
+
+  /// The folder, complete. @pre onEnd() was called
+  [[nodiscard]] const std::filesystem::path& folder() const;
+
+ private:
+  struct Storage;
+  std::unique_ptr<Storage> storage_;
+};
+
+/// The same of motion without a scene: its rows are the samples.
+/// @param outcome as declared. @param handedness "right", "left", "unknown"
+TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
+                                 const std::string& handedness, const std::string& task);
+
+}  // namespace calot::analytics

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace calot::analytics {
+
+/// What a script may take.
+struct ScriptLimits {
+  unsigned seconds = 60;         ///< of wall time
+  std::size_t mebibytes = 2048;  ///< of address space beyond that of its input
+};
+
+/// How a script's process ended, and what it left.
+struct ScriptEnd {
+  enum class How : std::uint8_t { exited, signalled, late, printedTooMuch } how = How::exited;
+  int number = 0;       ///< exit code or signal
+  std::string answer;   ///< what it wrote to descriptor 3
+  std::string printed;  ///< to standard output and error, at most maxPrinted bytes
+};
+
+/// What a script may print; beyond it, it is ended.
+inline constexpr std::size_t maxPrinted = 65536;
+
+/// The Python that runs scripts: CALOT_PYTHON, or the system's, or the first in PATH.
+std::string pythonProgram();
+
+/// Runs a program until it ends or takes too much, and ends everything that it started. Its standard input is empty,
+/// its folder `folder`, its environment a fixed one; it has no open file of this program. It may not start programs,
+/// where the user is no superuser. @param inputBytes address space beyond the limit. @throws Error (failure) where it
+/// cannot be started.
+ScriptEnd runScript(const std::vector<std::string>& command, const std::filesystem::path& folder,
+                    const ScriptLimits& limits, std::uint64_t inputBytes);
+
+}  // namespace calot::analytics
