@@ -287,7 +287,7 @@ std::vector<ValueInterval> CohortDatabase::intervals(const std::string& attempt)
 std::vector<AttemptValue> CohortDatabase::allValues(const std::vector<std::string>& without) const {
   std::vector<AttemptValue> values;
   eachValue(without, [&](const AttemptValue& value) { values.push_back(value); });
-  const auto external = [](const AttemptValue& v) { return v.value.metric.has_value(); };
+  const auto external = [](const AttemptValue& v) { return static_cast<bool>(v.value.metric); };
   if (std::any_of(values.begin(), values.end(), external)) {
     std::stable_sort(values.begin(), values.end(),
                      [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; });

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "analytics/assess.h"
 #include "analytics/intake/enrolment.h"
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/environment.h"
