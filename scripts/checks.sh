@@ -22,7 +22,7 @@ fast() {
   configure "$preset"
   build "$preset" "$@"
   say "test $preset"
-  ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording' --label-exclude heavy --exclude-regex "$leftOut" --parallel "$jobs" \
+  ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording|statistics' --label-exclude heavy --exclude-regex "$leftOut" --parallel "$jobs" \
     --output-on-failure --no-tests=error
 }
 
