@@ -11,7 +11,7 @@ if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
 fastTests=(test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_formats test_recording test_recorder test_sources test_statistics
-  test_analytics test_report test_checkpoints)
+  test_design test_analytics test_report test_checkpoints)
 threadTests=(test_recording test_recorder)
 
 # fast PRESET LEFT_OUT TARGET...: builds these test programs and runs them; heavy ones are left out, and those whose names
@@ -22,7 +22,7 @@ fast() {
   configure "$preset"
   build "$preset" "$@"
   say "test $preset"
-  ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording' --label-exclude heavy --exclude-regex "$leftOut" --parallel "$jobs" \
+  ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording|statistics' --label-exclude heavy --exclude-regex "$leftOut" --parallel "$jobs" \
     --output-on-failure --no-tests=error
 }
 

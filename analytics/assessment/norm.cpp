@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "analytics/assessment/borderline_norm.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/coverage_warning.h"
 #include "analytics/statistics/contrasting_groups.h"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr const char* competentGroup = "competent";
 constexpr const char* otherGroup = "not competent";
+constexpr const char* borderlinePrefix = "borderline regression on form ";
 
 std::string figureName(const std::string& checkpoint, const std::string& subject) {
   return subject.empty() ? checkpoint : checkpoint + " " + subject;
@@ -63,18 +65,31 @@ bool isNamed(const std::vector<std::string>& named, const std::string& checkpoin
 }
 
 NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& figure, const Norm& norm,
-                      std::size_t position) {
+                      std::size_t position, const std::map<std::string, double>& ratings,
+                      const std::optional<BorderlineMark>& borderline) {
   NormCheckpoint mark{
       definition.name, figure.subject, definition.version, definition.direction, false, false, {}, {}, {}, "",
       figure.metric};
-  std::vector<double> competent, others;
+  std::vector<double> competent, others, rated, all;
   bool positive = true;
   for (const NormMember& m : norm.members) {
     if (!m.values[position]) continue;
     (m.competent ? competent : others).push_back(*m.values[position]);
+    all.push_back(*m.values[position]);
+    if (borderline) rated.push_back(ratings.at(m.attempt));
     positive = positive && *m.values[position] > 0.0;
   }
   mark.logScale = definition.unit == "s" && positive;
+  if (borderline) {
+    const Expected<RegressionCut> cut =
+        borderlineCut(rated, all, borderline->mark, definition.direction, mark.logScale);
+    mark.reason = cut.reason();
+    if (!cut) return mark;
+    mark.cut = cut->cut;
+    mark.lower = cut->lower;
+    mark.upper = cut->upper;
+    return mark;
+  }
   const ContrastingGroupsOptions options{mark.logScale, 0.95, 9999, norm.seed};
   const Expected<ContrastingGroups> cut = contrastingGroups(
       competent, others, definition.direction == Direction::lower ? Better::lower : Better::higher, options);
@@ -210,6 +225,15 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
     who.better = competentGroup;
     norm.judgedBy = fmt::format("form {}, majority of raters", request.judgedBy);
   }
+  std::map<std::string, double> rating;
+  if (request.borderline) {
+    rating = meanRatings(ratings, request.borderline->form);
+    candidates = groupedByRating(attempts, rating, *request.borderline, name);
+    who.groups = {atMarkGroup, belowMarkGroup};
+    who.better = atMarkGroup;
+    norm.judgedBy =
+        fmt::format("{}{}, borderline mark {}", borderlinePrefix, request.borderline->form, request.borderline->mark);
+  }
   const Study study = studyOfMembers(candidates, values, who, name);
   if (study.better.empty())
     throw Error(ErrorKind::invalid,
@@ -240,10 +264,12 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
   const auto figures = collectValues(norm, values, request, name);
   checkCount(figures, request, name);
   for (std::size_t i = 0; i < figures.size(); ++i)
-    norm.checkpoints.push_back(markOf(*figures[i].definition, figures[i], norm, i));
+    norm.checkpoints.push_back(markOf(*figures[i].definition, figures[i], norm, i, rating, request.borderline));
   declareRule(norm, request, name);
   return norm;
 }
+
+bool isByBorderline(const Norm& norm) { return norm.judgedBy.rfind(borderlinePrefix, 0) == 0; }
 
 bool passes(const NormCheckpoint& mark, double value) {
   return mark.direction == Direction::lower ? value <= *mark.cut : value >= *mark.cut;
@@ -260,7 +286,10 @@ std::string passMarkWarning(const Norm& norm) {
   const auto competent = static_cast<std::size_t>(
       std::count_if(norm.members.begin(), norm.members.end(), [](const NormMember& m) { return m.competent; }));
   const std::string text =
-      coverageWarning(CoveredInterval::cut, "pass mark", competent, norm.members.size() - competent);
+      isByBorderline(norm)
+          ? coverageWarning(CoveredInterval::borderline, "pass mark", norm.members.size(), norm.members.size(),
+                            "rated attempts")
+          : coverageWarning(CoveredInterval::cut, "pass mark", competent, norm.members.size() - competent);
   return text.empty() ? text : "Warning: " + text + ".";
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,12 +16,19 @@
 
 namespace calot::analytics {
 
+/// Borderline regression: the form by which raters judged attempts, and its borderline mark.
+struct BorderlineMark {
+  std::string form;
+  double mark = 0.0;  ///< at it one is competent
+};
+
 struct NormRequest {
   std::string name, by;
   /// Whose attempts, of which key, synthetic or not, with phases or not: as a study's. Of several attempts of a
   /// participant the first counts where `who.attemptRule` says so; a mean is no attempt and has less spread than one.
   StudyOptions who;
   std::string judgedBy;  ///< form with the one item "competent", 0 or 1, by which raters judge; empty: by group
+  std::optional<BorderlineMark> borderline;  ///< instead of groups and judgedBy
   std::vector<std::string> checkpoints;  ///< in the rule, "path-length" or "path-length left"; empty: all with a cut
   std::uint32_t leastPassed = 0;         ///< of them; 0: all
   std::uint64_t seed = 1;                ///< of the bootstrap
@@ -32,9 +40,9 @@ inline constexpr const char* competenceItem = "competent";
 /// Members that each side has at least: the spread of two is no estimate. Below five, reports warn of the intervals.
 inline constexpr std::size_t minNormMembers = 3;
 
-/// A norm from attempts at hand. A pass mark is the cut of contrasting groups with a bootstrap interval, of times on
-/// the log scale where all are positive; figures that judge nothing, and critical errors, which are asked first, have
-/// none.
+/// A norm from attempts at hand. A pass mark is the cut of contrasting groups with a bootstrap interval, or the value
+/// at the borderline mark of a regression on the ratings with Student's interval, of times on the log scale where all
+/// are positive; figures that judge nothing, and critical errors, which are asked first, have none.
 /// @param name of where they are from, for errors
 /// @throws Error (refused) as makeStudy(), where raters judged nobody or all alike, a side has too few members, a
 /// figure of the rule has no cut, the rule wants more than there are, or the protocol takes a mean of attempts; Error
@@ -57,6 +65,9 @@ std::string ownFailureWarning(const Norm& norm);
 
 /// What a report says of the pass marks' intervals where their published coverage is low at the norm's size; or empty.
 std::string passMarkWarning(const Norm& norm);
+
+/// Whether the pass marks are of borderline regression.
+bool isByBorderline(const Norm& norm);
 
 /// How many of the rule's figures must be passed: leastPassed, or all of them.
 std::size_t neededPasses(const Norm& norm);

@@ -26,6 +26,9 @@ enum class Ink : std::uint8_t {
   secondBox,
   firstPoint,
   secondPoint,
+  firstLine,
+  secondLine,
+  thirdLine,
   low3,  ///< a score far below the middle of its scale, of seven steps
   low2,
   low1,

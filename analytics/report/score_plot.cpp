@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t itemsOfDrawing = 13;
 constexpr double width = 640.0, barLeft = 130.0, barRight = 570.0, top = 34.0;
 constexpr double labelHeight = 18.0, barHeight = 14.0, barApart = 18.0, itemGap = 8.0, legendHeight = 40.0;
-constexpr std::size_t maxItem = 100, maxGroup = 20, maxTitle = 90;  // in letters: width available
+constexpr std::size_t maxItem = 100, maxGroup = 20, maxScoreTitle = 90;  // in letters: width available
 constexpr int mostNamed = 11;                                       // scores that a legend lists
 
 /// Saturation grows with distance from the middle of the scale, symmetrically.
@@ -71,7 +71,7 @@ std::vector<Drawing> drawScores(const FormReport& form, bool synthetic) {
     std::string title = fmt::format("{} ({} {})", form.title, form.name, form.version);
     if (pages > 1) title += fmt::format(", {} of {}", page + 1, pages);
     Drawing drawing{title, width, top + itemHeight * static_cast<double>(end - begin) + legendHeight, {}};
-    drawing.text(Ink::heading, 12.0, 18.0, cutTo(title, maxTitle));
+    drawing.text(Ink::heading, 12.0, 18.0, cutTo(title, maxScoreTitle));
     double y = top;
     for (std::size_t i = begin; i < end; ++i) {
       const ItemReport& item = form.items[i];

@@ -11,7 +11,6 @@
 #include <set>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/cohort/registers.h"
 #include "analytics/report/study_coverage.h"
 #include "analytics/report/study_groups.h"
 #include "analytics/report/study_population.h"
@@ -118,22 +117,6 @@ std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow
   return member;
 }
 
-void askForOneKey(Study& study, const StudyOptions& options, const std::string& name) {
-  if (study.keys.size() < 2) return;
-  if (!options.mixKeys) {
-    std::string list;
-    for (const auto& key : study.keys) list += (list.empty() ? "" : "; ") + key;
-    throw Error(
-        ErrorKind::refused, Where{name},
-        fmt::format("the attempts don't compare, they have {} comparability keys ({})", study.keys.size(), list),
-        {Remedy::chooseKey, Remedy::mixKeys});
-  }
-  study.remarks.push_back(
-      fmt::format("Attempts of {} comparability keys are mixed, as asked: differences between groups may be "
-                  "differences of scene, device or version.",
-                  study.keys.size()));
-}
-
 /// Display unit and factor of a checkpoint; stored as they are where the registry does not know it.
 StudyRow describedRow(const ColumnKey& key, const Column& column) {
   StudyRow row;
@@ -155,35 +138,6 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
   row.origins.assign(origins.begin(), origins.end());
   row.sampled = column.sampled;
   return row;
-}
-
-constexpr const char* phaseDuration = "phase-duration";
-
-/// Checkpoints of phases that were not requested. Durations of phases are always reported.
-std::vector<std::string> unaskedPhases(const StudyOptions& options) {
-  std::vector<std::string> unasked;
-  if (options.includePhases) return unasked;
-  std::set<std::string> asked(options.family.begin(), options.family.end());
-  if (options.protocol) {
-    for (const DirectedHypothesis& h : options.protocol->protocol.hypotheses) asked.insert(h.checkpoint);
-  }
-  for (const std::string& name : phaseCheckpoints()) {
-    if (asked.count(name) == 0 && name != phaseDuration) unasked.push_back(name);
-  }
-  return unasked;
-}
-
-/// @throws Error (invalid) where there is no such cohort.
-std::set<std::string> participantsOf(const std::string& path, const std::string& cohort) {
-  std::string list;
-  for (const NamedCohort& c : readRegisters(path).cohorts) {
-    if (c.name == cohort) return {c.participants.begin(), c.participants.end()};
-    list += (list.empty() ? "" : ", ") + c.name;
-  }
-  throw Error(
-      ErrorKind::invalid, Where{path},
-      fmt::format("there is no cohort \"{}\" (there are: {})", recorder::shown(cohort), list.empty() ? "none" : list),
-      {Remedy::nameCohort});
 }
 
 using TakeValue = std::function<void(const AttemptValue&)>;
@@ -213,7 +167,7 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
   study.groups = chooseGroups(present, options, name, leftOut(study));
   study.better = betterOf(study.groups, options);
   const std::map<std::string, Member> member = members(study, attempts, options, name);
-  askForOneKey(study, options, name);
+  askForOneKey(study.keys, options, name, study.remarks);
   if (options.protocol) {
     std::vector<const AttemptRow*> data;
     for (const AttemptRow& a : recruited) {
@@ -298,7 +252,7 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
     }
   }
   const bool phases = std::any_of(study.rows.begin(), study.rows.end(),
-                                  [](const StudyRow& row) { return row.checkpoint == phaseDuration; });
+                                  [](const StudyRow& row) { return row.checkpoint == phaseDurationName; });
   study.phasesLeftOut = phases && !unasked.empty();
   if (study.phasesLeftOut) study.remarks.emplace_back("Other checkpoints of single phases are left out.");
   for (StudyRow& row : study.rows) compareGroups(row, study, duration);

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/report/study_population.h"
 
+#include <fmt/format.h>
+
+#include "analytics/checkpoints/registry.h"
+#include "analytics/cohort/registers.h"
 #include "analytics/report/study_protocol.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_words.h"
 
 namespace calot::analytics {
 namespace {
@@ -66,6 +72,47 @@ std::vector<FlowRow> flowOf(const std::map<std::string, std::uint64_t>& counted)
     if (const auto at = counted.find(reason); at != counted.end()) flow.push_back({reason, at->second});
   }
   return flow;
+}
+
+void askForOneKey(const std::vector<std::string>& keys, const StudyOptions& options, const std::string& name,
+                  std::vector<std::string>& remarks) {
+  if (keys.size() < 2) return;
+  if (!options.mixKeys) {
+    std::string list;
+    for (const auto& key : keys) list += (list.empty() ? "" : "; ") + key;
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("the attempts don't compare, they have {} comparability keys ({})", keys.size(), list),
+                {Remedy::chooseKey, Remedy::mixKeys});
+  }
+  remarks.push_back(
+      fmt::format("Attempts of {} comparability keys are mixed, as asked: differences between groups may be "
+                  "differences of scene, device or version.",
+                  keys.size()));
+}
+
+std::vector<std::string> unaskedPhases(const StudyOptions& options) {
+  std::vector<std::string> unasked;
+  if (options.includePhases) return unasked;
+  std::set<std::string> asked(options.family.begin(), options.family.end());
+  if (options.protocol) {
+    for (const DirectedHypothesis& h : options.protocol->protocol.hypotheses) asked.insert(h.checkpoint);
+  }
+  for (const std::string& name : phaseCheckpoints()) {
+    if (asked.count(name) == 0 && name != phaseDurationName) unasked.push_back(name);
+  }
+  return unasked;
+}
+
+std::set<std::string> participantsOf(const std::string& path, const std::string& cohort) {
+  std::string list;
+  for (const NamedCohort& c : readRegisters(path).cohorts) {
+    if (c.name == cohort) return {c.participants.begin(), c.participants.end()};
+    list += (list.empty() ? "" : ", ") + c.name;
+  }
+  throw Error(
+      ErrorKind::invalid, Where{path},
+      fmt::format("there is no cohort \"{}\" (there are: {})", recorder::shown(cohort), list.empty() ? "none" : list),
+      {Remedy::nameCohort});
 }
 
 }  // namespace calot::analytics

@@ -75,13 +75,15 @@ std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& 
 
 std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
                               const std::vector<Outcome>& outcomes) {
-  const std::size_t participant = table.column(options.participantColumn), group = table.column(options.groupColumn);
+  const std::size_t participant = table.column(options.participantColumn);
+  const std::optional<std::size_t> group =
+      options.groupColumn.empty() ? std::nullopt : std::optional(table.column(options.groupColumn));
   std::vector<std::size_t> occasion;
   for (const std::string& name : options.occasionColumns) occasion.push_back(table.column(name));
   std::vector<Record> records;
   records.reserve(table.rows.size());
   for (const CsvRow& row : table.rows) {
-    Record record{row.line, row.cells[participant], row.cells[group], "", {}};
+    Record record{row.line, row.cells[participant], group ? row.cells[*group] : std::string(), "", {}};
     if (record.participant.empty())
       failAt(table, row.line, options.participantColumn, "is empty; every row needs its participant");
     askForPlainName(table, row.line, options.participantColumn, record.participant);

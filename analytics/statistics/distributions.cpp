@@ -28,6 +28,8 @@ double studentTwoSided(double t, double df) {
 
 double chiSquaredUpper(double x, double df) { return bm::cdf(bm::complement(bm::chi_squared(df), x)); }
 
+double chiSquaredQuantile(double p, double df) { return bm::quantile(bm::chi_squared(df), p); }
+
 double fisherQuantile(double p, double df1, double df2) { return bm::quantile(bm::fisher_f(df1, df2), p); }
 
 double noncentralStudentParameter(double t, double df, double p) {

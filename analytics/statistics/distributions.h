@@ -17,6 +17,7 @@ double studentTwoSided(double t, double df);
 
 /// Upper tail of chi-squared. @pre x >= 0.
 double chiSquaredUpper(double x, double df);
+double chiSquaredQuantile(double p, double df);
 
 /// Fisher's F. @pre df1 > 0, df2 > 0.
 double fisherQuantile(double p, double df1, double df2);

@@ -54,6 +54,7 @@ Expected<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> group
   result.h *= 12.0 / (n * (n + 1.0)) / (1.0 - m->tieTerm / (n * n * n - n));
   result.df = static_cast<double>(groups.size() - 1);
   result.p = chiSquaredUpper(result.h, result.df);
+  result.epsilonSquared = result.h / (n - 1.0);
   return result;
 }
 

@@ -14,6 +14,9 @@ struct KruskalWallis {
   double h = 0.0;   ///< corrected for ties
   double df = 0.0;  ///< groups less one
   double p = 1.0;   ///< chi-squared: an approximation, rough where groups have fewer than five values
+  /// H / (N - 1), in [0, 1]: share of the ranks' variance that lies between the groups (Kelley 1935, Proc. Natl. Acad.
+  /// Sci. 21:554; of ranks, Tomczak and Tomczak 2014, Trends Sport Sci. 21:19).
+  double epsilonSquared = 0.0;
 };
 
 /// Kruskal and Wallis (1952, J. Am. Stat. Assoc. 47:583), with mean ranks r_g of N pooled values and t values per tie:

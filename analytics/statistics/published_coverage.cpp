@@ -7,7 +7,7 @@ namespace calot::analytics {
 
 std::span<const PublishedCoverage> publishedCoverage() {
   using enum CoveredInterval;
-  static constexpr std::array<PublishedCoverage, 16> table{{
+  static constexpr std::array<PublishedCoverage, 24> table{{
       {areaScore, "A, score", "normal, A = 0.50", {93.9, 94.7, 94.8, 95.1}},
       {areaScore, "A, score", "normal, A = 0.75", {96.4, 95.5, 95.6, 95.0}},
       {areaScore, "A, score", "normal, A = 0.95", {96.8, 96.7, 96.8, 97.4}},
@@ -24,6 +24,14 @@ std::span<const PublishedCoverage> publishedCoverage() {
       {iccAverage, "ICC(2,k)", "normal, 3 raters", {97.0, 95.7, 94.6, 95.2}},
       {alpha, "Cronbach's alpha", "normal, 5 items", {94.4, 95.3, 95.7, 95.3}},
       {alpha, "Cronbach's alpha", "exponential, 5 items", {89.2, 85.5, 82.6, 81.5}},
+      {limits, "limits of agreement", "normal", {92.2, 93.3, 94.1, 95.0}},
+      {limits, "limits of agreement", "exponential", {85.2, 84.8, 84.2, 85.4}},
+      {deming, "slope, Deming", "normal, errors 1/2", {95.6, 94.6, 93.8, 94.2}},
+      {sdc, "SEM, SDC", "normal, 3 attempts", {94.8, 95.2, 95.3, 95.1}},
+      {sdc, "SEM, SDC", "exponential, 3 attempts", {80.2, 78.4, 76.2, 76.7}},
+      {borderline, "borderline cut", "normal", {94.7, 95.3, 95.5, 94.6}},
+      {spearman, "rho, Spearman", "normal, r = 0.3", {98.7, 96.5, 95.7, 95.6}},
+      {spearman, "rho, Spearman", "normal, r = 0.8", {98.7, 95.4, 95.8, 96.2}},
   }};
   return table;
 }

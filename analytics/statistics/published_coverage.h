@@ -9,7 +9,21 @@
 
 namespace calot::analytics {
 
-enum class CoveredInterval : std::uint8_t { areaScore, shift, hedges, baseline, cut, iccSingle, iccAverage, alpha };
+enum class CoveredInterval : std::uint8_t {
+  areaScore,
+  shift,
+  hedges,
+  baseline,
+  cut,
+  iccSingle,
+  iccAverage,
+  alpha,
+  limits,
+  deming,
+  sdc,
+  borderline,
+  spearman
+};
 
 /// One row: per cent of simulated intervals at 95 % that hold the truth, with 5, 10, 20 and 40 people in each group (of
 /// agreement so many rated attempts, of consistency so many people).

@@ -27,13 +27,9 @@ struct RandomIntercept {
   double restrictedLogLikelihood = 0.0;  ///< without the term ln |X'X| / 2 that depends on the coding (as R's nlme)
 };
 
-/// Value = constant + b [x] + site + u_participant + e, u and e independent and normal, by restricted maximum
-/// likelihood (Patterson and Thompson 1971, Biometrika 58:545). With l = var u / var e and w_i = 1 - 1 / sqrt(1 + n_i
-/// l), values less w_i times their participant's mean are independent of one variance, so the likelihood is maximised
-/// over l alone. Intervals and p take the variances as known but for the degrees of freedom. Sites are fixed strata. No
-/// answer for an empty group, a participant in two groups or sites, values not finite, no participant with two attempts
-/// (take the first or the mean), attempts of each participant all equal, fewer participants than the model needs, or a
-/// likelihood without a clear maximum.
+/// Value = constant + b [x] + site + u_participant + e by restricted maximum likelihood (intercept_model.h). Intervals
+/// and p take the variances as known but for the degrees of freedom. Sites are fixed strata. No answer for an empty
+/// group, a participant in two groups or sites, fewer participants than the model needs, or as fitInterceptModel().
 Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level = 0.95);
 
 }  // namespace calot::analytics

@@ -78,4 +78,13 @@ Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y
   return result;
 }
 
+Expected<Interval> spearmanInterval(double rho, std::size_t n, double level) {
+  if (n < 4) return Expected<Interval>::none("fewer than four pairs");
+  constexpr double rounding = 1e-12;
+  if (!(std::abs(rho) < 1.0 - rounding)) return Expected<Interval>::none("the ranks agree perfectly");
+  const double half =
+      normalQuantile(0.5 + level / 2.0) * std::sqrt((1.0 + 0.5 * rho * rho) / (static_cast<double>(n) - 3.0));
+  return Interval{std::tanh(std::atanh(rho) - half), std::tanh(std::atanh(rho) + half), level, "Bonett and Wright"};
+}
+
 }  // namespace calot::analytics

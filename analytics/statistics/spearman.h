@@ -5,6 +5,7 @@
 #include <span>
 
 #include "analytics/statistics/expected.h"
+#include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
 
@@ -23,5 +24,9 @@ inline constexpr std::size_t exactSpearmanLimit = 9;
 /// with n - 2 degrees of freedom (Kendall and Stuart), and for |rho| = 1, where t is infinite, the bound 2 prod(t!) /
 /// n! over the ties. No answer for lengths that differ, fewer than three pairs, or a variable with all values equal.
 Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y);
+
+/// tanh(atanh rho -+ z sqrt((1 + rho^2 / 2) / (n - 3))) (Bonett and Wright 2000, Psychometrika 65:23). No answer for
+/// fewer than four pairs or |rho| = 1, where it would be a point. @pre 0 < level < 1.
+Expected<Interval> spearmanInterval(double rho, std::size_t n, double level = 0.95);
 
 }  // namespace calot::analytics

@@ -18,6 +18,7 @@
 #include "analytics/report/study_tables.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/norm_angoff.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -33,6 +34,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t maxEvidence = std::size_t{1} << 30U;
 
 struct NormOptions {
+  analytics::BorderlineMark borderline;
   std::string database, name, by, groupBy = "group", attemptRule, rule, seed = "1", statement, file, protocol;
   analytics::NormRequest request;
   unsigned version = 0;
@@ -141,6 +143,7 @@ int create(NormOptions& o) {
   o.request.seed = std::stoull(o.seed);
   o.request.who.grouping = o.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
   if (!o.attemptRule.empty()) o.request.who.attemptRule = analytics::AttemptRule::first;
+  if (!o.borderline.form.empty()) o.request.borderline = o.borderline;
   analytics::AssessmentDatabase database(o.database, Access::write);
   const analytics::CohortDatabase cohort(o.database, Access::read);
   if (!o.protocol.empty()) {
@@ -211,6 +214,14 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
   command.add_option("--better", who.better, "Which of them is competent");
   command.add_option("--judged-by", o.request.judgedBy,
                      "Instead of groups: the form by which raters judged the attempts (competence)");
+  CLI::Option* form =
+      command.add_option("--borderline", o.borderline.form,
+                         "Instead of groups: borderline regression on the raters' scores by this form; needs --mark");
+  CLI::Option* mark = command.add_option("--mark", o.borderline.mark, "Score of a borderline attempt, such as 3");
+  form->needs(mark);
+  mark->needs(form);
+  for (const char* other : {"--groups", "--better", "--judged-by", "--protocol"})
+    form->excludes(command.get_option(other));
   command.add_option("--group-by", o.groupBy, "What makes the groups")
       ->check(CLI::IsMember({"performer", "group"}))
       ->capture_default_str();
@@ -252,6 +263,7 @@ void addNorm(CLI::App& app, Run& run) {
     sub->add_option("name", o->name, "Its name")->required();
     sub->add_option("--norm-version", o->version, "Its version; default: the newest");
   }
+  addNormAngoff(*command, run);
   shown->add_flag("--json", o->json, "Print JSON");
   proven->add_option("--file", o->file, "The document; its name and hash are stored")->required();
   proven->add_option("--statement", o->statement, "What it shows, one sentence")->required();

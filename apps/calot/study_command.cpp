@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot study: two groups side by side, of a cohort or of a table from elsewhere.
+// calot study: groups side by side and the other designs, of a cohort or of a table from elsewhere.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/design_options.h"
 #include "apps/calot/report_files.h"
 #include "apps/calot/study_options.h"
 #include "apps/common/advice.h"
@@ -26,27 +27,15 @@ namespace {
 
 struct ParsedStudyOptions {
   StudySource source;
+  DesignOptions design;
   std::string csv, html, pdf;
   bool json = false, force = false, all = false;
 };
 
-/// Notes in the cohort whose attempts went into files: a withdrawal lists them.
-void noteExports(const ParsedStudyOptions& options, const analytics::Study& study) {
+/// Notes in the cohort that attempts went into files: a withdrawal lists them.
+void noteExports(const ParsedStudyOptions& options, const std::vector<std::string>& attempts) {
   const std::vector<std::pair<std::string, std::string>> written{
       {"study-csv", options.csv}, {"study-html", options.html}, {"study-pdf", options.pdf}};
-  const auto named = [](const auto& file) { return !file.second.empty(); };
-  if (options.source.database.empty() || std::none_of(written.begin(), written.end(), named)) return;
-  std::set<std::string> units;
-  for (const analytics::StudyRow& row : study.rows) {
-    for (const auto& group : row.participants) units.insert(group.begin(), group.end());
-  }
-  const bool masked = study.protocol && study.protocol->masked;  // names nobody: any attempt may be in it
-  std::vector<std::string> attempts;
-  const analytics::CohortDatabase database(options.source.database, analytics::CohortDatabase::Access::read);
-  for (const analytics::AttemptRow& a : database.listAttempts()) {
-    if (masked || units.count(a.participant.empty() ? "attempt " + a.uuid : a.participant) > 0)
-      attempts.push_back(a.uuid);
-  }
   try {
     for (const auto& [kind, file] : written) {
       if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
@@ -54,6 +43,26 @@ void noteExports(const ParsedStudyOptions& options, const analytics::Study& stud
   } catch (const Error& e) {
     std::cerr << "calot: warning: what was written is not noted for withdrawals: " << messageOf(e) << '\n';
   }
+}
+
+bool isExported(const ParsedStudyOptions& options) {
+  return !options.source.database.empty() && !(options.csv + options.html + options.pdf).empty();
+}
+
+/// Attempts of the participants who are in the study's rows.
+std::vector<std::string> attemptsIn(const analytics::Study& study, const std::string& path) {
+  std::set<std::string> units;
+  for (const analytics::StudyRow& row : study.rows) {
+    for (const auto& group : row.participants) units.insert(group.begin(), group.end());
+  }
+  const bool masked = study.protocol && study.protocol->masked;  // names nobody: any attempt may be in it
+  std::vector<std::string> attempts;
+  const analytics::CohortDatabase database(path, analytics::CohortDatabase::Access::read);
+  for (const analytics::AttemptRow& a : database.listAttempts()) {
+    if (masked || units.count(a.participant.empty() ? "attempt " + a.uuid : a.participant) > 0)
+      attempts.push_back(a.uuid);
+  }
+  return attempts;
 }
 
 void print(const analytics::Study& study, bool all) {
@@ -65,14 +74,44 @@ void print(const analytics::Study& study, bool all) {
   std::cout << fmt::format("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
 }
 
+int runTwoGroups(ParsedStudyOptions& options) {
+  const analytics::Study study = studyOf(options.source);
+  if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
+  writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
+  if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
+  if (options.json) {
+    std::cout << analytics::studyJson(study) << '\n';
+  } else {
+    print(study, options.all);
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
+int runDesign(ParsedStudyOptions& options) {
+  if (!options.csv.empty())
+    throw Error(ErrorKind::invalid, "study: --csv is of --design two-groups; the others have --json");
+  if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked is of --design two-groups");
+  const analytics::DesignReport report = designReportOf(options.design, options.source);
+  writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
+  if (isExported(options)) noteExports(options, report.attempts);
+  if (options.json) {
+    std::cout << analytics::designJson(report) << '\n';
+  } else {
+    analytics::printDesign(report, std::cout);
+  }
+  return static_cast<int>(ExitCode::yes);
+}
+
 }  // namespace
 
 void addStudy(CLI::App& app, Run& run) {
   const auto options = std::make_shared<ParsedStudyOptions>();
-  CLI::App* command = app.add_subcommand("study", "Compare two groups of a cohort, or of a table from elsewhere");
+  CLI::App* command = app.add_subcommand(
+      "study", "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design");
   addStudySource(*command, options->source);
   command->add_flag("--masked", options->source.masked,
                     "Call the protocol's groups \"group 1\" and \"group 2\" until its analysis is locked");
+  addDesignOptions(*command, options->design);
   command->add_flag("--json", options->json, "Print JSON");
   command->add_flag("--all", options->all, "Print every figure and the methods, not only the first result");
   command->add_option("--csv", options->csv, "Write study.csv, values.csv, flow.csv and coverage.csv into this folder");
@@ -84,16 +123,8 @@ void addStudy(CLI::App& app, Run& run) {
       for (const std::string& file : {options->html, options->pdf}) {
         if (!file.empty()) recorder::refuseOutput(file, options->force);
       }
-      const analytics::Study study = studyOf(options->source);
-      if (!options->csv.empty()) analytics::writeStudyCsv(study, options->csv, options->force);
-      writeReport(analytics::studyDocument(study), options->html, options->pdf, options->force);
-      noteExports(*options, study);
-      if (options->json) {
-        std::cout << analytics::studyJson(study) << '\n';
-      } else {
-        print(study, options->all);
-      }
-      return static_cast<int>(ExitCode::yes);
+      return designOf(options->design, options->source) == analytics::Design::twoGroups ? runTwoGroups(*options)
+                                                                                        : runDesign(*options);
     };
   });
 }

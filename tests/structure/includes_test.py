@@ -36,6 +36,7 @@ MAY_SEE = {
     "recorder": ("sim", "recorder contracts", "recorder"),  # the loop and replay, above their folders
     "analytics": ("sim", "recorder", "analytics"),
     "analytics/assessment": ("sim", "recorder", "analytics"),
+    "analytics/design": ("sim", "recorder", "analytics"),
     "analytics/statistics": (),
     "analytics/checkpoints": ("sim", "recorder", "analytics/statistics"),
     "analytics/cohort": ("sim", "recorder", "analytics"),

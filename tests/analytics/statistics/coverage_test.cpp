@@ -26,7 +26,7 @@
 #include "analytics/statistics/intraclass_correlation.h"
 #include "analytics/statistics/random_stream.h"
 #include "analytics/statistics/superiority_interval.h"
-#include "analytics/statistics/welch.h"
+#include "tests/analytics/statistics/support/simulated_designs.h"
 
 namespace calot::analytics {
 namespace {
@@ -135,6 +135,34 @@ void addRatings(std::vector<Case>& list) {
   list.push_back({"Cronbach's alpha", "exponential, 5 items", 5.0 / 6.0, exponential(0.0), normal(0.0), alpha});
 }
 
+/// Agreement of methods, repeatability, pass marks by rating, correlation.
+void addDesigns(std::vector<Case>& list) {
+  const double limit = 1.96 * std::sqrt(2.0);
+  const auto upper = [](const Values& x, const Values& y, std::uint64_t) {
+    return endsOf(simulated::upperLimit(x, y));
+  };
+  list.push_back({"limits of agreement", "normal", limit, normal(0.0), normal(0.0), upper});
+  list.push_back({"limits of agreement", "exponential", limit, exponential(0.0), exponential(0.0), upper});
+  list.push_back(
+      {"slope, Deming", "normal, errors 1/2", 1.0, normal(0.0), normal(0.0),
+       [](const Values& x, const Values&, std::uint64_t seed) { return endsOf(simulated::demingSlope(x, seed)); }});
+  for (const bool normalErrors : {true, false}) {
+    list.push_back({"SEM, SDC", normalErrors ? "normal, 3 attempts" : "exponential, 3 attempts", limit, normal(0.0),
+                    normal(0.0), [normalErrors](const Values& x, const Values&, std::uint64_t seed) {
+                      return endsOf(simulated::detectableChange(x, normalErrors, seed));
+                    }});
+  }
+  list.push_back(
+      {"borderline cut", "normal", 4.0, normal(0.0), normal(0.0),
+       [](const Values& x, const Values&, std::uint64_t seed) { return endsOf(simulated::borderlineCut(x, seed)); }});
+  for (const double r : {0.3, 0.8}) {
+    list.push_back(
+        {"rho, Spearman", r < 0.5 ? "normal, r = 0.3" : "normal, r = 0.8", 6.0 / std::acos(-1.0) * std::asin(r / 2.0),
+         normal(0.0), normal(0.0),
+         [r](const Values& x, const Values& y, std::uint64_t) { return endsOf(simulated::rankCorrelation(x, y, r)); }});
+  }
+}
+
 std::vector<Case> cases() {
   std::vector<Case> list;
   for (const auto& [method, name] : {std::pair{AreaMethod::score, "A, score"}, std::pair{AreaMethod::logit, "A, logit"},
@@ -178,12 +206,6 @@ std::vector<Case> cases() {
              [](std::span<const double> a, std::span<const double> b) { return Expected<double>(*mean(a) - *mean(b)); },
              resampling(BootstrapMethod::bca, seed)));
        }});
-  list.push_back({"difference of means, Welch", "exponential, shift 1", 1.0, exponential(1.0), exponential(0.0),
-                  [](const Values& x, const Values& y, std::uint64_t) -> std::optional<Ends> {
-                    const auto w = welch(x, y);
-                    if (!w) return std::nullopt;
-                    return Ends{w->interval.lower, w->interval.upper};
-                  }});
   list.push_back({"cut of contrasting groups", "normal, 70 (5) and 50 (10)", *crossing({70, 5}, {50, 10}),
                   normal(70, 5), normal(50, 10),
                   [](const Values& x, const Values& y, std::uint64_t seed) -> std::optional<Ends> {
@@ -195,6 +217,7 @@ std::vector<Case> cases() {
                   }});
   addBaselines(list);
   addRatings(list);
+  addDesigns(list);
   return list;
 }
 

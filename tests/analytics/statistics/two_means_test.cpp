@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Welch's test, Hedges' g, the permutation test.
+// Hedges' g and the distributions behind it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,8 +9,6 @@
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/hedges.h"
-#include "analytics/statistics/permutation.h"
-#include "analytics/statistics/welch.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {
@@ -18,33 +16,6 @@ namespace {
 
 using data::sleep1, data::sleep2;
 using Values = std::vector<double>;
-
-TEST(Welch, sleep) {
-  // R 4.2.2: t.test(sleep$extra[1:10], sleep$extra[11:20]).
-  const auto w = welch(sleep1, sleep2);
-  ASSERT_TRUE(w) << w.reason();
-  EXPECT_NEAR(w->difference, -1.58, 1e-14);
-  EXPECT_NEAR(w->t, -1.8608134674868531, 1e-14);
-  EXPECT_NEAR(w->df, 17.7764735161784984, 1e-12);
-  EXPECT_NEAR(w->p, 0.0793941401873582, 1e-14);
-  EXPECT_NEAR(w->interval.lower, -3.3654832307117104, 1e-13);
-  EXPECT_NEAR(w->interval.upper, 0.2054832307117102, 1e-13);
-}
-
-TEST(Welch, oneGroupWithoutSpreadIsAOneSampleTest) {
-  // R 4.2.2: t.test(c(1, 2, 4), mu = 5): t = -3.0237157840738176, df = 2.
-  const auto w = welch(Values{1, 2, 4}, Values{5, 5, 5});
-  ASSERT_TRUE(w);
-  EXPECT_NEAR(w->t, -3.0237157840738176, 1e-14);
-  EXPECT_NEAR(w->df, 2.0, 1e-14);
-}
-
-TEST(Welch, degenerate) {
-  EXPECT_EQ(welch(Values{1}, Values{1, 2}).reason(), "a group of one value has no spread");
-  EXPECT_EQ(welch(Values{}, Values{1, 2}).reason(), "the first group is empty");
-  EXPECT_EQ(welch(Values{3, 3}, Values{4, 4}).reason(), "no spread within the groups");
-  EXPECT_EQ(welch(Values{3, NAN}, Values{4, 4}).reason(), "a value is not finite");
-}
 
 TEST(HedgesG, sleep) {
   const auto g = hedgesG(sleep1, sleep2);
@@ -99,45 +70,6 @@ TEST(HedgesG, degenerate) {
   } else {
     EXPECT_NE(g->interval.reason().find("too large"), std::string::npos);
   }
-}
-
-TEST(PermutationTest, allAssignments) {
-  // R 4.2.2: s <- colSums(matrix(v[combn(20, 10)], 10)); mean(abs(s - sum(v) / 2) >= abs(sum(v[1:10]) - sum(v) / 2) -
-  // 1e-9).
-  const auto p = permutationTest(sleep1, sleep2);
-  ASSERT_TRUE(p) << p.reason();
-  EXPECT_TRUE(p->exact);
-  EXPECT_EQ(p->assignments, 184756U);
-  EXPECT_FALSE(p->seed);
-  EXPECT_NEAR(p->p, 0.081447963800905, 5e-16);
-  EXPECT_NEAR(permutationTest(Values{19, 22, 16, 29, 24}, Values{20, 11, 17, 12})->p, 9.0 / 126.0, 1e-15);
-}
-
-TEST(PermutationTest, randomAssignmentsAgreeAndNameTheirSeed) {
-  PermutationOptions options;
-  options.maxAssignments = 1000;
-  options.seed = 77;
-  const auto p = permutationTest(sleep1, sleep2, options);
-  EXPECT_FALSE(p->exact);
-  EXPECT_EQ(p->seed, 77U);
-  EXPECT_EQ(p->assignments, 99999U);
-  EXPECT_NEAR(p->p, 0.081447963800905, 4.0 * std::sqrt(0.0814 * 0.9186 / 99999.0));
-  EXPECT_DOUBLE_EQ(permutationTest(sleep1, sleep2, options)->p, p->p);
-  // Never zero: 1 / (draws + 1) is the least.
-  Values x(30), y(30);
-  for (std::size_t i = 0; i < 30; ++i) x[i] = static_cast<double>(i), y[i] = 1000.0 + static_cast<double>(i);
-  options.draws = 999;
-  EXPECT_DOUBLE_EQ(permutationTest(x, y, options)->p, 0.001);
-}
-
-TEST(PermutationTest, degenerateAndScaled) {
-  EXPECT_EQ(permutationTest(Values{2, 2}, Values{2}).reason(), "all values are equal");
-  EXPECT_EQ(permutationTest(Values{}, Values{2}).reason(), "the first group is empty");
-  // Sums that are equal but for rounding count as equal: tenths have no exact binary value.
-  Values x{0.1, 0.2, 0.3}, y{0.4, 0.5, 0.6};
-  EXPECT_DOUBLE_EQ(permutationTest(x, y)->p, 0.1);
-  EXPECT_DOUBLE_EQ(permutationTest(Values{0.1, 0.5, 0.6}, Values{0.2, 0.3, 0.4})->p,
-                   permutationTest(Values{1, 5, 6}, Values{2, 3, 4})->p);
 }
 
 TEST(Distributions, knownQuantiles) {

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values of a cohort or a table as a design needs them: by participant, group, stratum and occasion.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytics/cohort/assessment_database.h"
+#include "analytics/design/design.h"
+#include "analytics/report/csv_table.h"
+#include "analytics/report/study.h"
+#include "analytics/report/table_study.h"
+
+namespace calot::analytics {
+
+struct DesignPerson {
+  std::string name;
+  std::size_t group = 0;    ///< of DesignData::groups; 0 where there are none
+  std::size_t stratum = 0;  ///< of DesignData::strata; 0 where there are none
+};
+
+/// One attempt's value of a figure.
+struct DesignValue {
+  std::size_t person = 0;
+  std::size_t occasion = 0;  ///< of DesignData::occasions (of a rated figure: DesignFigure::raters)
+  double order = 0.0;        ///< among the person's attempts: number from 1, or line of the table
+  bool finished = true;
+  double value = 0.0;  ///< in the display unit
+};
+
+struct DesignFigure {
+  std::string name;  ///< "path-length left"; of a table the column; "rating osats"
+  std::string unit;  ///< display unit, or empty
+  Direction direction = Direction::none;
+  std::vector<DesignValue> values;  ///< those that there are, by person, then by order
+};
+
+struct DesignData {
+  std::string source, where, counted;  ///< as of a Study
+  std::uint64_t recruited = 0, analysed = 0;
+  std::vector<FlowRow> flow;
+  std::vector<std::string> head;     ///< device, calibration, versions in words; dates
+  std::vector<std::string> remarks;  ///< what a reader must know
+  bool synthetic = false;
+  std::vector<std::string> groups;  ///< compared; empty: everybody is in one
+  std::string better;               ///< the group that is expected to do better, or empty
+  std::vector<std::string> strata;  ///< by name; empty: none
+  std::vector<std::string> occasions;
+  bool numbered = true;      ///< occasions are numbers, one after the other
+  std::string occasionWord;  ///< "attempt", "device", or the column
+  std::string attemptRule;   ///< a clause
+  std::vector<DesignPerson> people;
+  std::vector<DesignFigure> figures;
+  std::vector<DesignFigure>
+      rated;  ///< forms, with the raters in place of occasions: a participant's first rated attempt
+  std::vector<std::string> raters;
+  std::vector<std::string> attempts;  ///< uuids of a cohort's
+};
+
+/// Of a cohort: attempts as a study takes them (makeStudy()), numbered by start; the stratum is the participant's site
+/// or arm, the occasion the attempt's number, of an agreement without `against` the device class. A form's rating is
+/// the mean of its items and of its raters, without incomplete forms. @throws Error as makeStudy(), and (refused) where
+/// the groups are not those that the design needs.
+DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
+                            const StudyOptions& options, const DesignChoices& choices);
+
+/// The same of attempts at hand, without ratings. @param participants for site and arm
+DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+                            const StudyOptions& options, const DesignChoices& choices, const std::string& name);
+
+/// Of a table: as makeTableStudy(); the group's column may be missing where the design compares none, and the stratum
+/// and whether an attempt was finished are columns. @throws Error as makeTableStudy().
+DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& options, const DesignChoices& choices);
+
+/// Groups of the design among those present: the named ones, or all. @param left what the error says of those excluded
+/// @throws Error (invalid) for names that are not different; Error (refused) for a group that is not there, or a number
+/// of groups that the design does not take.
+std::vector<std::string> groupsOfDesign(const std::map<std::string, std::uint64_t>& present,
+                                        const DesignChoices& choices, const std::string& path, const std::string& left);
+
+/// Leaves the figures that `family` names and the one that is held against them, in their order.
+/// @throws Error (invalid) for a name that is no figure.
+void keepNamedFigures(DesignData& data, const DesignChoices& choices);
+
+/// The values of one participant each: the only one, or the mean. @pre DesignEntry::oneEach was kept by the reader.
+struct OneEach {
+  std::vector<std::size_t> person;  ///< ascending
+  std::vector<double> value;
+};
+OneEach oneEachOf(const DesignFigure& figure);
+
+/// The values of oneEachOf() by group, as many as DesignData::groups.
+std::vector<std::vector<double>> byGroup(const DesignData& data, const OneEach& values);
+
+}  // namespace calot::analytics

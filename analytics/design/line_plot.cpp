@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/design/line_plot.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "analytics/report/box_plot.h"
+#include "analytics/report/plot_parts.h"
+#include "analytics/report/text_table.h"
+
+namespace calot::analytics {
+namespace {
+
+constexpr std::array<Ink, 3> lineInks{Ink::firstLine, Ink::secondLine, Ink::thirdLine};
+constexpr std::array<Ink, 3> pointInks{Ink::firstPoint, Ink::secondPoint, Ink::firstPoint};
+constexpr std::size_t maxLegend = 18;  // in letters
+constexpr double legendHeight = 13.0;
+
+}  // namespace
+
+std::optional<Drawing> drawLines(const LinePlot& plot) {
+  std::vector<double> x, y(plot.marks);
+  for (const PlotSeries& s : plot.series) {
+    for (const auto& [px, py] : s.points) {
+      x.push_back(px);
+      y.push_back(py);
+    }
+  }
+  const std::optional<PlotScale> across = plotScale(x), scale = plotScale(y);
+  if (x.empty() || !across || !scale) return std::nullopt;
+  const auto at = [&](double value) {
+    return plotLeft + (value - across->low) / (across->high - across->low) * (plotRight - plotLeft);
+  };
+  Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
+  for (const double tick : roundTicks(across->low, across->high))
+    drawing.text(Ink::count, at(tick), plotBottom + 14.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
+  drawing.text(Ink::group, (plotLeft + plotRight) / 2.0, plotBottom + 32.0, plot.below);
+  for (const double mark : plot.marks) drawing.line(Ink::cut, plotLeft, scale->y(mark), plotRight, scale->y(mark));
+  double legend = plotTop + 8.0;
+  for (const PlotSeries& s : plot.series) {
+    const std::size_t ink = s.ink < 2 ? s.ink : 2;
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      const auto& [px, py] = s.points[i];
+      if (!s.joined) drawing.point(pointInks[ink], at(px), scale->y(py), 2.6);
+      if (!s.joined || i == 0) continue;
+      const double before = scale->y(s.points[i - 1].second);
+      if (s.stepped) {
+        drawing.line(lineInks[ink], at(s.points[i - 1].first), before, at(px), before);
+        drawing.line(lineInks[ink], at(px), before, at(px), scale->y(py));
+      } else {
+        drawing.line(lineInks[ink], at(s.points[i - 1].first), before, at(px), scale->y(py));
+      }
+    }
+    if (s.label.empty()) continue;
+    drawing.line(lineInks[ink], plotRight - 110.0, legend - 4.0, plotRight - 96.0, legend - 4.0);
+    drawing.text(Ink::label, plotRight - 92.0, legend, cutTo(s.label, maxLegend));
+    legend += legendHeight;
+  }
+  endPlot(drawing, plot.synthetic);
+  return drawing;
+}
+
+}  // namespace calot::analytics
