@@ -179,7 +179,7 @@ class Packs(Blinded):
         self.path("films.csv").write_text(f"attempt,film\n{uuid},none.mp4\n")
         self.refused(4, *self.make_pack(), names=("films.csv", "line 2", "none.mp4"))
         self.path("films.csv").write_text(f"attempt,film\n{uuid},motion/p0-0.txt\n")
-        self.refused(4, *self.make_pack(), names=("p0-0.txt", "film"))
+        self.refused(4, *self.make_pack(), names=("p0-0.txt", "cannot be in MP4"))
         self.assertFalse(self.pack.exists())
         self.assertEqual(self.query("SELECT * FROM rating_pack"), [])
         self.assertEqual([p.name for p in self.folder.iterdir() if ".part" in p.name], [])
