@@ -7,7 +7,7 @@
 
 namespace calot::analytics {
 
-/// An analysis as it stood before its groups were named.
+/// An analysis as it stood when it was locked, after which its groups are named.
 struct AnalysisLock {
   std::string protocolSha256;
   std::string protocol;      ///< name and version

@@ -81,7 +81,7 @@ struct ProtocolVersion {
   std::vector<std::string> changed;  ///< JSON pointers where it differs from the version before
 };
 
-/// When the analysis was locked, before which its groups were masked.
+/// When the analysis was locked; a masked study names its groups from then on.
 struct StudyLock {
   std::string lockedUtc, by;
   std::vector<std::string> changed;  ///< since then: "data", "options", "software (...)"

@@ -87,8 +87,7 @@ std::vector<std::string> protocolLines(const Study& study) {
   if (p.lock) {
     std::string changed;
     for (const std::string& what : p.lock->changed) changed += (changed.empty() ? "" : ", ") + what;
-    lines.push_back(fmt::format("Analysis locked on {} by {}, before its groups were named; {}.", p.lock->lockedUtc,
-                                p.lock->by,
+    lines.push_back(fmt::format("Analysis locked on {} by {}; {}.", p.lock->lockedUtc, p.lock->by,
                                 changed.empty() ? "nothing has changed since" : "changed since: " + changed));
   }
   if (!p.whyExploratory.empty()) lines.push_back(fmt::format("Exploratory: {}.", p.whyExploratory));

@@ -33,7 +33,7 @@ CREATE TABLE group_mask (
   drawn_utc TEXT NOT NULL
 ) STRICT, WITHOUT ROWID;
 
--- An analysis as it stood before its groups were named.
+-- An analysis as it stood when it was locked, after which its groups are named.
 CREATE TABLE analysis_lock (
   protocol_sha256 TEXT PRIMARY KEY CHECK (length(protocol_sha256) = 64),
   protocol TEXT NOT NULL CHECK (protocol <> ''), -- name and version
