@@ -2,6 +2,7 @@
 // Figures against another, such as a rating: concurrent validity.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "analytics/design/design_parts.h"
@@ -25,7 +26,12 @@ FigurePairs pairsOf(const DesignFigure& first, const DesignFigure& second) {
   return pairs;
 }
 
-const DesignFigure& againstOf(const DesignData& data, const std::string& against) {
+const DesignFigure& againstOf(const DesignData& data, const std::string& asked) {
+  // Behind a column's name may stand what is better.
+  const std::size_t colon = asked.rfind(':');
+  const bool whole = colon == std::string::npos || std::any_of(data.figures.begin(), data.figures.end(),
+                                                               [&](const auto& f) { return f.name == asked; });
+  const std::string against = whole ? asked : asked.substr(0, colon);
   const DesignFigure* found = nullptr;
   std::size_t count = 0;
   for (const DesignFigure& f : data.figures) {

@@ -18,6 +18,6 @@ FigurePairs pairsOf(const DesignFigure& first, const DesignFigure& second);
 
 /// The figure that others are held against, by its name or its checkpoint's.
 /// @throws Error (invalid) where it is none or several.
-const DesignFigure& againstOf(const DesignData& data, const std::string& against);
+const DesignFigure& againstOf(const DesignData& data, const std::string& asked);
 
 }  // namespace calot::analytics

@@ -69,17 +69,26 @@ struct SvgElement {
   }
 };
 
+/// The form of a new shape, made in place: a temporary's move, inlined, makes GCC 12 warn of its unused text.
+auto& addShape(std::vector<Shape>& shapes, Ink ink) {
+  Shape& shape = shapes.emplace_back();
+  shape.ink = ink;
+  return shape.form;
+}
+
 }  // namespace
 
 const InkStyle& styleOf(Ink ink) { return styles.at(static_cast<std::size_t>(ink)); }
 
 void Drawing::line(Ink ink, double x1, double y1, double x2, double y2) {
-  shapes.push_back({ink, DrawnLine{x1, y1, x2, y2}});
+  addShape(shapes, ink).emplace<DrawnLine>(DrawnLine{x1, y1, x2, y2});
 }
 void Drawing::box(Ink ink, double x, double y, double boxWidth, double boxHeight) {
-  shapes.push_back({ink, DrawnBox{x, y, boxWidth, boxHeight}});
+  addShape(shapes, ink).emplace<DrawnBox>(DrawnBox{x, y, boxWidth, boxHeight});
 }
-void Drawing::point(Ink ink, double x, double y, double radius) { shapes.push_back({ink, DrawnPoint{x, y, radius}}); }
+void Drawing::point(Ink ink, double x, double y, double radius) {
+  addShape(shapes, ink).emplace<DrawnPoint>(DrawnPoint{x, y, radius});
+}
 void Drawing::text(Ink ink, double x, double y, std::string words, double degrees) {
   shapes.push_back({ink, DrawnText{x, y, std::move(words), degrees}});
 }

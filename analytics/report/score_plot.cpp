@@ -17,7 +17,7 @@ constexpr std::size_t itemsOfDrawing = 13;
 constexpr double width = 640.0, barLeft = 130.0, barRight = 570.0, top = 34.0;
 constexpr double labelHeight = 18.0, barHeight = 14.0, barApart = 18.0, itemGap = 8.0, legendHeight = 40.0;
 constexpr std::size_t maxItem = 100, maxGroup = 20, maxScoreTitle = 90;  // in letters: width available
-constexpr int mostNamed = 11;                                       // scores that a legend lists
+constexpr int mostNamed = 11;                                            // scores that a legend lists
 
 /// Saturation grows with distance from the middle of the scale, symmetrically.
 Ink inkOf(int score, const FormReport& form) {

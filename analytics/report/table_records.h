@@ -22,7 +22,7 @@ struct Outcome {
 /// Data of one row for the study.
 struct Record {
   std::size_t line = 0;
-  std::string participant, group, occasion;  ///< group: empty without a column of groups
+  std::string participant, group, occasion;   ///< group: empty without a column of groups
   std::vector<std::optional<double>> values;  ///< by outcome
 };
 

@@ -224,7 +224,7 @@ TEST(TableDesign, textAndPageHoldTheSameFigures) {
   std::ostringstream out;
   printDesign(report, out);
   const std::string page = pageHtml(designDocument(report));
-  for (const std::string word : {"7.988", "0.0184", "0.275", "4.55 [4.208, 4.87]"}) {
+  for (const std::string word : {"7.988", "0.0184", "0.275", "4.550 [4.207, 4.870]"}) {
     EXPECT_NE(out.str().find(word), std::string::npos) << word;
     EXPECT_NE(page.find(word), std::string::npos) << word;
   }
