@@ -151,7 +151,7 @@ void checkCount(const std::vector<NormFigure>& figures, const NormRequest& reque
       static_cast<std::size_t>(std::count_if(figures.begin(), figures.end(), [&](const NormFigure& f) {
         return request.checkpoints.empty() || isNamed(request.checkpoints, f.definition->name, f.subject);
       }));
-  if (request.leastPassed > candidates)
+  if (candidates > 0 && request.leastPassed > candidates)  // of none, declareRule() says which names are unknown
     throw Error(ErrorKind::refused, Where{name},
                 fmt::format("the rule asks for {} figures, {}", request.leastPassed,
                             request.checkpoints.empty()

@@ -86,7 +86,7 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   auto* splitter = new QSplitter(Qt::Horizontal);
   splitter->addWidget(text_);
   splitter->addWidget(charts);
-  splitter->setSizes({760, 480});
+  splitter->setSizes({830, 410});
   splitter->setStretchFactor(0, 3);
   splitter->setStretchFactor(1, 2);
   splitter->setChildrenCollapsible(false);

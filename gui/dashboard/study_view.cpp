@@ -28,7 +28,7 @@ std::string cell(const std::string& text, const char* tag, bool right) {
 
 std::string tableText(const analytics::ReportTable& table) {
   std::string html = "<h3>" + analytics::escaped(table.title) +
-                     "</h3><table cellspacing=\"0\" cellpadding=\"4\" border=\"0\"><tr bgcolor=\"#e8eef2\">";
+                     "</h3><table cellspacing=\"0\" cellpadding=\"3\" border=\"0\"><tr bgcolor=\"#e8eef2\">";
   const auto right = [&](std::size_t column) {
     return column < table.columns.size() && table.columns[column].second == analytics::TextTable::Align::right;
   };

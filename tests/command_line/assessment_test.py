@@ -238,7 +238,14 @@ class Grades(Assessment):
         self.refused(3, "grade", self.database, "--attempt", attempt, names=("no norm yet",))
         self.refused(3, "norm", "create", self.database, "n", "--by", "t", "--rule", "all", names=("group",))
         self.refused(2, "norm", "create", self.database, "n", "--by", "t", "--rule", "some", names=("at-least:K",))
-        self.refused(3, *self.make("--judged-by", "competence"), names=("no attempt was rated",))
+        judged = ("norm", "create", self.database, "n", "--by", "t", "--rule", "all", "--judged-by", "competence")
+        self.refused(3, *judged, names=("no attempt was rated",))
+        # Raters make the groups: what else would make them is refused, as is what a protocol chooses.
+        self.refused(2, *judged, "--group-by", "performer", names=("--judged-by excludes --group-by",))
+        self.refused(2, *self.make("--protocol", "cholecystectomy-2014-table2"), names=("--protocol",))
+        self.refused(2, "norm", "create", self.database, "n", "--by", "t", "--rule", "all", "--protocol", "none", names=("cholecystectomy-2014-table2",))
+        self.refused(3, "norm", "create", self.database, "n", "--by", "t", "--group-by", "performer", "--include-synthetic", "--rule", "at-least:900",
+                     names=("asks for 900 figures",))
         self.refused(2, *self.make("--checkpoints", "nothing"), names=("nothing",))
         self.well(*self.make())
         self.refused(3, "grade", self.database, "--attempt", attempt, "--norm", "other", names=("pipeline 1",))

@@ -266,9 +266,9 @@ TEST(TableStudy, whatAProtocolOfATableIsRefusedFor) {
   expectRefusal(ErrorKind::invalid, "no column for any hypothesis", [&] { (void)studyOf(sleep, options); });
   expectRefusal(ErrorKind::damaged, "none of the populations' groups",
                 [] { (void)protocolOf("\"group\": \"one\"", "\"group\": \"three\""); });
-  expectRefusal(ErrorKind::damaged, "either \"checkpoint\" or",
+  expectRefusal(ErrorKind::damaged, "one of \"checkpoint\", \"external\"",
                 [] { (void)protocolOf("\"outcome\": \"extra\", ", ""); });
-  expectRefusal(ErrorKind::damaged, "either \"checkpoint\" or", [] {
+  expectRefusal(ErrorKind::damaged, "one of \"checkpoint\", \"external\"", [] {
     (void)protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"extra\", \"checkpoint\": \"elapsed-time\"");
   });
   expectRefusal(ErrorKind::damaged, "an outcome has none",
