@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "recorder/sources/devices/calibration.h"
+#include "recorder/formats/dates.h"
 
 namespace calot::analytics {
 namespace {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/attempt.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sodium.h>
 
-#include <chrono>
-
+#include "recorder/formats/dates.h"
 #include "sim/scene/version.h"
 
 #ifndef CALOT_VERSION
@@ -47,8 +45,7 @@ AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Pr
                          const AttemptSettings& settings) {
   AttemptHeader header;
   header.attempt = newUuid();
-  header.startUtc = fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
-                                fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  header.startUtc = presentDate();
   header.software = softwareName();
   header.build = buildName();
   header.simulationVersion = simulationVersion;

@@ -6,31 +6,19 @@
 #include <cassert>
 
 #include "analytics/checkpoints/force.h"
-#include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/phases.h"
+#include "analytics/checkpoints/recorded_motion.h"
 #include "analytics/checkpoints/registry.h"
-#include "recorder/sources/kinematics_file.h"
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {
-namespace {
-
-/// A kinematics file's rows were interpolated to ticks by its source; a device that plays one holds them.
-double sourceRate(const recorder::Provenance& provenance) {
-  const bool interpolated = provenance.kind == recorder::OperatorKind::kinematics && provenance.device.empty();
-  return interpolated ? recorder::kinematicsRowsPerSecond : 0.0;
-}
-
-}  // namespace
-
 struct CheckpointCollector::Storage {
   Storage(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin from, double cut)
       : origin(from),
         cutoff(cut),
         tickSeconds(header.tickSeconds),
         ticksPerStep(header.ticksPerStep),
-        track{MotionTrack(header.tickSeconds, sourceRate(header.provenance)),
-              MotionTrack(header.tickSeconds, sourceRate(header.provenance))},
+        track{trackFor(header), trackFor(header)},
         judge(scene),
         force(header.tickSeconds),
         phaseForce(header.tickSeconds) {

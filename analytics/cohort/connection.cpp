@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "analytics/cohort/embedded.h"
+#include "recorder/formats/dates.h"
 
 namespace calot::analytics {
 namespace {
@@ -182,15 +183,6 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
   });
 }
 
-std::string nowUtc() {
-  using namespace std::chrono;
-  const auto now = floor<seconds>(system_clock::now());
-  const auto day = floor<days>(now);
-  const year_month_day date(day);
-  const hh_mm_ss time(now - day);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()),
-                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), time.hours().count(),
-                     time.minutes().count(), time.seconds().count());
-}
+std::string nowUtc() { return recorder::presentDate(); }
 
 }  // namespace calot::analytics

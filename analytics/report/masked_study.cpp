@@ -5,6 +5,9 @@
 
 #include <utility>
 
+#include "recorder/attempt.h"
+#include "sim/scene/version.h"
+
 namespace calot::analytics {
 namespace {
 
@@ -31,6 +34,17 @@ StudyOptions maskedOptions(const StudyOptions& options, bool swapped) {
   for (DirectedHypothesis& h : protocol.hypotheses) h.larger.clear();
   masked.masked = true;
   return masked;
+}
+
+/// Notes in the study when its analysis was locked, and what has changed since.
+void describeLock(Study& study, const AnalysisLock& lock, const AnalysisLock& now) {
+  StudyLock& told = study.protocol->lock.emplace();
+  told.lockedUtc = lock.lockedUtc;
+  told.by = lock.by;
+  if (lock.valuesSha256 != now.valuesSha256) told.changed.emplace_back("data");
+  if (lock.options != now.options) told.changed.emplace_back("options");
+  if (lock.software != now.software)
+    told.changed.push_back(fmt::format("software ({}, now {})", lock.software, now.software));
 }
 
 }  // namespace
@@ -68,14 +82,32 @@ std::string analysisOptions(const StudyOptions& options) {
                      options.includePhases ? "all" : "durations");
 }
 
-void describeLock(Study& study, const AnalysisLock& lock, const AnalysisLock& now) {
-  StudyLock& told = study.protocol->lock.emplace();
-  told.lockedUtc = lock.lockedUtc;
-  told.by = lock.by;
-  if (lock.valuesSha256 != now.valuesSha256) told.changed.emplace_back("data");
-  if (lock.options != now.options) told.changed.emplace_back("options");
-  if (lock.software != now.software)
-    told.changed.push_back(fmt::format("software ({}, now {})", lock.software, now.software));
+AnalysisLock presentAnalysis(const CohortDatabase& database, const AssessmentDatabase& assessment,
+                             const StudyOptions& options) {
+  const Protocol& protocol = options.protocol->protocol;
+  return {protocol.sha256,
+          fmt::format("{} version {}", protocol.name, protocol.version),
+          analysisOptions(options),
+          analysisDigest(database, assessment),
+          fmt::format("{}, simulation version {}", recorder::softwareName(), simulationVersion),
+          "",
+          ""};
+}
+
+Study makeProtocolStudy(const CohortDatabase& database, const AssessmentDatabase& assessment,
+                        const StudyOptions& options, bool masked) {
+  const std::string& path = database.path();
+  const std::string& sha256 = options.protocol->protocol.sha256;
+  const std::optional<AnalysisLock> lock = readAnalysisLock(path, sha256);
+  if (!lock) {
+    const std::optional<bool> drawn = readGroupMask(path, sha256);
+    if (drawn || masked)
+      return makeMaskedStudy(database, assessment, options, drawn ? *drawn : drawGroupMask(path, sha256));
+  }
+  Study study = makeStudy(database, options);
+  addRatings(study, assessment);
+  if (lock) describeLock(study, *lock, presentAnalysis(database, assessment, options));
+  return study;
 }
 
 }  // namespace calot::analytics

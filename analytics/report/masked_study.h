@@ -23,7 +23,15 @@ std::string analysisOptions(const StudyOptions& options);
 /// SHA-256 over every attempt with its participant, group and exclusion, every value, and every rating.
 std::string analysisDigest(const CohortDatabase& database, const AssessmentDatabase& assessment);
 
-/// Notes in the study when its analysis was locked, and what has changed since. @pre there is a protocol
-void describeLock(Study& study, const AnalysisLock& lock, const AnalysisLock& now);
+/// What a lock of this study's analysis fixes, without time and name. @pre options have a protocol
+AnalysisLock presentAnalysis(const CohortDatabase& database, const AssessmentDatabase& assessment,
+                             const StudyOptions& options);
+
+/// The study of a protocol with its forms: masked from the moment that somebody asks for it until its analysis is
+/// locked; after that it says what has changed since. @pre options have a protocol
+/// @param masked asks for it: which group is "group 1" is drawn, where it never was
+/// @throws Error as makeStudy()
+Study makeProtocolStudy(const CohortDatabase& database, const AssessmentDatabase& assessment,
+                        const StudyOptions& options, bool masked);
 
 }  // namespace calot::analytics

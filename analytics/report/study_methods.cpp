@@ -74,6 +74,15 @@ std::string externalMetrics(const Study& study) {
 
 }  // namespace
 
+std::string lockText(const StudyProtocol& protocol) {
+  if (protocol.masked) return "Groups are masked until the analysis is locked.";
+  if (!protocol.lock) return "The analysis is not locked.";
+  std::string changed;
+  for (const std::string& what : protocol.lock->changed) changed += (changed.empty() ? "" : ", ") + what;
+  return fmt::format("Analysis locked on {} by {}; {}.", protocol.lock->lockedUtc, protocol.lock->by,
+                     changed.empty() ? "nothing has changed since" : "changed since: " + changed);
+}
+
 std::vector<std::string> protocolLines(const Study& study) {
   if (!study.protocol) return {};
   const StudyProtocol& p = *study.protocol;
@@ -83,13 +92,7 @@ std::vector<std::string> protocolLines(const Study& study) {
                       ? fmt::format("SHA-256 {}, not registered.", p.sha256)
                       : fmt::format("SHA-256 {}, registered on {}; first attempt {}.", p.sha256, p.registeredUtc,
                                     p.firstAttemptUtc.empty() ? "at an unknown time" : p.firstAttemptUtc));
-  if (p.masked) lines.emplace_back("Groups are masked until the analysis is locked.");
-  if (p.lock) {
-    std::string changed;
-    for (const std::string& what : p.lock->changed) changed += (changed.empty() ? "" : ", ") + what;
-    lines.push_back(fmt::format("Analysis locked on {} by {}; {}.", p.lock->lockedUtc, p.lock->by,
-                                changed.empty() ? "nothing has changed since" : "changed since: " + changed));
-  }
+  if (p.masked || p.lock) lines.push_back(lockText(p));
   if (!p.whyExploratory.empty()) lines.push_back(fmt::format("Exploratory: {}.", p.whyExploratory));
   for (const ProtocolVersion& v : p.versions) {
     if (v.sha256 == p.sha256 && v.changed.empty()) continue;

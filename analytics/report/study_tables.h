@@ -19,6 +19,8 @@ std::string figureOfRow(const StudyRow& row);  ///< the same without the mark
 bool hasNoValue(const StudyRow& row);          ///< nobody of either group has one
 /// The protocol, when it was registered, why the study is exploratory all the same; or empty.
 std::vector<std::string> protocolLines(const Study& study);
+/// Whether the protocol's analysis is locked, by whom, and what has changed since: one sentence.
+std::string lockText(const StudyProtocol& protocol);
 /// Under the title: the protocol, task, device and versions in words, dates, and the unit of analysis.
 std::vector<std::string> studyHead(const Study& study);
 /// Methods paragraph for a paper: states only what was done.

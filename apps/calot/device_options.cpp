@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "recorder/errors.h"
+#include "recorder/formats/dates.h"
 
 namespace calot::apps {
 namespace {

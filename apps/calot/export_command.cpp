@@ -2,46 +2,94 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "analytics/checkpoints/from_samples.h"
+#include "analytics/checkpoints/recorded_motion.h"
 #include "analytics/cohort/withdraw.h"
+#include "analytics/interchange/motion_tables.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/motion_import.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/recording/export_csv.h"
+#include "recorder/sources/column_map.h"
 
 namespace calot::apps {
 
+namespace {
+
+struct ExportOptions {
+  std::string file, folder, motion, columns, cohort;
+  bool force = false;
+};
+
+void printFiles(const std::vector<std::filesystem::path>& files) {
+  for (const auto& file : files) fmt::print("{}\n", file.string());
+}
+
+int exportMotionFile(const ExportOptions& o) {
+  if (!o.folder.empty() || !o.cohort.empty())
+    throw Error(ErrorKind::invalid, Where{o.file}, "is no recording (.h5): of a motion file there is --motion alone");
+  std::optional<recorder::ColumnMap> map;
+  if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
+  const recorder::TrackedMotion tracked = readMotion(o.file, map ? &*map : nullptr);
+  printFiles(
+      analytics::writeMotionTables({analytics::motionOf(tracked, 0), analytics::motionOf(tracked, 1)}, o.motion));
+  return static_cast<int>(ExitCode::yes);
+}
+
+int exportRecording(const ExportOptions& o) {
+  if (o.folder.empty() && o.motion.empty())
+    throw Error(ErrorKind::invalid,
+                "export: --csv FOLDER writes all that is recorded, --motion FOLDER filtered motion");
+  if (!o.columns.empty()) throw Error(ErrorKind::invalid, "export: --columns is for motion files, not for recordings");
+  const recorder::ChainVerdict chain = recorder::probe(o.file);
+  recorder::Recording recording(o.file);
+  if (!o.cohort.empty())
+    analytics::recordExport(o.cohort, "recording-csv", o.folder.empty() ? o.motion : o.folder,
+                            {recording.header().attempt});
+  if (!o.folder.empty()) {
+    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    const std::uint64_t steps = recording.stepCount();
+    const auto progress = [terminal, steps](std::uint64_t done) {
+      if (terminal && (done % 1000 == 0 || done == steps))
+        fmt::print(stderr, "\r{} of {} steps{}", done, steps, done == steps ? "\n" : "");
+    };
+    printFiles(recorder::exportCsv(recording, o.folder, o.force, progress));
+  }
+  if (!o.motion.empty()) printFiles(analytics::writeMotionTables(analytics::motionOf(recording), o.motion));
+  if (!recording.complete()) fmt::print("incomplete\n");
+  // What was asked for is there; that it was changed since it was recorded is the answer.
+  if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
+  return static_cast<int>(ExitCode::yes);
+}
+
+}  // namespace
+
 void addExport(CLI::App& app, Run& run) {
-  struct Options {
-    std::string file, folder, cohort;
-    bool force = false;
-  };
-  const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("export", "Write a recording as CSV files");
-  command->add_option("recording", options->file, "Recording (.h5)")->required();
-  command->add_option("--csv", options->folder, "Folder to write to")->required();
+  const auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export", "Write a recording, or the filtered motion in it, as CSV files");
+  command->add_option("file", options->file, "Recording (.h5); with --motion also a motion file, as calot import reads")
+      ->required();
+  command->add_option("--csv", options->folder, "Folder for all that is recorded");
+  CLI::Option* motion = command->add_option(
+      "--motion", options->motion,
+      "New folder for both hands' filtered motion with its segments and movements, as checkpoints see it");
+  command
+      ->add_option("--columns", options->columns,
+                   "What the columns of a CSV motion file are (schemas/columns.schema.json)")
+      ->needs(motion);
   command->add_option("--cohort", options->cohort, "Cohort database that notes that this was handed out");
-  command->add_flag("--force", options->force, "Replace files that are there");
+  command->add_flag("--force", options->force, "Replace files that --csv finds there");
   command->callback([options, &run] {
     run = [options] {
-      const recorder::ChainVerdict chain = recorder::probe(options->file);
-      recorder::Recording recording(options->file);
-      if (!options->cohort.empty())
-        analytics::recordExport(options->cohort, "recording-csv", options->folder, {recording.header().attempt});
-      const bool terminal = ::isatty(STDERR_FILENO) != 0;
-      const std::uint64_t steps = recording.stepCount();
-      const auto progress = [terminal, steps](std::uint64_t done) {
-        if (terminal && (done % 1000 == 0 || done == steps))
-          fmt::print(stderr, "\r{} of {} steps{}", done, steps, done == steps ? "\n" : "");
-      };
-      const auto files = recorder::exportCsv(recording, options->folder, options->force, progress);
-      for (const auto& file : files) fmt::print("{}\n", file.string());
-      if (!recording.complete()) fmt::print("incomplete\n");
-      // What was asked for is there; that it was changed since it was recorded is the answer.
-      if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", options->file, chain.what));
-      return static_cast<int>(ExitCode::yes);
+      const bool recorded = options->motion.empty() || std::filesystem::path(options->file).extension() == ".h5";
+      return recorded ? exportRecording(*options) : exportMotionFile(*options);
     };
   });
 }

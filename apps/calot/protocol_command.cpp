@@ -72,7 +72,7 @@ int lock(const ProtocolOptions& o) {
   const analytics::CohortDatabase cohort(o.database, Access::read);
   // What the study would refuse cannot be locked.
   static_cast<void>(analytics::makeMaskedStudy(cohort, assessment, options, false));
-  analytics::AnalysisLock present = presentAnalysis(cohort, assessment, options);
+  analytics::AnalysisLock present = analytics::presentAnalysis(cohort, assessment, options);
   present.by = o.by;
   bool added = false;
   const analytics::AnalysisLock stored = analytics::storeAnalysisLock(o.database, present, added);

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "apps/calot/study_options.h"
 
-#include <fmt/format.h>
-
 #include <optional>
 
-#include "analytics/cohort/analysis_locks.h"
 #include "apps/calot/environment.h"
-#include "recorder/attempt.h"
 #include "recorder/errors.h"
-#include "sim/scene/version.h"
 
 namespace calot::apps {
 namespace {
@@ -61,25 +56,6 @@ void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table
       ->needs(&table);
 }
 
-/// Masked until the analysis is locked, where that was asked for once.
-analytics::Study protocolStudyOf(const StudySource& options, const analytics::CohortDatabase& cohort,
-                                 const analytics::AssessmentDatabase& assessment) {
-  const std::string& path = options.database;
-  const std::string& sha256 = options.cohort.protocol->protocol.sha256;
-  const std::optional<analytics::AnalysisLock> lock = analytics::readAnalysisLock(path, sha256);
-  if (!lock && options.masked)
-    return analytics::makeMaskedStudy(cohort, assessment, options.cohort, analytics::drawGroupMask(path, sha256));
-  if (!lock && analytics::readGroupMask(path, sha256)) {
-    throw Error(ErrorKind::refused, Where{path},
-                "the groups of this protocol are masked until its analysis is locked: --masked shows the study without "
-                "their names, calot protocol lock locks it");
-  }
-  analytics::Study study = analytics::makeStudy(cohort, options.cohort);
-  analytics::addRatings(study, assessment);
-  if (lock) analytics::describeLock(study, *lock, presentAnalysis(cohort, assessment, options.cohort));
-  return study;
-}
-
 analytics::Study plainStudyOf(StudySource& options) {
   if (!options.attemptRule.empty()) {
     options.choices.attemptRule =
@@ -100,7 +76,7 @@ analytics::Study plainStudyOf(StudySource& options) {
   const analytics::AssessmentDatabase assessment(options.database, read);
   if (!options.protocol.empty()) options.cohort = protocolStudyOptions(options, assessment);
   const analytics::CohortDatabase cohort(options.database, read);
-  if (options.cohort.protocol) return protocolStudyOf(options, cohort, assessment);
+  if (options.cohort.protocol) return analytics::makeProtocolStudy(cohort, assessment, options.cohort, options.masked);
   if (options.masked) throw Error(ErrorKind::invalid, "study: --masked needs the --protocol whose groups are masked");
   analytics::Study study = analytics::makeStudy(cohort, options.cohort);
   analytics::addRatings(study, assessment);
@@ -116,19 +92,6 @@ analytics::StudyOptions protocolStudyOptions(const StudySource& source, const an
   use.protocol = analytics::readProtocol(findAsset(source.protocol, "protocols", "protocol"));
   use.registered = database.protocols(use.protocol.name);
   return options;
-}
-
-analytics::AnalysisLock presentAnalysis(const analytics::CohortDatabase& cohort,
-                                        const analytics::AssessmentDatabase& assessment,
-                                        const analytics::StudyOptions& options) {
-  const analytics::Protocol& protocol = options.protocol->protocol;
-  return {protocol.sha256,
-          fmt::format("{} version {}", protocol.name, protocol.version),
-          analytics::analysisOptions(options),
-          analytics::analysisDigest(cohort, assessment),
-          fmt::format("{}, simulation version {}", recorder::softwareName(), simulationVersion),
-          "",
-          ""};
 }
 
 analytics::Study studyOf(StudySource& options) {

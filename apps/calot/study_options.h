@@ -25,11 +25,6 @@ void addStudySource(CLI::App& command, StudySource& source);
 /// The cohort's study as its protocol and the options choose it. @pre there are a cohort and a protocol
 analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::AssessmentDatabase& database);
 
-/// What a lock of that study's analysis fixes, without time and name.
-analytics::AnalysisLock presentAnalysis(const analytics::CohortDatabase& cohort,
-                                        const analytics::AssessmentDatabase& assessment,
-                                        const analytics::StudyOptions& options);
-
 /// @throws Error as makeStudy() and makeTableStudy(); (invalid) where neither a cohort nor a table is named.
 analytics::Study studyOf(StudySource& source);
 

@@ -7,6 +7,7 @@
 
 #include "analytics/cohort/withdraw.h"
 #include "analytics/report/html_text.h"
+#include "analytics/report/masked_study.h"
 #include "analytics/report/page_html.h"
 #include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
@@ -81,7 +82,9 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request) {
       }
     } else if (!request.first.empty() && !request.second.empty())
       options.groups = {request.first, request.second};
-    analytics::Study study = analytics::makeStudy(analytics::CohortDatabase(database, Access::read), options);
+    const analytics::CohortDatabase cohort(database, Access::read);
+    if (options.protocol) return {analytics::makeProtocolStudy(cohort, assessment, options, false), {}};
+    analytics::Study study = analytics::makeStudy(cohort, options);
     analytics::addRatings(study, assessment);
     return {std::move(study), {}};
   } catch (const std::exception& error) {
@@ -102,10 +105,12 @@ std::string registrationText(const analytics::Study& study) {
   if (!study.protocol)
     return "No protocol: the choices on this page were made after the data, so that the study is exploratory.";
   const analytics::StudyProtocol& p = *study.protocol;
-  if (p.whyExploratory.empty())
-    return "Confirmatory: protocol " + p.name + " version " + std::to_string(p.version) + " was registered on " +
-           p.registeredUtc + ", before the first attempt (" + p.firstAttemptUtc + ").";
-  return "Exploratory, by protocol " + p.name + " version " + std::to_string(p.version) + ": " + p.whyExploratory + ".";
+  const std::string protocol = "protocol " + p.name + " version " + std::to_string(p.version);
+  const std::string registered = p.whyExploratory.empty()
+                                     ? "Confirmatory: " + protocol + " was registered on " + p.registeredUtc +
+                                           ", before the first attempt (" + p.firstAttemptUtc + ")."
+                                     : "Exploratory, by " + protocol + ": " + p.whyExploratory + ".";
+  return registered + " " + analytics::lockText(p);
 }
 
 std::string studyText(const analytics::Study& study) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/sources/devices/calibration.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "recorder/errors.h"
+#include "recorder/formats/dates.h"
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/json_reader.h"
 
@@ -139,22 +139,6 @@ std::int64_t secondsOf(const std::string& date) {
 }
 
 }  // namespace
-
-bool isDate(const std::string& text) {
-  static const std::string form = "0000-00-00T00:00:00Z";
-  if (text.size() != form.size()) return false;
-  for (std::size_t i = 0; i < form.size(); ++i) {
-    if (form[i] == '0' ? text[i] < '0' || text[i] > '9' : text[i] != form[i]) return false;
-  }
-  const int month = std::stoi(text.substr(5, 2)), day = std::stoi(text.substr(8, 2));
-  return month >= 1 && month <= 12 && day >= 1 && day <= 31 && text.substr(11, 2) < "24" && text[14] < '6' &&
-         text[17] < '6';
-}
-
-std::string presentDate() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-}
 
 std::int64_t ageInDays(const Calibration& calibration, const std::string& now) {
   const std::int64_t seconds = secondsOf(now) - secondsOf(calibration.date);

@@ -59,9 +59,6 @@ std::vector<std::string> shortcomings(const Calibration& calibration);
 /// Whole days from its date to `now` (ISO 8601 with Z); negative where it lies in the future.
 /// @pre both are dates as isDate() takes them.
 std::int64_t ageInDays(const Calibration& calibration, const std::string& now);
-/// "2026-01-31T23:59:59Z".
-bool isDate(const std::string& text);
-std::string presentDate();
 
 /// The file's text; what is copied into each recording is its compact form, on one line.
 std::string calibrationText(const Calibration& calibration, bool compact);

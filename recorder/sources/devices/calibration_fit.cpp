@@ -10,6 +10,7 @@
 #include <Eigen/SVD>
 
 #include "recorder/errors.h"
+#include "recorder/formats/dates.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {

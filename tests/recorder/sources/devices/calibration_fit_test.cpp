@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "recorder/errors.h"
+#include "recorder/formats/dates.h"
 #include "tests/recorder/sources/devices/support/calibration_streams.h"
 
 namespace calot::recorder {
