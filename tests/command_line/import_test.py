@@ -252,6 +252,48 @@ class Figures(program.ProgramTest):
                     self.assertAlmostEqual(value, two[key], delta=1e-9 * max(1.0, abs(value)))
 
 
+class Exported(program.ProgramTest):
+    """calot export --motion: what checkpoints are computed of gives their values to others, too."""
+
+    def assertGives(self, folder, values):
+        """Path length, movements and coverage again, by the tables alone."""
+        summary = json.loads((folder / "motion.json").read_text())
+        with (folder / "spans.csv").open(newline="") as file:
+            spans = list(csv.DictReader(file))
+        for hand in HANDS:
+            with (folder / f"motion_{hand}.csv").open(newline="") as file:
+                rows = list(csv.DictReader(file))
+            place = numpy.array([[float(row[f"{axis} (m)"]) for axis in "xyz"] for row in rows])
+            segment = numpy.array([int(row["segment"]) for row in rows])
+            steps = numpy.linalg.norm(numpy.diff(place, axis=0), axis=1)[segment[1:] == segment[:-1]]
+            self.assertAlmostEqual(steps.sum(), values["path-length", hand], delta=1e-12)
+            movements = {row["movement"] for row in rows} - {""}
+            self.assertEqual(len(movements), values["movements", hand])
+            of_hand = [span for span in spans if span["hand"] == hand]
+            self.assertEqual(sum(span["kind"] == "movement" for span in of_hand), len(movements))
+            self.assertEqual(sum(span["kind"] == "segment" for span in of_hand), len(set(segment)))
+            length = {kind: sum(float(s["end (s)"]) - float(s["begin (s)"]) for s in of_hand if s["kind"] == kind) for kind in ("mounted", "lost")}
+            self.assertAlmostEqual(summary[hand]["coverage"], 1.0 - length["lost"] / length["mounted"], delta=1e-12)
+            self.assertEqual(summary[hand]["points"], len(rows))
+
+    def test_motion_of_a_file(self):
+        path = self.path("k.txt")
+        path.write_text(text_of(synthetic(20.0, program.seeded("import"))))
+        values = values_of(json.loads(self.well("import", path, "--cutoff", 6, "--json").out)[0]["checkpoints"])
+        said = self.well("export", path, "--motion", self.path("out")).out.split()
+        self.assertEqual(sorted(said), sorted(str(file) for file in self.path("out").iterdir()))
+        self.assertGives(self.path("out"), values)
+        self.refused(2, "export", path, "--motion", self.path("out"), names=("already exists",))
+        self.refused(2, "export", path, "--motion", self.path("new"), "--csv", self.path("csv"), names=("k.txt", "no recording"))
+
+    def test_motion_of_a_recording(self):
+        recording = program.skilled()
+        values = values_of(json.loads(self.well("assess", recording, "--cutoff", 6, "--json").out)[0]["checkpoints"])
+        self.well("export", recording, "--motion", self.path("out"))
+        self.assertGives(self.path("out"), values)
+        self.refused(2, "export", recording, names=("--csv", "--motion"))
+
+
 class Held(program.ProgramTest):
     def test_a_tracker_of_30_hz_held_on_ticks_of_1_khz(self):
         # The same motion as a file, and as a device that gives it 30 times a second to a recording: the ticks between are held. The device

@@ -94,8 +94,9 @@ class Interchange(program.ProgramTest):
         self.path("study.json").write_text(self.well(*self.study, "--json").out, encoding="utf-8")
         self.well("cohort", "export", self.database, "-o", self.path("tables"))
         shutil.copyfile(next(self.folder.glob("skilled*.h5")), self.path("r.h5"))
+        self.well("export", self.path("r.h5"), "--motion", self.path("motion"))
         python = blocks("python")
-        self.assertEqual(len(python), 5)
+        self.assertEqual(len(python), 6)
         for block in python:
             self.assertLessEqual(len(block.splitlines()), 3, block)
             done = subprocess.run([sys.executable, "-c", block], cwd=self.folder, capture_output=True, check=False)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Designs of a table, from its text to the results.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -25,7 +26,8 @@ std::string plants() {
   int id = 0;
   for (const auto& [group, values] : groups) {
     for (const double v : values) {
-      text << 'P' << ++id << ',' << group << ',' << (id % 2 == 0 ? "north" : "south") << ',' << v << '\n';
+      ++id;
+      text << 'P' << id << ',' << group << ',' << (id % 2 == 0 ? "north" : "south") << ',' << v << '\n';
     }
   }
   return text.str();
@@ -136,10 +138,8 @@ TEST(TableDesign, timesOfWhichSomeAreNotFinished) {
   const std::vector<std::pair<int, int>> others{{5, 1},  {5, 1},  {8, 1},  {8, 1},  {12, 1}, {16, 0},
                                                 {23, 1}, {27, 1}, {30, 1}, {33, 1}, {43, 1}, {45, 1}};
   int id = 0;
-  for (const auto& [time, done] : kept)
-    text += "K" + std::to_string(++id) + ",kept," + std::to_string(time) + "," + std::to_string(done) + "\n";
-  for (const auto& [time, done] : others)
-    text += "O" + std::to_string(++id) + ",other," + std::to_string(time) + "," + std::to_string(done) + "\n";
+  for (const auto& [time, done] : kept) text += fmt::format("K{},kept,{},{}\n", ++id, time, done);
+  for (const auto& [time, done] : others) text += fmt::format("O{},other,{},{}\n", ++id, time, done);
   Asked a = asked(Design::timeToCriterion, {"time:lower"});
   a.choices.finishedColumn = "done";
   const auto json = reportOf(text, a).json;
@@ -158,8 +158,8 @@ std::string meters() {
   const std::vector<int> mini{512, 430, 520, 428, 500, 600, 364, 380, 658, 445, 432, 626, 260, 477, 259, 350, 451};
   std::string text = "id,meter,flow\n";
   for (std::size_t i = 0; i < large.size(); ++i) {
-    text += "P" + std::to_string(i) + ",large," + std::to_string(large[i]) + "\n";
-    text += "P" + std::to_string(i) + ",mini," + std::to_string(mini[i]) + "\n";
+    text += fmt::format("P{},large,{}\n", i, large[i]);
+    text += fmt::format("P{},mini,{}\n", i, mini[i]);
   }
   return text;
 }
@@ -189,8 +189,7 @@ TEST(TableDesign, reliabilityOverRaters) {
                                              {7, 1, 2, 6}, {10, 5, 6, 9}, {6, 2, 4, 7}};
   std::string text = "id,rater,score\n";
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    for (std::size_t r = 0; r < 4; ++r)
-      text += "P" + std::to_string(i) + ",R" + std::to_string(r) + "," + std::to_string(scores[i][r]) + "\n";
+    for (std::size_t r = 0; r < 4; ++r) text += fmt::format("P{},R{},{}\n", i, r, scores[i][r]);
   }
   text += "P9,R0,5\n";
   Asked a = asked(Design::reliability, {"score"});

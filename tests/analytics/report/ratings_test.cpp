@@ -176,6 +176,35 @@ TEST(Ratings, agreementIsOverOneAttemptOfEachParticipant) {
   EXPECT_EQ(apart.items[0].groups[0].n, 6U);
 }
 
+/// Sums worked out by hand: respect, time and handling of 2, 3, 4 are 9; a blank leaves out the sums that it is in.
+TEST(Ratings, sumsOfSubscalesAreOfFormsThatHaveAllOfTheirItems) {
+  const RatingForm form = shipped("osats");
+  ASSERT_EQ(form.subscales.size(), 2U);
+  const std::map<std::string, int> whole{{"respect-for-tissue", 2},    {"time-and-motion", 3},
+                                         {"instrument-handling", 4},   {"knowledge-of-instruments", 5},
+                                         {"use-of-assistants", 1},     {"flow-of-operation", 2},
+                                         {"knowledge-of-procedure", 3}};
+  std::map<std::string, int> other = whole;
+  other["time-and-motion"] = 5;
+  std::map<std::string, int> blank = whole;
+  blank.erase("flow-of-operation");
+  const std::string a = uuidOf(1), b = uuidOf(2);
+  // Two raters of one attempt, whose mean counts, and one of the other, who left an item blank.
+  const std::vector<Rating> ratings{{form.name, form.version, a, "R1", "", whole, ""},
+                                    {form.name, form.version, a, "R2", "", other, ""},
+                                    {form.name, form.version, b, "R1", "", blank, ""}};
+  const FormReport report = reportForm(form, ratings, {{a, "expert"}, {b, "novice"}}, {"expert", "novice"},
+                                       {{a, {"P1", "2026-01-01T00:00:00Z"}}, {b, {"P2", "2026-01-01T00:00:00Z"}}});
+  ASSERT_EQ(report.scales.size(), 3U) << "the subscales, then all items";
+  const std::vector<std::optional<double>> experts{10.0, 11.0, 21.0}, novices{9.0, std::nullopt, std::nullopt};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(report.scales[i].groups[0].median, experts[i]) << report.scales[i].name;
+    EXPECT_EQ(report.scales[i].groups[1].median, novices[i]) << report.scales[i].name;
+  }
+  EXPECT_EQ(report.scales[2].items, 7U);
+  EXPECT_EQ(report.scales[1].groups[1].blank, 1U);
+}
+
 TEST(Ratings, questionnairesKeepBlanksAndCountAnswers) {
   const RatingForm form = shipped("questionnaire-2014");
   std::vector<Rating> ratings;
