@@ -103,10 +103,7 @@ ReportDocument designDocument(const DesignReport& report) {
   for (const ReportTable& table : report.tables) document.parts.emplace_back(table);
   if (!report.notes.empty()) document.addList(report.notes);
   document.add(report.methods);
-  if (!report.drawings.empty()) {
-    document.parts.emplace_back(Heading{"Figures"});
-    document.parts.emplace_back(Figures{report.drawings});
-  }
+  if (!report.drawings.empty()) document.parts.emplace_back(Figures{report.drawings});
   return document;
 }
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "analytics/report/box_plot.h"
 #include "analytics/report/plot_parts.h"
@@ -33,8 +35,12 @@ std::optional<Drawing> drawLines(const LinePlot& plot) {
     return plotLeft + (value - across->low) / (across->high - across->low) * (plotRight - plotLeft);
   };
   Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
-  for (const double tick : roundTicks(across->low, across->high))
+  // Attempts are counted: no tick between two.
+  const bool whole = std::all_of(x.begin(), x.end(), [](double v) { return v == std::floor(v); });
+  for (const double tick : roundTicks(across->low, across->high)) {
+    if (whole && tick != std::floor(tick)) continue;
     drawing.text(Ink::count, at(tick), plotBottom + 14.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
+  }
   drawing.text(Ink::group, (plotLeft + plotRight) / 2.0, plotBottom + 32.0, plot.below);
   for (const double mark : plot.marks) drawing.line(Ink::cut, plotLeft, scale->y(mark), plotRight, scale->y(mark));
   double legend = plotTop + 8.0;
