@@ -30,8 +30,8 @@ Drawing drawForest(const ForestPlot& plot) {
     drawing.line(quarter == 2 ? Ink::cut : Ink::grid, axisAt(value), axisTop - 6.0, axisAt(value), bottom);
     drawing.text(Ink::count, axisAt(value), bottom + 14.0, fmt::format("{:g}", value));
   }
-  drawing.text(Ink::count, axisAt(0.25), bottom + 32.0, cutTo(plot.below, maxMeaning));
-  drawing.text(Ink::count, axisAt(0.75), bottom + 32.0, cutTo(plot.above, maxMeaning));
+  drawing.text(Ink::count, axisAt(0.2), bottom + 32.0, cutTo(plot.below, maxMeaning));
+  drawing.text(Ink::count, axisAt(0.8), bottom + 32.0, cutTo(plot.above, maxMeaning));
   double y = axisTop + 0.5 * rowHeight;
   for (const ForestRow& row : plot.rows) {
     drawing.text(Ink::label, 12.0, y + 4.0, cutTo(row.label, maxForestLabel));
