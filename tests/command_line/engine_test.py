@@ -138,7 +138,7 @@ class Engine(program.ProgramTest):
             folder.mkdir()
             engine.check_out(entry["version"], folder)
             for kind in ("module", "native"):
-                self.assertGreater(len(engine.sources(folder, kind)), 100)
+                self.assertGreater(len(engine.matching(folder, engine.source_patterns(folder, kind))), 100)
 
 
 if __name__ == "__main__":
