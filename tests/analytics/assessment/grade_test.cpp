@@ -111,7 +111,7 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   expectRefusal(ErrorKind::invalid, "have no figure \"", [&] { made(); }, {{Remedy::nameCheckpoints}});
   request_.checkpoints.clear();
   request_.leastPassed = 2;
-  expectRefusal(ErrorKind::refused, "asks for 2 of 1", [&] { made(); });
+  expectRefusal(ErrorKind::refused, "asks for 2 figures, and 1 of 2 have a pass mark", [&] { made(); });
   request_.leastPassed = 0;
   request_.name = "a b";
   expectRefusal(ErrorKind::invalid, "norm: a name", [&] { made(); });

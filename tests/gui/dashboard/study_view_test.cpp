@@ -96,7 +96,14 @@ TEST(StudyView, RegistrationIsSaidInOneLine) {
             std::string::npos);
   p.whyExploratory = "the protocol was registered on a later day";
   EXPECT_EQ(registrationText(study),
-            "Exploratory, by protocol table2 version 3: the protocol was registered on a later day.");
+            "Exploratory, by protocol table2 version 3: the protocol was registered on a later day. "
+            "The analysis is not locked.");
+  p.masked = true;
+  EXPECT_NE(registrationText(study).find("Groups are masked until the analysis is locked."), std::string::npos);
+  p.masked = false;
+  p.lock = analytics::StudyLock{"2026-03-01T00:00:00Z", "A. Analyst", {"data"}};
+  EXPECT_NE(registrationText(study).find("locked on 2026-03-01T00:00:00Z by A. Analyst; changed since: data."),
+            std::string::npos);
 }
 
 TEST(StudyView, TextsAreEscaped) {
