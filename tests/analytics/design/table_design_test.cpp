@@ -7,13 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "analytics/design/design_report.h"
-#include "analytics/report/csv_table.h"
 #include "analytics/report/page_html.h"
+#include "tests/analytics/design/support/asked.h"
 #include "tests/analytics/support/refusal.h"
 
 namespace calot::analytics {
 namespace {
+
+using support::asked;
+using support::Asked;
+using support::reportOf;
 
 /// R's PlantGrowth, a row a plant.
 std::string plants() {
@@ -31,24 +34,6 @@ std::string plants() {
     }
   }
   return text.str();
-}
-
-struct Asked {
-  TableStudyOptions options;
-  DesignChoices choices;
-};
-
-Asked asked(Design design, const std::vector<std::string>& outcomes) {
-  Asked a;
-  a.options.participantColumn = "id";
-  a.options.groupColumn = "group";
-  a.options.outcomes = outcomes;
-  a.choices.design = design;
-  return a;
-}
-
-DesignReport reportOf(const std::string& text, const Asked& a) {
-  return makeDesignReport(tableDesignData(parseCsvTable(text, "t.csv"), a.options, a.choices), a.choices);
 }
 
 TEST(TableDesign, severalGroupsOfR) {

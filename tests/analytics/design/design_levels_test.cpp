@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the designs say where there is nothing, and where something was put: whole studies of made up tables. The mixed
+// model's are in tests/analytics/statistics. With CALOT_HEAVY set 50,000 studies each, else 2,000.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <random>
+#include <string>
+
+#include "tests/analytics/design/support/asked.h"
+
+namespace calot::analytics {
+namespace {
+
+using support::asked;
+using support::Asked;
+using support::reportOf;
+
+constexpr double level = 0.05;
+constexpr int perGroup = 20;
+
+struct Simulated {
+  Asked asked;
+  /// A table of two or three groups. @param effect 0: none
+  std::function<std::string(std::mt19937&, double effect)> table;
+  std::function<double(const nlohmann::ordered_json&)> p;  ///< of the report's results
+  double planted;                                          ///< effect that is nearly always found
+};
+
+double normal(std::mt19937& random) { return std::normal_distribution<double>(0.0, 1.0)(random); }
+
+/// Asymptotic tests of small samples are not exact: a hundredth either way, and four standard errors of the share.
+void expectLevelAndPower(const char* name, const Simulated& s) {
+  const int studies = std::getenv("CALOT_HEAVY") != nullptr ? 50000 : 2000;
+  const auto share = [&](double effect, int count) {
+    std::mt19937 random(2026);
+    int found = 0;
+    for (int i = 0; i < count; ++i) found += s.p(reportOf(s.table(random, effect), s.asked).json) <= level ? 1 : 0;
+    return static_cast<double>(found) / count;
+  };
+  const double none = share(0.0, studies), some = share(s.planted, 50);
+  std::cout << fmt::format("{}: {:.4f} of {} studies without an effect, {:.2f} of 50 with one\n", name, none, studies,
+                           some);
+  EXPECT_LE(std::abs(none - level), 0.01 + 4.0 * std::sqrt(level * (1.0 - level) / studies));
+  EXPECT_GE(some, 0.9);
+}
+
+TEST(DesignLevels, severalGroups) {
+  Simulated s{asked(Design::severalGroups, {"a"}), {}, {}, 1.5};
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,group,a\n";
+    for (int i = 0; i < 3 * perGroup; ++i)
+      text += fmt::format("P{},{},{}\n", i, "xyz"[i % 3], std::exp(normal(random) + (i % 3 == 1 ? effect : 0.0)));
+    return text;
+  };
+  s.p = [](const auto& json) { return json["results"][0]["kruskal_wallis"]["p"].template get<double>(); };
+  expectLevelAndPower("Kruskal-Wallis", s);
+}
+
+/// Sites differ by far more than groups, and have unequal shares of them.
+TEST(DesignLevels, strata) {
+  Simulated s{asked(Design::strata, {"a"}), {}, {}, 1.5};
+  s.asked.choices.strata = "site";
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,group,site,a\n";
+    for (int i = 0; i < 2 * perGroup; ++i) {
+      const bool first = i % 2 == 0, north = i % 7 < (first ? 5 : 3);
+      text += fmt::format("P{},{},{},{}\n", i, first ? 'x' : 'y', north ? "north" : "south",
+                          normal(random) + (north ? 3.0 : 0.0) + (first ? effect : 0.0));
+    }
+    return text;
+  };
+  s.p = [](const auto& json) { return json["results"][0]["p"].template get<double>(); };
+  expectLevelAndPower("van Elteren", s);
+}
+
+/// Exponential times, of which those beyond a limit are not finished.
+TEST(DesignLevels, timesWithALimit) {
+  Simulated s{asked(Design::timeToCriterion, {"time:lower"}), {}, {}, 1.3};
+  s.asked.choices.finishedColumn = "done";
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,group,time,done\n";
+    for (int i = 0; i < 2 * perGroup; ++i) {
+      const double time = std::exponential_distribution<double>(std::exp(i % 2 == 0 ? effect : 0.0))(random);
+      text += fmt::format("P{},{},{},{}\n", i, "xy"[i % 2], std::min(time, 1.5), time < 1.5 ? 1 : 0);
+    }
+    return text;
+  };
+  s.p = [](const auto& json) { return json["results"][0]["log_rank"]["p"].template get<double>(); };
+  expectLevelAndPower("log-rank", s);
+}
+
+/// Two figures of the same people, correlated, that separate the groups equally well.
+TEST(DesignLevels, twoAreas) {
+  Simulated s{asked(Design::areas, {"a:higher", "b:higher"}), {}, {}, 2.0};
+  s.asked.choices.better = "x";
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,group,a,b\n";
+    for (int i = 0; i < 2 * perGroup; ++i) {
+      const double person = normal(random), better = i % 2 == 0 ? 1.0 : 0.0;
+      const double a = 0.7 * person + 0.7 * normal(random) + better * (0.5 + effect);
+      const double b = 0.7 * person + 0.7 * normal(random) + better * 0.5;
+      text += fmt::format("P{},{},{},{}\n", i, "xy"[i % 2], a, b);
+    }
+    return text;
+  };
+  s.p = [](const auto& json) { return json["results"][0]["p"].template get<double>(); };
+  expectLevelAndPower("two areas", s);
+}
+
+TEST(DesignLevels, correlationWithARating) {
+  Simulated s{asked(Design::correlation, {"a"}), {}, {}, 2.0};
+  s.asked.options.groupColumn.clear();
+  s.asked.choices.against = "rating";
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,a,rating\n";
+    for (int i = 0; i < perGroup; ++i) {
+      const double rating = normal(random), a = effect * rating + normal(random);
+      text += fmt::format("P{},{},{}\n", i, std::exp(a), std::round(2.0 * rating));
+    }
+    return text;
+  };
+  s.p = [](const auto& json) { return json["results"][0]["p"].template get<double>(); };
+  expectLevelAndPower("Spearman", s);
+}
+
+}  // namespace
+}  // namespace calot::analytics
