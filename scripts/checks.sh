@@ -52,7 +52,7 @@ for stage in "${stages[@]}"; do
       ;;
     asan-ubsan)
       export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1
-      fast asan-ubsan '^(Branch|Live|Runaway|Blend|Strokes|HarshVessels|CarveFat|Operation|TouchLiver|Organs)[./]|^FatMotion\.(Compliance|Hangs)|^FatScene\.(TheDuct|Restored)|^FatContact\.Updated|^CauteryScene\.(AWallOpens|Char|AVessels|FatRecedes)|^Connective\.UniformOpening|^Segments\.[^O]|^Kept\.AnEngineApart|^Replay\.NamesStep|^VesselContact\.(Pressed|Hanging)|^FatOnTissue\.(Pressed|Thrown)' "${fastTests[@]}"
+      fast asan-ubsan '^(Branch|Live|Runaway|Blend|Strokes|HarshVessels|CarveFat|Operation|TouchLiver|Organs)[./]|^FatMotion\.(Compliance|Hangs)|^FatScene\.(TheDuct|Restored)|^FatContact\.Updated|^CauteryScene\.(AWallOpens|Char|AVessels|FatRecedes)|^Connective\.UniformOpening|^Segments\.[^O]|^Kept\.AnEngineApart|^Replay\.NamesStep|^ClosestPointTransform\.FindsEveryNode|^Size\.|^PortForceRecorded\.|^KinematicsSource\.mappingDoes|^PreparedScenes\.(Work|Save|Give|FindOut)|^VesselContact\.(Pressed|Hanging)|^FatOnTissue\.(Pressed|Thrown)' "${fastTests[@]}"
       ;;
     tsan)
       export TSAN_OPTIONS=second_deadlock_stack=1:halt_on_error=1
