@@ -46,6 +46,7 @@ std::vector<AttemptRow> groupedByRating(std::vector<AttemptRow> attempts, const 
 Expected<RegressionCut> borderlineCut(const std::vector<double>& ratings, const std::vector<double>& values,
                                       double mark, Direction direction, bool logScale) {
   std::vector<double> scores;
+  scores.reserve(values.size());
   for (const double v : values) scores.push_back(logScale ? std::log(v) : v);
   const Expected<BorderlineRegression> line =
       borderlineRegression(ratings, scores, mark, direction == Direction::lower ? Better::lower : Better::higher);

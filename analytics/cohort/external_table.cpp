@@ -85,6 +85,7 @@ std::vector<ExternalMetric> readExternalMetrics(SQLite::Database& db) {
   for (const auto& [id, metric] : metricsById(db))
     sorted.emplace(std::pair(metric->definition.name, metric->definition.version), *metric);
   std::vector<ExternalMetric> metrics;
+  metrics.reserve(sorted.size());
   for (auto& item : sorted) metrics.push_back(std::move(item.second));
   return metrics;
 }

@@ -33,6 +33,7 @@ std::vector<std::string> groupsOfDesign(const std::map<std::string, std::uint64_
                                         const std::string& left) {
   const DesignEntry& entry = entryOf(choices.design);
   std::vector<std::string> there;
+  there.reserve(present.size());
   for (const auto& item : present) there.push_back(item.first);
   std::sort(there.begin(), there.end(), groupBefore);
   for (const std::string& name : choices.groups) {

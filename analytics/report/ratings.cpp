@@ -151,6 +151,7 @@ void addAgreement(FormReport& report, const RatingForm& form, const std::vector<
     return a.startUtc != b.startUtc ? a.startUtc < b.startUtc : a.uuid < b.uuid;
   });
   std::vector<std::string> keys;
+  keys.reserve(items.size());
   for (const FormItem& item : items) keys.push_back(item.key);
   const auto overall = [&](const Rating& r) -> std::optional<double> {
     const std::optional<double> sum = sumOf(r, keys);
