@@ -97,7 +97,7 @@ TEST(DesignLevels, timesWithALimit) {
 /// Two figures of the same people, correlated, that separate the groups equally well.
 TEST(DesignLevels, twoAreas) {
   Simulated s{asked(Design::areas, {"a:higher", "b:higher"}), {}, {}, 2.0};
-  s.asked.choices.better = "x";
+  s.asked.choices.better = std::string(1, 'x');
   s.table = [](std::mt19937& random, double effect) {
     std::string text = "id,group,a,b\n";
     for (int i = 0; i < 2 * perGroup; ++i) {
