@@ -19,50 +19,45 @@ std::string typeWord(const std::string& type) {
   return type == "BLOB" ? "bytes in hexadecimal" : "text";
 }
 
+/// What is said alike of checkpoints and of external metrics.
+CodebookEntry entryOf(const CheckpointDefinition& d) {
+  CodebookEntry e;
+  e.table = "checkpoint";
+  e.name = d.name;
+  e.title = d.title;
+  e.type = "number";
+  e.unit = d.unit;
+  e.allowed = "finite";
+  e.direction = nameOf(d.direction);
+  e.window = d.window;
+  e.filter = d.filter;
+  e.version = d.version;
+  return e;
+}
+
 }  // namespace
 
 std::vector<CodebookEntry> checkpointEntries(const std::vector<ExternalMetric>& external) {
   std::vector<CodebookEntry> entries;
   for (const CheckpointEntry& known : checkpointRegistry()) {
     const CheckpointDefinition& d = known.definition;
-    CodebookEntry e;
-    e.table = "checkpoint";
-    e.name = d.name;
-    e.title = d.title;
-    e.type = "number";
-    e.unit = d.unit;
-    e.allowed = "finite";
+    CodebookEntry e = entryOf(d);
     e.missing =
         "availability 1: the question has no answer for this attempt; 2: what is recorded does not give it; 3: the "
-        "hand "
-        "has no instrument; 4: samples cover too little; the value is empty and a reason stands beside it";
+        "hand has no instrument; 4: samples cover too little; the value is empty and a reason stands beside it";
     if (d.minCoverage > 0.0) e.missing += fmt::format("; coverage wanted: {}", coverageText(d));
-    e.direction = nameOf(d.direction);
-    e.window = d.window;
     e.subjects = fmt::format("each {}{}{}", nameOf(d.aggregation), d.instruments.empty() ? "" : "; ", d.instruments);
     e.formula = d.definition;
-    e.filter = d.filter;
     for (const Origin origin : d.origins) e.origins += (e.origins.empty() ? "" : ", ") + nameOf(origin);
-    e.version = d.version;
     entries.push_back(std::move(e));
   }
   for (const ExternalMetric& metric : external) {
     const CheckpointDefinition& d = metric.definition;
-    CodebookEntry e;
-    e.table = "checkpoint";
-    e.name = d.name;
-    e.title = d.title;
-    e.type = "number";
-    e.unit = d.unit;
-    e.allowed = "finite";
+    CodebookEntry e = entryOf(d);
     e.missing = "availability 2: the script gave none; the value is empty and a reason stands beside it";
-    e.direction = nameOf(d.direction);
-    e.window = d.window;
     e.subjects = "each attempt";
     e.formula = "a script of the site, SHA-256 " + metric.sha256;
-    e.filter = d.filter;
     e.origins = nameOf(Origin::external);
-    e.version = d.version;
     entries.push_back(std::move(e));
   }
   return entries;

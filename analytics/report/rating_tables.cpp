@@ -32,20 +32,28 @@ std::vector<std::size_t> groupsThatAnswered(const FormReport& report) {
   return answered;
 }
 
+/// Titles and cells of what both tables say of a group's scores.
+void addSummaryColumns(ReportTable& table) {
+  for (const char* title : {"n", "blank", "median", "quartile 1", "quartile 3", "mean"})
+    table.columns.emplace_back(title, Align::right);
+}
+
+void addSummary(std::vector<std::string>& row, const ItemSummary& s) {
+  row.push_back(fmt::format("{}", s.n));
+  row.push_back(s.blank == 0 ? "" : fmt::format("{}", s.blank));
+  for (const std::optional<double>& value : {s.median, s.lowerQuartile, s.upperQuartile, s.mean})
+    row.push_back(significantOrDash(value, 3));
+}
+
+std::string groupName(const std::string& group) { return group.empty() ? "(no group)" : group; }
+
 ReportTable answersTable(const FormReport& report) {
   ReportTable table{fmt::format("{} ({} {})", report.title, report.name, report.version),
-                    {{"item", Align::left},
-                     {"group", Align::left},
-                     {"", Align::left},
-                     {"n", Align::right},
-                     {"blank", Align::right},
-                     {"median", Align::right},
-                     {"quartile 1", Align::right},
-                     {"quartile 3", Align::right},
-                     {"mean", Align::right},
-                     {"paper", Align::right},
-                     {"answers", Align::left}},
+                    {{"item", Align::left}, {"group", Align::left}, {"", Align::left}},
                     {}};
+  addSummaryColumns(table);
+  table.columns.emplace_back("paper", Align::right);
+  table.columns.emplace_back("answers", Align::left);
   const std::vector<std::size_t> answered = groupsThatAnswered(report);
   for (const ItemReport& item : report.items) {
     for (const std::size_t g : answered) {
@@ -53,12 +61,13 @@ ReportTable answersTable(const FormReport& report) {
       std::string counts;
       for (const auto& [score, count] : s.counts)
         counts += fmt::format("{}{}: {}", counts.empty() ? "" : ", ", score, count);
-      table.rows.push_back(
-          {g == answered.front() ? item.text : "", report.groups[g].empty() ? "(no group)" : report.groups[g],
-           report.groups[g] == item.primaryGroup && !item.primaryGroup.empty() ? "primary" : "", fmt::format("{}", s.n),
-           s.blank == 0 ? "" : fmt::format("{}", s.blank), significantOrDash(s.median, 3),
-           significantOrDash(s.lowerQuartile, 3), significantOrDash(s.upperQuartile, 3), significantOrDash(s.mean, 3),
-           item.published[g] ? fmt::format("{}", *item.published[g]) : "", counts});
+      std::vector<std::string> row{
+          g == answered.front() ? item.text : "", groupName(report.groups[g]),
+          report.groups[g] == item.primaryGroup && !item.primaryGroup.empty() ? "primary" : ""};
+      addSummary(row, s);
+      row.push_back(item.published[g] ? fmt::format("{}", *item.published[g]) : "");
+      row.push_back(counts);
+      table.rows.push_back(std::move(row));
     }
   }
   return table;
@@ -66,29 +75,23 @@ ReportTable answersTable(const FormReport& report) {
 
 ReportTable scalesTable(const FormReport& report) {
   ReportTable table{fmt::format("Sums of {}", report.name),
-                    {{"scale", Align::left},
-                     {"range", Align::left},
-                     {"group", Align::left},
-                     {"n", Align::right},
-                     {"blank", Align::right},
-                     {"median", Align::right},
-                     {"quartile 1", Align::right},
-                     {"quartile 3", Align::right},
-                     {"mean", Align::right},
-                     {"mean of an item", Align::right}},
+                    {{"scale", Align::left}, {"range", Align::left}, {"group", Align::left}},
                     {}};
+  addSummaryColumns(table);
+  table.columns.emplace_back("mean of an item", Align::right);
   const std::vector<std::size_t> answered = groupsThatAnswered(report);
   for (const ScaleReport& scale : report.scales) {
     const auto items = static_cast<int>(scale.items);
     for (const std::size_t g : answered) {
       const ItemSummary& s = scale.groups[g];
       const bool first = g == answered.front();
-      table.rows.push_back(
-          {first ? scale.name : "", first ? fmt::format("{} to {}", report.least * items, report.most * items) : "",
-           report.groups[g].empty() ? "(no group)" : report.groups[g], fmt::format("{}", s.n),
-           s.blank == 0 ? "" : fmt::format("{}", s.blank), significantOrDash(s.median, 3),
-           significantOrDash(s.lowerQuartile, 3), significantOrDash(s.upperQuartile, 3), significantOrDash(s.mean, 3),
-           significantOrDash(s.mean ? std::optional(*s.mean / static_cast<double>(scale.items)) : std::nullopt, 3)});
+      std::vector<std::string> row{first ? scale.name : "",
+                                   first ? fmt::format("{} to {}", report.least * items, report.most * items) : "",
+                                   groupName(report.groups[g])};
+      addSummary(row, s);
+      row.push_back(
+          significantOrDash(s.mean ? std::optional(*s.mean / static_cast<double>(scale.items)) : std::nullopt, 3));
+      table.rows.push_back(std::move(row));
     }
   }
   return table;
