@@ -56,7 +56,6 @@ GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, CurveShape sha
     return curve ? Expected<double>(curve->plateau) : Expected<double>::none(curve.reason());
   };
   BootstrapOptions options;
-  options.method = BootstrapMethod::percentile;
   options.resamples = resamples;
   const Expected<Bootstrap> interval = bootstrap(indices, plateauOf, options);
   result.plateau = interval ? Expected<Interval>(interval->interval) : Expected<Interval>::none(interval.reason());

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 #include <vector>
 
-#include "analytics/statistics/distributions.h"
 #include "analytics/statistics/random_stream.h"
 #include "analytics/statistics/samples.h"
 
@@ -24,33 +24,6 @@ double tail(const std::vector<double>& sorted, double p, bool& extreme) {
   const double below = std::min(std::floor(inside), count - 1.0);
   const auto i = static_cast<std::size_t>(below) - 1;
   return sorted[i] + (inside - below) * (sorted[i + 1] - sorted[i]);
-}
-
-/// BCa's acceleration.
-Expected<double> acceleration(const Groups& groups, const OfGroups& statistic) {
-  double cubes = 0.0, squares = 0.0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::size_t count = groups[g].size();
-    if (count < 2) return Expected<double>::none("BCa needs two values in each group");
-    std::vector<double> without(count);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      Groups rest = groups;
-      rest[g].erase(rest[g].begin() + static_cast<std::ptrdiff_t>(i));
-      const Expected<double> value = statistic(rest);
-      if (!value) return Expected<double>::none("BCa: with a value left out, " + value.reason());
-      without[i] = *value;
-      sum += *value;
-    }
-    const double n = static_cast<double>(count);
-    for (const double value : without) {
-      const double influence = (n - 1.0) * (sum / n - value) / n;
-      squares += influence * influence;
-      cubes += influence * influence * influence;
-    }
-  }
-  if (!(squares > 0.0)) return Expected<double>::none("BCa: no single value has any influence");
-  return cubes / (6.0 * squares * std::sqrt(squares));
 }
 
 Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, const BootstrapOptions& options) {
@@ -85,30 +58,10 @@ Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic,
   std::sort(values.begin(), values.end());
   if (values.front() == values.back()) return Result::none("all resamples agree");
   const double half = (1.0 - options.level) / 2.0;
-  double lower = half, upper = 1.0 - half;
-  if (options.method == BootstrapMethod::bca) {
-    const auto [first, last] = std::equal_range(values.begin(), values.end(), *estimate);
-    const double share = (static_cast<double>(first - values.begin()) + 0.5 * static_cast<double>(last - first)) /
-                         static_cast<double>(values.size());
-    if (!(share > 0.0 && share < 1.0)) return Result::none("BCa: all resamples are on one side of the estimate");
-    const Expected<double> a = acceleration(groups, statistic);
-    if (!a) return Result::none(a.reason());
-    result.bias = normalQuantile(share);
-    result.acceleration = *a;
-    const auto corrected = [&](double p) {
-      const double z = result.bias + normalQuantile(p);
-      const double denominator = 1.0 - *a * z;
-      // Beyond the pole the correction leaves the range of the data: use the outermost resample, marked extreme.
-      if (!(denominator > 0.0)) return z > 0.0 ? 1.0 : 0.0;
-      return normalCdf(result.bias + z / denominator);
-    };
-    lower = corrected(half);
-    upper = corrected(1.0 - half);
-  }
-  result.interval.lower = tail(values, lower, result.extreme);
-  result.interval.upper = tail(values, upper, result.extreme);
+  result.interval.lower = tail(values, half, result.extreme);
+  result.interval.upper = tail(values, 1.0 - half, result.extreme);
   result.interval.level = options.level;
-  result.interval.method = options.method == BootstrapMethod::bca ? "BCa bootstrap" : "percentile bootstrap";
+  result.interval.method = "percentile bootstrap";
   return result;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bootstrap intervals of any statistic of one or two groups (Efron and Tibshirani 1993). Groups are resampled
-// separately; the same seed gives the same interval everywhere.
+// Percentile bootstrap intervals of any statistic of one or two groups (Efron and Tibshirani 1993). Groups are
+// resampled separately; the same seed gives the same interval everywhere.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,7 @@ namespace calot::analytics {
 using Statistic = std::function<Expected<double>(std::span<const double>)>;
 using TwoGroupStatistic = std::function<Expected<double>(std::span<const double> x, std::span<const double> y)>;
 
-enum class BootstrapMethod : std::uint8_t {
-  percentile,  ///< quantiles of the statistic over the resamples
-  bca          ///< bias-corrected and accelerated (Efron 1987, J. Am. Stat. Assoc. 82:171)
-};
-
 struct BootstrapOptions {
-  BootstrapMethod method = BootstrapMethod::bca;
   std::size_t resamples = 9999;  ///< so that (resamples + 1) times the usual tails is whole
   std::uint64_t seed = 1;
   double level = 0.95;
@@ -33,20 +27,16 @@ struct Bootstrap {
   Interval interval;
   std::uint64_t seed = 0;
   std::size_t resamples = 0;
-  std::size_t without = 0;    ///< resamples in which the statistic has no answer; left out of the quantiles
-  double bias = 0.0;          ///< BCa's z0: normal quantile of the share of resamples below the estimate, ties half
-  double acceleration = 0.0;  ///< BCa's a
-  bool extreme = false;       ///< an end is the outermost resample: more resamples, or more people, would move it
+  std::size_t without = 0;  ///< resamples in which the statistic has no answer; left out of the quantiles
+  bool extreme = false;     ///< an end is the outermost resample: more resamples, or more people, would move it
 };
 
 /// Share of resamples without an answer beyond which there is no interval.
 inline constexpr double mostResamplesWithout = 0.05;
 
-/// Quantile p of B sorted resamples: order statistic (B + 1) p, linear in between. BCa takes p' = Phi(z0 + (z0 + z_p) /
-/// (1 - a (z0 + z_p))) instead of p, with a from the jackknife influences l = (n - 1) (mean - value without i) of each
-/// group: a = sum(l^3 / n^3) / (6 (sum l^2 / n^2)^(3/2)), which for one group is Efron's. No answer when the statistic
-/// has none (its reason), for more than mostResamplesWithout, when all resamples agree, and for BCa where all lie on
-/// one side of the estimate or a value left out leaves no answer. @pre resamples >= 99, 0 < level < 1.
+/// Quantile p of B sorted resamples: order statistic (B + 1) p, linear in between. No answer when the statistic has
+/// none (its reason), for more than mostResamplesWithout, and when all resamples agree. @pre resamples >= 99, 0 < level
+/// < 1.
 Expected<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic,
                               const BootstrapOptions& options = {});
 Expected<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,

@@ -84,7 +84,7 @@ Expected<WorstRank> worstRank(std::span<const CensoredTime> x, std::span<const C
   const std::vector<double> a = ranked(x, 2.0 * longest), b = ranked(y, 2.0 * longest);
   const Expected<MannWhitney> test = mannWhitney(a, b);
   if (!test) return Result::none(test.reason());
-  const Expected<SuperiorityEstimate> effect = estimateSuperiority(a, b, hypothesis, AreaMethod::score, level);
+  const Expected<SuperiorityEstimate> effect = estimateSuperiority(a, b, hypothesis, level);
   if (!effect) return Result::none(effect.reason());
   return WorstRank{*test, *effect};
 }

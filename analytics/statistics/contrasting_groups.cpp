@@ -78,7 +78,6 @@ Expected<ContrastingGroups> contrastingGroups(std::span<const double> experts, s
   result.falsePositives = judged(n, true);
   result.falseNegatives = judged(e, false);
   BootstrapOptions resampling;
-  resampling.method = BootstrapMethod::percentile;
   resampling.resamples = options.resamples;
   resampling.seed = options.seed;
   resampling.level = options.level;

@@ -15,11 +15,10 @@ struct Design {
   double n = 0.0, k = 0.0;
 };
 
-/// Of the single form; lower and upper alone.
-Interval ofRatio(double error, double df2, const Design& d, double p) {
-  const double f = d.s.subjects / error, df1 = d.n - 1.0;
-  const double lower = f / fisherQuantile(p, df1, df2), upper = f * fisherQuantile(p, df2, df1);
-  return {(lower - 1.0) / (lower + d.k - 1.0), (upper - 1.0) / (upper + d.k - 1.0), 0.0, "F"};
+/// Of ICC(3,k); lower and upper alone. That of the single form, (F - 1) / (F + k - 1), by Spearman and Brown.
+Interval ofThreeAverage(const Design& d, double p) {
+  const double f = d.s.subjects / d.s.residual, df1 = d.n - 1.0, df2 = df1 * (d.k - 1.0);
+  return {1.0 - fisherQuantile(p, df1, df2) / f, 1.0 - 1.0 / (f * fisherQuantile(p, df2, df1)), 0.0, "F"};
 }
 
 /// Not finite where the approximation breaks down (negative correlations).
@@ -41,14 +40,8 @@ Interval ofTwoSingle(double icc, const Design& d, double p) {
 
 const char* nameOf(IccForm form) {
   switch (form) {
-    case IccForm::oneSingle:
-      return "ICC(1,1)";
     case IccForm::twoSingle:
       return "ICC(2,1)";
-    case IccForm::threeSingle:
-      return "ICC(3,1)";
-    case IccForm::oneAverage:
-      return "ICC(1,k)";
     case IccForm::twoAverage:
       return "ICC(2,k)";
     case IccForm::threeAverage:
@@ -62,31 +55,21 @@ Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, 
   assert(level > 0.0 && level < 1.0);
   if (const std::string reason = objection(table); !reason.empty()) return Result::none(reason);
   const Design d{meanSquares(table), static_cast<double>(table.subjects), static_cast<double>(table.raters)};
-  const double n = d.n, k = d.k, s = d.s.subjects, r = d.s.raters, e = d.s.residual, w = d.s.within;
-  const bool one = form == IccForm::oneSingle || form == IccForm::oneAverage;
-  const bool two = form == IccForm::twoSingle || form == IccForm::twoAverage;
-  const bool average = form == IccForm::oneAverage || form == IccForm::twoAverage || form == IccForm::threeAverage;
-  const double error = one ? w : e;
-  const double leniency = two ? (r - e) / n : 0.0;
-  const double denominator = average ? s + leniency : s + (k - 1.0) * error + k * leniency;
+  const double n = d.n, k = d.k, s = d.s.subjects, r = d.s.raters, e = d.s.residual;
+  const double leniency = form == IccForm::threeAverage ? 0.0 : (r - e) / n;
+  const double ofOne = s + (k - 1.0) * e + k * leniency, ofAll = s + leniency;
+  const double denominator = form == IccForm::twoSingle ? ofOne : ofAll;
   if (!(denominator > 0.0)) return Result::none("no differences between subjects");
   IntraclassCorrelation result;
-  result.value = (s - error) / denominator;
-  if (!(error > 0.0)) {
-    result.interval =
-        Expected<Interval>::none(one ? "the raters agree perfectly" : "the raters agree perfectly but for leniency");
+  result.value = (s - e) / denominator;
+  if (!(e > 0.0)) {
+    result.interval = Expected<Interval>::none("the raters agree perfectly but for leniency");
     return result;
   }
   const double p = 0.5 + level / 2.0;
-  Interval interval;
-  if (two) {
-    const double single = (s - e) / (s + (k - 1.0) * e + k * leniency);
-    interval = ofTwoSingle(single, d, p);
-  } else {
-    interval = ofRatio(error, one ? n * (k - 1.0) : (n - 1.0) * (k - 1.0), d, p);
-  }
+  Interval interval = form == IccForm::threeAverage ? ofThreeAverage(d, p) : ofTwoSingle((s - e) / ofOne, d, p);
   interval.level = level;
-  if (average) {
+  if (form == IccForm::twoAverage) {
     for (double* end : {&interval.lower, &interval.upper}) *end = k * *end / (1.0 + (k - 1.0) * *end);
   }
   const bool sound = std::isfinite(interval.lower) && std::isfinite(interval.upper) && interval.lower <= interval.upper;

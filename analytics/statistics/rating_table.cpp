@@ -45,7 +45,7 @@ MeanSquares meanSquares(const RatingTable& table) {
   if (rest < rounding) rest = 0.0;
   if (rows < rounding) rows = 0.0;
   if (columns < rounding) columns = 0.0;
-  return {rows / (n - 1.0), columns / (k - 1.0), rest / ((n - 1.0) * (k - 1.0)), (columns + rest) / (n * (k - 1.0))};
+  return {rows / (n - 1.0), columns / (k - 1.0), rest / ((n - 1.0) * (k - 1.0))};
 }
 
 }  // namespace calot::analytics

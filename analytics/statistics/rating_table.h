@@ -24,7 +24,6 @@ struct MeanSquares {
   double subjects = 0.0;  ///< n - 1 degrees of freedom
   double raters = 0.0;    ///< k - 1
   double residual = 0.0;  ///< (n - 1) (k - 1); exactly 0 where below the rounding of the values
-  double within = 0.0;    ///< n (k - 1): raters and residual together
 };
 /// @pre objection() is empty.
 MeanSquares meanSquares(const RatingTable& table);

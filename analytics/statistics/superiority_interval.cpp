@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "analytics/statistics/delong.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/roots.h"
 #include "analytics/statistics/samples.h"
@@ -31,7 +30,7 @@ Interval scoreInterval(double a, double nx, double ny, double z, double level) {
 }  // namespace
 
 Expected<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
-                                                  Hypothesis hypothesis, AreaMethod method, double level) {
+                                                  Hypothesis hypothesis, double level) {
   using Result = Expected<SuperiorityEstimate>;
   assert(level > 0.0 && level < 1.0);
   if (hypothesis == Hypothesis::firstSmaller) std::swap(x, y);
@@ -42,22 +41,7 @@ Expected<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std
   SuperiorityEstimate result;
   result.value = *value;
   const double a = value->a, z = normalQuantile(0.5 + level / 2.0);
-  const Expected<DeLong> d = deLong(x, y);
-  const bool usable = d && d->variance > 0.0;
-  if (method == AreaMethod::score || !usable) {
-    result.a = scoreInterval(a, static_cast<double>(x.size()), static_cast<double>(y.size()), z, level);
-    if (method != AreaMethod::score) {
-      result.a.method = std::string("score, since DeLong's variance ") +
-                        (d ? "vanishes (as at A = 0 and A = 1)" : "needs two values in each group");
-    }
-  } else if (method == AreaMethod::logit) {
-    const double centre = std::log(a / (1.0 - a)), half = z * std::sqrt(d->variance) / (a * (1.0 - a));
-    const auto expit = [](double v) { return 1.0 / (1.0 + std::exp(-v)); };
-    result.a = {expit(centre - half), expit(centre + half), level, "logit of DeLong"};
-  } else {
-    const double half = z * std::sqrt(d->variance);
-    result.a = {std::max(0.0, a - half), std::min(1.0, a + half), level, "DeLong"};
-  }
+  result.a = scoreInterval(a, static_cast<double>(x.size()), static_cast<double>(y.size()), z, level);
   result.delta = {2.0 * result.a.lower - 1.0, 2.0 * result.a.upper - 1.0, level, result.a.method};
   return result;
 }

@@ -14,24 +14,17 @@ namespace calot::analytics {
 /// What was expected before the data were seen. An area below one half speaks against the hypothesis and stays below.
 enum class Hypothesis : std::uint8_t { firstLarger, firstSmaller };
 
-enum class AreaMethod : std::uint8_t {
-  score,  ///< solutions A' of |A - A'| = z s(A'), s^2 = A' (1 - A') (1 + n* ((1 - A') / (2 - A') + A' / (1 + A'))) /
-          ///< (nx ny), n* = (nx + ny) / 2 - 1 (Newcombe 2006, Stat. Med. 25:559, method 5). Exists at A = 0 and A = 1.
-  logit,  ///< logit(A) +- z sqrt(DeLong's variance) / (A (1 - A)) (Pepe 2003)
-  wald    ///< A +- z sqrt(DeLong's variance), cut off at 0 and 1: for comparison; covers badly in small groups
-};
-
 struct SuperiorityEstimate {
   Superiority value;  ///< in the direction of the hypothesis
-  Interval a;         ///< its method says so where the one asked for does not exist (A = 0 or 1; a group of one)
-  Interval delta;     ///< the same, times 2 less 1
+  Interval a;
+  Interval delta;  ///< the same, times 2 less 1
 };
 
-/// A of the hypothesis: P(X > Y) + P(X = Y) / 2 for firstLarger, P(X < Y) + P(X = Y) / 2 for firstSmaller. Where
-/// DeLong's variance vanishes or does not exist the score interval takes its place and says so. No answer for an empty
-/// group or when all values are equal. @pre 0 < level < 1.
+/// A of the hypothesis: P(X > Y) + P(X = Y) / 2 for firstLarger, P(X < Y) + P(X = Y) / 2 for firstSmaller. Its score
+/// interval: solutions A' of |A - A'| = z s(A'), s^2 = A' (1 - A') (1 + n* ((1 - A') / (2 - A') + A' / (1 + A'))) /
+/// (nx ny), n* = (nx + ny) / 2 - 1 (Newcombe 2006, Stat. Med. 25:559, method 5), which exist at A = 0 and A = 1, too.
+/// No answer for an empty group or when all values are equal. @pre 0 < level < 1.
 Expected<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
-                                                  Hypothesis hypothesis, AreaMethod method = AreaMethod::score,
-                                                  double level = 0.95);
+                                                  Hypothesis hypothesis, double level = 0.95);
 
 }  // namespace calot::analytics

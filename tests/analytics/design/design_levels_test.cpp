@@ -128,5 +128,63 @@ TEST(DesignLevels, correlationWithARating) {
   expectLevelAndPower("Spearman", s);
 }
 
+/// A design that answers by an interval: as a p of 0 where that is off the value without an effect, else of 1.
+double ofInterval(const nlohmann::ordered_json& interval, double none) {
+  return interval["lower"].get<double>() > none || interval["upper"].get<double>() < none ? 0.0 : 1.0;
+}
+
+/// Two devices that measure the same people with errors of one size: bias.
+TEST(DesignLevels, biasOfTwoDevices) {
+  Simulated s{asked(Design::agreement, {"a", "b"}), {}, {}, 1.5};
+  s.asked.options.groupColumn.clear();
+  s.asked.choices.against = std::string(1, 'b');
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,a,b\n";
+    for (int i = 0; i < perGroup; ++i) {
+      const double person = 10.0 + 3.0 * normal(random);
+      const double a = person + normal(random) + effect, b = person + normal(random);
+      text += fmt::format("P{},{},{}\n", i, a, b);
+    }
+    return text;
+  };
+  s.p = [](const auto& json) { return ofInterval(json["results"][0]["bias_interval"], 0.0); };
+  expectLevelAndPower("bias", s);
+}
+
+/// The same: slope of Deming's line, which a device with another scale changes.
+TEST(DesignLevels, scaleOfTwoDevices) {
+  Simulated s{asked(Design::agreement, {"a", "b"}), {}, {}, 0.5};
+  s.asked.options.groupColumn.clear();
+  s.asked.choices.against = std::string(1, 'b');
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,a,b\n";
+    for (int i = 0; i < perGroup; ++i) {
+      const double person = 10.0 + 3.0 * normal(random);
+      const double a = (1.0 + effect) * person + 0.5 * normal(random), b = person + 0.5 * normal(random);
+      text += fmt::format("P{},{},{}\n", i, a, b);
+    }
+    return text;
+  };
+  s.p = [](const auto& json) { return ofInterval(json["results"][0]["deming"]["slope_interval"], 1.0); };
+  expectLevelAndPower("Deming's slope", s);
+}
+
+/// Raters of different leniency who see nothing, or what people are worth: interval of G.
+TEST(DesignLevels, reliabilityOverRaters) {
+  Simulated s{asked(Design::reliability, {"score"}), {}, {}, 1.5};
+  s.asked.options.groupColumn.clear();
+  s.asked.options.occasionColumns = {"rater"};
+  s.table = [](std::mt19937& random, double effect) {
+    std::string text = "id,rater,score\n";
+    for (int i = 0; i < perGroup; ++i) {
+      const double person = effect * normal(random);
+      for (int r = 0; r < 3; ++r) text += fmt::format("P{},R{},{}\n", i, r, person + r + normal(random));
+    }
+    return text;
+  };
+  s.p = [](const auto& json) { return ofInterval(json["components"][0]["g_interval"], 0.0); };
+  expectLevelAndPower("G", s);
+}
+
 }  // namespace
 }  // namespace calot::analytics

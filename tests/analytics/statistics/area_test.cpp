@@ -44,16 +44,11 @@ TEST(DeLong, componentsAreCountsOfPairs) {
 }
 
 TEST(DeLong, aSah) {
-  // pROC 1.18.0: auc, var, ci.auc of roc(aSAH$outcome, aSAH$s100b, direction = "<").
+  // pROC 1.18.0: auc, var of roc(aSAH$outcome, aSAH$s100b, direction = "<").
   const auto d = deLong(data::s100bPoor, data::s100bGood);
   ASSERT_TRUE(d) << d.reason();
   EXPECT_NEAR(d->a, 0.731368563686, 5e-13);
   EXPECT_NEAR(d->variance, 0.00266868245717, 5e-15);
-  const auto interval =
-      estimateSuperiority(data::s100bPoor, data::s100bGood, Hypothesis::firstLarger, AreaMethod::wald);
-  EXPECT_NEAR(interval->a.lower, 0.630118, 5e-7);
-  EXPECT_NEAR(interval->a.upper, 0.832619, 5e-7);
-  EXPECT_NEAR(interval->a.lower, 0.63011821176162264, 1e-13);
   EXPECT_NEAR(deLong(data::ndkaPoor, data::ndkaGood)->a, 0.611957994580, 5e-13);
   EXPECT_NEAR(deLong(data::wfnsPoor, data::wfnsGood)->a, 0.823678861789, 5e-13);
   EXPECT_NEAR(deLong(data::wfnsPoor, data::wfnsGood)->variance, 0.00146991470882363, 5e-17);
@@ -118,18 +113,14 @@ TEST(DeLong, degenerate) {
   EXPECT_EQ(compareAreas({high, Values{1.0}, low, low}).reason(), "the two figures are not of the same people");
 }
 
-TEST(Superiority, scoreAndLogitOfASah) {
-  // R 4.2.2, uniroot on Newcombe's equation, 41 and 72 people; plogis(qlogis(A) + c(-1, 1) qnorm(.975) sqrt(var) / (A
-  // (1 - A))).
+TEST(Superiority, scoreOfASah) {
+  // R 4.2.2, uniroot on Newcombe's equation, 41 and 72 people.
   const auto score = estimateSuperiority(data::s100bPoor, data::s100bGood, Hypothesis::firstLarger);
   ASSERT_TRUE(score) << score.reason();
   EXPECT_EQ(score->a.method, "score");
   EXPECT_NEAR(score->a.lower, 0.624407596221115, 1e-12);
   EXPECT_NEAR(score->a.upper, 0.813953296926986, 1e-12);
   EXPECT_NEAR(score->delta.lower, 2 * 0.624407596221115 - 1, 1e-12);
-  const auto logit = estimateSuperiority(data::s100bPoor, data::s100bGood, Hypothesis::firstLarger, AreaMethod::logit);
-  EXPECT_NEAR(logit->a.lower, 0.619216938992709, 1e-13);
-  EXPECT_NEAR(logit->a.upper, 0.820085749913473, 1e-13);
 }
 
 TEST(Superiority, directionIsTheHypothesisNotTheData) {
@@ -147,14 +138,11 @@ TEST(Superiority, directionIsTheHypothesisNotTheData) {
 
 TEST(Superiority, completeSeparationKeepsAnInterval) {
   // R 4.2.2: uniroot of (1 - t)^2 = z^2 t (1 - t) (1 + 9 ((1 - t) / (2 - t) + t / (1 + t))) / 100.
-  for (const AreaMethod method : {AreaMethod::score, AreaMethod::logit, AreaMethod::wald}) {
-    const auto s = estimateSuperiority(high, low, Hypothesis::firstLarger, method);
-    ASSERT_TRUE(s);
-    EXPECT_DOUBLE_EQ(s->value.a, 1.0);
-    EXPECT_NEAR(s->a.lower, 0.800213612881106, 1e-10);
-    EXPECT_DOUBLE_EQ(s->a.upper, 1.0);
-    EXPECT_EQ(s->a.method != "score", method != AreaMethod::score) << "a fallback says so";
-  }
+  const auto s = estimateSuperiority(high, low, Hypothesis::firstLarger);
+  ASSERT_TRUE(s);
+  EXPECT_DOUBLE_EQ(s->value.a, 1.0);
+  EXPECT_NEAR(s->a.lower, 0.800213612881106, 1e-10);
+  EXPECT_DOUBLE_EQ(s->a.upper, 1.0);
   EXPECT_DOUBLE_EQ(estimateSuperiority(low, high, Hypothesis::firstLarger)->a.lower, 0.0);
   EXPECT_NEAR(estimateSuperiority(low, high, Hypothesis::firstLarger)->a.upper, 1.0 - 0.800213612881106, 1e-10);
 }
@@ -191,9 +179,6 @@ TEST(Superiority, degenerate) {
   EXPECT_EQ(estimateSuperiority(Values{}, low, Hypothesis::firstSmaller).reason(), "the first group is empty");
   EXPECT_EQ(estimateSuperiority(low, Values{}, Hypothesis::firstSmaller).reason(), "the second group is empty");
   EXPECT_EQ(estimateSuperiority(Values{3, 3}, Values{3}, Hypothesis::firstLarger).reason(), "all values are equal");
-  const auto one = estimateSuperiority(Values{3}, Values{1, 2}, Hypothesis::firstLarger, AreaMethod::logit);
-  ASSERT_TRUE(one);
-  EXPECT_NE(one->a.method.find("needs two values"), std::string::npos);
 }
 
 }  // namespace

@@ -58,11 +58,9 @@ class NeverNan : public testing::Test {
     const auto g = hedgesG(x, y);
     check("g", g, [](const HedgesG& h) { return Values{h.g, h.d, h.j}; });
     if (g) checkInterval("g's interval", g->interval);
-    for (const AreaMethod method : {AreaMethod::score, AreaMethod::logit, AreaMethod::wald}) {
-      check("A", estimateSuperiority(x, y, Hypothesis::firstSmaller, method), [](const SuperiorityEstimate& e) {
-        return Values{e.value.a, e.a.lower, e.a.upper, e.delta.lower, e.delta.upper};
-      });
-    }
+    check("A", estimateSuperiority(x, y, Hypothesis::firstSmaller), [](const SuperiorityEstimate& e) {
+      return Values{e.value.a, e.a.lower, e.a.upper, e.delta.lower, e.delta.upper};
+    });
     check("DeLong", deLong(x, y), [](const DeLong& d) { return Values{d.a, d.variance}; });
     const std::vector<Values> groups{x, y};
     check("kruskalWallis", kruskalWallis(groups), [](const KruskalWallis& k) { return Values{k.h, k.p}; });
@@ -85,7 +83,7 @@ class NeverNan : public testing::Test {
             [](std::span<const double> a, std::span<const double> b) { return Expected<double>(*mean(a) - *mean(b)); },
             resampling),
         [](const Bootstrap& b) {
-          return Values{b.interval.lower, b.interval.upper, b.bias, b.acceleration};
+          return Values{b.interval.lower, b.interval.upper};
         });
   }
 
