@@ -32,6 +32,7 @@ enum class Remedy : std::uint8_t {
   nameTools,              ///< name the tools of an OpenIGTLink server, one for each hand
   addParticipant,         ///< register the participant first
   changeParticipant,      ///< change the entry that is there
+  upgradeCohort,          ///< bring the cohort database to the schema of this version
   emptyLog,               ///< end the other program, then empty the database's log
   nameCohort,             ///< make the named cohort
   importAgain,            ///< import the file of a motion again

@@ -166,8 +166,8 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
       if (version == 0) throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
       if (version < known) {
         throw Error(ErrorKind::failure, Where{path},
-                    fmt::format("cohort schema {} must be brought to {} first; run any command that writes to it",
-                                version, known));
+                    fmt::format("cohort schema {} must be brought to {} first", version, known),
+                    {Remedy::upgradeCohort});
       }
       return db;
     }

@@ -112,6 +112,20 @@ void addScrub(CLI::App& parent, Run& run) {
   });
 }
 
+void addUpgrade(CLI::App& parent, Run& run) {
+  const auto cohort = std::make_shared<std::string>();
+  CLI::App* command = parent.add_subcommand(
+      "upgrade", "Bring a database of an older Calot to the schema of this one; a copy is kept beside it");
+  command->add_option("cohort", *cohort, "Cohort database")->required();
+  command->callback([cohort, &run] {
+    run = [cohort] {
+      const analytics::CohortDatabase database(*cohort, analytics::CohortDatabase::Access::write);
+      std::cout << fmt::format("{}: schema {}\n", *cohort, database.schemaVersion());
+      return static_cast<int>(ExitCode::yes);
+    };
+  });
+}
+
 void addNames(CLI::App& parent, Run& run) {
   struct Options {
     std::string name, cohort, site, note, key;
@@ -219,6 +233,7 @@ void addCohort(CLI::App& app, Run& run) {
   command->require_subcommand(1);
   addMerge(*command, run);
   addCheck(*command, run);
+  addUpgrade(*command, run);
   addScrub(*command, run);
   addList(*command, run);
   addNames(*command, run);

@@ -28,6 +28,8 @@ const char* adviceOf(Remedy remedy) {
       return "register one with calot participant add";
     case Remedy::changeParticipant:
       return "change it with calot participant set";
+    case Remedy::upgradeCohort:
+      return "bring it there with calot cohort upgrade, which keeps a copy";
     case Remedy::emptyLog:
       return "end that program and run calot cohort scrub";
     case Remedy::nameCohort:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/dashboard_window.h"
 
+#include <algorithm>
 #include <exception>
 #include <QBoxLayout>
 #include <QDockWidget>
@@ -203,6 +204,21 @@ bool DashboardWindow::openDatabase(const QString& path) {
   loader_.forget();
   try {
     setDocument(std::make_shared<const CohortDocument>(path.toStdString()));
+    return true;
+  } catch (const Error& error) {
+    const std::vector<Remedy>& remedies = error.remedies();
+    if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) != remedies.end())
+      return upgradeDatabase(path);
+    showProblem(QString::fromStdString(problemText(error)));
+    return false;
+  }
+}
+
+bool DashboardWindow::upgradeDatabase(const QString& path) {
+  try {
+    const analytics::CohortDatabase upgraded(path.toStdString(), analytics::CohortDatabase::Access::write);
+    setDocument(std::make_shared<const CohortDocument>(path.toStdString()));
+    showProblem("This cohort was of an older Calot and has been brought up to date. A copy as it was is beside it.");
     return true;
   } catch (const Error& error) {
     showProblem(QString::fromStdString(problemText(error)));

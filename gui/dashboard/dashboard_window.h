@@ -42,7 +42,8 @@ class DashboardWindow : public QMainWindow {
 
   /// Shows an open document. @pre not null
   void setDocument(std::shared_ptr<const CohortDocument> document);
-  /// Opens a database. On failure says why in one line on the window, keeps what was open, and returns false.
+  /// Opens a database, one of an older schema after it was brought up to date. On failure says why in one line on the
+  /// window, keeps what was open, and returns false.
   bool openDatabase(const QString& path);
   /// Makes an empty database, or opens the one that is there.
   bool createDatabase(const QString& path);
@@ -75,6 +76,7 @@ class DashboardWindow : public QMainWindow {
   void buildImport();
   void connectPages();
   void openAttempt(const QString& uuid);
+  bool upgradeDatabase(const QString& path);
   void askForNewDatabase();
   void askForRecordings();
   void askForExclusion();

@@ -19,6 +19,8 @@ const char* adviceOf(Remedy remedy) {
       return "measure its calibration again";
     case Remedy::addParticipant:
       return "add the participant first";
+    case Remedy::upgradeCohort:
+      return "open it alone, which brings it there and keeps a copy";
     case Remedy::emptyLog:
       return "end that program";
     case Remedy::importAgain:

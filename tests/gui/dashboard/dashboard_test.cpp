@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <filesystem>
 #include <fstream>
 #include <QAbstractItemModel>
@@ -18,6 +19,7 @@
 #include <QTest>
 
 #include "analytics/checkpoints/registry.h"
+#include "analytics/cohort/embedded.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_filter.h"
 #include "gui/dashboard/attempt_table_model.h"
@@ -208,6 +210,23 @@ TEST_F(Dashboard, AnEmptyDatabaseGreetsAndExplains) {
   EXPECT_TRUE(shows(window, *greeting));
   EXPECT_TRUE(greeting->text().contains("empty.db is a cohort database without attempts"));
   EXPECT_FALSE(shows(window, *child<QLabel>(window, "problem")));
+}
+
+TEST_F(Dashboard, AnOlderCohortIsBroughtUpToDateAndACopyKept) {
+  {
+    SQLite::Database raw(file("old.db").toStdString(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    raw.exec(analytics::cohortMigrations()[0].sql);
+    raw.exec("PRAGMA user_version = 1; PRAGMA application_id = 1130458223");
+  }
+  DashboardWindow window(apps::assessProgram());
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("old.db")));
+  QLabel* const told = child<QLabel>(window, "problem");
+  EXPECT_TRUE(shows(window, *told));
+  EXPECT_TRUE(told->text().contains("brought up to date")) << told->text().toStdString();
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "old.db.schema-1.bak"));
+  ASSERT_TRUE(window.openDatabase(file("old.db")));
+  EXPECT_FALSE(shows(window, *told)) << "said once";
 }
 
 TEST_F(Dashboard, ADamagedFileIsOneLineAndKeepsWhatWasOpen) {
