@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion as a data set of BIDS and attempts as xAPI statements: what is in them, what stays out, and what is refused.
+
+With CALOT_VALIDATORS, a folder in which npm installed bids-validator and @learninglocker/xapi-validation, these judge them, too.
+"""
+
+import json
+import os
+import pathlib
+import re
+import sqlite3
+import subprocess
+import sys
+import unittest
+from contextlib import closing
+
+import program
+from program import recording
+
+VALIDATORS = os.environ.get("CALOT_VALIDATORS", "")
+UUID = re.compile(r"[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}")
+
+
+def performed(seed, profile="skilled"):
+    return recording(f"{profile}{seed}", "--performer", profile, "--seed", seed, "--seconds", 2, "--mode", "assessment")
+
+
+def table(path):
+    return [line.split("\t") for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+class Bids(program.ProgramTest):
+    def test_a_data_set_of_three_attempts(self):
+        out = self.path("bids")
+        listed = self.well("export", performed(1), performed(2), performed(3, "unskilled"), "--bids", out).out.splitlines()
+        files = sorted(str(p.relative_to(out)) for p in out.rglob("*") if p.is_file())
+        self.assertEqual(sorted(str(pathlib.Path(line).relative_to(out)) for line in listed), files)
+        stem = "task-touchliver_tracksys-performer_run"
+        for who, run in (("skilled", 1), ("skilled", 2), ("unskilled", 1)):
+            base = out / f"sub-{who}/motion/sub-{who}_{stem}-{run}"
+            about = json.loads(pathlib.Path(f"{base}_motion.json").read_text())
+            self.assertEqual((about["TaskName"], about["SamplingFrequency"]), ("touch-liver", 100.0))
+            channels, rows = table(pathlib.Path(f"{base}_channels.tsv")), table(pathlib.Path(f"{base}_motion.tsv"))
+            self.assertEqual(channels[0][:5], ["name", "component", "type", "tracked_point", "units"])
+            self.assertEqual(about["MotionChannelCount"], len(channels) - 1)
+            self.assertEqual(about["POSChannelCount"] % 3, 0)
+            self.assertEqual(len(rows), 201, "two seconds at 100 Hz, both ends")
+            for row in rows:
+                self.assertEqual(len(row), len(channels) - 1)
+                self.assertTrue(all(cell == "n/a" or abs(float(cell)) < 10 for cell in row), row)
+        self.assertEqual(table(out / "participants.tsv"),
+                         [["participant_id", "synthetic"], ["sub-skilled", "yes"], ["sub-unskilled", "yes"]])
+        self.assertEqual(json.loads((out / "dataset_description.json").read_text())["BIDSVersion"], "1.9.0")
+        self.assertNotIn("202", "".join(p.read_text() for p in out.rglob("*.json")).replace("0.2", ""), "no dates")
+        if VALIDATORS:
+            done = subprocess.run([f"{VALIDATORS}/node_modules/.bin/bids-validator", str(out), "--json"], capture_output=True, text=True, check=False)
+            errors = json.loads(done.stdout)["issues"]["errors"]
+            self.assertEqual([e["key"] for e in errors], [], done.stdout)
+
+    def test_positions_are_those_of_the_recording(self):
+        """The first of the tip that never moves between two ticks equals the CSV export's."""
+        out, motion = self.path("bids"), self.path("motion")
+        self.well("export", performed(1), "--bids", out)
+        self.well("export", performed(1), "--motion", motion)
+        channels = table(next(out.rglob("*_channels.tsv")))[1:]
+        rows = table(next(out.rglob("*_motion.tsv")))
+        for hand in ("left", "right"):
+            held = [line.split(",") for line in (motion / f"motion_{hand}.csv").read_text().splitlines()]
+            place = [n for n, c in enumerate(channels) if c[0] in (f"{hand}_x", f"{hand}_y", f"{hand}_z")]
+            self.assertEqual(len(place), 3)
+            x = held[0].index("unfiltered_x (m)")
+            for cells in held[1:]:
+                k = round(100 * float(cells[0]))
+                self.assertEqual([rows[k][n] for n in place], cells[x:x + 3])
+
+    def test_what_is_refused(self):
+        a, out = performed(1), self.path("bids")
+        self.refused(2, "export", a, performed(2), "--motion", self.path("m"), names=("--bids",))
+        self.refused(2, "export", a, "--bids", out, "--csv", self.path("c"), names=("--csv",))
+        self.refused(2, "export", a, "--bids", self.path("no/where"), names=("where",))
+        (self.path("there")).mkdir()
+        self.refused(2, "export", a, "--bids", self.path("there"), names=("there",))
+        broken = self.copy(a, "broken.h5")
+        broken.write_bytes(a.read_bytes()[:5000])
+        self.refused(4, "export", a, broken, "--bids", out, names=("broken.h5",))
+        self.assertFalse(out.exists())
+
+
+class Xapi(program.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.cohort = self.path("c.db")
+        self.well("assess", performed(1), performed(3, "unskilled"), "--cohort", self.cohort)
+        self.file = self.path("s.json")
+
+    def test_statements(self):
+        home = "https://training.example.org"
+        ask = ("cohort", "xapi", self.cohort, "--home-page", home + "/", "-o", self.file)
+        self.refused(3, *ask, names=("c.db", "synthetic"))
+        self.well(*ask, "--include-synthetic")
+        statements = json.loads(self.file.read_text())
+        self.assertEqual(len(statements), 2)
+        with closing(sqlite3.connect(self.cohort)) as database:
+            values = dict(database.execute("SELECT attempt_uuid, count(*) FROM checkpoint_value GROUP BY 1"))
+            noted = database.execute("SELECT count(*) FROM export WHERE kind = 'xapi'").fetchone()
+        self.assertEqual(noted, (1,))
+        for s in statements:
+            self.assertRegex(s["id"], UUID)
+            self.assertEqual(s["actor"]["account"]["homePage"], home)
+            self.assertIn(s["actor"]["account"]["name"], ("skilled", "unskilled"))
+            self.assertEqual(s["object"]["id"], f"{home}/scenes/touch-liver/{s['object']['id'].rsplit('/', 1)[1]}")
+            self.assertEqual(s["result"]["duration"], "PT2.00S")
+            self.assertIs(s["result"]["completion"], s["verb"]["id"].endswith("completed"))
+            self.assertEqual(len(s["result"]["extensions"][home + "/extensions/checkpoints"]), values[s["id"]])
+            about = s["context"]["extensions"][home + "/extensions/attempt"]
+            self.assertEqual((about["verification"], about["synthetic"]), ("verified", True))
+        if VALIDATORS:
+            script = ("const v = require('@learninglocker/xapi-validation'); const list = JSON.parse(require('fs').readFileSync(process.argv[1]));"
+                      "const check = v.validateStatement || v.default; let n = 0;"
+                      "for (const s of list) { const w = check(s); n += w.length; for (const one of w) console.error(String(one)); }"
+                      "process.exit(n === 0 ? 0 : 1);")
+            done = subprocess.run(["node", "-e", script, str(self.file)], cwd=VALIDATORS, capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_what_is_refused(self):
+        for home in ("", "training", "ftp://a.b", "https://", "https://a b"):
+            self.refused(2, "cohort", "xapi", self.cohort, "--home-page", home, "-o", self.file, "--include-synthetic", names=("home page",))
+        self.file.write_text("kept")
+        self.refused(2, "cohort", "xapi", self.cohort, "--home-page", "https://a.example", "-o", self.file, "--include-synthetic", names=("--force",))
+        self.assertEqual(self.file.read_text(), "kept")
+
+
+if __name__ == "__main__":
+    sys.exit(program.main())
