@@ -43,7 +43,7 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene,
                  "name of a scene (calot scenes), or a scene file; without one, the window offers them");
   auto* const device = app.add_option("--device", o.source.device.name,
-                                      recorder::deviceUsage() + " (docs/devices.md); default: mouse and keyboard");
+                                      recorder::deviceUsage() + " (docs/how-to/devices.md); default: mouse and keyboard");
   app.add_option("--performer", o.source.performer,
                  "watch a synthetic operator: skilled, intermediate, unskilled, or a file")
       ->excludes(device);

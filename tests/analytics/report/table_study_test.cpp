@@ -121,7 +121,7 @@ TEST(TableStudy, roundingIsNoDifference) {
 }
 
 TEST(PublishedCoverage, isThatOfThePage) {
-  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/statistics.md");
+  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/explanation/coverage.md");
   std::ostringstream text;
   text << file.rdbuf();
   const std::string page = text.str();
