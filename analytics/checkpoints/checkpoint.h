@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a checkpoint is: one figure of an attempt (or one per hand, or one per organ), computed from the stream of
-// steps. docs/reference/metrics.md gives the formula, source and pitfalls of each; a test holds it against the registry.
+// steps. docs/reference/metrics.md gives the formula, source and pitfalls of each; a test holds it against the
+// registry.
 #pragma once
 
 #include <array>
