@@ -223,7 +223,7 @@ void addDevices(CLI::App& app, Run& run) {
   CLI::App* measure = command->add_subcommand("calibrate", "Measures a device in guided steps and stores the result.");
   measure->add_option("device", c->device.name, "as for record --device")->required();
   addTools(*measure, c->device);
-  measure->add_option("--from", c->from, "measure this recorded stream instead (docs/how-to/devices.md)");
+  measure->add_option("--from", c->from, "measure this stream instead, recorded by --keep-stream");
   measure->add_option("--keep-stream", c->stream, "write what was measured from, for --from");
   measure->add_option("--stroke", c->strokeMillimetres, "length of each stroke, mm")
       ->check(CLI::Range(10.0, 1000.0))
