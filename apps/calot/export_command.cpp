@@ -80,9 +80,7 @@ void addExport(CLI::App& app, Run& run) {
   CLI::Option* motion = command->add_option(
       "--motion", options->motion,
       "New folder for both hands' filtered motion with its segments and movements, as checkpoints see it");
-  command
-      ->add_option("--columns", options->columns,
-                   "What the columns of a CSV motion file are (schemas/columns.schema.json)")
+  command->add_option("--columns", options->columns, "A JSON file that says what the columns of a CSV motion file are")
       ->needs(motion);
   command->add_option("--cohort", options->cohort, "Cohort database that notes that this was handed out");
   command->add_flag("--force", options->force, "Replace files that --csv finds there");

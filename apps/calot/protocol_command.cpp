@@ -130,7 +130,7 @@ void addProtocol(CLI::App& app, Run& run) {
     sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
     return sub;
   };
-  const char* file = "A protocol's file (schemas/protocol.schema.json), or the name of one that comes with the program";
+  const char* file = "A protocol's JSON file, or the name of one that comes with the program";
   CLI::App* checked = add("check", "Read a protocol and say what it holds", check);
   checked->add_option("protocol", o->protocol, file)->required();
   CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerIt);

@@ -148,7 +148,7 @@ void addRate(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("rate", "Store and summarise what raters and participants judge, by forms");
   command->add_option("cohort", o->database, "Cohort database");
   command->add_flag("--forms", o->forms, "List the forms that come with the program");
-  command->add_option("--form", o->form, "The form that was filled in: its name, or a file (schemas/form.schema.json)");
+  command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
   command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");
   command->add_option("--rater", o->rater, "Pseudonym of who rated it");
   command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire");
