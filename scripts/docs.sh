@@ -12,9 +12,11 @@ cd "$root"
 rm -rf "$root/build/site"
 # A warning is an error (strict). Debian's interpreter and no user's packages: the tool is Debian's, too.
 "$python" -s -m mkdocs build --quiet --strict --site-dir "$root/build/site"
-"$python" -B "$root/scripts/docs_links.py" "$root/build/site"
 
 say "reference of the public headers"
 (cat "$root/docs/Doxyfile"; echo "OUTPUT_DIRECTORY = $root/build/site") | doxygen -
+
+say "links"
+"$python" -B "$root/scripts/docs_links.py" "$root/build/site"
 
 say "built: build/site/index.html, build/site/api/index.html"

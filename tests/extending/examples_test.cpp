@@ -23,11 +23,10 @@ TEST(Extending, ACheckpointFollowsTheSteps) {
   analytics::AttemptContext context;
   context.structures = {"liver", "gallbladder"};
   const std::unique_ptr<analytics::Checkpoint> checkpoint = entry.make(context);
-  const std::uint64_t touched[] = {0, 1, 1, 0, 1, 1, 1, 0};  // of the liver, by the right hand
-  analytics::support::feedTo(
-      [&](const recorder::StepRecord& record) { checkpoint->onStep(record, {}); }, std::size(touched),
-      [](std::uint64_t, TickSamples&, recorder::TickOutcome&) {},
-      [&](std::uint64_t step, StepResult& result) { result.hand[1].touching = touched[step]; });
+  const std::uint32_t touched[] = {0, 1, 1, 0, 1, 1, 1, 0};  // of the liver, by the right hand
+  analytics::support::feedTo([&](const recorder::StepRecord& record) { checkpoint->onStep(record, {}); },
+                             std::size(touched), [](std::uint64_t, TickSamples&, recorder::TickOutcome&) {},
+                             [&](std::uint64_t step, StepResult& result) { result.hand[1].touching = touched[step]; });
   const std::vector<analytics::CheckpointValue> values = checkpoint->values({});
   ASSERT_EQ(values.size(), 2U);
   EXPECT_NEAR(*values[0].value, 0.03, 1e-12);
@@ -38,7 +37,9 @@ TEST(Extending, ACheckpointFollowsTheSteps) {
 TEST(Extending, ADeviceDrivesAHand) {
   const SceneDescription scene = recorder::devicetest::emptyScene();
   recorder::OpenedDevice opened = recorder::pendulumKind.open({"pendulum", "", {}});
-  recorder::DeviceSource source(std::move(opened.device), scene, {.tickClock = opened.tickClock});
+  recorder::DeviceSourceSettings settings;
+  settings.tickClock = opened.tickClock;
+  recorder::DeviceSource source(std::move(opened.device), scene, settings);
   source.waitForFirst(1.0);
   double lowest = 1.0;
   double highest = -1.0;
@@ -82,9 +83,8 @@ TEST(Extending, AKindOfTissueJoinsTheList) {
   example::CordKind::resize(model, states);
   EXPECT_TRUE(example::CordKind::fits(model, states));
   std::string seen;
-  example::CordKind::components(states, [&](const char* prefix, std::size_t i, example::CordState&) {
-    seen += prefix + scene.cords[i].name;
-  });
+  example::CordKind::components(
+      states, [&](const char* prefix, std::size_t i, example::CordState&) { seen += prefix + scene.cords[i].name; });
   EXPECT_EQ(seen, "cord.ligament");
   scene.cords[0].strength = 0.0;
   EXPECT_NE(example::CordKind::build(scene, model), "");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Longest time without a break in which an instrument touches an organ: an example of a checkpoint. As one of Calot's it
-// would stand in analytics/checkpoints/figures.
+// Longest time without a break in which an instrument touches an organ: an example of a checkpoint. As one of Calot's
+// it would stand in analytics/checkpoints/figures.
 #include "analytics/checkpoints/checkpoint.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rod with a ball at its end: an example of an instrument. As one of Calot's it would stand in sim/instruments, and its
-// kind and name would be its own.
+// A rod with a ball at its end: an example of an instrument. As one of Calot's it would stand in sim/instruments, and
+// its kind and name would be its own.
 #include "sim/math/no_fused_pairs.h"  // first
 
 #include "sim/instruments/instruments.h"
