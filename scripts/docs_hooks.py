@@ -47,8 +47,10 @@ def on_page_content(html, page, config, files):
     """Long names in tables may break behind a dot, a slash or two colons."""
     if page.file.src_path == "index.md":  # scripts/docs.sh puts the reference of the headers there
         html = html.replace("<code>build/site/api</code>", '<a href="api/index.html">reference</a>')
+    # A table without heads, as checkpoints have it.
+    html = re.sub(r"<thead>\s*<tr>\s*(?:<th[^>]*></th>\s*)+</tr>\s*</thead>", "", html)
     return re.sub(r"(<td[^>]*>)(.*?)(?=</td>)", lambda cell: cell[1] + re.sub(
-        r"<code>([^<]*)</code>", lambda code: "<code>" + re.sub(r"(\.|/|::|_)(?=\w|\*)", r"\1<wbr>", code[1]) + "</code>", cell[2]), html, flags=re.DOTALL)
+        r"<code>([^<]*)</code>", lambda code: "<code>" + re.sub(r"(\.(?=\w{3}|\*)|/|::)(?=\w|\*)", r"\1<wbr>", code[1]) + "</code>", cell[2]), html, flags=re.DOTALL)
 
 
 def on_page_markdown(markdown, page, config, files):
