@@ -103,6 +103,10 @@ TEST(TableStudy, warnsWhereACoverageIsLow) {
   EXPECT_NE(few.rows[0].coverageWarnings[0].find("not known for fewer than 5"), std::string::npos);
   EXPECT_EQ(intervalWarnings(few, true)[0].find("Warning (1 of 1 rows)"), 0U);
   EXPECT_TRUE(intervalWarnings(few, false).empty());
+  // What is to be said of several intervals is said once.
+  ASSERT_GT(few.rows[0].coverageWarnings.size(), 1U);
+  EXPECT_EQ(intervalWarnings(few, true).size(), 1U);
+  EXPECT_NE(intervalWarnings(few, true)[0].find(", g: coverage is not known"), std::string::npos);
 }
 
 /// A clock that is the same but for its last bits has no group in which it is the faster one.
