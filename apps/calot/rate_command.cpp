@@ -16,6 +16,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/rate_files.h"
+#include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -42,8 +43,9 @@ int listForms(const RateOptions& o) {
   for (const std::filesystem::path& file : listAssets("forms")) {
     const analytics::RatingForm form = analytics::readRatingForm(file);
     if (!o.json) {
-      std::cout << fmt::format("{} version {}: {} ({}, {} to {})\n", form.name, form.version, form.title,
-                               form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
+      const std::string text = fmt::format("{} version {}: {} ({}, {} to {})", form.name, form.version, form.title,
+                                           form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
+      std::cout << wrappedText(text, terminalColumns(), 4) << '\n';
     }
     Json items = Json::array();
     for (const analytics::FormItem& item : form.items()) {

@@ -95,6 +95,12 @@ class Commands(program.ProgramTest):
                 if not line.startswith("  -") and not re.match(r"Usage|  [\w-]+ \w+( \.\.\.)? ", line):
                     self.assertLessEqual(len(line), 120, (command, line))
 
+    def test_lists_wrap(self):
+        """In a pipe, as on a terminal of 80 columns; what has no blank stays whole."""
+        for command in (("scenes",), ("devices",), ("checkpoints",), ("protocol", "list"), ("rate", "--forms"), ("inspect", program.short())):
+            for line in self.well(*command).out.splitlines():
+                self.assertTrue(len(line) <= 80 or len(line.split()) <= 2, (command, line))
+
     def test_pages(self):
         lines = 0
         for page in sorted((program.SOURCE / "docs").rglob("*.md")):
