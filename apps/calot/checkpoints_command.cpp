@@ -47,8 +47,8 @@ nlohmann::ordered_json jsonOf(const CheckpointDefinition& d) {
 void print(const CheckpointDefinition& d) {
   std::string origins;
   for (const std::string& name : originNames(d)) origins += (origins.empty() ? "" : ", ") + name;
-  std::cout << fmt::format("{} (version {}): {}\n", d.name, d.version, d.title);
   const std::size_t columns = terminalColumns();
+  std::cout << wrappedText(fmt::format("{} (version {}): {}", d.name, d.version, d.title), columns, 4) << '\n';
   const auto line = [columns](const char* word, const std::string& text) {
     if (!text.empty()) std::cout << fmt::format("  {:<12} {}\n", word, wrappedText(text, columns, 15, 15));
   };
