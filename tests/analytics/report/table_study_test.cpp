@@ -14,6 +14,7 @@
 #include "analytics/report/coverage_warning.h"
 #include "analytics/report/page_html.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
 #include "analytics/statistics/published_coverage.h"
 #include "recorder/errors.h"
 #include "tests/analytics/support/refusal.h"
