@@ -46,7 +46,7 @@ def relinked(page, text):
 def on_page_content(html, page, config, files):
     """Long names in tables may break behind a dot, a slash or two colons."""
     if page.file.src_path == "index.md":  # scripts/docs.sh puts the reference of the headers there
-        html = html.replace("<code>build/site/api</code>", '<a href="api/index.html">reference</a>')
+        html = html.replace("<code>build/site/api</code>", '<a href="api/index.html"><code>api</code></a>')
     # A table without heads, as checkpoints have it.
     html = re.sub(r"<thead>\s*<tr>\s*(?:<th[^>]*></th>\s*)+</tr>\s*</thead>", "", html)
     return re.sub(r"(<td[^>]*>)(.*?)(?=</td>)", lambda cell: cell[1] + re.sub(
