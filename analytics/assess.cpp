@@ -252,7 +252,7 @@ void printValues(const std::vector<CheckpointValue>& values, const std::vector<V
     table.add({name, significant(*v.value * factor), interval, definition != nullptr ? definition->displayUnit : v.unit,
                parts, nameOf(v.origin), v.note});
   }
-  if (table.rows() > 0) table.print(out);
+  if (table.rows() > 0) table.print(out, 120);  // reasons go on below
 }
 
 void printAttempts(const CohortDatabase& database, std::ostream& out) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Regrading a cohort in shares, on as many machines as there are: each computes a share into a values file and writes
-// no cohort; one program takes them all (docs/cluster.md, schemas/values.md).
+// no cohort; one program takes them all (docs/how-to/cluster.md, schemas/values.md).
 #pragma once
 
 #include <cstdint>

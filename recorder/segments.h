@@ -2,7 +2,7 @@
 // Verification in parallel over time. A keyframe holds all that later steps depend on, so the stretches between
 // keyframes can be re-simulated at the same time: each from the keyframe before it, and to the one at its end, which
 // has to come out byte for byte. That the recording is what a run from its start gives follows by induction
-// (docs/determinism.md, "In segments").
+// (docs/explanation/determinism.md, "In segments").
 #pragma once
 
 #include <array>

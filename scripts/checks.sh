@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the release tests do not see: format, lints, a guard of the run time, sanitizers on the fast tests (built by clang), clang-tidy with clang's
-# warnings, and the short determinism matrix over what these built. `checks.sh STAGE...` runs only these stages; `clang`,
+# What the release tests do not see: format, lints, the documentation's site, a guard of the run time, sanitizers on the
+# fast tests (built by clang), clang-tidy with clang's warnings, and the short determinism matrix over what these built. `checks.sh STAGE...` runs only these stages; `clang`,
 # the optimised programs by clang, is one of them that has to be asked for (heavy.sh builds and tests all by clang).
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-stages=(format lint guard asan-ubsan tsan matrix tidy)
+stages=(format lint docs guard asan-ubsan tsan matrix tidy)
 if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
@@ -28,7 +28,7 @@ fast() {
 }
 
 # What each stage took on two idle cores (min).
-declare -A minutes=([guard]=1 [asan-ubsan]=13 [tsan]=4 [tidy]=7 [matrix]=3)
+declare -A minutes=([docs]=1 [guard]=1 [asan-ubsan]=13 [tsan]=4 [tidy]=7 [matrix]=3)
 
 # roomFor STAGE: whether a run that has to end (CALOT_CHECKS_END, seconds since 1970) has twice the stage's time left. Half
 # the stages and an answer are better than all of them and none.
@@ -52,6 +52,9 @@ for stage in "${stages[@]}"; do
       say "lint"
       "$root/scripts/lint-determinism.sh"
       shellcheck --external-sources --source-path="$root/scripts" "$root"/scripts/*.sh "$root/.ci/run"
+      ;;
+    docs)
+      "$root/scripts/docs.sh"
       ;;
     guard)
       configure release
@@ -90,7 +93,7 @@ for stage in "${stages[@]}"; do
       "$root/scripts/matrix.sh" --short "${trees[@]}"
       ;;
     *)
-      echo "checks: no stage $stage; there are: format lint guard clang asan-ubsan tsan tidy matrix" >&2
+      echo "checks: no stage $stage; there are: format lint docs guard clang asan-ubsan tsan tidy matrix" >&2
       exit 2
       ;;
   esac

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # convergence.sh [SECONDS]: does the grade depend on mesh and step? One performer's samples run open-loop through the scenes with other meshes
-# and steps; prints every checkpoint of each beside the finest run's, as tables in the form of docs/accuracy.md. Takes minutes to an hour; with
+# and steps; prints every checkpoint of each beside the finest run's, as tables in the form of docs/explanation/mesh-and-step.md. Takes minutes to an hour; with
 # SECONDS, only so many of the attempts.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Refuses what the determinism contract forbids (docs/determinism.md), wrong includes, unkept files, flags in libraries and retired words.
+# Refuses what the determinism contract forbids (docs/explanation/determinism.md), wrong includes, unkept files, flags in libraries and retired words.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the attempt in a browser (docs/page.md): one HTML file with everything in it.
+"""Builds the attempt in a browser (docs/how-to/page.md): one HTML file with everything in it.
 
   page.py [--engine FILE] [-o FILE]
 

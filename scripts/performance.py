@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the figures of two runs of calot-bench into docs/performance.md, with their bounds, and the diagram of time against error."""
+"""Writes the figures of two runs of calot-bench into docs/explanation/performance.md, with their bounds, and the diagram of time against error."""
 import argparse
 import json
 import pathlib
@@ -170,7 +170,7 @@ def main():
     parser.add_argument("run", nargs=2, type=pathlib.Path)
     parser.add_argument("--root", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
-    page = arguments.root / "docs/performance.md"
+    page = arguments.root / "docs/explanation/performance.md"
     text = page.read_text(encoding="utf-8")
     if BEGIN not in text or END not in text:
         sys.exit(f"{page}: the marks of the table are not there: {BEGIN} and {END}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # performance.sh [FILTER]: runs calot-bench twice, on as quiet a machine as there is, and writes the headline figures of both runs with the
-# machine's name and their bounds into docs/performance.md, and the diagram of time against error beside it. With a filter (of
+# machine's name and their bounds into docs/explanation/performance.md, and the diagram of time against error beside it. With a filter (of
 # Google Benchmark) only those that it names are run, and the table holds those alone.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what Calot is built and checked with on Debian 12 (docs/dependencies.md says what for). Does nothing when all
+# Installs what Calot is built and checked with on Debian 12 (docs/reference/dependencies.md says what for). Does nothing when all
 # is there. As root, or with sudo. More packages may be named.
 set -euo pipefail
 

@@ -64,7 +64,7 @@ struct Grade {
 };
 
 /// Critical errors first: one fails the attempt. Then the norm's rule. A figure without a value is not passed.
-/// @param history the participant's other attempts of the same key, this one among them, with their values
+/// @param attempts the participant's other attempts of the same key, this one among them @param values theirs
 /// @throws Error (refused) where the attempt did not verify or is not whole, or its comparability key is not the norm's
 /// and `mixKeys` is not set.
 Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& attempts,

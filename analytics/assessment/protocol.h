@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A study's protocol: what is declared before the first attempt (schemas/protocol.schema.json, docs/statistics.md).
+// A study's protocol: what is declared before the first attempt (schemas/protocol.schema.json,
+// docs/how-to/protocol.md).
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a checkpoint is: one figure of an attempt (or one per hand, or one per organ), computed from the stream of
-// steps. docs/metrics.md gives the formula, source and pitfalls of each; a test holds it against the registry.
+// steps. docs/reference/metrics.md gives the formula, source and pitfalls of each; a test holds it against the
+// registry.
 #pragma once
 
 #include <array>
@@ -122,7 +123,7 @@ struct CheckpointPlace {
 
 /// One checkpoint: its declaration, and how to make it. Each file of analytics/checkpoints/figures defines a function,
 /// named after the file, that returns its entries: `pathLengthEntries` in path_length.cpp. CMake lists these functions
-/// for the registry (docs/extending.md).
+/// for the registry (docs/extending/index.md).
 struct CheckpointEntry {
   CheckpointPlace place;
   CheckpointDefinition definition;

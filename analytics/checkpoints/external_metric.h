@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A metric that a user's own script computes (docs/metrics.md, "Own metrics"): beside the registry's checkpoints, never
+// A metric that a user's own script computes (docs/how-to/own-metrics.md): beside the registry's checkpoints, never
 // one of them.
 #pragma once
 

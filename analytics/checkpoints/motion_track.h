@@ -17,8 +17,8 @@ namespace calot::analytics {
 ///   until one sampling interval (the newest known) before the next sample, and is a point again there;
 /// - ticks that the source marked as not measured are no samples; an exchange of the instrument splits the motion.
 ///
-/// Where the source itself interpolated (kinematics files, docs/sources.md), only the first tick of each interval
-/// of the file's rows can be a sample. Deterministic contract.
+/// Where the source itself interpolated (kinematics files, docs/explanation/sources.md), only the first tick of each
+/// interval of the file's rows can be a sample. Deterministic contract.
 class MotionTrack {
  public:
   /// @param tickSeconds length of a tick (s). @pre > 0.

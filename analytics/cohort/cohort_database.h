@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cohort database: participants, attempts, recordings' identities and checkpoint values, in one SQLite file
-// (docs/cohort.md, schemas/cohort/*.sql).
+// (docs/reference/cohort.md, schemas/cohort/*.sql).
 #pragma once
 
 #include <array>

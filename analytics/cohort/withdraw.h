@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Permanent removal of a participant from a cohort database (docs/cohort.md, "Withdrawal").
+// Permanent removal of a participant from a cohort database (docs/reference/cohort.md, "Withdrawal").
 #pragma once
 
 #include <cstdint>

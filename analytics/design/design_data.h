@@ -67,7 +67,7 @@ struct DesignData {
 DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
                             const StudyOptions& options, const DesignChoices& choices);
 
-/// The same of attempts at hand, without ratings. @param participants for site and arm
+/// The same of attempts at hand, without ratings, site and arm.
 DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
                             const StudyOptions& options, const DesignChoices& choices, const std::string& name);
 

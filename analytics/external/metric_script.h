@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A user's own metric: a Python script with NAME, VERSION, UNIT, BETTER and compute(attempt) (docs/metrics.md).
+// A user's own metric: a Python script with NAME, VERSION, UNIT, BETTER and compute(attempt)
+// (docs/how-to/own-metrics.md).
 #pragma once
 
 #include <filesystem>

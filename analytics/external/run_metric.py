@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a user's metric in a process of its own (docs/metrics.md, "Own metrics").
+"""Runs a user's metric in a process of its own (docs/how-to/own-metrics.md).
 
 usage: run_metric.py SCRIPT SHOWN_NAME [FOLDER]
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Takes the recordings of a station into a cohort as they come: verified, assessed, stored (docs/cluster.md,
+// Takes the recordings of a station into a cohort as they come: verified, assessed, stored (docs/how-to/cluster.md,
 // "Watching a folder").
 #pragma once
 

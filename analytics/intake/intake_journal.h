@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What has come of each file of a watched folder, kept over restarts (docs/cluster.md, "Watching a folder").
+// What has come of each file of a watched folder, kept over restarts (docs/how-to/cluster.md, "Watching a folder").
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// De-identified export of a cohort (docs/cohort.md, "Handing out").
+// De-identified export of a cohort (docs/reference/cohort.md, "Handing out").
 #pragma once
 
 #include <array>

@@ -88,9 +88,9 @@ struct Drawing {
   void text(Ink ink, double x, double y, std::string words, double degrees = 0.0);
 };
 
-/// An <svg> element; every text escaped, two decimals.
+/// An `svg` element; every text escaped, two decimals.
 std::string svgOf(const Drawing& drawing);
-/// The rules for the classes of svgOf(), for a page's <style>.
+/// The rules for the classes of svgOf(), for a page's `style`.
 std::string drawingCss();
 
 }  // namespace calot::analytics

@@ -9,7 +9,7 @@
 
 namespace calot::analytics {
 
-/// A recording that a page carries as data, for calot-page.html to open (docs/page.md).
+/// A recording that a page carries as data, for calot-page.html to open (docs/how-to/page.md).
 struct CarriedRecording {
   std::string name;  ///< of the file
   std::span<const std::byte> bytes;

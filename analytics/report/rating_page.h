@@ -17,7 +17,7 @@ struct RatingPage {
 };
 
 /// One page in which a rater watches films and fills in a form for each. It loads nothing but its films, sends nothing,
-/// and gives the answers as a file to save (docs/statistics.md, readPackAnswers()).
+/// and gives the answers as a file to save (docs/how-to/ratings.md, readPackAnswers()).
 std::string ratingPageHtml(const RatingPage& page);
 
 /// Parts of the page. Its content security policy names their digests, so that nothing else runs in it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page in which a rater watches films and fills in a form for each (docs/statistics.md, "Blinded raters").
+// The page in which a rater watches films and fills in a form for each (docs/how-to/ratings.md, "Blinded raters").
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);

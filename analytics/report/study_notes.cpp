@@ -79,31 +79,8 @@ void addTo(UntestedRows& untestedRows, const std::string& reason, const std::str
   }
 }
 
-}  // namespace
-
-std::vector<std::string> intervalWarnings(const Study& study, bool leading) {
-  std::vector<std::pair<std::string, std::size_t>> counts;
-  std::size_t rows = 0;
-  for (const StudyRow& row : study.rows) {
-    if (row.leading != leading) continue;
-    ++rows;
-    for (const std::string& text : row.coverageWarnings) {
-      const auto at = std::find_if(counts.begin(), counts.end(), [&](const auto& c) { return c.first == text; });
-      if (at == counts.end()) {
-        counts.emplace_back(text, 1);
-      } else {
-        ++at->second;
-      }
-    }
-  }
-  std::vector<std::string> warnings;
-  warnings.reserve(counts.size());
-  for (const auto& [text, count] : counts)
-    warnings.push_back(fmt::format("Warning ({} of {} rows): {}.", count, rows, text));
-  return warnings;
-}
-
-void explainMissing(const Study& study, const StudyRow& row, std::vector<std::string>& notes) {
+/// What is missing of one row, a line a fact.
+void explainMissingOf(const Study& study, const StudyRow& row, std::vector<std::string>& notes) {
   const std::string name = rowName(row);
   if (const std::string reason = untested(row); !reason.empty()) notes.push_back(fmt::format("{}: {}", name, reason));
   if (hasNoValue(row)) return;
@@ -132,6 +109,64 @@ void explainMissing(const Study& study, const StudyRow& row, std::vector<std::st
     notes.push_back(fmt::format("{}: no analysis of covariance, {}", name, row.adjusted->analysis.reason()));
 }
 
+}  // namespace
+
+std::vector<std::string> intervalWarnings(const Study& study, bool leading) {
+  std::vector<std::pair<std::string, std::size_t>> counts;
+  std::size_t rows = 0;
+  for (const StudyRow& row : study.rows) {
+    if (row.leading != leading) continue;
+    ++rows;
+    for (const std::string& text : row.coverageWarnings) {
+      const auto at = std::find_if(counts.begin(), counts.end(), [&](const auto& c) { return c.first == text; });
+      if (at == counts.end()) {
+        counts.emplace_back(text, 1);
+      } else {
+        ++at->second;
+      }
+    }
+  }
+  // Intervals of which the same is to be said of as many rows share a line: "A, shift, g: ...".
+  struct Shared {
+    std::string names, said;
+    std::size_t count;
+  };
+  std::vector<Shared> shared;
+  for (const auto& [text, count] : counts) {
+    const std::size_t colon = text.find(": ");
+    const std::string name = text.substr(0, colon);
+    const std::string said = colon == std::string::npos ? "" : text.substr(colon);
+    const auto at = std::find_if(shared.begin(), shared.end(), [said, count = count](const Shared& s) {
+      return !said.empty() && s.said == said && s.count == count;
+    });
+    if (at == shared.end()) {
+      shared.push_back({name, said, count});
+    } else {
+      at->names += ", " + name;
+    }
+  }
+  std::vector<std::string> warnings;
+  warnings.reserve(shared.size());
+  for (const Shared& s : shared)
+    warnings.push_back(fmt::format("Warning ({} of {} rows): {}{}.", s.count, rows, s.names, s.said));
+  return warnings;
+}
+
+void explainMissing(const Study& study, bool leading, std::vector<std::string>& notes) {
+  UntestedRows untestedRows;
+  for (const StudyRow& row : study.rows) {
+    if (row.leading != leading) continue;
+    std::vector<std::string> own;
+    explainMissingOf(study, row, own);
+    if (own.size() == 1 && !untested(row).empty()) {
+      addTo(untestedRows, untested(row), rowName(row));
+    } else {
+      notes.insert(notes.end(), own.begin(), own.end());
+    }
+  }
+  for (const auto& [reason, names] : untestedRows) notes.push_back(fmt::format("{}: {}", names, reason));
+}
+
 std::vector<std::string> appendixNotes(const Study& study) {
   std::vector<std::string> notes;
   explainColumns(study, notes);
@@ -142,18 +177,7 @@ std::vector<std::string> appendixNotes(const Study& study) {
   }
   if (std::string note = coverageNote(study); !note.empty()) notes.push_back(std::move(note));
   for (std::string& warning : intervalWarnings(study, false)) notes.push_back(std::move(warning));
-  UntestedRows untestedRows;
-  for (const StudyRow& row : study.rows) {
-    if (row.leading) continue;
-    std::vector<std::string> own;
-    explainMissing(study, row, own);
-    if (own.size() == 1 && !untested(row).empty()) {
-      addTo(untestedRows, untested(row), rowName(row));
-    } else {
-      notes.insert(notes.end(), own.begin(), own.end());
-    }
-  }
-  for (const auto& [reason, names] : untestedRows) notes.push_back(fmt::format("{}: {}", reason, names));
+  explainMissing(study, false, notes);
   for (const FormReport& report : study.ratings) {
     for (std::string& note : ratingNotes(report)) notes.push_back(std::move(note));
   }

@@ -136,9 +136,7 @@ std::vector<std::string> primaryNotes(const Study& study) {
     for (const std::string& deviation : study.protocol->deviations)
       notes.push_back("Deviation from the protocol: " + deviation);
   }
-  for (const StudyRow& row : study.rows) {
-    if (row.leading) explainMissing(study, row, notes);
-  }
+  explainMissing(study, true, notes);
   return notes;
 }
 

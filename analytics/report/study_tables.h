@@ -47,7 +47,8 @@ std::vector<std::string> appendixNotes(const Study& study);
 /// Intervals whose published coverage is low at these sizes, and how many of the rows that lead, or of the others, have
 /// them.
 std::vector<std::string> intervalWarnings(const Study& study, bool leading);
-/// Why the row has no test, and who has no value of it: sentences for `notes`.
-void explainMissing(const Study& study, const StudyRow& row, std::vector<std::string>& notes);
+/// Why rows have no test, and who has no value of them: sentences for `notes`. @param leading of the rows that lead, or
+/// of the others
+void explainMissing(const Study& study, bool leading, std::vector<std::string>& notes);
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the recordings of a cohort or folder are divided among machines (docs/cluster.md).
+// How the recordings of a cohort or folder are divided among machines (docs/how-to/cluster.md).
 #pragma once
 
 #include <cstddef>

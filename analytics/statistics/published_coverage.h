@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coverage of the intervals in reports: the table of docs/statistics.md ("Coverage"); a test keeps both in agreement.
+// Coverage of the intervals in reports: the table of docs/explanation/coverage.md; a test keeps both in agreement.
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@
 namespace calot::analytics {
 
 /// Random numbers for resampling and simulation: 64-bit Mersenne Twister, whose bits the C++ standard fixes, with
-/// mappings of our own, since those of <random> differ between libraries. Whoever uses one reports its seed.
+/// mappings of our own, since the standard library's own differ between libraries. Whoever uses one reports its seed.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed) : engine_(seed) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The constants of a scene that figures may depend on, by their names in docs/materials.md, each with a way to change
-// it.
+// The constants of a scene that figures may depend on, by their names in docs/reference/materials.md, each with a way
+// to change it.
 #pragma once
 
 #include <functional>

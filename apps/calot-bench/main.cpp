@@ -46,7 +46,8 @@ int run(int argc, char** argv) {
   CLI::App options{"Measures run time against a peer in the same run.", "calot-bench"};
   options.footer(
       "Google Benchmark's options --benchmark_NAME=VALUE are passed on: --benchmark_list_tests=true,\n"
-      "--benchmark_filter=REGEX, --benchmark_out=F.json, ... docs/performance.md says how to read the figures.");
+      "--benchmark_filter=REGEX, --benchmark_out=F.json, ...\n\n"
+      "Example:\n  calot-bench --benchmark_filter='contact|haptics' --figures figures.json");
   std::string output;
   bool force = false;
   options.add_option("--figures", output, "Write the headline figures of this run as one flat JSON map");

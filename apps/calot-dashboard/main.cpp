@@ -21,6 +21,7 @@ constexpr const char* programName = "calot-dashboard";
 
 int run(int argc, char** argv) {
   CLI::App options{"Shows the attempts and checkpoints of a cohort database."};
+  options.footer("Example:\n  calot-dashboard c.db");
   std::string database, pictures;
   options.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
   const CLI::Option* const given =

@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
     std::FILE* out = version || std::strcmp(argv[1], "--help") == 0 ? stdout : stderr;
     std::fprintf(out, version ? "calot-engine " CALOT_VERSION "\n"
                               : "calot-engine: decides recordings for calot, which starts it. It takes requests on its "
-                                "standard input (schemas/engine.md) and no arguments.\n");
+                                "standard input and no arguments.\n");
     return out == stdout ? 0 : 2;
   }
   if (isatty(STDIN_FILENO) != 0) {

@@ -40,10 +40,11 @@ struct Options {
 
 void add(CLI::App& app, Options& o) {
   app.set_version_flag("--version", recorder::softwareName());
+  app.footer("Example:\n  calot-trainer --scene touch-liver --participant P1 -o recordings");
   app.add_option("--scene", o.scene,
                  "name of a scene (calot scenes), or a scene file; without one, the window offers them");
-  auto* const device = app.add_option("--device", o.source.device.name,
-                                      recorder::deviceUsage() + " (docs/devices.md); default: mouse and keyboard");
+  auto* const device =
+      app.add_option("--device", o.source.device.name, recorder::deviceUsage() + "; default: mouse and keyboard");
   app.add_option("--performer", o.source.performer,
                  "watch a synthetic operator: skilled, intermediate, unskilled, or a file")
       ->excludes(device);

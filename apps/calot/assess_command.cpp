@@ -236,7 +236,8 @@ void addAssess(CLI::App& app, Run& run) {
                    "segments between keyframes that are verified at a time (1), or with --uncertainty runs at a time "
                    "(0); 0: one a processor")
       ->check(CLI::Range(0U, 64U));
-  command->add_flag("--apart", o->apart, "re-simulate in confined programs (docs/engines.md)");
+  command->add_flag("--apart", o->apart,
+                    "re-simulate in confined programs, as recordings of other simulation versions are");
   command->add_flag("--json", o->json, "print the result as JSON");
   command->callback([o, &run] { run = [o] { return assess(*o); }; });
 }

@@ -102,8 +102,8 @@ int cache(const CacheOptions& o) {
 
 void addCache(CLI::App& app, Run& run) {
   const auto o = std::make_shared<CacheOptions>();
-  CLI::App* command = app.add_subcommand(
-      "cache", "Show or clean what is kept in the cache folder so that scenes start sooner (docs/cache.md)");
+  CLI::App* command =
+      app.add_subcommand("cache", "Show or clean what is kept in the cache folder so that scenes start sooner");
   CLI::Option* const clean =
       command->add_flag("--clean", o->clean, "Remove what this build cannot use: damaged, foreign, of other versions");
   command->add_flag("--all", o->all, "With --clean: everything")->needs(clean);

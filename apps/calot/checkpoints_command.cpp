@@ -8,6 +8,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
@@ -46,9 +47,10 @@ nlohmann::ordered_json jsonOf(const CheckpointDefinition& d) {
 void print(const CheckpointDefinition& d) {
   std::string origins;
   for (const std::string& name : originNames(d)) origins += (origins.empty() ? "" : ", ") + name;
-  std::cout << fmt::format("{} (version {}): {}\n", d.name, d.version, d.title);
-  const auto line = [](const char* word, const std::string& text) {
-    if (!text.empty()) std::cout << fmt::format("  {:<12} {}\n", word, text);
+  const std::size_t columns = terminalColumns();
+  std::cout << wrappedText(fmt::format("{} (version {}): {}", d.name, d.version, d.title), columns, 4) << '\n';
+  const auto line = [columns](const char* word, const std::string& text) {
+    if (!text.empty()) std::cout << fmt::format("  {:<12} {}\n", word, wrappedText(text, columns, 15, 15));
   };
   line("definition", d.definition);
   line("unit", d.unit == d.displayUnit ? d.unit : fmt::format("{} (shown in {})", d.unit, d.displayUnit));

@@ -14,6 +14,7 @@
 #include "apps/calot/device_options.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/stop_request.h"
+#include "apps/calot/terminal_text.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/sources/devices/calibration_fit.h"
@@ -38,10 +39,11 @@ int list(bool asJson) {
     fmt::print("{}\n", nlohmann::json{{"devices", out}}.dump(2));
     return 0;
   }
-  fmt::print("{:<26} {:<8} {:<12} {:<26} {:<14} {}\n", "device", "present", "hands", "senses", "rate (1/s)", "detail");
+  constexpr std::size_t detailAt = 25;
   for (const recorder::ListedDevice& d : devices) {
-    fmt::print("{:<26} {:<8} {:<12} {:<26} {:<14} {}\n", d.name, d.present ? "yes" : "no", d.hands, d.senses, d.rate,
-               d.detail);
+    const std::string text = fmt::format("{}; {}; hands: {}; senses: {}; rate (1/s): {}",
+                                         d.present ? "present" : "not present", d.detail, d.hands, d.senses, d.rate);
+    fmt::print("{:<24} {}\n", d.name, wrappedText(text, terminalColumns(), detailAt, detailAt));
   }
   return 0;
 }
@@ -223,7 +225,7 @@ void addDevices(CLI::App& app, Run& run) {
   CLI::App* measure = command->add_subcommand("calibrate", "Measures a device in guided steps and stores the result.");
   measure->add_option("device", c->device.name, "as for record --device")->required();
   addTools(*measure, c->device);
-  measure->add_option("--from", c->from, "measure this recorded stream instead (docs/devices.md)");
+  measure->add_option("--from", c->from, "measure this stream instead, recorded by --keep-stream");
   measure->add_option("--keep-stream", c->stream, "write what was measured from, for --from");
   measure->add_option("--stroke", c->strokeMillimetres, "length of each stroke, mm")
       ->check(CLI::Range(10.0, 1000.0))

@@ -126,9 +126,7 @@ void addExport(CLI::App& app, Run& run) {
                    "New folder for the motion of all these recordings as a data set of BIDS (motion), without dates")
       ->excludes(csv)
       ->excludes(motion);
-  command
-      ->add_option("--columns", options->columns,
-                   "What the columns of a CSV motion file are (schemas/columns.schema.json)")
+  command->add_option("--columns", options->columns, "A JSON file that says what the columns of a CSV motion file are")
       ->needs(motion);
   command->add_option("--cohort", options->cohort, "Cohort database that notes that this was handed out");
   command->add_flag("--force", options->force, "Replace files that --csv finds there");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // assets/golden/golden.json: which golden recordings there are, how each is made, and what its checkpoints gave when it
-// was made. docs/golden.md says how to review a change of it.
+// was made. docs/how-to/golden.md says how to review a change of it.
 #pragma once
 
 #include <cstdint>

@@ -111,7 +111,7 @@ void addImport(CLI::App& app, Run& run) {
       ->excludes(manifest);
   addStoring(*command, o->cohort, o->cutoff);
   addMetrics(*command, o->metrics);
-  command->add_option("--columns", o->columns, "what the columns of the CSV files are (schemas/columns.schema.json)");
+  command->add_option("--columns", o->columns, "a JSON file that says what the columns of the CSV files are");
   command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
       ->check(wordOf("task"))
       ->capture_default_str();

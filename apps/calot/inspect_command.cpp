@@ -8,6 +8,8 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
+#include "apps/calot/inspect_text.h"
+#include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/recording/header.h"
@@ -129,40 +131,6 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
   return out;
 }
 
-std::string shown(const ordered_json& value) {
-  return value.is_string() ? value.get<std::string>()
-                           : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-void print(const ordered_json& d) {
-  for (const auto& [key, value] : d.items()) {
-    if (key == "attempt") {
-      for (const auto& [name, v] : value.items()) {
-        if (!(v.is_string() && v.get<std::string>().empty())) fmt::print("{:<24} {}\n", name, shown(v));
-      }
-    } else if (key == "scene_files") {
-      for (const auto& asset : value)
-        fmt::print("{:<24} {} ({} bytes)\n", "scene file", shown(asset["name"]), shown(asset["bytes"]));
-    } else if (key == "bytes_by_group") {
-      const auto whole = d["bytes"].get<double>();
-      for (const auto& [group, bytes] : value.items()) {
-        const auto own = bytes.get<double>();
-        fmt::print("{:<24} {} ({:.1f} %)\n", "bytes, " + group, shown(bytes), whole > 0.0 ? 100.0 * own / whole : 0.0);
-      }
-    } else if (key == "device_samples") {
-      for (const auto& [hand, s] : value.items()) {
-        fmt::print(
-            "{:<24} {} ({} valid, {} used by ticks, {} dropped, {} missing), {:.1f} a second, {:.0f} ms apart at "
-            "most\n",
-            "device, " + hand, shown(s["samples"]), shown(s["valid"]), shown(s["used"]), shown(s["dropped"]),
-            shown(s["missing"]), s["rate_hz"].get<double>(), 1e3 * s["longest_interval_s"].get<double>());
-      }
-    } else {
-      fmt::print("{:<24} {}\n", key, shown(value));
-    }
-  }
-}
-
 }  // namespace
 
 void addInspect(CLI::App& app, Run& run) {
@@ -184,7 +152,7 @@ void addInspect(CLI::App& app, Run& run) {
       if (options->json) {
         fmt::print("{}\n", d.dump(2, ' ', false, ordered_json::error_handler_t::replace));
       } else {
-        print(d);
+        fmt::print("{}", inspectText(d, terminalColumns()));
       }
       if (!options->key.empty()) {
         const auto wanted = fromHex<32>(options->key, "--public-key");

@@ -15,8 +15,7 @@ CLI::Option* addMetrics(CLI::App& command, MetricOptions& options) {
   CLI::Option* metric =
       command
           .add_option("--metric", options.files,
-                      "a Python script whose compute(attempt) gives a metric of your own; it runs with your rights "
-                      "(docs/metrics.md)")
+                      "a Python script whose compute(attempt) gives a metric of your own; it runs with your rights")
           ->type_size(1)
           ->allow_extra_args(false);
   command.add_option("--metric-seconds", options.limits.seconds, "what a script may take for one attempt (s)")

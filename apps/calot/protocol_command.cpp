@@ -16,6 +16,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/study_options.h"
+#include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
@@ -88,7 +89,9 @@ int listShipped(const ProtocolOptions& o) {
   for (const std::filesystem::path& file : listAssets("protocols")) {
     const analytics::Protocol p = analytics::readProtocol(file);
     rows.push_back({{"name", p.name}, {"version", p.version}, {"sha256", p.sha256}, {"title", p.title}});
-    text += fmt::format("{} version {}: {}, SHA-256 {}\n", p.name, p.version, p.title, p.sha256);
+    text += wrappedText(fmt::format("{} version {}: {}\nSHA-256 {}", p.name, p.version, p.title, p.sha256),
+                        terminalColumns(), 2) +
+            '\n';
   }
   if (o.json) {
     std::cout << rows.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
@@ -130,7 +133,7 @@ void addProtocol(CLI::App& app, Run& run) {
     sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
     return sub;
   };
-  const char* file = "A protocol's file (schemas/protocol.schema.json), or the name of one that comes with the program";
+  const char* file = "A protocol's JSON file, or the name of one that comes with the program";
   CLI::App* checked = add("check", "Read a protocol and say what it holds", check);
   checked->add_option("protocol", o->protocol, file)->required();
   CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerIt);

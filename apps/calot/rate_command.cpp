@@ -16,6 +16,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/rate_files.h"
+#include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -42,8 +43,9 @@ int listForms(const RateOptions& o) {
   for (const std::filesystem::path& file : listAssets("forms")) {
     const analytics::RatingForm form = analytics::readRatingForm(file);
     if (!o.json) {
-      std::cout << fmt::format("{} version {}: {} ({}, {} to {})\n", form.name, form.version, form.title,
-                               form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
+      const std::string text = fmt::format("{} version {}: {} ({}, {} to {})", form.name, form.version, form.title,
+                                           form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
+      std::cout << wrappedText(text, terminalColumns(), 4) << '\n';
     }
     Json items = Json::array();
     for (const analytics::FormItem& item : form.items()) {
@@ -148,7 +150,7 @@ void addRate(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("rate", "Store and summarise what raters and participants judge, by forms");
   command->add_option("cohort", o->database, "Cohort database");
   command->add_flag("--forms", o->forms, "List the forms that come with the program");
-  command->add_option("--form", o->form, "The form that was filled in: its name, or a file (schemas/form.schema.json)");
+  command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
   command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");
   command->add_option("--rater", o->rater, "Pseudonym of who rated it");
   command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire");

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analytics/report/text_table.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/terminal_text.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
@@ -24,14 +27,19 @@ std::string versionOf(const SceneDescription& scene) {
 }
 
 void printTable(const std::vector<recorder::LoadedScene>& scenes) {
-  fmt::print("{:<16} {:<8} {:<40} {}\n", "scene", "version", "organs (tetrahedra)", "summary");
+  using Align = analytics::TextTable::Align;
+  analytics::TextTable table({{"scene", Align::left},
+                              {"version", Align::right},
+                              {"organs (tetrahedra)", Align::left},
+                              {"summary", Align::left}});
   for (const recorder::LoadedScene& scene : scenes) {
     std::string organs;
     for (const OrganDescription& organ : scene.description.organs) {
       organs += fmt::format("{}{} ({})", organs.empty() ? "" : ", ", organ.name, organ.tetrahedra);
     }
-    fmt::print("{:<16} {:<8} {:<40} {}\n", scene.description.name, versionOf(scene.description), organs, scene.summary);
+    table.add({scene.description.name, versionOf(scene.description), organs, scene.summary});
   }
+  table.print(std::cout, terminalColumns());
 }
 
 /// What a step of the scene computes with.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What commands that work in shares have in common: options, and what is said of plan, share and shards that are
-// missing (docs/cluster.md).
+// missing (docs/how-to/cluster.md).
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -13,7 +13,7 @@ CLI::Option_group* addSource(CLI::App& command, SourceOptions& options) {
   source->add_option("--performer", options.performer,
                      "profile of a synthetic operator: skilled, intermediate, unskilled, or a file");
   source->add_option("--kinematics", options.kinematics, "two-handed motion file, 76 columns at 30 Hz");
-  source->add_option("--device", options.device.name, recorder::deviceUsage() + " (docs/devices.md)");
+  source->add_option("--device", options.device.name, recorder::deviceUsage() + " (list them: calot devices)");
   source->require_option(1);
   addTools(command, options.device);
   command.add_option("--calibration", options.device.calibration, "of the device; an assessment needs one");

@@ -98,7 +98,9 @@ analytics::Study studyOf(StudySource& options) {
   analytics::Study study = plainStudyOf(options);
   if (study.better.empty() && !(study.protocol && study.protocol->masked))
     study.remarks.emplace_back("--better GROUP says which group is expected to do better.");
-  if (study.phasesLeftOut) study.remarks.emplace_back("--phases takes in the other checkpoints of single phases.");
+  for (std::string& remark : study.remarks) {
+    if (study.phasesLeftOut && remark.ends_with("single phases are left out.")) remark += " --phases takes them in.";
+  }
   return study;
 }
 

@@ -8,7 +8,7 @@
 
 namespace calot::apps {
 
-/// Exit codes of every program (docs/command-line.md).
+/// Exit codes of every program (docs/reference/command-line.md).
 enum class ExitCode : int {
   yes = 0,
   failure = 1,    ///< something inside went wrong (disk full, no memory)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ducts and arteries around Calot's triangle, in W: the points that their centre lines pass. Scenes hold them as
-// `path` (a test compares), and the fat is shaped around them. Sizes and their sources stand in docs/organs.md.
+// `path` (a test compares), and the fat is shaped around them. Sizes and their sources stand in
+// docs/explanation/organs.md.
 #pragma once
 
 #include <cmath>

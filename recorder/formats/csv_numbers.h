@@ -17,7 +17,7 @@ struct CsvNumbers {
 /// Reads the wanted columns of a CSV file: a line of names, then one row a line. Cells may have blanks around them,
 /// names may stand in double quotes; other columns may hold anything but the delimiter. Locale plays no part.
 /// @param file the name that messages use.
-/// @param delimiter ',', ';' or '\t'.
+/// @param delimiter a comma, a semicolon or a tab.
 /// @throws Error (damaged) naming file and line: no names, a name that is wanted and missing or there twice, a row with
 /// other than so many cells (one that was cut off), a wanted cell that is no finite number, an empty line between rows,
 /// no row, more than a million rows.

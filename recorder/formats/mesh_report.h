@@ -18,7 +18,7 @@ struct MeshReport {
   StuffedMesh stuffed;   ///< the mesh, or why there is none
 };
 
-/// One JSON object (docs/meshing.md lists its members), with a line break at the end.
+/// One JSON object (docs/reference/meshing.md lists its members), with a line break at the end.
 std::string meshReportJson(const MeshReport& report);
 
 /// The same as text of several lines.

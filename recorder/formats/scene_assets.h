@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene from the bytes of its file and of what that names; no file is touched. What is in them: docs/scenes.md.
+// A scene from the bytes of its file and of what that names; no file is touched. What is in them:
+// docs/reference/scenes.md.
 #pragma once
 
 #include <string>

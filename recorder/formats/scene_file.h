@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene files: strict JSON, published as schemas/scene.schema.json and explained in docs/scenes.md. Lengths in metres,
-// everything in SI, in the frame W of docs/organs.md.
+// Scene files: strict JSON, published as schemas/scene.schema.json and explained in docs/reference/scenes.md. Lengths
+// in metres, everything in SI, in the frame W of docs/explanation/organs.md.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kept engines on this machine: one program a simulation version (docs/engines.md).
+// Kept engines on this machine: one program a simulation version (docs/explanation/engines.md).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ed25519 (RFC 8032): a station signs the last head of a recording's content chain. docs/threat-model.md explains what
-// that proves.
+// Ed25519 (RFC 8032): a station signs the last head of a recording's content chain. docs/explanation/threat-model.md
+// explains what that proves.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // CSV files of instrument motion and the declaration of their columns: schemas/columns.schema.json defines such
-// maps, docs/sources.md explains them.
+// maps, docs/explanation/sources.md explains them.
 #pragma once
 
 #include <array>

@@ -11,7 +11,7 @@
 
 namespace calot::recorder {
 
-/// Mapping of a file's frame F into the scene (docs/sources.md): p_W = taskCentre + slide_h view + scale
+/// Mapping of a file's frame F into the scene (docs/explanation/sources.md): p_W = taskCentre + slide_h view + scale
 /// R_WC (p_F - middle).
 struct KinematicsMapping {
   Vec3 middle = Vec3::Zero();  ///< p_F: of the central 90 % of both hands' positions, axis by axis (m)

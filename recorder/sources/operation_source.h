@@ -16,7 +16,8 @@
 namespace calot::recorder {
 
 /// A synthetic operator in closed loop: it holds the specimen with one hand and with the other clears vessels of fat,
-/// frees the lower third of the bed, clips, cuts, and frees the rest, as far as the scene has these. docs/sources.md.
+/// frees the lower third of the bed, clips, cuts, and frees the rest, as far as the scene has these.
+/// docs/explanation/sources.md.
 ///
 /// It observes when a hand is idle, and decides one reaction time later. It must therefore receive every step
 /// (watcher()); otherwise its hands stay still. The same profile, scene, seed and steps give the same samples. At real

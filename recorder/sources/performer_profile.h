@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Profiles of performers: strict JSON (schemas/performer.schema.json). They describe motor control, perception and
-// decisions, with sources in docs/sources.md; never a checkpoint's value.
+// decisions, with sources in docs/explanation/sources.md; never a checkpoint's value.
 #pragma once
 
 #include <cstdint>

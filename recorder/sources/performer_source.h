@@ -62,7 +62,8 @@ class StrokePlan {
 ///
 /// Strokes are minimum-jerk (Flash and Hogan 1985) with noise that grows with their length (Harris and Wolpert 1998);
 /// between targets the instrument is pulled back towards its port (Chmarra et al. 2008). The same profile, scene and
-/// seed give the same samples. The camera rests at the scene's pose. Parameters and their sources: docs/sources.md.
+/// seed give the same samples. The camera rests at the scene's pose. Parameters and their sources:
+/// docs/explanation/sources.md.
 class PerformerSource : public SampleSource {
  public:
   /// @throws Error (invalid) where the scene offers a hand nothing to touch.

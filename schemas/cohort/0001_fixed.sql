@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
--- Fixed tables: what no recording can give back. docs/cohort.md explains them. Times are ISO 8601 UTC with Z.
+-- Fixed tables: what no recording can give back. docs/reference/cohort.md explains them. Times are ISO 8601 UTC with Z.
 -- Numbers of enumerations are those of the recording (schemas/recording.md) and never reused.
 
 CREATE TABLE participant (

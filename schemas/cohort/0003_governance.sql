@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
 -- Fixed tables: where and by whom it was recorded, who withdrew, what was handed out, and by which key it was signed.
--- docs/cohort.md explains them; docs/threat-model.md says what a signature shows.
+-- docs/reference/cohort.md explains them; docs/explanation/threat-model.md says what a signature shows.
 
 ALTER TABLE attempt ADD COLUMN station TEXT NOT NULL DEFAULT '';
 

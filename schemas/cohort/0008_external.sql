@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
--- What users' own scripts computed of attempts (docs/metrics.md). Nothing here can be run: of a script there is its hash alone.
+-- What users' own scripts computed of attempts (docs/how-to/own-metrics.md). Nothing here can be run: of a script there is its hash alone.
 
 -- A version of a name stands for one source.
 CREATE TABLE external_metric (

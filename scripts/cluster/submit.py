@@ -3,7 +3,7 @@
 """Regrades a cohort, or assesses folders, as an array of Slurm jobs: shares, then one job that takes them all and reports.
 
 Run it again after jobs were killed or nodes failed: complete shards stay, one that was cut short goes on where it was. The folder has to be
-on a file system that all nodes see. docs/cluster.md describes all of it.
+on a file system that all nodes see. docs/how-to/cluster.md describes all of it.
 
   submit.py regrade --cohort C.db --folder RUN RECORDINGS...     --shards N, or as many as --bundle gives
   submit.py assess  --cohort C.db --folder RUN RECORDINGS...

@@ -136,7 +136,7 @@ class ContactSurface {
   std::vector<int> node_;
 };
 
-/// Bounds of each patch, grown by `margin` and rounded outward to float (docs/contact.md).
+/// Bounds of each patch, grown by `margin` and rounded outward to float (docs/explanation/contact.md).
 void patchBounds(const ContactSurface& surface, std::span<const Vec3> position, double margin, std::vector<Box>& out);
 
 /// Lists the patches whose bounds changed, ascending, for BroadPhase::refit(). @pre sizes agree

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one list of instruments. Each has a definition of this name in namespace instrument (sim/instruments) and a
-// drawing of this name (gui/render/instruments): a missing one does not link. docs/extending.md says how to add one.
+// drawing of this name (gui/render/instruments): a missing one does not link. docs/extending/index.md says how to add
+// one.
 #pragma once
 
 /// Name in code, and the number that recordings store, which is never reused. In the order of the trainer's keys.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What an attempt amounts to at a step, as opposed to a step's raw facts: phase, critical view of safety, errors
-// (docs/procedure.md). Judged from StepResult alone, so that recordings of any simulation version can be judged anew.
+// (docs/explanation/procedure.md). Judged from StepResult alone, so that recordings of any simulation version can be
+// judged anew.
 #pragma once
 
 #include <cstdint>

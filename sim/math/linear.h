@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small fixed-size linear algebra: Eigen without its vectorisation (docs/determinism.md).
+// Small fixed-size linear algebra: Eigen without its vectorisation (docs/explanation/determinism.md).
 #pragma once
 
 #include <Eigen/Core>

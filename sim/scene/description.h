@@ -105,7 +105,7 @@ struct DivideDescription {
   }
 };
 
-/// What is to be done in a scene (docs/procedure.md). Without a specimen there is nothing.
+/// What is to be done in a scene (docs/explanation/procedure.md). Without a specimen there is nothing.
 struct ProcedureDescription {
   std::string specimen;                   ///< organ that is to be freed
   std::string bed;                        ///< connective tissue that holds it

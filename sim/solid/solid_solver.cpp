@@ -16,7 +16,7 @@ constexpr std::size_t nodesPerTask = 128;
 /// whose compliance differs much from that of the reference configuration.
 constexpr double maxNodeSpeed = 5.0;
 /// With a lattice, the remaining error has no smooth part, which displaces most: ten times the tolerance gives the same
-/// error as sweeps alone (docs/simulation.md).
+/// error as sweeps alone (docs/explanation/simulation.md).
 constexpr double smoothErrorFactor = 10.0;
 constexpr double weightless = 0.1;  ///< share of a node's reference mass below which clamping is not reported
 

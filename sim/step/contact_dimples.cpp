@@ -13,8 +13,8 @@ namespace {
 
 /// Size of the patch over which a node of the lattice spreads a force, in edges of its cells. 0.225 gives the
 /// compliance of the meshes of a block of 1,100 to 20,000 tetrahedra, less that of the half-space outside the cells, at
-/// vertices, edges and faces within 5 %; this is best down to 6 mm (docs/accuracy.md). Larger: softer contact on coarse
-/// meshes.
+/// vertices, edges and faces within 5 %; this is best down to 6 mm (docs/explanation/accuracy.md). Larger: softer
+/// contact on coarse meshes.
 constexpr double nodeSpread = 0.235;
 /// Down to here a dimple follows the half-space; deeper, tissue counts as pressed together, and the dimple goes at most
 /// `lastDepth` further (m). Larger: thin instruments sink through organs; smaller: deep presses are too firm. Assumed.

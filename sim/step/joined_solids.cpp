@@ -10,7 +10,7 @@ namespace {
 
 /// With fat no tolerance of speed ends a solve (solveUnconstrained()), and its relative tolerance is by this larger.
 /// Larger: motion of fat is less exact; smaller: slower, with no figure of a grade nearer to its limit
-/// (docs/accuracy.md).
+/// (docs/explanation/accuracy.md).
 constexpr double fatToleranceFactor = 10.0;
 /// Tolerance of speed of solves that others of the same step go on from, over that of responses. Larger: contact takes
 /// more passes; smaller: solves do what the next ones do again. Measured on the whole operation.

@@ -13,7 +13,7 @@ namespace {
 
 /// Radius of the ring, in those of the capsule, and how many of its points the contact point counts as. A larger ring
 /// or a lighter centre: sheets as thin as the tool are pierced by fast ones; the opposite: deep presses are too soft on
-/// fine meshes and too firm beside a coarse one's vertices. Measured (docs/accuracy.md).
+/// fine meshes and too firm beside a coarse one's vertices. Measured (docs/explanation/accuracy.md).
 constexpr double ringRadius = 1.4;
 constexpr double centrePoints = 2.0;
 /// Directions of the ring's points: the corners of a regular hexagon. Fewer: their places in the cells show.

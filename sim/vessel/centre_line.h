@@ -16,8 +16,8 @@ enum class Stump : std::uint8_t { none, before, after };
 
 /// Position and frame (z along the vessel towards its end, x and y across it) in W. In a whole element: a cubic
 /// Hermite curve through the nodes, with their z axes times the chord's length as tangents, and blended frames; both
-/// are free of kinks at nodes. In a parted element: the reference chord, fixed to the stump's node. @param
-/// where.element is of branch where.branch
+/// are free of kinks at nodes. In a parted element: the reference chord, fixed to the stump's node.
+/// @pre where.element is of branch where.branch
 Pose centreLine(const BeamModel& model, const BeamState& state, const BeamPoint& where, Stump stump = Stump::none);
 
 /// Nodes that a point of the centre line depends on, with weights that sum to one.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Headline figures of a run, by the names of docs/performance.md.
+// Headline figures of a run, by the names of docs/reference/benchmarks.md.
 #pragma once
 
 #include <map>

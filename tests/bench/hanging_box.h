@@ -12,7 +12,7 @@ struct BoxSize {
   int steps;           ///< measured, of ours
   int peerSteps;       ///< measured, of the peer; 0: it takes too long
   double frameworkMs;  ///< a step of the fastest class of the framework that the paper used, at 100 iterations, on a
-                       ///< machine like the one of docs/performance.md
+                       ///< machine like the one of docs/explanation/performance-details.md
 };
 inline constexpr BoxSize boxSizes[] = {{504, 7, 4, 3, 100, 60, 0.86},    {1500, 10, 5, 5, 100, 60, 1.7},
                                        {5040, 15, 8, 7, 60, 40, 5.1},    {10800, 18, 10, 10, 60, 40, 10.3},

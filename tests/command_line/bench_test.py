@@ -37,7 +37,7 @@ class Bench(program.ProgramTest):
         self.assertIn("haptics/tick/thirty_contacts", answer.out)
         figures = json.loads(file.read_text())
         self.assertEqual(set(figures), {"haptics.tick_mean_ms", "haptics.tick_p999_ms"})
-        documented = set(re.findall(r"^\| `([a-zA-Z0-9_.]+)` \|", (program.SOURCE / "docs/performance.md").read_text(), re.MULTILINE))
+        documented = set(re.findall(r"^\| `([a-zA-Z0-9_.]+)` \|", (program.SOURCE / "docs/reference/benchmarks.md").read_text(), re.MULTILINE))
         self.assertLessEqual(set(figures), documented)
         for name, value in figures.items():
             self.assertIsInstance(value, float)

@@ -37,7 +37,7 @@ class Engine(program.ProgramTest):
             self.assertEqual(hashlib.sha256(module.read_bytes()).hexdigest(), entry["sha256"], entry["module"])
             self.assertTrue(list((ENGINES / str(entry["version"])).glob("*.transcript")), entry["version"])
         newest = json.loads((SOURCE / "assets/golden/golden.json").read_text())["simulation_version"]
-        self.assertIn(newest, [e["version"] for e in self.manifest], "keep the engine of the golden recordings: docs/engines.md")
+        self.assertIn(newest, [e["version"] for e in self.manifest], "keep the engine of the golden recordings: docs/explanation/engines.md")
 
     def test_list(self):
         listed = json.loads(self.well("engine", "list", "--json").out)

@@ -84,7 +84,7 @@ def quaternions(rotations):
 
 
 class Reference:
-    """docs/metrics.md in NumPy and SciPy: nothing of the program's own."""
+    """docs/reference/metrics/samples.md in NumPy and SciPy: nothing of the program's own."""
 
     def __init__(self, place, rotations, rate=30.0, cutoff=6.0):
         rows = len(place)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results for others: PDF, exports, bundles, and the lines of docs/reading-results.md that read them."""
+"""Results for others: PDF, exports, bundles, and the lines of docs/how-to/reading-results.md that read them."""
 
 import json
 import os
@@ -26,7 +26,7 @@ def cohort_at(folder):
 
 
 def blocks(language):
-    text = (program.SOURCE / "docs/reading-results.md").read_text(encoding="utf-8")
+    text = (program.SOURCE / "docs/how-to/reading-results.md").read_text(encoding="utf-8")
     return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
 
 

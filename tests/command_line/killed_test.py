@@ -65,7 +65,7 @@ class Killed(program.ProgramTest):
                     worst, flushed = max(worst, lost), flushed + (saved > 0)
                     self.assertLessEqual(lost, LARGEST_LOSS)
                     self.assertIn(": bit-exact, incomplete, ", self.well("replay", r).out)
-                    self.assertRegex(self.well("inspect", r).out, r"(?m)^state +incomplete$")
+                    self.assertRegex(self.well("inspect", r).out, r"(?m)^ *state +incomplete$")
                     whole = self.path("recovered.h5")
                     self.assertIn("incomplete", self.well("recover", r, "-o", whole, "--force").out)
                     self.assertIn(": bit-exact, incomplete, ", self.well("replay", whole).out)

@@ -25,7 +25,7 @@ class Scenes(program.ProgramTest):
             self.assertGreaterEqual(vessel["beams"], 40, vessel["name"])
         for fat in scene["fat"]:
             self.assertLessEqual(fat["cellSize"], 0.75e-3)
-            # Of 3 mm; with 845 of 2.25 mm every figure is as near to its limit (docs/accuracy.md).
+            # Of 3 mm; with 845 of 2.25 mm every figure is as near to its limit (docs/explanation/mesh-and-step.md).
             self.assertGreaterEqual(fat["hexahedra"], 400)
         self.assertEqual(len(scene["fat"]), 1)
         self.assertGreaterEqual(sum(c["springs"] for c in scene["connective"]), 200)

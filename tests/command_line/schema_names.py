@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Holds a recording against schemas/recording.md and schemas/observables.md, knowing nothing but these pages.
+"""Holds a recording against the pages schemas/recording*.md and schemas/observables.md, knowing nothing but these pages.
 
 Every name that the pages require is there with the type, shape, chunk and filters they say; nothing is there that they do not
 name; and the content chain, computed anew as the page tells, gives the heads that the file holds.
@@ -87,6 +87,8 @@ def found_names(file):
 def is_fixed_string(dtype):
     return dtype.kind == "S" and h5py.check_string_dtype(dtype).length is not None
 
+
+PAGES = ("recording", "recording-device", "recording-integrity", "observables")
 
 # What a golden recording goes without.
 NOT_GOLDEN = re.compile(r"^/(observables|keyframes|steps/(state|field)_digest)|^/ticks/(left|right|<hand>)/(force|torque)$")
@@ -274,8 +276,8 @@ def chain_faults(file, rows):
 
 
 def names_of(schemas):
-    """All rows of the two pages of a folder."""
-    return expanded(rows_of(schemas + "/recording.md")) + expanded(rows_of(schemas + "/observables.md"))
+    """All rows of the pages of a folder that describe recordings."""
+    return [row for page in PAGES for row in expanded(rows_of(f"{schemas}/{page}.md"))]
 
 
 def main():

@@ -35,8 +35,8 @@ class Size(program.ProgramTest):
         self.assertEqual(groups["keyframes"], keyframes)
         self.assertEqual(list(groups.values()), sorted(groups.values(), reverse=True))
         text = self.well("inspect", r).out
-        self.assertRegex(text, rf"(?m)^bytes +{r.stat().st_size}$")
-        self.assertRegex(text, rf"(?m)^bytes, keyframes +{keyframes} \([0-9.]+ %\)$")
+        self.assertRegex(text, rf"(?m)^ *bytes +{r.stat().st_size}$")
+        self.assertRegex(text, rf"(?m)^ *bytes, keyframes +{keyframes} \([0-9.]+ %\)$")
 
     def test_against_repacked(self):
         r = self.path("r.h5")

@@ -253,6 +253,9 @@ class Tables(program.ProgramTest):
         page = self.path("p.html")
         command = self.study(*AT_LAST, *OUTCOMES, "--html", page)
         shown = self.well(*command, "--all").out
+        first = self.well(*self.study(*AT_LAST, *OUTCOMES)).out.splitlines()
+        self.assertLessEqual(len(first), 40, "one screen")
+        self.assertLessEqual(max(map(len, first)), 120)
         said = json.loads(self.well(*command, "--force", "--json").out)
         self.refused(2, *command, names=(page, "--force"))
         self.well(*command, "--force")

@@ -202,7 +202,7 @@ class OtherVersion(program.ProgramTest):
         self.refused(5, "replay", r, names=(r, "999"))
         answer = self.refused(5, "replay", "--anyway", r, names=(r, "999"))
         self.assertIn("bit-exact", answer.err)  # it was replayed, and the version is all that differs
-        self.assertRegex(self.well("inspect", r).out, r"(?m)^simulation_version +999$")
+        self.assertRegex(self.well("inspect", r).out, r"(?m)^ *simulation_version +999$")
 
     def test_anyway_reports_the_difference(self):
         r = self.copy(short())

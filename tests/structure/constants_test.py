@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps docs/materials.md complete: each numeric constant of each scene, each named floating-point constant of sim/ and each default of a
+"""Keeps docs/reference/materials.md complete: each numeric constant of each scene, each named floating-point constant of sim/ and each default of a
 description, with the value that it has, and no other. A message gives the row to add or to mend.
 
 usage: constants_test.py ROOT | --self-test
@@ -16,11 +16,12 @@ import tempfile
 
 import cpp_text
 
-PAGE = "docs/materials.md"
+PAGE = "docs/reference/materials.md"
+FOLDER = "docs/reference/materials"  # further pages of the same tables
 SCENE_TABLE = "| scene constant | scenes | value | unit | basis | larger; smaller |"
 CODE_TABLE = "| code constant | file | value | unit | basis | larger; smaller |"
 
-# Of a scene: where things are and how they are drawn (docs/organs.md, docs/scenes.md), and what identifies the file.
+# Of a scene: where things are and how they are drawn (docs/explanation/organs.md, docs/reference/scenes.md), and what identifies the file.
 DRAWN = ("formatVersion", "version.*", "workspace.*", "camera.*", "hands.*.port", "hands.*.home", "vessels.*.path.*", "fat.*.triangle.corners.*",
          "organs.*.anchors.*.centre", "retraction.*.centre")
 # Of the code: elementary functions, whose coefficients follow from their errors, and what only pictures show.
@@ -142,8 +143,9 @@ def faults(root):
     scenes, code = scene_constants(root), code_constants(root)
     all_scenes = sorted({scene for scene, _ in scenes})
     listed_scene, listed_code, out = set(), set(), []
-    for line, table, cells in rows_of((root / PAGE).read_text(encoding="utf-8")):
-        at = f"{PAGE}:{line}:"
+    pages = [root / PAGE] + sorted((root / FOLDER).glob("*.md"))
+    for page, (line, table, cells) in ((p, row) for p in pages for row in rows_of(p.read_text(encoding="utf-8"))):
+        at = f"{page.relative_to(root)}:{line}:"
         if len(cells) != 6 or not re.fullmatch(r"`[^`]+`", cells[0]):
             out.append(f"{at} not a row of {table}")
             continue
@@ -205,6 +207,7 @@ def self_test():
         (root / "assets/scenes/a.json").write_text(json.dumps(scene))
         (root / "sim/a.cpp").write_text(source)
         for rows, expected in cases:
+            (root / PAGE).parent.mkdir(parents=True, exist_ok=True)
             (root / PAGE).write_text("\n".join(rows) + "\n")
             found, scenes, code = faults(root)
             assert (scenes, code) == (2, 2), (scenes, code)

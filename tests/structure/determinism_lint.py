@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuses names that the determinism contract forbids (docs/determinism.md), in every folder that obeys it.
+"""Refuses names that the determinism contract forbids (docs/explanation/determinism.md), in every folder that obeys it.
 
 usage: determinism_lint.py ROOT | --self-test
 """

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clips that were lost or sit badly, by the geometric rules of the step (docs/vessels.md).
+// Clips that were lost or sit badly, by the geometric rules of the step (docs/explanation/vessels.md).
 #include "analytics/checkpoints/checkpoint.h"
 
 #include <fmt/format.h>

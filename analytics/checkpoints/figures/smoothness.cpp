@@ -17,7 +17,8 @@ namespace {
 
 /// Shorter segments (s) say nothing of a band that begins near 0 Hz.
 constexpr double minSegment = 1.0;
-/// Its upper frequency follows the spectrum's tail, which a bridge lowers: docs/metrics.md has the simulation.
+/// Its upper frequency follows the spectrum's tail, which a bridge lowers: docs/reference/metrics/samples.md has the
+/// simulation.
 constexpr double minSparcCoverage = 0.95;
 
 const CheckpointDefinition& sparcDefinition() {

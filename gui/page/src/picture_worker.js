@@ -5,7 +5,7 @@ import { instantiate, place, textAt } from './wasm_host.js';
 
 const blank = [0.043, 0.05, 0.06, 1];
 const smokeSeconds = 2.5;
-// Film quality takes about eight times as long as interactive quality (docs/rendering.md). What one picture takes, both
+// Film quality takes about eight times as long as interactive quality (docs/explanation/rendering.md). What one picture takes, both
 // panes of it, decides what pictures have:
 const measured = 6; // pictures that tell
 const always = 2.5; // ms: quicker ones have film quality always
@@ -121,7 +121,7 @@ export function pictureWorker() {
     setTimeout(once, hidden); // a page that is not seen has no frames, but goes on proving
   }
 
-  /** Smoke is no part of a view: it is made of the events of the last seconds (docs/rendering.md). */
+  /** Smoke is no part of a view: it is made of the events of the last seconds (docs/explanation/rendering.md). */
   function addSmoke(moment) {
     if (!events) return;
     const oldest = moment - Math.ceil(smokeSeconds / events.stepSeconds);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The proof in words (docs/glossary.md): parts are consistent; only all of them together make an attempt verified.
+// The proof in words (docs/reference/glossary.md): parts are consistent; only all of them together make an attempt verified.
 import { State } from './verification.js';
 import { clock } from './words.js';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Proves one segment after the other (docs/determinism.md, "In segments").
+// Proves one segment after the other (docs/explanation/determinism.md, "In segments").
 import { breath } from './breath.js';
 import { same } from './bytes.js';
 import { compareStep } from './compare.js';

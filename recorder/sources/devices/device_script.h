@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A stream of device samples as a file, which a scripted device plays or a calibration is measured
-// from (format in docs/devices.md).
+// from (format in docs/how-to/devices.md).
 #pragma once
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Do the simulation's intervals hold what a run eight times finer gives? One performer's samples, open-loop; the
 // constants are those of the scene in both, so that what is tried is the part of step and mesh
-// (docs/uncertainty.md has the table).
+// (docs/explanation/uncertainty.md has the table).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

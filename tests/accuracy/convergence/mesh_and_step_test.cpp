@@ -29,8 +29,8 @@ Graded run(const std::string& scene, const Variant& variant, const std::vector<T
   return graded(scene + ", " + variant.name(), redivided(sceneOf(scene), variant.ticksPerStep, variant.mesh), ticks);
 }
 
-/// Table in the form of docs/accuracy.md: a line a checkpoint, its value in the last run and the relative difference
-/// of the others to it.
+/// Table in the form of docs/explanation/mesh-and-step.md: a line a checkpoint, its value in the last run and the
+/// relative difference of the others to it.
 void print(const std::string& scene, const std::vector<Variant>& variants, const std::vector<Graded>& runs) {
   std::printf("\n### %s\n\n| checkpoint | %s |", scene.c_str(), variants.back().name().c_str());
   for (std::size_t i = 0; i + 1 < runs.size(); ++i) std::printf(" %s |", variants[i].name().c_str());

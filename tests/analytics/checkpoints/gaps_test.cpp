@@ -280,7 +280,7 @@ TEST(SlowTracker, losesNothing) {
   EXPECT_GT(seen / whole, 0.85);
 }
 
-/// A tenth of the difference between published groups: docs/metrics.md, Gaps.
+/// A tenth of the difference between published groups: docs/reference/metrics/samples.md, Gaps.
 constexpr double sparcTolerance = 0.12, jerkTolerance = 0.2, pathTolerance = 0.02;
 
 TEST(Smoothness, doesNotDependOnTheNumberOfGaps) {

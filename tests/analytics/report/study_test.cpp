@@ -9,6 +9,7 @@
 #include <fstream>
 #include <locale>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "analytics/cohort/embedded.h"
@@ -406,7 +407,10 @@ TEST(Study, allTiedAnswersWithAReason) {
   database.storeAttempt(attemptOf(2, "unskilled"), valuesOf(5, 1));
   const Study study = makeStudy(database, performers);
   EXPECT_EQ(rowOf(study, "elapsed-time", "").test.reason(), "all values are equal");
-  EXPECT_NE(textOf(study).find("elapsed-time: no test, all values are equal"), std::string::npos);
+  // Rows of which the same is to be said share a sentence, which may be longer than a line.
+  std::string text = textOf(study);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  EXPECT_TRUE(std::regex_search(text, std::regex("elapsed-time(, [a-z -]+)*: no test, all values are equal"))) << text;
   EXPECT_TRUE(nlohmann::json::parse(studyJson(study)).at("rows").at(0).at("mann_whitney").at("value").is_null());
 }
 

@@ -14,6 +14,7 @@
 #include "analytics/report/coverage_warning.h"
 #include "analytics/report/page_html.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
 #include "analytics/statistics/published_coverage.h"
 #include "recorder/errors.h"
 #include "tests/analytics/support/refusal.h"
@@ -103,6 +104,10 @@ TEST(TableStudy, warnsWhereACoverageIsLow) {
   EXPECT_NE(few.rows[0].coverageWarnings[0].find("not known for fewer than 5"), std::string::npos);
   EXPECT_EQ(intervalWarnings(few, true)[0].find("Warning (1 of 1 rows)"), 0U);
   EXPECT_TRUE(intervalWarnings(few, false).empty());
+  // What is to be said of several intervals is said once.
+  ASSERT_GT(few.rows[0].coverageWarnings.size(), 1U);
+  EXPECT_EQ(intervalWarnings(few, true).size(), 1U);
+  EXPECT_NE(intervalWarnings(few, true)[0].find(", g: coverage is not known"), std::string::npos);
 }
 
 /// A clock that is the same but for its last bits has no group in which it is the faster one.
@@ -121,7 +126,7 @@ TEST(TableStudy, roundingIsNoDifference) {
 }
 
 TEST(PublishedCoverage, isThatOfThePage) {
-  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/statistics.md");
+  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/explanation/coverage.md");
   std::ostringstream text;
   text << file.rdbuf();
   const std::string page = text.str();

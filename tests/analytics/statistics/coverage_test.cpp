@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How often the intervals that reports print hold the truth: simulated, and held against the table in
-// docs/statistics.md. With CALOT_HEAVY set every cell with 4,000 samples (and the table is printed), else the column of
-// ten with 400.
+// docs/explanation/coverage.md. With CALOT_HEAVY set every cell with 4,000 samples (and the table is printed), else the
+// column of ten with 400.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -222,7 +222,7 @@ std::string cellOf(const Covered& c) {
 
 /// First numbers of the four cells of the row in the documentation; none where there is "-".
 std::map<std::string, std::vector<std::optional<double>>> documented() {
-  std::ifstream file(CALOT_SOURCE_DIR "/docs/statistics.md");
+  std::ifstream file(CALOT_SOURCE_DIR "/docs/explanation/coverage.md");
   std::map<std::string, std::vector<std::optional<double>>> rows;
   std::string line;
   while (std::getline(file, line)) {
@@ -254,7 +254,7 @@ TEST(Coverage, isWhatTheDocumentationSays) {
     std::string line{"| "};
     line.append(name).append(" |");
     const auto row = table.find(name);
-    EXPECT_NE(row, table.end()) << "not in docs/statistics.md: " << line;
+    EXPECT_NE(row, table.end()) << "not in docs/explanation/coverage.md: " << line;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       if (!heavy && sizes[i] != 10) continue;
       const Covered covered = simulate(c, sizes[i], samples, heavy ? seed : seed + 1);

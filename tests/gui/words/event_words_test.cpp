@@ -39,7 +39,7 @@ TEST(EventWords, LeaveOutWhatOnlyAMachineCaresFor) {
   }
 }
 
-// What procedures count as errors (docs/procedure.md) is one here as well, and each kind has one row.
+// What procedures count as errors (docs/explanation/procedure.md) is one here as well, and each kind has one row.
 TEST(EventWords, CallFaultsWhatTheProcedureCounts) {
   std::set<EventKind> faults;
   std::set<std::string> phrases;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ducts, arteries and fat of the scenes in assets/: what docs/organs.md and docs/scenes.md say of them, in numbers.
+// Ducts, arteries and fat of the scenes in assets/: what docs/explanation/organs.md and docs/reference/scenes.md say of
+// them, in numbers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

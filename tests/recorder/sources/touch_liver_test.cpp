@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scene touch-liver held against what docs/scenes.md says of it, in numbers; and real motion in it.
+// The scene touch-liver held against what docs/reference/scenes.md says of it, in numbers; and real motion in it.
 #include <gtest/gtest.h>
 
 #include <cmath>

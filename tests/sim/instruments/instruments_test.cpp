@@ -81,7 +81,7 @@ TEST(Instruments, NothingAndNumbersThatNobodyHasAreNoInstrument) {
 
 /// The page for authors of scenes and readers of recordings.
 TEST(Instruments, DocsAgree) {
-  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/scenes.md");
+  std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/reference/scenes.md");
   ASSERT_TRUE(file);
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   for (const InstrumentDefinition* each : instruments()) {
