@@ -74,6 +74,15 @@ py::dict sceneOf(const DrivenAttempt& attempt) {
     homes.append(py::make_tuple(hand.home.x(), hand.home.y(), hand.home.z()));
   }
   for (const Vec3& corner : scene.workspace) workspace.append(py::make_tuple(corner.x(), corner.y(), corner.z()));
+  py::list observed;
+  for (const ObservedPart& part : observedParts) {
+    py::tuple shape = py::make_tuple(handCount, part.width);
+    if (part.width == structureWidth) shape = py::make_tuple(handCount, model.structures().size());
+    if (part.width == 1) shape = py::make_tuple(handCount);
+    if (part.width == 0) shape = py::make_tuple(1);
+    observed.append(py::make_tuple(part.name, part.unit, shape));
+  }
+  d["observed"] = observed;
   d["structures"] = structures;
   d["ports"] = ports;
   d["homes"] = homes;

@@ -137,6 +137,7 @@ void bindReplay(py::module_& m) {
       .def_readonly("critical_view", &StepFacts::criticalView)
       .def_readonly("errors", &StepFacts::errors)
       .def_readonly("critical_errors", &StepFacts::criticalErrors)
+      .def_property_readonly("observation", [](const StepFacts& f) { return bytesOf(f.observation); })
       .def_property_readonly("row", [](const StepFacts& f) { return bytesOf(f.row); })
       .def_property_readonly("forces", [](const StepFacts& f) { return bytesOf(f.forces); })
       .def_property_readonly("events", [](const StepFacts& f) { return bytesOf(f.events); })

@@ -17,13 +17,14 @@ namespace {
 
 constexpr double allButtons = 15.0;
 
+/// Rounded: actions that are drawn at random are no whole numbers.
 std::uint8_t buttonsOf(double number, const char* hand) {
-  if (!(number >= 0.0 && number <= allButtons && number == std::floor(number)))
+  if (!(number >= 0.0 && number <= allButtons))
     throw Error(ErrorKind::invalid,
-                fmt::format("the {} hand's command: its buttons are {}; give a whole number, the sum of 1 cut, "
-                            "2 coagulation, 4 fire and 8 lock",
+                fmt::format("the {} hand's command: its buttons are {}; give the sum of 1 cut, 2 coagulation, 4 fire "
+                            "and 8 lock",
                             hand, number));
-  return static_cast<std::uint8_t>(number);
+  return static_cast<std::uint8_t>(std::lround(number));
 }
 
 }  // namespace

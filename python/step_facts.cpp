@@ -47,8 +47,31 @@ std::map<std::string, std::string> resultUnits() {
   return units;
 }
 
+void FactsObserver::observe(const recorder::StepRecord& record) {
+  facts_.observation.clear();
+  ByteWriter writer(facts_.observation);
+  const auto both = [&](auto&& write) {
+    for (const HandResult& hand : record.result.hand) write(hand);
+  };
+  both([&](const HandResult& h) { writer.write(h.tipSimulated); });
+  both([&](const HandResult& h) {
+    for (const double part : {h.orientation.w(), h.orientation.x(), h.orientation.y(), h.orientation.z()})
+      writer.write(part);
+  });
+  both([&](const HandResult& h) { writer.write(h.jaw); });
+  both([&](const HandResult& h) { writer.write(h.insertion); });
+  both([&](const HandResult& h) { writer.write(h.contactForce); });
+  both([&](const HandResult& h) {
+    for (const double force : h.structureForce) writer.write(force);
+  });
+  both([&](const HandResult& h) { writer.write(h.graspForce); });
+  for (const recorder::HandTick& hand : record.ticks.back().hand) writer.write(hand.force);
+  writer.write(static_cast<double>(record.step + 1) * stepSeconds_);
+}
+
 void FactsObserver::onStep(const recorder::StepRecord& record) {
   facts_.step = record.step;
+  observe(record);
   facts_.row.clear();
   recorder::appendResultRow(record.result, facts_.row);
   facts_.forces.resize(record.ticks.size() * handCount * 6 * sizeof(double));

@@ -66,15 +66,18 @@ class Group(Mapping[str, Array]):
 class Result:
     """What one step came to."""
 
-    __slots__ = ("step", "time", "observables", "_facts", "_ticks")
+    __slots__ = ("step", "time", "_facts", "_kind", "_ticks")
 
     def __init__(self, facts: _calot.Facts, kind: np.dtype[Any], step_seconds: float, ticks: int) -> None:
         #: Number of the step, from 0 on, and the time at its end (s).
         self.step = facts.step
         self.time = (facts.step + 1) * step_seconds
-        #: Everything that the step reports (schemas/observables.md), as a row of a structured array.
-        self.observables: Any = np.frombuffer(facts.row, kind)[0]
-        self._facts, self._ticks = facts, ticks
+        self._facts, self._kind, self._ticks = facts, kind, ticks
+
+    @property
+    def observables(self) -> Any:
+        """Everything that the step reports (schemas/observables.md), as a row of a structured array."""
+        return np.frombuffer(self._facts.row, self._kind)[0]
 
     def __getitem__(self, name: str) -> Any:
         """An observable by its name without "/observables/": `result["left/contact_force"]`."""

@@ -10,7 +10,7 @@ from typing import Any, Callable, Optional, Sequence, Union
 import numpy as np
 
 from . import _calot
-from ._arrays import HANDS, OUTCOMES, Array, Result, row_type
+from ._arrays import HANDS, OUTCOMES, PHASES, Array, Result, row_type
 from ._assess import checked_participant, choose
 from ._errors import InvalidError
 from ._moment import Camera, Moment
@@ -24,9 +24,8 @@ CUT, COAGULATE, FIRE, LOCK = 1, 2, 4, 8
 ACTION = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("jaw", "rad"), ("buttons", ""))
 
 _WIDEST_JAW = 1.6
+_DONE = PHASES.index("done")
 _Base: Any = environment_base()
-_OBSERVED = (("tip", "tip_simulated", "m"), ("orientation", "orientation", ""), ("jaw", "jaw", "rad"), ("insertion", "insertion", "m"),
-             ("contact_force", "contact_force", "N"), ("structure_force", "organ_force", "N"), ("grasp_force", "grasp_force", "N"))
 
 
 @dataclass(frozen=True)
@@ -44,13 +43,15 @@ class Scene:
     ticks_per_step: int
     time_limit: float
     procedure: bool
+    #: Name, unit and shape of each part of an observation.
+    observed: tuple[tuple[str, str, tuple[int, ...]], ...]
 
     def __init__(self, name: str, _about: Optional[dict[str, Any]] = None) -> None:
         about = dict(_calot.Attempt(name, 0).scene if _about is None else _about)
         for key in ("ports", "homes", "workspace"):
             about[key] = np.array(about[key])
             about[key].flags.writeable = False
-        about["structures"] = tuple(about["structures"])
+        about["structures"], about["observed"] = tuple(about["structures"]), tuple(about["observed"])
         for key, value in about.items():
             object.__setattr__(self, key, value)
 
@@ -63,8 +64,8 @@ class Environment(_Base):  # type: ignore[misc]
     """An attempt at a scene, one step (10 ms) a call.
 
     An action has shape (2, 6): for the left and the right hand the tip's position x, y, z at the step's end (m, in the scene's frame W), the roll about the
-    shaft (rad), the opening of the jaws (rad), and the buttons as a sum of CUT, COAGULATE, FIRE and LOCK. The shaft passes through the hand's port. Between
-    two actions the hands move evenly.
+    shaft (rad), the opening of the jaws (rad), and the buttons as a sum of CUT, COAGULATE, FIRE and LOCK
+    (rounded to a whole number). The shaft passes through the hand's port. Between two actions the hands move evenly.
 
     reward, done: called with each step's Result; without them the reward is 0.0, and an attempt is done when its procedure is, or the simulation ran away.
     seconds: of attempt time after which it is truncated; 0: the scene's own limit alone.
@@ -78,18 +79,22 @@ class Environment(_Base):  # type: ignore[misc]
                  seconds: float = 0.0) -> None:
         self.scene = Scene(scene)
         self._name, self._seed, self._reward, self._done, self._limit = scene, seed, reward, done, seconds
+        self._step_seconds, self._ticks = self.scene.step_seconds, self.scene.ticks_per_step
         self._attempt: Optional[_calot.Attempt] = None
         self._wish: Optional[dict[str, Any]] = None
         self._result: Optional[Result] = None
         #: Units of the observations, by name.
-        self.units = {**{name: unit for name, _, unit in _OBSERVED}, "hand_force": "N", "time": "s"}
+        self.units = {name: unit for name, unit, _ in self.scene.observed}
+        self._parts: list[tuple[str, slice, tuple[int, ...]]] = []
+        at = 0
+        for part, _, shape in self.scene.observed:
+            self._parts.append((part, slice(at, at + int(np.prod(shape))), shape))
+            at = self._parts[-1][1].stop
         box, dictionary = space_classes()
         low = [[*self.scene.workspace[0], -np.pi, 0.0, 0.0]] * 2
         high = [[*self.scene.workspace[1], np.pi, _WIDEST_JAW, 15.0]] * 2
         self.action_space: Any = box(np.array(low), np.array(high), shape=(2, len(ACTION)), dtype=np.float64)
-        shapes = {"tip": (2, 3), "orientation": (2, 4), "jaw": (2,), "insertion": (2,), "contact_force": (2, 3), "structure_force": (2, len(self.scene.structures)),
-                  "grasp_force": (2,), "hand_force": (2, 3), "time": (1,)}
-        self.observation_space: Any = dictionary({name: box(-np.inf, np.inf, shape=shape, dtype=np.float64) for name, shape in shapes.items()})
+        self.observation_space: Any = dictionary({part: box(-np.inf, np.inf, shape=shape, dtype=np.float64) for part, _, shape in self._parts})
 
     # Gymnasium's interface
 
@@ -110,20 +115,19 @@ class Environment(_Base):  # type: ignore[misc]
         """Does one step. Gives observation, reward, terminated, truncated, and info with the step's Result."""
         attempt = self._running()
         outcome = attempt.step(action)
-        result = self._result = Result(attempt.facts, self._kind, self.scene.step_seconds, self.scene.ticks_per_step)
-        terminated = OUTCOMES[outcome] == "technical failure"
-        truncated = OUTCOMES[outcome] == "time limit"
-        if not terminated and not truncated:
-            if bool(self._done(result)) if self._done is not None else result.phase == "done":
-                terminated = True
-                self.finish("completed")
-            elif self._limit > 0.0 and result.time >= self._limit:
-                truncated = True
-                self.finish("stopped")
-        if OUTCOMES[outcome] != "running":
+        facts = attempt.facts
+        result = self._result = Result(facts, self._kind, self._step_seconds, self._ticks)
+        terminated, truncated = OUTCOMES[outcome] == "technical failure", OUTCOMES[outcome] == "time limit"
+        if terminated or truncated:
             self.finish()
+        elif bool(self._done(result)) if self._done is not None else facts.phase == _DONE:
+            terminated = True
+            self.finish("completed")
+        elif self._limit > 0.0 and result.time >= self._limit:
+            truncated = True
+            self.finish("stopped")
         reward = float(self._reward(result)) if self._reward is not None else 0.0
-        return self._observed(result), reward, terminated, truncated, {"result": result}
+        return self._observed(facts), reward, terminated, truncated, {"result": result}
 
     def render(self, width: int = 640, height: int = 360, camera: Union[str, Camera] = "endoscope", quality: str = "interactive") -> Array:
         """The scene now, (height, width, 3) bytes of red, green and blue."""
@@ -149,7 +153,7 @@ class Environment(_Base):  # type: ignore[misc]
 
         The recording is any source's, marked as synthetic: operator_kind "performer", performer_profile "controller:" and the controller's name.
         """
-        wish = {"path": os.fspath(path), "controller": controller, "version": version, "participant": checked_participant(participant), "station": station,
+        wish: dict[str, Any] = {"path": os.fspath(path), "controller": controller, "version": version, "participant": checked_participant(participant), "station": station,
                 "purpose": choose("purpose", purpose, ("training", "study", "demo", "golden")),
                 "handedness": choose("handedness", handedness, ("right", "left", "unknown")), "force": force}
         if self._attempt is not None and self._attempt.steps == 0 and not self._attempt.ended:
@@ -216,18 +220,15 @@ class Environment(_Base):  # type: ignore[misc]
             raise InvalidError(f"the attempt is over ({OUTCOMES[attempt.outcome]}): reset() begins another one")
         return attempt
 
-    def _observed(self, result: Result) -> dict[str, Array]:
-        row = result.observables
-        seen = {name: np.array((row["left/" + field], row["right/" + field])) for name, field, _ in _OBSERVED}
-        seen["hand_force"] = result.forces[-1].copy()
-        seen["time"] = np.array([result.time])
-        return seen
+    def _observed(self, facts: _calot.Facts) -> dict[str, Array]:
+        numbers = np.frombuffer(bytearray(facts.observation))
+        return {part: numbers[place].reshape(shape) for part, place, shape in self._parts}
 
     def _first(self) -> dict[str, Array]:
         """Before the first step: hands at home, no forces."""
         instruments = self.moment().instruments
         both: Callable[[Callable[[Any], Any]], Array] = lambda of: np.array([of(instruments[hand]) for hand in HANDS])
-        seen = {name: np.zeros(space.shape) for name, space in self.observation_space.items()}
+        seen = {name: np.zeros(shape) for name, _, shape in self._parts}
         seen["tip"], seen["orientation"], seen["jaw"] = both(lambda i: i.position), both(lambda i: i.orientation), both(lambda i: i.jaw)
         seen["insertion"] = np.linalg.norm(seen["tip"] - self.scene.ports, axis=1)
         return seen

@@ -124,7 +124,8 @@ class Moment:
             raise InvalidError(f"camera: {camera!r} is none; give \"endoscope\" or a calot.Camera")
         w, h, data = self._raw.render(width, height, quality, mask, cavity, pose, field)
         picture: Any = np.frombuffer(data, np.uint8).reshape(h, w, 4)
-        return picture if alpha else np.ascontiguousarray(picture[:, :, :3])
+        wanted: Array = picture if alpha else np.ascontiguousarray(picture[:, :, :3])
+        return wanted
 
     def __repr__(self) -> str:
         return f"<calot.Moment after step {self.step}, {self.time:.3f} s>"

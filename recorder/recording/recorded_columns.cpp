@@ -113,7 +113,8 @@ RecordedColumns recordedColumns(Recording& recording) {
   out.ticks = emptyColumns(layout, recording.header(), 0, layout.tickColumns);
   out.steps = emptyColumns(layout, recording.header(), layout.tickColumns, layout.stepColumns);
   for (RecordedColumn& c : out.ticks)
-    c.values.reserve(static_cast<std::size_t>(recording.tickCount() * c.width * (c.type[1] - '0')));
+    c.values.reserve(
+        static_cast<std::size_t>(recording.tickCount() * c.width * static_cast<std::uint64_t>(c.type[1] - '0')));
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     const RecordedStep& step = recording.step(n);
     for (std::size_t t = 0; t < step.samples.size(); ++t) {
