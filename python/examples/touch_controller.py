@@ -15,7 +15,7 @@ import numpy as np
 folder = pathlib.Path(tempfile.mkdtemp(prefix="calot-"))
 WANTED = 0.3  # N
 SPEED = 0.0004  # m a step: 40 mm/s
-GAIN = 0.01  # m a step for each newton that is missing: the liver gives way by some 0.04 m a newton
+GAIN = 0.002  # m a step for each newton that is missing: the liver gives way by some 0.04 m a newton
 
 # %%
 env = calot.Environment("touch-liver", seed=4, seconds=5.0)
