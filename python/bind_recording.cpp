@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "python/bindings.h"
 #include "python/errors.h"
@@ -31,6 +32,16 @@ class OpenedRecording {
   std::vector<std::byte> rawSamples(Hand hand) {
     const std::lock_guard lock(mutex_);
     return recorder::packedRawSamples(recording_, hand);
+  }
+  /// @throws Error (invalid) where there is none of that number
+  recorder::Keyframe keyframe(std::size_t index) {
+    const std::lock_guard lock(mutex_);
+    const std::size_t count = recording_.keyframeSteps().size();
+    if (index >= count)
+      throw Error(
+          ErrorKind::invalid, Where{recording_.path().string()},
+          "has " + std::to_string(count) + " keyframes, from 0 on: there is none of number " + std::to_string(index));
+    return recording_.keyframe(index);
   }
 
  private:
@@ -99,6 +110,15 @@ py::tuple rawSamplesOf(OpenedRecording& opened) {
   return py::make_tuple(bytesOf(raw[0]), bytesOf(raw[1]));
 }
 
+py::tuple keyframeOf(OpenedRecording& opened, std::size_t index) {
+  recorder::Keyframe keyframe;
+  {
+    const py::gil_scoped_release release;
+    keyframe = opened.keyframe(index);
+  }
+  return py::make_tuple(keyframe.step, bytesOf(keyframe.state), bytesOf(keyframe.haptics));
+}
+
 }  // namespace
 
 void bindRecording(py::module_& m) {
@@ -122,6 +142,7 @@ void bindRecording(py::module_& m) {
                              })
       .def_property_readonly("signature", signatureOf)
       .def("columns", columnsOf, "Columns of ticks, columns of steps, packed events.")
+      .def("keyframe", keyframeOf, py::arg("index"), "Step, bytes of the State, bytes of the haptic states.")
       .def("raw_samples", rawSamplesOf, "Packed raw samples of the left and of the right hand's device.");
 }
 

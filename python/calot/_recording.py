@@ -199,6 +199,12 @@ class Recording(Mapping[str, Array]):
     def keyframe_steps(self) -> Array:
         return np.array(self._raw.keyframe_steps, np.uint64)
 
+    def keyframe(self, index: int) -> tuple[int, bytes, bytes]:
+        """A keyframe, decoded: the step after which it was taken, the State's bytes, those of the haptic states with their contact sets."""
+        if index < 0:
+            raise InvalidError(f"{self.path}: keyframes are numbered from 0 on")
+        return self._raw.keyframe(index)
+
     @property
     def time(self) -> Array:
         """Start of each tick (s)."""
