@@ -12,10 +12,11 @@ packages=(
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libfreetype-dev
   libsdl2-dev libopenigtlink-dev libseccomp-dev
   qt6-base-dev qt6-charts-dev libqt6opengl6-dev libbullet-dev
+  pybind11-dev python3-dev
   # run
   fonts-dejavu-core
   # tests and checks
-  xvfb xauth libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy hdf5-tools
+  xvfb xauth libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy python3-pandas hdf5-tools
   clang clang-format clang-tidy libclang-rt-14-dev shellcheck valgrind
   g++-aarch64-linux-gnu qemu-user nodejs
   "$@"

@@ -45,8 +45,12 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   const Superblock superblock = readSuperblock(path);
   const Id how = hdf5::fileAccess(access == Access::settled ? 1 : 0);
   const unsigned swmr = superblock.writing ? H5F_ACC_SWMR_READ : 0U;
-  Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get()));
-  if (file.valid()) return file;
+  // Who has the file open already in this process decides how it is closed: another library of files has the default.
+  for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG}) {
+    H5Pset_fclose_degree(how.get(), degree);
+    Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get()));
+    if (file.valid()) return file;
+  }
   const std::string why = hdf5::reason();
   std::error_code ignored;
   const std::uint64_t bytes = std::filesystem::file_size(path, ignored);

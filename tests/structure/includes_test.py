@@ -55,6 +55,7 @@ MAY_SEE = {
     "gui/trainer": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui", "apps/common"),
+    "python": ("sim", "recorder", "analytics", "gui/render", "apps/common"),
     "apps/common": ("recorder contracts",),
     "apps/calot-bench": ("recorder", "apps/common", "tests/bench"),
     "tests/bench": ("sim", "recorder", "analytics", "gui/render"),
@@ -85,6 +86,8 @@ ONLY = {
     "libsw": ("gui/film",),
     "ft2build.h": ("gui/film",),
     "CLI/": ("apps", "assets"),
+    "pybind11/": ("python",),
+    "Python.h": ("python",),
     "thread": ("recorder", "analytics/cohort", "gui", "apps"),
 }
 

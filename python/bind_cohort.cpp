@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <mutex>
+#include <string>
+
+#include "analytics/cohort/cohort_database.h"
+#include "python/bindings.h"
+#include "python/value_rows.h"
+#include "recorder/words.h"
+
+namespace py = pybind11;
+
+namespace calot::python {
+
+namespace {
+
+/// A cohort's database, read. May be used by several threads, one at a time.
+class CohortReader {
+ public:
+  explicit CohortReader(const std::filesystem::path& path)
+      : database_(path.string(), analytics::CohortDatabase::Access::read) {}
+
+  std::vector<analytics::AttemptRow> attempts() {
+    const std::lock_guard lock(mutex_);
+    return database_.listAttempts();
+  }
+  std::vector<analytics::AttemptValue> values() {
+    const std::lock_guard lock(mutex_);
+    return database_.allValues();
+  }
+  std::vector<analytics::Participant> participants() {
+    const std::lock_guard lock(mutex_);
+    return database_.participants();
+  }
+
+ private:
+  std::mutex mutex_;
+  analytics::CohortDatabase database_;
+};
+
+py::dict attemptDict(const analytics::AttemptRow& a) {
+  py::dict row;
+  row["attempt"] = a.uuid;
+  row["parent"] = a.parent;
+  row["participant"] = a.participant;
+  row["group"] = a.group;
+  row["arm"] = a.arm;
+  row["site"] = a.site;
+  row["scene"] = a.scene;
+  row["scene_major"] = a.sceneMajor;
+  row["scene_minor"] = a.sceneMinor;
+  row["operator"] = recorder::wordFor(a.operatorKind);
+  row["profile"] = a.profile;
+  row["profile_version"] = a.profileVersion;
+  row["synthetic"] = a.synthetic;
+  row["mode"] = recorder::wordFor(a.mode);
+  row["purpose"] = a.purpose;
+  row["outcome"] = recorder::wordFor(a.outcome);
+  row["start_utc"] = a.startUtc;
+  row["seed"] = a.seed;
+  row["device"] = a.device;
+  row["station"] = a.station;
+  row["simulation_version"] = a.simulationVersion;
+  row["key"] = a.comparabilityKey;
+  row["file"] = a.fileName;
+  row["complete"] = a.complete;
+  row["seconds"] = static_cast<double>(a.steps) * a.stepSeconds;
+  row["verdict"] = analytics::nameOf(a.verification.verdict);
+  row["excluded"] = a.excluded;
+  row["withdrawn"] = a.withdrawn;
+  return row;
+}
+
+py::list attemptsOf(CohortReader& cohort) {
+  std::vector<analytics::AttemptRow> rows;
+  {
+    const py::gil_scoped_release release;
+    rows = cohort.attempts();
+  }
+  py::list list;
+  for (const analytics::AttemptRow& row : rows) list.append(attemptDict(row));
+  return list;
+}
+
+py::list valuesOf(CohortReader& cohort) {
+  std::vector<analytics::AttemptValue> rows;
+  {
+    const py::gil_scoped_release release;
+    rows = cohort.values();
+  }
+  py::list list;
+  for (const analytics::AttemptValue& v : rows) {
+    py::dict row = valueDict(v.value);
+    row["attempt"] = v.attempt;
+    const bool bounded = v.interval && v.interval->lower;
+    row["lower"] = bounded ? py::object(py::float_(*v.interval->lower)) : py::object(py::none());
+    row["upper"] = bounded ? py::object(py::float_(*v.interval->upper)) : py::object(py::none());
+    list.append(row);
+  }
+  return list;
+}
+
+py::list participantsOf(CohortReader& cohort) {
+  std::vector<analytics::Participant> rows;
+  {
+    const py::gil_scoped_release release;
+    rows = cohort.participants();
+  }
+  py::list list;
+  for (const analytics::Participant& p : rows) {
+    py::dict row;
+    row["participant"] = p.pseudonym;
+    row["group"] = p.group;
+    row["arm"] = p.arm;
+    row["site"] = p.site;
+    row["experience"] = p.experience;
+    row["consent"] = p.consent;
+    list.append(row);
+  }
+  return list;
+}
+
+}  // namespace
+
+void bindCohort(py::module_& m) {
+  py::class_<CohortReader>(m, "Cohort", "A cohort's database, opened for reading.")
+      .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
+      .def("attempts", attemptsOf)
+      .def("values", valuesOf)
+      .def("participants", participantsOf);
+}
+
+}  // namespace calot::python

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "python/bindings.h"
+#include "python/errors.h"
+#include "recorder/recording/header.h"
+#include "recorder/recording/reader.h"
+#include "recorder/recording/recorded_columns.h"
+#include "recorder/words.h"
+
+namespace py = pybind11;
+
+namespace calot::python {
+
+namespace {
+
+/// A recording that was probed and opened. May be used by several threads, one at a time.
+class OpenedRecording {
+ public:
+  explicit OpenedRecording(const std::filesystem::path& path) : chain_(recorder::probe(path)), recording_(path) {}
+
+  [[nodiscard]] const recorder::Recording& recording() const { return recording_; }
+  [[nodiscard]] const recorder::ChainVerdict& chain() const { return chain_; }
+
+  recorder::RecordedColumns columns() {
+    const std::lock_guard lock(mutex_);
+    return recorder::recordedColumns(recording_);
+  }
+  std::vector<std::byte> rawSamples(Hand hand) {
+    const std::lock_guard lock(mutex_);
+    return recorder::packedRawSamples(recording_, hand);
+  }
+  /// @throws Error (invalid) where there is none of that number
+  recorder::Keyframe keyframe(std::size_t index) {
+    const std::lock_guard lock(mutex_);
+    const std::size_t count = recording_.keyframeSteps().size();
+    if (index >= count)
+      throw Error(
+          ErrorKind::invalid, Where{recording_.path().string()},
+          "has " + std::to_string(count) + " keyframes, from 0 on: there is none of number " + std::to_string(index));
+    return recording_.keyframe(index);
+  }
+
+ private:
+  std::mutex mutex_;
+  recorder::ChainVerdict chain_;
+  recorder::Recording recording_;
+};
+
+struct AttributeDict {
+  py::dict& out;
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    out[name] = value;
+  }
+  template <class T>
+  void constant(const char* name, const T& value) {
+    out[name] = value;
+  }
+  template <class T, std::size_t N>
+  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
+    out[name] = names[static_cast<std::size_t>(value)];
+  }
+};
+
+py::dict headerOf(const OpenedRecording& opened) {
+  py::dict out;
+  AttributeDict visit{out};
+  recorder::visitAttributes(opened.recording().header(), visit);
+  return out;
+}
+
+py::object signatureOf(const OpenedRecording& opened) {
+  const recorder::Recording& recording = opened.recording();
+  const auto& signature = recording.signature();
+  if (!signature) return py::none();
+  py::dict out;
+  out["public_key"] = bytesOf(signature->publicKey.data(), signature->publicKey.size());
+  out["value"] = signature->value ? py::object(bytesOf(signature->value->data(), signature->value->size()))
+                                  : py::object(py::none());
+  out["valid"] = signature->fits(recording.status().back().chain);
+  return out;
+}
+
+py::list listOf(const std::vector<recorder::RecordedColumn>& columns) {
+  py::list out;
+  for (const recorder::RecordedColumn& c : columns)
+    out.append(py::make_tuple(c.path, c.type, c.unit, c.width, c.vector, c.parts, bytesOf(c.values)));
+  return out;
+}
+
+py::tuple columnsOf(OpenedRecording& opened) {
+  recorder::RecordedColumns columns;
+  {
+    const py::gil_scoped_release release;
+    columns = opened.columns();
+  }
+  return py::make_tuple(listOf(columns.ticks), listOf(columns.steps), bytesOf(columns.events));
+}
+
+py::tuple rawSamplesOf(OpenedRecording& opened) {
+  std::array<std::vector<std::byte>, handCount> raw;
+  {
+    const py::gil_scoped_release release;
+    for (std::size_t h = 0; h < handCount; ++h) raw[h] = opened.rawSamples(static_cast<Hand>(h));
+  }
+  return py::make_tuple(bytesOf(raw[0]), bytesOf(raw[1]));
+}
+
+py::tuple keyframeOf(OpenedRecording& opened, std::size_t index) {
+  recorder::Keyframe keyframe;
+  {
+    const py::gil_scoped_release release;
+    keyframe = opened.keyframe(index);
+  }
+  return py::make_tuple(keyframe.step, bytesOf(keyframe.state), bytesOf(keyframe.haptics));
+}
+
+}  // namespace
+
+void bindRecording(py::module_& m) {
+  py::class_<OpenedRecording>(m, "Recording", "A recording, checked in a process of its own, then opened.")
+      .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
+      .def_property_readonly("header", headerOf)
+      .def_property_readonly("names", [](const OpenedRecording& o) { return o.recording().header().structures(); })
+      .def_property_readonly("steps", [](const OpenedRecording& o) { return o.recording().stepCount(); })
+      .def_property_readonly("ticks", [](const OpenedRecording& o) { return o.recording().tickCount(); })
+      .def_property_readonly("seconds", [](const OpenedRecording& o) { return o.recording().seconds(); })
+      .def_property_readonly("complete", [](const OpenedRecording& o) { return o.recording().complete(); })
+      .def_property_readonly("outcome",
+                             [](const OpenedRecording& o) { return recorder::wordFor(o.recording().outcome()); })
+      .def_property_readonly("keyframe_steps", [](const OpenedRecording& o) { return o.recording().keyframeSteps(); })
+      .def_property_readonly("chain_intact", [](const OpenedRecording& o) { return o.chain().intact; })
+      .def_property_readonly("chain_fault", [](const OpenedRecording& o) { return o.chain().what; })
+      .def_property_readonly("chain_head",
+                             [](const OpenedRecording& o) {
+                               const auto& head = o.recording().status().back().chain;
+                               return bytesOf(head.data(), head.size());
+                             })
+      .def_property_readonly("signature", signatureOf)
+      .def("columns", columnsOf, "Columns of ticks, columns of steps, packed events.")
+      .def("keyframe", keyframeOf, py::arg("index"), "Step, bytes of the State, bytes of the haptic states.")
+      .def("raw_samples", rawSamplesOf, "Packed raw samples of the left and of the right hand's device.");
+}
+
+}  // namespace calot::python

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "python/bindings.h"
+#include "python/errors.h"
+#include "python/step_facts.h"
+#include "recorder/engine/result_row.h"
+#include "recorder/prepared_scene.h"
+#include "recorder/replay.h"
+#include "sim/math/executor.h"
+
+namespace py = pybind11;
+
+namespace calot::python {
+
+namespace {
+
+const char* verdictName(recorder::ReplayVerdict verdict) {
+  switch (verdict) {
+    case recorder::ReplayVerdict::exact:
+      return "bit-exact";
+    case recorder::ReplayVerdict::diverged:
+      return "diverged";
+    case recorder::ReplayVerdict::damaged:
+      return "damaged";
+    case recorder::ReplayVerdict::undecided:
+      return "undecided";
+    case recorder::ReplayVerdict::consistent:
+      return "consistent";
+  }
+  return "";
+}
+
+/// Re-simulates a recording step by step, and compares each with what is recorded.
+class SteppedReplay {
+ public:
+  explicit SteppedReplay(const std::filesystem::path& path)
+      : path_(path),
+        chainIntact_(recorder::probe(path).intact),
+        recording_(path),
+        choice_(recording_, {}),
+        scene_(recorder::sceneOf(recording_)),
+        engine_(choice_.make(executor_)),
+        facts_(choice_.scene()),
+        observers_{&facts_} {
+    engine_->start(recording_.header().seed);
+  }
+
+  /// Does up to `steps` steps. @returns whether the last of them is there @throws ReplayFault
+  bool advance(std::uint64_t steps) {
+    const std::lock_guard lock(mutex_);
+    const std::uint64_t end = std::min(engine_->steps() + steps, recording_.stepCount());
+    if (engine_->steps() < end) {
+      if (recorder::follow(recording_, *engine_, end, observers_)) fail();
+      return true;
+    }
+    if (!over_) choice_.save();
+    over_ = true;
+    if (!chainIntact_) fail();  // the re-simulation agrees, and the recording was changed all the same
+    return false;
+  }
+
+  [[nodiscard]] const StepFacts& facts() const { return facts_.facts(); }
+  [[nodiscard]] std::vector<recorder::wire::Column> columns() const { return recorder::resultColumns(scene_->model()); }
+  [[nodiscard]] std::uint64_t steps() const { return engine_->steps(); }
+
+ private:
+  /// Throws what a whole replay says of the recording.
+  void fail() const { throwUnlessExact(recorder::replayRecording(path_, {})); }
+
+  std::mutex mutex_;
+  std::filesystem::path path_;
+  bool chainIntact_ = false, over_ = false;
+  recorder::Recording recording_;
+  recorder::EngineChoice choice_;
+  std::shared_ptr<recorder::PreparedScene> scene_;
+  SerialExecutor executor_;
+  std::unique_ptr<recorder::Engine> engine_;
+  FactsObserver facts_;
+  std::vector<recorder::Observer*> observers_;
+};
+
+py::object nextOf(SteppedReplay& replay, std::uint64_t steps) {
+  bool there = false;
+  {
+    const py::gil_scoped_release release;
+    there = replay.advance(steps);
+  }
+  return there ? py::cast(replay.facts()) : py::object(py::none());
+}
+
+py::dict replayed(const std::filesystem::path& path, unsigned threads, bool anyway, bool apart) {
+  recorder::ReplayReport report;
+  {
+    const py::gil_scoped_release release;
+    recorder::ReplaySettings settings;
+    settings.threads = threads;
+    settings.engine = {apart, anyway, {}};
+    report = recorder::replayRecording(path, settings);
+    if (!anyway || report.verdict != recorder::ReplayVerdict::undecided) throwUnlessExact(report);
+  }
+  return reportOf(report);
+}
+
+}  // namespace
+
+py::list columnList(const std::vector<recorder::wire::Column>& columns) {
+  py::list list;
+  for (const recorder::wire::Column& c : columns) list.append(py::make_tuple(c.path, c.type, c.width));
+  return list;
+}
+
+py::dict reportOf(const recorder::ReplayReport& r) {
+  py::dict d;
+  d["file"] = r.path.string();
+  d["verdict"] = verdictName(r.verdict);
+  d["attempt"] = r.attempt;
+  d["complete"] = r.complete;
+  d["steps"] = r.steps;
+  d["seconds"] = r.seconds;
+  d["wall_seconds"] = r.wallSeconds;
+  d["simulation_version"] = r.simulationVersion;
+  d["chain_intact"] = r.chainIntact;
+  d["missed_tolerance"] = r.misses.any;
+  d["message"] = r.message;
+  return d;
+}
+
+void bindReplay(py::module_& m) {
+  py::class_<StepFacts>(m, "Facts", "What a step came to, as bytes.")
+      .def_readonly("step", &StepFacts::step)
+      .def_readonly("phase", &StepFacts::phase)
+      .def_readonly("critical_view", &StepFacts::criticalView)
+      .def_readonly("errors", &StepFacts::errors)
+      .def_readonly("critical_errors", &StepFacts::criticalErrors)
+      .def_property_readonly("observation", [](const StepFacts& f) { return bytesOf(f.observation); })
+      .def_property_readonly("row", [](const StepFacts& f) { return bytesOf(f.row); })
+      .def_property_readonly("forces", [](const StepFacts& f) { return bytesOf(f.forces); })
+      .def_property_readonly("events", [](const StepFacts& f) { return bytesOf(f.events); })
+      .def_property_readonly("digest", [](const StepFacts& f) { return bytesOf(f.digest); });
+  py::class_<SteppedReplay>(m, "Replay", "Re-simulates a recording step by step, and compares.")
+      .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
+      .def("advance", nextOf, py::arg("steps") = 1,
+           "Does so many steps; the facts of the last one, or None where there is none any more.")
+      .def_property_readonly("columns", [](const SteppedReplay& r) { return columnList(r.columns()); })
+      .def_property_readonly("steps", &SteppedReplay::steps);
+  m.def("result_units", resultUnits, "Unit of each field of a step's result.");
+  m.def("replay", replayed, py::arg("path"), py::arg("threads"), py::arg("anyway"), py::arg("apart"));
+}
+
+}  // namespace calot::python
