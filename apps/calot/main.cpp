@@ -3,6 +3,7 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
         apps::addScenes,  apps::addCheckpoints, apps::addDevices, apps::addGolden,      apps::addCache}) {
     add(app, run);
   }
+  apps::addHelpJson(app);
   const auto isCommand = [&app](const std::string& word) {
     return !app.get_subcommands([&word](const CLI::App* command) { return command->get_name() == word; }).empty();
   };
