@@ -4,10 +4,20 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace calot::apps {
 
 namespace {
+
+/// By name: the parser orders them by address.
+std::set<std::string> namesOf(const std::set<CLI::Option*>& options) {
+  std::set<std::string> names;
+  for (const CLI::Option* option : options) names.insert(option->get_name());
+  return names;
+}
 
 nlohmann::ordered_json describeOption(const CLI::Option& option) {
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
@@ -20,6 +30,8 @@ nlohmann::ordered_json describeOption(const CLI::Option& option) {
           {"default", option.get_default_str()},
           {"many", option.get_expected_max() > 1},
           {"required", option.get_required()},
+          {"needs", namesOf(option.get_needs())},
+          {"excludes", namesOf(option.get_excludes())},
           {"help", option.get_description()}};
 }
 
