@@ -28,8 +28,7 @@ fs::path openedCohort() {
       fs::path(QStandardPaths::writableLocation(QStandardPaths::GenericDataLocation).toStdString()) / "calot";
   std::error_code fault;
   fs::create_directories(folder, fault);
-  if (fault)
-    throw Error(ErrorKind::failure, Where{folder.string()}, "the folder cannot be made: " + fault.message());
+  if (fault) throw Error(ErrorKind::failure, Where{folder.string()}, "the folder cannot be made: " + fault.message());
   return folder / "opened.db";
 }
 

@@ -35,13 +35,21 @@ nlohmann::ordered_json describeOption(const CLI::Option& option) {
           {"help", option.get_description()}};
 }
 
-nlohmann::ordered_json describeCommand(const CLI::App& app) {
-  nlohmann::ordered_json options = nlohmann::ordered_json::array();
+/// The parser keeps a group of options as a command without a name: its options are those of the command around it.
+void describeOptions(const CLI::App& app, nlohmann::ordered_json& options) {
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_group().empty()) options.push_back(describeOption(*option));
   }
+  for (const CLI::App* group : app.get_subcommands([](const CLI::App* a) { return a->get_name().empty(); })) {
+    describeOptions(*group, options);
+  }
+}
+
+nlohmann::ordered_json describeCommand(const CLI::App& app) {
+  nlohmann::ordered_json options = nlohmann::ordered_json::array();
+  describeOptions(app, options);
   nlohmann::ordered_json commands = nlohmann::ordered_json::array();
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App* a) { return !a->get_name().empty(); })) {
     if (!command->get_group().empty()) commands.push_back(describeCommand(*command));
   }
   return {{"name", app.get_name()},

@@ -19,8 +19,8 @@ class ProgramFiles {
 
   /// Where the programs are.
   [[nodiscard]] const std::filesystem::path& programs() const { return programs_; }
-  /// Folders that may contain `scenes/`, `organs/`, `performers/` and so on, in order of precedence: CALOT_ASSETS of the
-  /// environment alone where it is set.
+  /// Folders that may contain `scenes/`, `organs/`, `performers/` and so on, in order of precedence: CALOT_ASSETS of
+  /// the environment alone where it is set.
   [[nodiscard]] std::vector<std::filesystem::path> assetRoots() const;
   /// The clone that a program of a build tree was built from; empty where there is none, as for installed programs.
   [[nodiscard]] std::filesystem::path clone() const;
