@@ -78,4 +78,13 @@ if(TARGET calot_python)
     TEXT "${calot_about}This package has the module for Python 3."
     DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, calot (= ${calot_version})")
 endif()
+# Everything that the packages hold.
+add_custom_target(calot_packaged)
+add_dependencies(calot_packaged ${calot_programs} ${calot_packaged_libraries} calot_manual_commands calot_changelogs)
+if(CALOT_WINDOWS)
+  add_dependencies(calot_packaged calot_manual_windows)
+endif()
+if(TARGET calot_python)
+  add_dependencies(calot_packaged calot_python)
+endif()
 include(CPack)

@@ -106,10 +106,28 @@ def usage(words, command):
     return " ".join(parts)
 
 
-def notes_part(command):
+def synopses(words, command):
+    lines = []
+    for below in command["commands"]:
+        inner = f"{words} {below['name']}"
+        lines += [".br", usage(inner, below), *synopses(inner, below)]
+    return lines
+
+
+def sections(words, command):
+    """The commands below a command, each with its options."""
+    lines = []
+    for below in command["commands"]:
+        inner = f"{words} {below['name']}"
+        lines += [f'.SH "{roff(inner).upper()}"', roff(below["help"]), *options_part(below["options"], ""), *notes_part(below, ".PP")]
+        lines += sections(inner, below)
+    return lines
+
+
+def notes_part(command, heading=".SH NOTES"):
     if not command["notes"].strip():
         return []
-    return [".SH NOTES", ".nf", *(roff(line) for line in command["notes"].strip("\n").splitlines()), ".fi"]
+    return [heading, ".nf", *(roff(line) for line in command["notes"].strip("\n").splitlines()), ".fi"]
 
 
 def table(heading, rows):
@@ -121,8 +139,7 @@ def page(name, command, words, version, date, extra=(), others=()):
     first = re.split(r"(?<=[a-z])[.;:] ", command["help"].strip().rstrip("."))[0]
     lines = [f'.TH {name.upper()} 1 "{date:%Y-%m-%d}" "Calot {version}" "Calot"', ".SH NAME",
              f"{roff(name)} \\- {roff(first[:1].lower() + first[1:])}", ".SH SYNOPSIS", usage(words, command)]
-    for below in command["commands"]:
-        lines += [".br", usage(f"{words} {below['name']}", below)]
+    lines += [] if others and command["commands"] else synopses(words, command)
     help_text = command["help"].strip()
     lines += [".SH DESCRIPTION", roff(help_text if help_text.endswith(".") else help_text + ".")]
     lines += options_part(command["options"], ".SH OPTIONS")
@@ -131,8 +148,7 @@ def page(name, command, words, version, date, extra=(), others=()):
         for below in command["commands"]:
             lines += [".TP", f"\\fB{roff(words + ' ' + below['name'])}\\fR(1)".replace(" ", "\\-", 1), roff(below["help"])]
     elif command["commands"]:
-        for below in command["commands"]:
-            lines += [f'.SH "{roff(words + " " + below["name"]).upper()}"', roff(below["help"]), *options_part(below["options"], "")]
+        lines += sections(words, command)
     lines += notes_part(command) + list(extra)
     lines += table(".SH ENVIRONMENT", VARIABLES) + table(".SH FILES", FILES) + table('.SH "EXIT STATUS"', EXITS)
     also = sorted({"calot", *others} - {name})

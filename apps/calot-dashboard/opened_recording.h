@@ -17,8 +17,8 @@ struct OpenedRecording {
 /// @throws Error as recorder::probe()
 std::optional<OpenedRecording> openedRecording(const std::filesystem::path& file);
 
-/// The cohort that takes recordings which are opened by themselves: `calot/opened.db` in the user's data folder, which is
-/// made where it is missing. @throws Error (failure) where there can be none
+/// The cohort that takes recordings which are opened by themselves: `calot/opened.db` in the user's data folder, which
+/// is made where it is missing. @throws Error (failure) where there can be none
 std::filesystem::path openedCohort();
 
 }  // namespace calot::apps

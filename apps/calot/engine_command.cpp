@@ -179,7 +179,8 @@ void addEngine(CLI::App& app, Run& run) {
   CLI::App* building = command->add_subcommand("build", "Builds the engine of a version from a clone of the source.");
   building->add_option("version", b->version, "simulation version")->required();
   building->add_option("-o,--output", b->output, "the engine's file")->required();
-  building->add_option("--source", b->source, "clone with the whole history; default: the one that this program was built in");
+  building->add_option("--source", b->source,
+                       "clone with the whole history; default: the one that this program was built in");
   building->add_flag("--module", b->module, "as a WebAssembly module");
   building->add_flag("--force", b->force, "overwrite the file");
   building->callback([b, &run] { run = [b] { return build(*b); }; });

@@ -18,9 +18,7 @@
 
 namespace calot::apps {
 
-std::vector<std::filesystem::path> assetFolders() {
-  return recorder::ProgramFiles::ofThisProgram().assetRoots();
-}
+std::vector<std::filesystem::path> assetFolders() { return recorder::ProgramFiles::ofThisProgram().assetRoots(); }
 
 recorder::EnginePlaces enginePlaces() {
   const recorder::ProgramFiles files = recorder::ProgramFiles::ofThisProgram();

@@ -56,6 +56,7 @@ MAY_SEE = {
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui", "apps/common"),
     "apps/common": ("recorder contracts",),
+    "packaging/example": ("sim", "recorder", "analytics"),
     "apps/calot-bench": ("recorder", "apps/common", "tests/bench"),
     "tests/bench": ("sim", "recorder", "analytics", "gui/render"),
     "assets": ("sim", "recorder", "apps/common"),
