@@ -77,7 +77,7 @@ def self_test():
     cases = (
         ("a.cpp", head + "int x;\n", 0), ("b.cpp", "int x;\n", 1), ("c.h", head + "\n" * LONGEST, 1),
         ("d.cpp", head + "// TO" + "DO later\n", 1), ("e.md", "see /wo" + "rk/x\n", 1), ("f.md", "[a](missing.md) [b](a.cpp)\n", 1),
-        ("g.py", "#!/usr/bin/env python3\n# SPDX-License-Identifier: GPL-3.0-or-later\n", 0),
+        ("g.py", "#!/usr/bin/env python3\n# SPDX-License-" "Identifier: GPL-3.0-or-later\n", 0),
         ("rank_test.cpp", head, 1), ("sim/math/a.cpp", head, 0), ("tests/sim/math/a_test.cpp", head, 0), ("tests/sim/core/a_test.cpp", head, 1),
         ("tests/accuracy/a_test.cpp", head, 0),
         ("h.md", "[site](https://example.org) [here](#words) `build/tests/work/`\n", 0),
