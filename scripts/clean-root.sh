@@ -39,7 +39,7 @@ inside() {
 # Of the tools there: their states, logs and what indexes of theirs make anew.
 files() { (cd "$there" && find . -xdev -path ./var/lib/dpkg -prune -o -path ./var/log -prune -o -path ./var/cache/man -prune -o -print | sort); }
 
-inside useradd --create-home trainee
+inside useradd --create-home --home-dir /srv/trainee trainee
 files >"$work/before"
 mkdir "$work/debs"
 say "install"
@@ -49,7 +49,7 @@ inside bash -c 'dpkg --install /packages/*.deb' >"$work/install.log" 2>&1 || {
   cat "$work/install.log" >&2
   exit 1
 }
-install --mode 755 "$root/scripts/clean-root-job.sh" "$there/home/trainee/job.sh"
+install --mode 755 "$root/scripts/clean-root-job.sh" "$there/srv/trainee/job.sh"
 say "main job, manual, completion, double click"
 inside su trainee --command 'cd && ./job.sh'
 say "purge"
@@ -59,8 +59,8 @@ inside dpkg --purge $own >"$work/purge.log" 2>&1 || {
   exit 1
 }
 rm -rf "$there/packages"
-find "$there/home/trainee" -mindepth 1 -delete
-inside bash -c 'cp --recursive /etc/skel/. /home/trainee'
+find "$there/srv/trainee" -mindepth 1 -delete
+inside bash -c 'cp --recursive /etc/skel/. /srv/trainee'
 files >"$work/after"
 if ! diff "$work/before" "$work/after"; then
   echo "clean-root: the files before (<) and after (>) differ" >&2

@@ -46,7 +46,7 @@ def faults_of(root, path):
         yield 1, fault
     if is_source(path):
         if not any("SPDX-License-Identifier: GPL-3.0-or-later" in line for line in lines[:3]):
-            yield 1, "no line SPDX-License-Identifier: GPL-3.0-or-later at its head"
+            yield 1, "no line SPDX-License-" "Identifier: GPL-3.0-or-later at its head"
         if len(lines) > LONGEST:
             yield LONGEST, f"{len(lines)} lines: one concern a file, {LONGEST} lines at most"
     for number, line in enumerate(lines, 1):
