@@ -52,15 +52,17 @@ foreach(log debian/changelog:changelog.Debian.gz ../CHANGELOG.md:changelog.gz)
 endforeach()
 add_custom_target(calot_changelogs ALL DEPENDS ${calot_made}/changelog.Debian.gz ${calot_made}/changelog.gz)
 
-set(calot_about "Calot records virtual laparoscopic cholecystectomy training at 1 kHz, replays
-every attempt bit for bit, and assesses it: figures of motion and force, errors,
-norms, studies of groups. It is research software, not a medical device.\n.\n")
+set(calot_about "Calot records virtual laparoscopic cholecystectomy training at 1 kHz,
+replays every attempt bit for bit, and assesses it: figures of motion and
+force, errors, norms, studies of groups. It is research software, not a
+medical device.\n.\n")
 calot_package(commands NAME calot SUMMARY "record, replay and assess training of laparoscopic surgery"
   TEXT "${calot_about}This package has the command line, the scenes and the simulation."
   DEPENDS fonts-dejavu-core RECOMMENDS "calot-engines (= ${calot_version})" SUGGESTS "calot-gui, calot-doc, python3-numpy")
 calot_package(engines NAME calot-engines ARCHITECTURE all SUMMARY "kept engines and golden recordings of Calot"
-  TEXT "${calot_about}This package has engines that decide recordings of earlier simulation versions,
-as WebAssembly modules, and golden recordings that prove what an engine computes."
+  TEXT "${calot_about}This package has engines that decide recordings of earlier simulation
+versions, as WebAssembly modules, and golden recordings that prove what an
+engine computes."
   DEPENDS nodejs)
 if(CALOT_WINDOWS)
   calot_package(windows NAME calot-gui SUMMARY "dashboard and trainer of Calot"
