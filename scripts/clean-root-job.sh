@@ -7,12 +7,12 @@ set -euo pipefail
 want() {
   local text=$1 said
   shift
-  if ! said=$("$@" 2>&1) || ! grep --quiet --fixed-strings -- "$text" <<<"$said"; then
+  if ! said=$("$@" 2>&1) || ! grep --text --quiet --fixed-strings -- "$text" <<<"$said"; then
     printf '%s\n' "$said" >&2
     echo "clean-root: $*: wanted \"$text\"" >&2
     exit 1
   fi
-  printf '  %-60.60s %s\n' "$*" "$(grep --max-count 1 --fixed-strings -- "$text" <<<"$said" | cut -c 1-70)"
+  printf '  %-60.60s %s\n' "$*" "$(grep --text --max-count 1 --fixed-strings -- "$text" <<<"$said" | cut -c 1-70)"
 }
 
 # The main job: record, replay, assess, study, draw.
