@@ -51,6 +51,10 @@ for stage in "${stages[@]}"; do
     lint)
       say "lint"
       "$root/scripts/lint-determinism.sh"
+      reuse --root "$root" lint >"$root/build/reuse.log" || {
+        cat "$root/build/reuse.log" >&2
+        exit 1
+      }
       shellcheck --external-sources --source-path="$root/scripts" "$root"/scripts/*.sh "$root/.ci/run"
       ;;
     docs)

@@ -22,6 +22,10 @@ say "the attempt in a browser"
 "$python" -B "$root/scripts/page.py" --jobs "$jobs"
 node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot"
 xvfb-run --auto-servernum node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot" --browser /usr/bin/firefox-esr --output "$root/build/page/pictures-firefox"
+say "packages, in a clean root, and once more from another folder"
+"$root/scripts/package.sh"
+"$root/scripts/clean-root.sh"
+"$root/scripts/package-again.sh"
 if [[ $# -eq 0 ]]; then
   say "a cohort of 10,000 recordings in shards"
   "$python" -B "$root/scripts/shards.py" 10000

@@ -17,7 +17,7 @@ packages=(
   fonts-dejavu-core
   # tests and checks
   xvfb xauth libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy python3-pandas hdf5-tools
-  clang clang-format clang-tidy libclang-rt-14-dev shellcheck valgrind
+  clang clang-format clang-tidy libclang-rt-14-dev shellcheck reuse valgrind
   g++-aarch64-linux-gnu qemu-user nodejs
   "$@"
 )

@@ -3,15 +3,19 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <QApplication>
 #include <string>
 
 #include "apps/calot-dashboard/assess_program.h"
+#include "apps/calot-dashboard/opened_recording.h"
+#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "apps/window/start_checks.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "recorder/compliance_cache.h"
-#include "recorder/formats/scene_file.h"
+#include "recorder/errors.h"
+#include "recorder/formats/program_files.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/prepared_scene.h"
 
@@ -20,13 +24,16 @@ namespace {
 constexpr const char* programName = "calot-dashboard";
 
 int run(int argc, char** argv) {
-  CLI::App options{"Shows the attempts and checkpoints of a cohort database."};
+  CLI::App options{"Shows the attempts and checkpoints of a cohort database, or a recording.", programName};
   options.footer("Example:\n  calot-dashboard c.db");
-  std::string database, pictures;
+  std::string file, pictures;
   options.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
   const CLI::Option* const given =
-      options.add_option("database", database, "Cohort database, as `calot assess --cohort` writes it");
+      options.add_option("file", file,
+                         "Cohort database, as `calot assess --cohort` writes it; or a recording, which is verified, "
+                         "assessed and kept in the cohort calot/opened.db of the user's data folder");
   options.add_option("--pictures", pictures, "Write a PNG of each page into this folder, and end");
+  calot::apps::addHelpJson(options);
   try {
     options.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -37,18 +44,24 @@ int run(int argc, char** argv) {
   calot::recorder::useComplianceCache(calot::recorder::userCacheFolder());
   // A file that cannot be opened is told before there is a window, and needs none.
   std::shared_ptr<const calot::gui::CohortDocument> document;
-  if (given->count() > 0) document = std::make_shared<const calot::gui::CohortDocument>(database);
+  std::optional<calot::apps::OpenedRecording> recording;
+  if (given->count() > 0) recording = calot::apps::openedRecording(file);
+  if (given->count() > 0 && !recording) document = std::make_shared<const calot::gui::CohortDocument>(file);
+  if (recording && !pictures.empty())
+    throw calot::Error(calot::ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
   if (!pictures.empty()) calot::apps::requireFolder(pictures, "pictures");
   calot::apps::requireScreen();
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
-  const std::filesystem::path program = QCoreApplication::applicationDirPath().toStdString();
-  const std::vector<std::filesystem::path> assets = calot::recorder::assetRoots(program, CALOT_ASSETS);
-  calot::recorder::useEngines(calot::recorder::userEnginePlaces(program, assets));
+  const calot::recorder::ProgramFiles files = calot::recorder::ProgramFiles::ofThisProgram();
+  const std::vector<std::filesystem::path> assets = files.assetRoots();
+  calot::recorder::useEngines(calot::recorder::userEnginePlaces(files.programs(), assets));
   calot::gui::DashboardWindow window(calot::apps::assessProgram(), assets);
   if (document) window.setDocument(document);
   window.show();
+  if (recording && window.createDatabase(QString::fromStdString(calot::apps::openedCohort().string())))
+    window.showRecording(QString::fromStdString(recording->file.string()), QString::fromStdString(recording->attempt));
   if (!pictures.empty()) {
     window.savePictures(QString::fromLocal8Bit(pictures.c_str()));
     return 0;

@@ -16,6 +16,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
+#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "apps/window/start_checks.h"
 #include "gui/trainer/mouse_attempt_input.h"
@@ -116,9 +117,10 @@ std::optional<recorder::LoadedScene> sceneOf(const std::string& name) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"Practises or assesses an operation, live: every attempt is recorded."};
+  CLI::App app{"Practises or assesses an operation, live: every attempt is recorded.", programName};
   Options o;
   add(app, o);
+  addHelpJson(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -14,6 +14,7 @@
 #include "apps/calot/environment.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
+#include "recorder/formats/program_files.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/engine_process.h"
@@ -122,6 +123,8 @@ struct BuildOptions {
 
 /// The script of a clone does it: no installed program holds the sources of old versions.
 int build(const BuildOptions& o) {
+  if (o.source.empty())
+    throw Error(ErrorKind::invalid, "no clone of the source belongs to this program: name one with --source");
   const fs::path script = fs::path(o.source) / "scripts/engine.py";
   std::error_code ignored;
   if (!fs::is_regular_file(script, ignored))
@@ -172,11 +175,12 @@ void addEngine(CLI::App& app, Run& run) {
   checking->callback([versions, &run] { run = [versions] { return checkAll(*versions); }; });
 
   auto b = std::make_shared<BuildOptions>();
-  b->source = CALOT_SOURCE;
+  b->source = recorder::ProgramFiles::ofThisProgram().clone().string();
   CLI::App* building = command->add_subcommand("build", "Builds the engine of a version from a clone of the source.");
   building->add_option("version", b->version, "simulation version")->required();
   building->add_option("-o,--output", b->output, "the engine's file")->required();
-  building->add_option("--source", b->source, "clone with the whole history")->capture_default_str();
+  building->add_option("--source", b->source,
+                       "clone with the whole history; default: the one that this program was built in");
   building->add_flag("--module", b->module, "as a WebAssembly module");
   building->add_flag("--force", b->force, "overwrite the file");
   building->callback([b, &run] { run = [b] { return build(*b); }; });

@@ -11,22 +11,18 @@
 #include <system_error>
 
 #include "recorder/errors.h"
+#include "recorder/formats/program_files.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/text_words.h"
 
 namespace calot::apps {
 
-std::vector<std::filesystem::path> assetFolders() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return recorder::assetRoots(program.parent_path(), CALOT_ASSETS);
-}
+std::vector<std::filesystem::path> assetFolders() { return recorder::ProgramFiles::ofThisProgram().assetRoots(); }
 
 recorder::EnginePlaces enginePlaces() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return recorder::userEnginePlaces(program.parent_path(), assetFolders());
+  const recorder::ProgramFiles files = recorder::ProgramFiles::ofThisProgram();
+  return recorder::userEnginePlaces(files.programs(), files.assetRoots());
 }
 
 std::vector<std::filesystem::path> listAssets(const std::string& folder) {

@@ -11,7 +11,7 @@
 
 namespace calot::apps {
 
-/// Folders that may hold scenes, organs and performers (recorder::assetRoots of this program).
+/// Folders that may hold scenes, organs and performers (recorder::ProgramFiles of this program).
 std::vector<std::filesystem::path> assetFolders();
 
 /// Where this program finds engines of simulation versions.

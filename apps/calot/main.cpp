@@ -4,6 +4,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/help.h"
+#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
     add(app, run);
   }
   apps::dressHelp(app);
+  apps::addHelpJson(app);
   const auto isCommand = [&app](const std::string& word) {
     return !app.get_subcommands([&word](const CLI::App* command) { return command->get_name() == word; }).empty();
   };

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "assets/organs/fat_shape.h"
 #include "assets/organs/organ_shapes.h"
@@ -76,7 +77,7 @@ int printVessels() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Makes the organ surfaces liver.obj, gallbladder.obj and fat.obj from implicit shapes.");
+  CLI::App app("Makes the organ surfaces liver.obj, gallbladder.obj and fat.obj from implicit shapes.", "calot-organs");
   std::string folder;
   bool check = false;
   bool force = false;
@@ -85,6 +86,7 @@ int main(int argc, char** argv) {
   app.add_flag("--vessels", vessels, "print the vessels' paths for scene files, and write nothing");
   app.add_flag("--check", check, "write nothing; exit 3 where a file differs from what would be written");
   app.add_flag("--force", force, "replace files that are there");
+  calot::apps::addHelpJson(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -16,6 +16,7 @@
 #include <QTimer>
 #include <QUndoStack>
 #include <QUrl>
+#include <utility>
 
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
@@ -197,6 +198,8 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   } else {
     stack_->setCurrentWidget(tabs_);
   }
+  if (!awaited_.isEmpty() && document_->attempt(awaited_.toStdString()) != nullptr)
+    openAttempt(std::exchange(awaited_, QString()));
   emit documentShown();
 }
 
@@ -260,6 +263,16 @@ void DashboardWindow::importRecordings(const QStringList& paths) {
   for (const QString& file : files) settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   importDock_->show();
   imports_.add(files);
+}
+
+void DashboardWindow::showRecording(const QString& file, const QString& uuid) {
+  settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
+  if (document_->attempt(uuid.toStdString()) != nullptr) {
+    openAttempt(uuid);
+    return;
+  }
+  awaited_ = uuid;
+  importRecordings({file});
 }
 
 void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {

@@ -35,7 +35,7 @@ class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
   /// @param program what imports recordings
-  /// @param assetFolders that may hold forms (recorder::assetRoots)
+  /// @param assetFolders that may hold forms (recorder::ProgramFiles)
   explicit DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders = {},
                            QWidget* parent = nullptr);
   ~DashboardWindow() override;
@@ -51,6 +51,9 @@ class DashboardWindow : public QMainWindow {
   void reload();
   /// Puts recordings (files, and folders with such) into the import's queue. @pre a database is open
   void importRecordings(const QStringList& paths);
+  /// Shows an attempt as soon as the open database has it; imports its recording where it has not.
+  /// @pre a database is open
+  void showRecording(const QString& file, const QString& uuid);
   /// Excludes the selected attempt from studies, or takes it in again where it is excluded. Can be undone.
   void excludeOrInclude(const QString& reason, const QString& by);
 
@@ -84,6 +87,7 @@ class DashboardWindow : public QMainWindow {
   void savePicture(QWidget& page, const QString& file);
 
   std::shared_ptr<const CohortDocument> document_;
+  QString awaited_;  ///< uuid of the attempt to show when the database has it
   QLabel* problem_;
   QStackedWidget* stack_;
   GreetingPage* greeting_;

@@ -18,7 +18,7 @@ struct KnownForms {
   std::vector<analytics::RatingForm> forms;
   std::vector<std::string> faults;
 };
-/// @param folders that may hold `forms/`, best first (recorder::assetRoots)
+/// @param folders that may hold `forms/`, best first (recorder::ProgramFiles)
 KnownForms readForms(const std::vector<std::filesystem::path>& folders);
 
 /// Answers so far: a score, or "left blank"; nothing yet for the others.

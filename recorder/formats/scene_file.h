@@ -19,11 +19,6 @@ namespace calot::recorder {
 /// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
 LoadedScene loadScene(const std::filesystem::path& sceneFile);
 
-/// Folders that may contain `scenes/`, `organs/` and `performers/`, in order of precedence: the environment's
-/// CALOT_ASSETS; or, where that is not set, `<programFolder>/../share/calot` and the folder compiled in by the program.
-std::vector<std::filesystem::path> assetRoots(const std::filesystem::path& programFolder,
-                                              const std::filesystem::path& compiledIn);
-
 /// The file of a scene: a name such as "touch-liver", looked for as `scenes/<name>.json` under the roots in turn; or,
 /// where it ends in ".json", the path of a scene file itself.
 /// @throws Error (invalid) where there is none, with the names that there are.

@@ -2,7 +2,6 @@
 // Search for scenes in folders: the part of scene_file.h that reads folders rather than files.
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <map>
 
 #include "recorder/errors.h"
@@ -10,11 +9,6 @@
 
 namespace calot::recorder {
 namespace fs = std::filesystem;
-
-std::vector<fs::path> assetRoots(const fs::path& programFolder, const fs::path& compiledIn) {
-  if (const char* named = std::getenv("CALOT_ASSETS"); named != nullptr && *named != '\0') return {fs::path(named)};
-  return {programFolder / ".." / "share" / "calot", compiledIn};
-}
 
 std::vector<fs::path> listScenes(const std::vector<fs::path>& roots) {
   std::map<std::string, fs::path> byName;

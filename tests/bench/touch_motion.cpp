@@ -55,8 +55,7 @@ std::optional<Stroke> strokeOn(const std::vector<recorder::TouchTarget>& targets
 }  // namespace
 
 SceneDescription touchLiver() {
-  const auto roots = recorder::assetRoots({}, CALOT_ASSETS);
-  SceneDescription scene = recorder::loadScene(recorder::findScene("touch-liver", roots)).description;
+  SceneDescription scene = recorder::loadScene(std::string(CALOT_ASSETS) + "/scenes/touch-liver.json").description;
   scene.solver.sleeping = false;
   return scene;
 }

@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """calot-dashboard before its window: what cannot be shown is one line and the right exit code."""
 
+import contextlib
+import os
 import sqlite3
+import subprocess
+import time
 
 import program
 from program import ProgramTest
@@ -47,6 +51,34 @@ class Dashboard(ProgramTest):
         self.assertIn("is no folder", self.declined(2, "--pictures", file))
         # Nobody makes files there, not even an administrator.
         self.assertIn("cannot be written", self.declined(1, "--pictures", "/proc"))
+
+    def test_a_recording_is_verified_and_kept(self):
+        database = self.folder / "data/calot/opened.db"
+        environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8", "XDG_DATA_HOME": str(self.folder / "data"), "XDG_CONFIG_HOME": str(self.folder / "settings")}
+        recording = self.copy(program.short())
+        with subprocess.Popen([DASHBOARD, recording], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as window:
+            try:
+                end = time.monotonic() + program.PATIENCE
+                while not (kept := self.attempts(database)) and time.monotonic() < end and window.poll() is None:
+                    time.sleep(0.2)
+            finally:
+                window.kill()
+            self.assertEqual(kept, [("r.h5",)], window.stdout.read())
+
+    def attempts(self, database):
+        if not database.exists():
+            return []
+        with contextlib.closing(sqlite3.connect(f"file:{database}?mode=ro", uri=True)) as cohort:
+            try:
+                return cohort.execute("select file_name from recording").fetchall()
+            except sqlite3.OperationalError:
+                return []  # it is just being made
+
+    def test_a_recording_that_cannot_be_shown(self):
+        recording = self.copy(program.short())
+        self.assertIn("cohort database", self.declined(2, "--pictures", self.folder, recording))
+        recording.write_bytes(recording.read_bytes()[:4000])
+        self.assertIn("r.h5", self.declined(4, recording))
 
     def test_without_a_screen(self):
         self.assertIn("no screen", self.declined(1, environment=NO_SCREEN))

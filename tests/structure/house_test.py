@@ -45,8 +45,8 @@ def faults_of(root, path):
     if (fault := misplaced(root, path)) is not None:
         yield 1, fault
     if is_source(path):
-        if not any("SPDX-License-Identifier: GPL-3.0-or-later" in line for line in lines[:3]):
-            yield 1, "no line SPDX-License-Identifier: GPL-3.0-or-later at its head"
+        if not any("SPDX-License-" "Identifier: GPL-3.0-or-later" in line for line in lines[:3]):
+            yield 1, "no line SPDX-License-" "Identifier: GPL-3.0-or-later at its head"
         if len(lines) > LONGEST:
             yield LONGEST, f"{len(lines)} lines: one concern a file, {LONGEST} lines at most"
     for number, line in enumerate(lines, 1):
@@ -73,11 +73,11 @@ def check(root):
 
 
 def self_test():
-    head = "// SPDX-License-Identifier: GPL-3.0-or-later\n"
+    head = "// SPDX-License-" "Identifier: GPL-3.0-or-later\n"
     cases = (
         ("a.cpp", head + "int x;\n", 0), ("b.cpp", "int x;\n", 1), ("c.h", head + "\n" * LONGEST, 1),
         ("d.cpp", head + "// TO" + "DO later\n", 1), ("e.md", "see /wo" + "rk/x\n", 1), ("f.md", "[a](missing.md) [b](a.cpp)\n", 1),
-        ("g.py", "#!/usr/bin/env python3\n# SPDX-License-Identifier: GPL-3.0-or-later\n", 0),
+        ("g.py", "#!/usr/bin/env python3\n# SPDX-License-" "Identifier: GPL-3.0-or-later\n", 0),
         ("rank_test.cpp", head, 1), ("sim/math/a.cpp", head, 0), ("tests/sim/math/a_test.cpp", head, 0), ("tests/sim/core/a_test.cpp", head, 1),
         ("tests/accuracy/a_test.cpp", head, 0),
         ("h.md", "[site](https://example.org) [here](#words) `build/tests/work/`\n", 0),

@@ -57,6 +57,7 @@ MAY_SEE = {
     "apps": ("sim", "recorder", "analytics", "gui", "apps/common"),
     "python": ("sim", "recorder", "analytics", "gui/render", "apps/common"),
     "apps/common": ("recorder contracts",),
+    "packaging/example": ("sim", "recorder", "analytics"),
     "apps/calot-bench": ("recorder", "apps/common", "tests/bench"),
     "tests/bench": ("sim", "recorder", "analytics", "gui/render"),
     "assets": ("sim", "recorder", "apps/common"),
