@@ -5,7 +5,7 @@
 
 #include <system_error>
 
-#include "recorder/formats/scene_file.h"
+#include "recorder/formats/program_files.h"
 
 namespace calot::python {
 
@@ -22,6 +22,6 @@ std::filesystem::path programFolder() {
   return {};
 }
 
-std::vector<std::filesystem::path> assetFolders() { return recorder::assetRoots(programFolder(), CALOT_ASSETS); }
+std::vector<std::filesystem::path> assetFolders() { return recorder::ProgramFiles(programFolder()).assetRoots(); }
 
 }  // namespace calot::python

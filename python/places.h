@@ -10,7 +10,7 @@ namespace calot::python {
 /// Folder of the programs: `bin` of the nearest folder above the module that has engines or assets; empty: none.
 std::filesystem::path programFolder();
 
-/// Folders that may hold scenes, organs and performers (recorder::assetRoots).
+/// Folders that may hold scenes, organs and performers (recorder::ProgramFiles).
 std::vector<std::filesystem::path> assetFolders();
 
 }  // namespace calot::python

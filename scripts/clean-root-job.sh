@@ -34,7 +34,12 @@ want "touch-liver.transcript: ok" calot engine check 18
 want "bit-exact" calot replay /usr/share/calot/golden/touch-liver.h5
 want "cholecystectomy" calot scenes
 
+# From Python, with the scripts that come with the module.
+want "'touch-liver'" python3 -c 'import calot; print(calot.scenes())'
+want "bit-exact" python3 /usr/share/doc/python3-calot/examples/touch_controller.py
+
 # Manual and completion.
+want "The manual: /usr/share/doc/calot-doc/html/index.html" calot --help
 for page in calot calot-record calot-study calot-engine calot-organs calot-dashboard calot-trainer; do
   want "/usr/share/man/man1/$page.1.gz" man -w "$page"
 done

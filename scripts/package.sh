@@ -12,6 +12,7 @@ umask 022
 
 configure package
 build package calot_packaged
+"$root/scripts/docs.sh"
 say "bill of materials"
 "$python" -B "$root/scripts/bill.py" "$root" --date "$SOURCE_DATE_EPOCH" --output "$root/build/package/packaging/calot.spdx"
 desktop-file-validate "$root"/packaging/desktop/*.desktop
