@@ -24,6 +24,8 @@ def main():
     arguments = parser.parse_args()
     text = subprocess.run(["reuse", "--root", arguments.root, "spdx"], capture_output=True, text=True, check=True).stdout
     text = re.sub(r"(?m)^Created: .*$", "Created: " + time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(arguments.date)), text)
+    text = re.sub(r"(?m)^Creator: Person: .*\n", "", text)
+    text = re.sub(r"(?m)^Creator: Organization: .*$", "Creator: Organization: The Calot authors ()", text)
     text = re.sub(r"(?m)^DocumentName: .*$", "DocumentName: calot", text)
     text = re.sub(r"(?m)^DocumentNamespace: .*$", "DocumentNamespace: ", text)
     name = uuid.UUID(bytes=hashlib.sha256(text.encode()).digest()[:16])
