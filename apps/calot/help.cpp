@@ -140,8 +140,8 @@ std::string manual() {
   namespace fs = std::filesystem;
   std::error_code ignored;
   for (const fs::path& assets : assetFolders()) {
-    for (const fs::path& page : {assets / "../doc/calot-doc/html/index.html", assets / "../doc/calot-doc/docs/index.md",
-                                 assets / "../doc/calot/index.md", assets.parent_path() / "docs" / "index.md"}) {
+    for (const fs::path& page :
+         {assets / "../doc/calot-doc/html/index.html", assets.parent_path() / "docs" / "index.md"}) {
       if (fs::exists(page, ignored)) return fs::weakly_canonical(page, ignored).string();
     }
   }
