@@ -139,7 +139,8 @@ std::string examplesOf(const std::string& command) {
 std::string manual() {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  for (const fs::path& assets : assetFolders()) {
+  for (const fs::path& folder : assetFolders()) {
+    const fs::path assets = fs::weakly_canonical(folder, ignored);  // of a build tree it is a link
     for (const fs::path& page :
          {assets / "../doc/calot-doc/html/index.html", assets.parent_path() / "docs" / "index.md"}) {
       if (fs::exists(page, ignored)) return fs::weakly_canonical(page, ignored).string();
