@@ -62,9 +62,9 @@ bool isOriented(const Motion& motion) {
 }
 
 /// Walks through a hand's segments point by point.
-class Reader {
+class MotionCells {
  public:
-  Reader(const Motion& motion, bool oriented) : motion_(motion), oriented_(oriented) {}
+  MotionCells(const Motion& motion, bool oriented) : motion_(motion), oriented_(oriented) {}
 
   /// Cells of the point k of the grid. @pre called with ascending k
   void addCells(std::int64_t k, std::vector<std::string>& cells) {
@@ -93,7 +93,7 @@ class Reader {
 };
 
 std::string motionTable(const BidsAttempt& attempt, const std::array<bool, handCount>& oriented, std::int64_t points) {
-  std::vector<Reader> readers;
+  std::vector<MotionCells> readers;
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     if (!attempt.motion[hand].segments.empty()) readers.emplace_back(attempt.motion[hand], oriented[hand]);
   }
@@ -101,7 +101,7 @@ std::string motionTable(const BidsAttempt& attempt, const std::array<bool, handC
   std::vector<std::string> cells;
   for (std::int64_t k = 0; k < points; ++k) {
     cells.clear();
-    for (Reader& reader : readers) reader.addCells(k, cells);
+    for (MotionCells& reader : readers) reader.addCells(k, cells);
     fmt::format_to(std::back_inserter(text), "{}\n", fmt::join(cells, "\t"));
   }
   return text;
