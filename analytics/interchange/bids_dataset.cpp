@@ -124,8 +124,8 @@ Json motionJson(const BidsAttempt& attempt, const std::vector<Channel>& channels
           {"ORNTChannelCount", ofType("ORNT")},
           {"TrackedPointsCount", ofType("POS") / 3},
           {"TrackingSystemName", attempt.device},
-          {"SoftwareFilters", {{"resampling", {{"rate (Hz)", motionRate}}}}},
-          {"Synthetic", attempt.synthetic}};
+          {"SoftwareVersions", recorder::softwareName()},
+          {"SoftwareFilters", {{"resampling", {{"rate (Hz)", motionRate}}}}}};
 }
 
 std::string channelTable(const std::vector<Channel>& channels) {
@@ -134,6 +134,13 @@ std::string channelTable(const std::vector<Channel>& channels) {
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\tworld\n", c.name, c.component, c.type, c.point,
                    c.units);
   return text;
+}
+
+/// What the column reference_frame of a channel table means.
+Json frameJson() {
+  return {{"reference_frame",
+           {{"Description", "frame that positions and orientations are given in"},
+            {"Levels", {{"world", {{"RotationRule", "right-hand"}}}}}}}};
 }
 
 std::string textOf(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
@@ -176,6 +183,7 @@ std::vector<fs::path> writeBidsDataset(std::vector<BidsAttempt> attempts, const 
     out.add(name + "_motion.tsv", motionTable(a, oriented, points));
     out.add(name + "_motion.json", textOf(motionJson(a, channels, points)));
     out.add(name + "_channels.tsv", channelTable(channels));
+    out.add(name + "_channels.json", textOf(frameJson()));
   }
   std::string table = "participant_id\tsynthetic\n";
   for (const auto& [subject, synthetic] : people)

@@ -26,7 +26,7 @@ struct BidsAttempt {
 
 /// Writes a new folder, a data set of BIDS 1.9.0 with the modality "motion" (Jeung et al. 2024, Scientific Data
 /// 11:716): `dataset_description.json`, `README`, `participants.tsv` with its `.json`, and for each attempt
-/// `sub-P/motion/sub-P_task-T_tracksys-D_run-N_motion.tsv` with `_motion.json` and `_channels.tsv`.
+/// `sub-P/motion/sub-P_task-T_tracksys-D_run-N_motion.tsv` with `_motion.json`, `_channels.tsv` and its `.json`.
 ///
 /// A row of a motion is a point of the grid of motionRate from the attempt's begin: position of each mounted
 /// instrument's tip before the filter (m, world frame) and, where it is known, its orientation as a unit quaternion

@@ -99,7 +99,7 @@ class Xapi(program.ProgramTest):
         statements = json.loads(self.file.read_text())
         self.assertEqual(len(statements), 2)
         with closing(sqlite3.connect(self.cohort)) as database:
-            values = dict(database.execute("SELECT attempt_uuid, count(*) FROM checkpoint_value GROUP BY 1"))
+            values = dict(database.execute("SELECT a.uuid, count(*) FROM checkpoint_value v JOIN attempt a ON a.id = v.attempt GROUP BY 1"))
             noted = database.execute("SELECT count(*) FROM export WHERE kind = 'xapi'").fetchone()
         self.assertEqual(noted, (1,))
         for s in statements:
