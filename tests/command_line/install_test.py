@@ -29,7 +29,7 @@ def helped(command):
     """What a user sees of a command: its options and the commands below it, read from the help as it is printed."""
     text = run(*command, "--help").stdout
     options = {n for line in text.splitlines() for n in re.findall(r"(?<![\w-])--?[a-z][a-z0-9-]*", (re.match(r"  (-\S+)", line) or [""])[0])}
-    below = text.partition("\nSubcommands:\n")[2]
+    below = text.partition("\nSubcommands:\n")[2].partition("\n\n")[0]
     return options, re.findall(r"^  ([a-z][a-z-]*)", below, re.MULTILINE)
 
 
