@@ -11,8 +11,8 @@ if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
 fastTests=(test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_formats test_recording test_recorder test_sources test_statistics
-  test_design test_analytics test_report test_checkpoints)
-threadTests=(test_recording test_recorder)
+  test_design test_analytics test_report test_checkpoints conformance_reader)
+threadTests=(test_recording test_recorder conformance_reader)
 
 # fast PRESET LEFT_OUT TARGET...: builds these test programs and runs them; heavy ones are left out, and those whose names
 # match LEFT_OUT (whole attempts, of which a sanitizer's build makes minutes). ctest takes nine groups in it at most, and
