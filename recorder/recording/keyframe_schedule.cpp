@@ -21,7 +21,7 @@ constexpr double workOfCarving = 0.65;
 constexpr double fittedStateBytes = 190e3;
 
 /// Work between two keyframes (ms).
-constexpr double maxWork = 105.0;
+constexpr double maxWork = 125.0;
 
 constexpr double longestSeconds = 1.0;
 
