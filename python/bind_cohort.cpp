@@ -71,53 +71,39 @@ py::dict attemptDict(const analytics::AttemptRow& a) {
   return row;
 }
 
-py::list attemptsOf(CohortReader& cohort) {
-  std::vector<analytics::AttemptRow> rows;
-  {
-    const py::gil_scoped_release release;
-    rows = cohort.attempts();
-  }
-  py::list list;
-  for (const analytics::AttemptRow& row : rows) list.append(attemptDict(row));
-  return list;
+py::dict cohortValueDict(const analytics::AttemptValue& v) {
+  py::dict row = valueDict(v.value);
+  row["attempt"] = v.attempt;
+  const bool bounded = v.interval && v.interval->lower;
+  row["lower"] = bounded ? py::object(py::float_(*v.interval->lower)) : py::object(py::none());
+  row["upper"] = bounded ? py::object(py::float_(*v.interval->upper)) : py::object(py::none());
+  return row;
 }
 
-py::list valuesOf(CohortReader& cohort) {
-  std::vector<analytics::AttemptValue> rows;
-  {
-    const py::gil_scoped_release release;
-    rows = cohort.values();
-  }
-  py::list list;
-  for (const analytics::AttemptValue& v : rows) {
-    py::dict row = valueDict(v.value);
-    row["attempt"] = v.attempt;
-    const bool bounded = v.interval && v.interval->lower;
-    row["lower"] = bounded ? py::object(py::float_(*v.interval->lower)) : py::object(py::none());
-    row["upper"] = bounded ? py::object(py::float_(*v.interval->upper)) : py::object(py::none());
-    list.append(row);
-  }
-  return list;
+py::dict participantDict(const analytics::Participant& p) {
+  py::dict row;
+  row["participant"] = p.pseudonym;
+  row["group"] = p.group;
+  row["arm"] = p.arm;
+  row["site"] = p.site;
+  row["experience"] = p.experience;
+  row["consent"] = p.consent;
+  return row;
 }
 
-py::list participantsOf(CohortReader& cohort) {
-  std::vector<analytics::Participant> rows;
-  {
-    const py::gil_scoped_release release;
-    rows = cohort.participants();
-  }
-  py::list list;
-  for (const analytics::Participant& p : rows) {
-    py::dict row;
-    row["participant"] = p.pseudonym;
-    row["group"] = p.group;
-    row["arm"] = p.arm;
-    row["site"] = p.site;
-    row["experience"] = p.experience;
-    row["consent"] = p.consent;
-    list.append(row);
-  }
-  return list;
+/// What the cohort gives, read without Python's lock, as a list of dicts.
+template <class Row>
+auto listOf(std::vector<Row> (CohortReader::*read)(), py::dict (*dictOf)(const Row&)) {
+  return [read, dictOf](CohortReader& cohort) {
+    std::vector<Row> rows;
+    {
+      const py::gil_scoped_release release;
+      rows = (cohort.*read)();
+    }
+    py::list list;
+    for (const Row& row : rows) list.append(dictOf(row));
+    return list;
+  };
 }
 
 }  // namespace
@@ -125,9 +111,9 @@ py::list participantsOf(CohortReader& cohort) {
 void bindCohort(py::module_& m) {
   py::class_<CohortReader>(m, "Cohort", "A cohort's database, opened for reading.")
       .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
-      .def("attempts", attemptsOf)
-      .def("values", valuesOf)
-      .def("participants", participantsOf);
+      .def("attempts", listOf(&CohortReader::attempts, attemptDict))
+      .def("values", listOf(&CohortReader::values, cohortValueDict))
+      .def("participants", listOf(&CohortReader::participants, participantDict));
 }
 
 }  // namespace calot::python

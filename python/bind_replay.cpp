@@ -10,7 +10,7 @@
 #include "python/step_facts.h"
 #include "recorder/engine/result_row.h"
 #include "recorder/prepared_scene.h"
-#include "recorder/replay.h"
+#include "recorder/replay_words.h"
 #include "sim/math/executor.h"
 
 namespace py = pybind11;
@@ -18,22 +18,6 @@ namespace py = pybind11;
 namespace calot::python {
 
 namespace {
-
-const char* verdictName(recorder::ReplayVerdict verdict) {
-  switch (verdict) {
-    case recorder::ReplayVerdict::exact:
-      return "bit-exact";
-    case recorder::ReplayVerdict::diverged:
-      return "diverged";
-    case recorder::ReplayVerdict::damaged:
-      return "damaged";
-    case recorder::ReplayVerdict::undecided:
-      return "undecided";
-    case recorder::ReplayVerdict::consistent:
-      return "consistent";
-  }
-  return "";
-}
 
 /// Re-simulates a recording step by step, and compares each with what is recorded.
 class SteppedReplay {
@@ -117,7 +101,7 @@ py::list columnList(const std::vector<recorder::wire::Column>& columns) {
 py::dict reportOf(const recorder::ReplayReport& r) {
   py::dict d;
   d["file"] = r.path.string();
-  d["verdict"] = verdictName(r.verdict);
+  d["verdict"] = recorder::wordFor(r.verdict);
   d["attempt"] = r.attempt;
   d["complete"] = r.complete;
   d["steps"] = r.steps;

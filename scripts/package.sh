@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes the Debian packages in build/packages, with a bill of materials (SPDX), and holds them against lintian. The same source gives the same
-# bytes (docs/how-to/installing.md).
+# Makes the Debian packages in build/packages, with a bill of materials (SPDX), and holds them against lintian. Made so that the same source gives the
+# same bytes (docs/how-to/installing.md).
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

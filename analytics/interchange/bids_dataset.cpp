@@ -147,7 +147,8 @@ std::string textOf(const Json& json) { return json.dump(2, ' ', false, Json::err
 
 const char* readme() {
   return "Motion of laparoscopic instruments in simulated or tracked tasks, written by Calot.\n\n"
-         "Each motion is of the instruments' tips in the frame of the world (z up), in metres, at 100 Hz from the "
+         "Each motion is of the instruments' tips in the frame of the world (x to the patient's right, y anterior, z "
+         "cranial), in metres, at 100 Hz from the "
          "begin "
          "of the attempt; the orientation of an instrument is a unit quaternion of the rotation from the instrument to "
          "the world. Motion is resampled from the recorded samples; positions are not filtered. Where nothing was "

@@ -5,28 +5,9 @@
 
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
+#include "recorder/replay_words.h"
 
 namespace calot::apps {
-
-namespace {
-
-const char* verdictName(recorder::ReplayVerdict verdict) {
-  switch (verdict) {
-    case recorder::ReplayVerdict::exact:
-      return "bit-exact";
-    case recorder::ReplayVerdict::diverged:
-      return "diverged";
-    case recorder::ReplayVerdict::damaged:
-      return "damaged";
-    case recorder::ReplayVerdict::undecided:
-      return "undecided";
-    case recorder::ReplayVerdict::consistent:
-      return "consistent";
-  }
-  return "";
-}
-
-}  // namespace
 
 void printReport(const recorder::ReplayReport& r) {
   if (r.verdict == recorder::ReplayVerdict::exact) {
@@ -49,7 +30,7 @@ nlohmann::ordered_json missesJson(const recorder::StepMisses& m) {
 
 nlohmann::json reportJson(const recorder::ReplayReport& r) {
   nlohmann::json json{{"file", r.path.string()},
-                      {"verdict", verdictName(r.verdict)},
+                      {"verdict", recorder::wordFor(r.verdict)},
                       {"attempt", r.attempt},
                       {"complete", r.complete},
                       {"steps", r.steps},
