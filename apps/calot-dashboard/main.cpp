@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot-dashboard: options, then the window.
+#include <algorithm>
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <QApplication>
 #include <string>
+#include <vector>
 
 #include "apps/calot-dashboard/assess_program.h"
 #include "apps/calot-dashboard/opened_recording.h"
@@ -46,7 +48,16 @@ int run(int argc, char** argv) {
   std::shared_ptr<const calot::gui::CohortDocument> document;
   std::optional<calot::apps::OpenedRecording> recording;
   if (given->count() > 0) recording = calot::apps::openedRecording(file);
-  if (given->count() > 0 && !recording) document = std::make_shared<const calot::gui::CohortDocument>(file);
+  bool older = false;  // of an older schema, which the window brings up to date
+  if (given->count() > 0 && !recording) {
+    try {
+      document = std::make_shared<const calot::gui::CohortDocument>(file);
+    } catch (const calot::Error& error) {
+      const std::vector<calot::Remedy>& remedies = error.remedies();
+      older = std::find(remedies.begin(), remedies.end(), calot::Remedy::upgradeCohort) != remedies.end();
+      if (!older) throw;
+    }
+  }
   if (recording && !pictures.empty())
     throw calot::Error(calot::ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
   if (!pictures.empty()) calot::apps::requireFolder(pictures, "pictures");
@@ -60,6 +71,7 @@ int run(int argc, char** argv) {
   calot::gui::DashboardWindow window(calot::apps::assessProgram(), assets);
   if (document) window.setDocument(document);
   window.show();
+  if (older) window.openDatabase(QString::fromStdString(file));
   if (recording && window.createDatabase(QString::fromStdString(calot::apps::openedCohort().string())))
     window.showRecording(QString::fromStdString(recording->file.string()), QString::fromStdString(recording->attempt));
   if (!pictures.empty()) {
