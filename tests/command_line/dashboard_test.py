@@ -52,6 +52,18 @@ class Dashboard(ProgramTest):
         # Nobody makes files there, not even an administrator.
         self.assertIn("cannot be written", self.declined(1, "--pictures", "/proc"))
 
+    def test_a_cohort_of_an_older_version_is_brought_up_to_date(self):
+        old, pictures = self.folder / "old.db", self.folder / "pictures"
+        pictures.mkdir()
+        with contextlib.closing(sqlite3.connect(old)) as database:
+            database.executescript((program.SOURCE / "schemas/cohort/0001_fixed.sql").read_text())
+            database.executescript("PRAGMA application_id = 1130458223; PRAGMA user_version = 1;")
+        answer = program.calot(old, "--pictures", pictures, program=DASHBOARD, environment={"QT_QPA_PLATFORM": "offscreen"})
+        self.assertEqual(answer.code, 0, answer)
+        self.assertTrue((self.folder / "old.db.schema-1.bak").exists())
+        with contextlib.closing(sqlite3.connect(old)) as database:
+            self.assertGreater(database.execute("PRAGMA user_version").fetchone()[0], 1)
+
     def test_a_recording_is_verified_and_kept(self):
         database = self.folder / "data/calot/opened.db"
         environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8", "XDG_DATA_HOME": str(self.folder / "data"), "XDG_CONFIG_HOME": str(self.folder / "settings")}
