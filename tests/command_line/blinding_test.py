@@ -122,7 +122,7 @@ class Packs(Blinded):
         key = dict(self.query("SELECT name, uuid FROM rating_pack_film JOIN attempt ON attempt.id = attempt WHERE rater = 'R1'"))
         answers = self.answers("R1", blank=(2,))
         said = self.well(*self.take(answers)).out
-        self.assertIn("7 ratings by R1 with goals version 1 stored, 1 films could not be judged", said)
+        self.assertIn("7 ratings by R1 with goals version 2 stored, 1 films could not be judged", said)
         want = sorted((key[f["film"]], k, int(v)) for f in answers["films"] for k, v in f["scores"].items() if v != "-")
         stored = lambda: sorted(self.query("SELECT uuid, item, score FROM rating JOIN attempt ON attempt.id = attempt WHERE rater = 'R1'"))
         self.assertEqual(stored(), want)
@@ -156,7 +156,7 @@ class Packs(Blinded):
         answers = self.answers("R2")
         listed = self.well("participant", "withdraw", "P3", "--cohort", self.cohort, "--scope", "all", "--no-recordings", "--no-key").out
         self.assertIn(str(self.pack), listed)
-        self.assertIn("7 ratings by R2 with goals version 1 stored, 1 films of withdrawn attempts left out", self.well(*self.take(answers)).out)
+        self.assertIn("7 ratings by R2 with goals version 2 stored, 1 films of withdrawn attempts left out", self.well(*self.take(answers)).out)
 
     def test_recordings_are_rendered(self):
         folder = self.path("recordings")

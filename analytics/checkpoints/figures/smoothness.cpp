@@ -17,9 +17,9 @@ namespace {
 
 /// Shorter segments (s) say nothing of a band that begins near 0 Hz.
 constexpr double minSegment = 1.0;
-/// Its upper frequency follows the spectrum's tail, which a bridge lowers: docs/reference/metrics/samples.md has the
-/// simulation.
-constexpr double minSparcCoverage = 0.95;
+/// SPARC's upper frequency follows the spectrum's tail, which a bridge lowers, a long one more than short ones that
+/// lose as much (s): docs/reference/metrics/samples.md has the simulation.
+constexpr double minSparcCoverage = 0.95, maxSparcBridge = 0.5;
 
 const CheckpointDefinition& sparcDefinition() {
   static const CheckpointDefinition d = [] {
@@ -28,8 +28,10 @@ const CheckpointDefinition& sparcDefinition() {
         "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, at most 10 Hz, with M >= "
         "0.05; "
         "M the amplitude spectrum of v as a share of M(0 Hz), zeros added up to 2^(ceil(log2 n) + 4) values; v as in "
-        "speed-mean; of segments of 1 s or longer, averaged by their length");
+        "speed-mean; of segments of 1 s or longer, averaged by their length; bridged gaps "
+        "lose at most 0.5 s each");
     arc.minCoverage = minSparcCoverage;
+    arc.version = 3;
     return arc;
   }();
   return d;
@@ -59,11 +61,26 @@ bool isBroken(const Motion& motion) {
                      [](const MotionSegment& segment) { return segment.continues; });
 }
 
-Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
-  if (isBroken(motion)) {
-    return Measured::none(Availability::tooLittleCoverage,
-                          fmt::format("a gap without samples of more than {:g} s", maxBridge));
+Measured refusedForAGap(double seconds) {
+  return Measured::none(Availability::tooLittleCoverage,
+                        fmt::format("a gap without samples of more than {:g} s", seconds));
+}
+
+/// The longest time without samples that a bridge fills (s); what is lost before or after a segment is in no figure.
+double longestBridge(const Motion& motion) {
+  double longest = 0.0;
+  for (const MotionSegment& segment : motion.segments) {
+    const double begin = static_cast<double>(segment.first) / motionRate;
+    const double end = begin + static_cast<double>(segment.speed.size()) / motionRate;
+    for (const TimeSpan& lost : motion.coverage.lost) {
+      if (lost.begin > begin && lost.end < end) longest = std::max(longest, lost.end - lost.begin);
+    }
   }
+  return longest;
+}
+
+Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
+  if (isBroken(motion)) return refusedForAGap(maxBridge);
   if (maxSpeed(motion) < minSpeed) return Measured::notApplicable("the hand did not move: no speed of 0.1 mm/s");
   double sum = 0.0, points = 0.0;
   std::size_t segments = 0;
@@ -91,6 +108,7 @@ Measured sparc(const Motion& motion) {
   // Slower samples say nothing of frequencies up to 10 Hz.
   if (std::string why = tooSlow(motion, 2.0 * sparcHighest); !why.empty())
     return Measured::notAvailable(std::move(why));
+  if (!isBroken(motion) && longestBridge(motion) > maxSparcBridge) return refusedForAGap(maxSparcBridge);
   return ofLongSegments(motion, spectralArcLength);
 }
 

@@ -286,7 +286,7 @@ constexpr double sparcTolerance = 0.12, jerkTolerance = 0.2, pathTolerance = 0.0
 TEST(Smoothness, doesNotDependOnTheNumberOfGaps) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  for (const auto& [count, length] : {std::pair{9, 0.16}, std::pair{4, 0.3}, std::pair{2, 0.5}}) {
+  for (const auto& [count, length] : {std::pair{9, 0.16}, std::pair{4, 0.3}, std::pair{2, 0.46}}) {
     double sparc = 0.0, jerk = 0.0, path = 0.0;
     constexpr unsigned hands = 24;
     for (unsigned h = 0; h < hands; ++h) {
@@ -317,6 +317,20 @@ TEST(Smoothness, isRefusedWhereAGapIsNotBridged) {
     EXPECT_EQ(valueOf(rows, name).reason, "a gap without samples of more than 1 s");
   }
   EXPECT_TRUE(valueOf(rows, "path-length").value) << "the rest of the way was measured";
+}
+
+TEST(Smoothness, spectralArcLengthIsRefusedWhereHalfASecondIsLostAtOnce) {
+  const Hand hand(7);
+  const auto lacking = [&](double from, double to) {
+    std::vector<double> times = clock(30.0, hand.end());
+    std::erase_if(times, [&](double t) { return t > from && t < to; });
+    return rowsAt(times, hand);
+  };
+  const CheckpointValue refused = valueOf(lacking(10.0, 10.7), "sparc");
+  EXPECT_EQ(refused.availability, Availability::tooLittleCoverage);
+  EXPECT_EQ(refused.reason, "a gap without samples of more than 0.5 s");
+  EXPECT_TRUE(valueOf(lacking(10.0, 10.7), "log-dimensionless-jerk").value) << "it keeps its tolerance";
+  EXPECT_TRUE(valueOf(lacking(10.0, 10.45), "sparc").value);
 }
 
 TEST(MovementThreshold, followsTheHand) {

@@ -65,6 +65,17 @@ Vec3 strokes(double t, int count, const Vec3& way) {
   return 0.08 * at * way;
 }
 
+TEST(Sparc, isRefusedForALongBridgeButNotForALateBeginning) {
+  // Both hands lack 0.8 s of 30 s: the left one before its first sample, the right one amid its motion.
+  const Attempt a(30.0, [&](double t, InstrumentSample& left, InstrumentSample& right) {
+    left.position = right.position = strokes(t, 14, Vec3(1.0, 0.0, 0.0));
+    left.valid = t >= 0.8;
+    right.valid = t < 15.0 || t >= 15.8;
+  });
+  EXPECT_TRUE(a.value("sparc", "left").value) << a.value("sparc", "left").reason;
+  EXPECT_EQ(a.value("sparc", "right").reason, "a gap without samples of more than 0.5 s");
+}
+
 TEST(DepthPath, countsTheWayAlongTheShaftAlone) {
   // The shaft points along (0.6, 0, 0.8); the tip goes round a circle about it and in and out along it.
   const Quat tilt = about(Vec3(0.0, 1.0, 0.0), std::atan2(0.6, 0.8));

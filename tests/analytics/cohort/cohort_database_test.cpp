@@ -89,7 +89,7 @@ TEST(CohortDatabase, migrationsAreNumberedWithoutGaps) {
   ASSERT_FALSE(migrations.empty());
   for (std::size_t i = 0; i < migrations.size(); ++i) {
     EXPECT_EQ(std::string(migrations[i].name).substr(0, 5), fmt::format("{:04}_", i + 1));
-    std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/schemas/cohort/" + migrations[i].name, std::ios::binary);
+    std::ifstream file(fmt::format("{}/schemas/cohort/{}", CALOT_SOURCE_DIR, migrations[i].name), std::ios::binary);
     const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     EXPECT_EQ(text, migrations[i].sql);
   }
