@@ -28,13 +28,14 @@ constexpr const char* programName = "calot-dashboard";
 int run(int argc, char** argv) {
   CLI::App options{"Shows the attempts and checkpoints of a cohort database, or a recording.", programName};
   options.footer("Example:\n  calot-dashboard c.db");
-  std::string file, pictures;
+  std::string file, pictures, graphics = "auto";
   options.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
   const CLI::Option* const given =
       options.add_option("file", file,
                          "Cohort database, as `calot assess --cohort` writes it; or a recording, which is verified, "
                          "assessed and kept in the cohort calot/opened.db of the user's data folder");
   options.add_option("--pictures", pictures, "Write a PNG of each page into this folder, and end");
+  calot::apps::addGraphics(options, graphics);
   calot::apps::addHelpJson(options);
   try {
     options.parse(argc, argv);
@@ -62,6 +63,7 @@ int run(int argc, char** argv) {
     throw calot::Error(calot::ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
   if (!pictures.empty()) calot::apps::requireFolder(pictures, "pictures");
   calot::apps::requireScreen();
+  calot::apps::useGraphics(graphics);
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");

@@ -33,7 +33,7 @@ constexpr const char* programName = "calot-trainer";
 struct Options {
   SourceOptions source;
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
-  std::string mode = "practice", pictures;
+  std::string mode = "practice", pictures, graphics = "auto";
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
@@ -72,6 +72,7 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--seconds", o.seconds, "end when an attempt has run so long, and print how smooth it was")
       ->check(positiveSeconds);
   app.add_option("-o,--output", o.folder, "folder for the recordings")->capture_default_str();
+  addGraphics(app, o.graphics);
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
 
@@ -137,6 +138,7 @@ int run(int argc, char** argv) {
   if (!scene && setup.scenes.empty())
     throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
   requireScreen();
+  useGraphics(o.graphics);
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");

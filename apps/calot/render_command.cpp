@@ -18,7 +18,7 @@ namespace calot::apps {
 namespace {
 
 struct RenderOptions {
-  std::string recording, output, cohort, size = "1280x720", quality, align;
+  std::string recording, output, cohort, size = "1280x720", quality, align, graphics = "software";
   std::optional<std::string> at, from, to, overlay, beside;
   double speed = 1.0;
   int fps = 25;
@@ -53,6 +53,7 @@ int render(const RenderOptions& o) {
   if (o.overlay) settings.overlays = gui::parseOverlays(*o.overlay);
   if (const std::optional<std::string>& from = film ? o.from : o.at; from) settings.from = parseTime(*from);
   if (o.to) settings.to = parseTime(*o.to);
+  settings.graphics = gui::graphicsFrom(o.graphics);
   settings.speed = o.speed;
   settings.fps = o.fps;
   settings.alignment = o.align == "phase" ? gui::Alignment::phase : gui::Alignment::start;
@@ -100,6 +101,11 @@ void addRender(CLI::App& app, Run& run) {
   command->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command->add_option("--quality", o->quality, "film: all effects; interactive: fast (default: film for pictures)")
       ->check(CLI::IsMember({"film", "interactive"}));
+  command
+      ->add_option("--graphics", o->graphics,
+                   "what draws: software (the same bytes each time), card, auto (a card where there is one)")
+      ->check(CLI::IsMember(gui::graphicsWords()))
+      ->capture_default_str();
   command->add_option("--overlay", o->overlay, "any of time,phase,checkpoints,events,tools");
   command->add_option("--beside", o->beside, "another recording, in the right half");
   command->add_option("--align", o->align, "with --beside: both from the start, or phase by phase")

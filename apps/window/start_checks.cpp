@@ -10,6 +10,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "gui/render/graphics.h"
+#include "gui/view/scene_picture_widget.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -42,6 +44,20 @@ void requireScreen() {
   if (onScreen && variable("DISPLAY").empty() && variable("WAYLAND_DISPLAY").empty())
     throw Error(ErrorKind::failure,
                 "there is no screen to show a window on (DISPLAY is not set); xvfb-run gives a virtual one");
+}
+
+void addGraphics(CLI::App& app, std::string& word) {
+  app.add_option("--graphics", word,
+                 "what draws: auto (a graphics card where there is one), card, software, egl-software (to try a card's "
+                 "way without one)")
+      ->check(CLI::IsMember(gui::graphicsWords()))
+      ->default_str("auto");
+}
+
+void useGraphics(const std::string& word) {
+  const gui::Graphics graphics = gui::graphicsFrom(word);
+  if (graphics != gui::Graphics::automatic) static_cast<void>(gui::createContext(graphics));
+  gui::ScenePictureWidget::drawBy(graphics);
 }
 
 std::string positiveSeconds(const std::string& text) {

@@ -109,7 +109,7 @@ class Cutter {
   std::vector<std::unique_ptr<FilmSource>> sources_;  ///< of at()'s thread
   std::vector<Captions> captions_;                    ///< for draw()'s thread
   Course course_;                                     ///< empty: both from their starts
-  Renderer renderer_;
+  Renderer renderer_{settings_.graphics};
   OverlayPainter letters_{settings_.size.height};
 };
 

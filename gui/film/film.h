@@ -24,6 +24,7 @@ struct FilmSettings {
   int fps = 25;                            ///< frames per second
   PictureSize size;                        ///< of the whole film
   Quality quality = Quality::interactive;  ///< of its pictures
+  Graphics graphics = Graphics::software;  ///< what draws them: software draws the same bytes each time
   Overlays overlays;
   std::optional<std::filesystem::path> beside;  ///< a second recording, in the right half
   Alignment alignment = Alignment::start;

@@ -26,6 +26,7 @@
   ENTRY(decltype(&glFrontFace), FrontFace)                         \
   ENTRY(decltype(&glGenTextures), GenTextures)                     \
   ENTRY(decltype(&glGetError), GetError)                           \
+  ENTRY(decltype(&glGetString), GetString)                         \
   ENTRY(decltype(&glPixelStorei), PixelStorei)                     \
   ENTRY(decltype(&glReadPixels), ReadPixels)                       \
   ENTRY(decltype(&glScissor), Scissor)                             \

@@ -40,6 +40,7 @@ class OsmesaContext final : public GraphicsContext {
       throw Error(ErrorKind::failure, "rendering: the off-screen OpenGL context cannot be made current");
   }
   Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
+  const char* way() const override { return "OSMesa"; }
 
  private:
   static constexpr int side = 16;

@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/render/renderer.h"
 
+#include <fmt/format.h>
+
 #include <condition_variable>
 #include <deque>
 #include <future>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 
-#include "gui/render/graphics_context.h"
+#include "gui/render/graphics.h"
 #include "gui/render/scene_painter.h"
 #include "gui/render/view_check.h"
+#include "recorder/errors.h"
 
 namespace calot::gui {
 
 /// A thread that owns context and painter and serves requests one at a time.
 class Renderer::Worker {
  public:
-  Worker() {
+  explicit Worker(Graphics graphics) : wanted_(graphics) {
     std::promise<void> started;
     std::future<void> ready = started.get_future();
     thread_ = std::thread([this, &started] { run(started); });
@@ -38,6 +43,8 @@ class Renderer::Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
+  [[nodiscard]] const std::string& name() const { return name_; }
+
   Image render(const SceneView& view, int width, int height, const RenderSettings& settings,
                std::span<const Puff> smoke) {
     std::packaged_task<Image(ScenePainter&)> task([&](ScenePainter& painter) {
@@ -55,19 +62,36 @@ class Renderer::Worker {
   }
 
  private:
-  void run(std::promise<void>& started) {
+  struct Drawing {
     std::unique_ptr<GraphicsContext> context;
-    std::unique_ptr<ScenePainter> painter;
+    std::unique_ptr<ScenePainter> painter;  ///< last: it needs the context until its end
+  };
+
+  static Drawing drawingBy(Graphics graphics) {
+    Drawing made{createContext(graphics), nullptr};
+    made.context->makeCurrent();
+    made.painter = std::make_unique<ScenePainter>(*made.context);
+    return made;
+  }
+  [[nodiscard]] Drawing makeDrawing() const {
+    if (wanted_ != Graphics::automatic) return drawingBy(wanted_);
     try {
-      context = createSoftwareContext();
-      context->makeCurrent();
-      painter = std::make_unique<ScenePainter>(*context);
-      started.set_value();
+      return drawingBy(Graphics::card);
+    } catch (const Error&) {  // no card, or one that lacks something
+      return drawingBy(Graphics::software);
+    }
+  }
+
+  void run(std::promise<void>& started) {
+    std::optional<Drawing> drawing;
+    try {
+      drawing.emplace(makeDrawing());
+      name_ = fmt::format("{}, {}", drawing->context->way(), drawing->painter->implementation());
     } catch (...) {
-      painter.reset();
       started.set_exception(std::current_exception());
       return;
     }
+    started.set_value();
     while (true) {
       std::packaged_task<Image(ScenePainter&)> task;
       {
@@ -77,10 +101,12 @@ class Renderer::Worker {
         task = std::move(tasks_.front());
         tasks_.pop_front();
       }
-      task(*painter);
+      task(*drawing->painter);
     }
   }
 
+  const Graphics wanted_;
+  std::string name_;         ///< fixed once the thread has started
   DrawListMaker drawLists_;  ///< on the thread
   std::mutex mutex_;
   std::condition_variable wake_;
@@ -89,8 +115,10 @@ class Renderer::Worker {
   std::thread thread_;
 };
 
-Renderer::Renderer() : worker_(std::make_unique<Worker>()) {}
+Renderer::Renderer(Graphics graphics) : worker_(std::make_unique<Worker>(graphics)) {}
 Renderer::~Renderer() = default;
+
+const std::string& Renderer::graphics() const { return worker_->name(); }
 
 Image Renderer::render(const SceneView& view, int width, int height, const RenderSettings& settings,
                        std::span<const Puff> smoke) {

@@ -5,7 +5,9 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
+#include "gui/render/graphics.h"
 #include "gui/render/image.h"
 #include "gui/render/smoke.h"
 #include "sim/scene/scene_view.h"
@@ -28,12 +30,12 @@ inline constexpr long long maxPixels = 3840LL * 2160;  ///< width times height
 
 /// Draws scene views. Owns a thread with an OpenGL context of its own: a software context on the thread of a window
 /// system corrupts that window system's. One picture at a time; calls from several threads wait for each other. The
-/// same view gives the same bytes, in every run and with any number of threads of the machine; other CPUs may differ by
-/// one level in a few channels.
+/// same view gives the same bytes in software, in every run and with any number of threads of the machine; other CPUs
+/// may differ by one level in a few channels, cards by some levels.
 class Renderer {
  public:
-  /// @throws calot::Error (failure) if this machine has no OpenGL 4.5 off screen.
-  Renderer();
+  /// @throws calot::Error (failure) if this machine has no such OpenGL 4.5 off screen.
+  explicit Renderer(Graphics graphics = Graphics::software);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
@@ -52,6 +54,8 @@ class Renderer {
     settings.quality = quality;
     return render(view, width, height, settings);
   }
+  /// What draws, in words: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
+  [[nodiscard]] const std::string& graphics() const;
 
  private:
   class Worker;

@@ -58,6 +58,11 @@ ScenePainter::ScenePainter(const GraphicsContext& context)
 
 ScenePainter::~ScenePainter() { gl_.DeleteVertexArrays(1, &emptyArray_); }
 
+std::string ScenePainter::implementation() const {
+  const GLubyte* name = gl_.GetString(GL_RENDERER);
+  return name == nullptr ? "an unnamed OpenGL" : reinterpret_cast<const char*>(name);
+}
+
 void ScenePainter::drawPart(const DrawPart& part) const {
   // Of a closed body only the near side is seen; of the cavity, from outside, only the far wall. Other surfaces may be
   // open: both sides are drawn.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 
 #include "gui/render/draw_list.h"
 #include "gui/render/gl_functions.h"
@@ -22,6 +23,9 @@ class ScenePainter {
   ~ScenePainter();
   ScenePainter(const ScenePainter&) = delete;
   ScenePainter& operator=(const ScenePainter&) = delete;
+
+  /// The OpenGL implementation's own name of what draws: "llvmpipe (LLVM 15.0.6, 256 bits)".
+  [[nodiscard]] std::string implementation() const;
 
   /// @param sight for which the list was built
   /// @pre checkPictureSize(width, height) and checkView() have passed

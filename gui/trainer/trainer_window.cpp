@@ -150,9 +150,11 @@ void TrainerWindow::endSession() {
   std::vector<std::string> lines = session_->recorded();
   recorded_.insert(recorded_.end(), std::make_move_iterator(lines.begin()), std::make_move_iterator(lines.end()));
   if (rate_.pictures() > 0) {
-    recorded_.push_back(fmt::format("{}: {:.1f} pictures a second of {}x{} in {:.1f} s, one stood for {:.2f} s at most",
-                                    session_->scene().name, rate_.mean(), view_->width(), view_->height(),
-                                    rate_.seconds(), rate_.longest()));
+    recorded_.push_back(
+        fmt::format("{}: {:.1f} pictures a second of {}x{} in {:.1f} s, one stood for {:.2f} s at most; "
+                    "drawn by {}",
+                    session_->scene().name, rate_.mean(), view_->width(), view_->height(), rate_.seconds(),
+                    rate_.longest(), view_->drawnBy()));
   }
   session_.reset();
 }

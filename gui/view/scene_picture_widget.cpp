@@ -12,8 +12,9 @@
 namespace calot::gui {
 namespace {
 
-PictureLoop::Draw makeDraw() {
-  const auto renderer = std::make_shared<Renderer>();
+Graphics chosen = Graphics::automatic;  // of the GUI thread
+
+PictureLoop::Draw drawWith(const std::shared_ptr<Renderer>& renderer) {
   return [renderer](const SceneView& view, int width, int height) {
     return renderer->render(view, width, height, Quality::interactive);
   };
@@ -36,7 +37,12 @@ ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers) : Q
   setAccessibleName("Picture of the scene");
   setAttribute(Qt::WA_OpaquePaintEvent);
   loop_ = std::make_unique<PictureLoop>(
-      makeDraw,
+      [this, graphics = chosen] {
+        const auto renderer = std::make_shared<Renderer>(graphics);
+        const std::lock_guard lock(mutex_);
+        drawnBy_ = renderer->graphics();
+        return drawWith(renderer);
+      },
       PictureLoop::Receiver{[this](ScenePicture picture) {
                               const std::lock_guard lock(mutex_);
                               const bool waiting = newest_.view != nullptr;
@@ -55,6 +61,13 @@ ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers) : Q
 }
 
 ScenePictureWidget::~ScenePictureWidget() { loop_.reset(); }
+
+void ScenePictureWidget::drawBy(Graphics graphics) { chosen = graphics; }
+
+std::string ScenePictureWidget::drawnBy() const {
+  const std::lock_guard lock(mutex_);
+  return drawnBy_;
+}
 
 void ScenePictureWidget::showView(std::shared_ptr<const SceneView> view) {
   QMetaObject::invokeMethod(

@@ -6,7 +6,9 @@
 #include <mutex>
 #include <QImage>
 #include <QWidget>
+#include <string>
 
+#include "gui/render/graphics.h"
 #include "gui/view/picture_loop.h"
 
 namespace calot::gui {
@@ -27,6 +29,12 @@ class ScenePictureWidget : public QWidget {
 
   /// Number of pictures shown so far.
   [[nodiscard]] quint64 shown() const { return shown_; }
+  /// What all such widgets of the program draw with, from the next one made on; a graphics card where there is one, at
+  /// first. GUI thread.
+  static void drawBy(Graphics graphics);
+  /// What draws, in words (Renderer::graphics()); empty before the first picture.
+  [[nodiscard]] std::string drawnBy() const;
+
   /// The picture on the screen; null before the first one.
   [[nodiscard]] const QImage& picture() const { return picture_; }
 
@@ -50,7 +58,8 @@ class ScenePictureWidget : public QWidget {
   quint64 shown_ = 0;
   bool awaits_ = false;  ///< a view was given after the last text
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
+  std::string drawnBy_;
   ScenePicture newest_;                ///< drawn and not yet on the screen
   std::unique_ptr<PictureLoop> loop_;  // last: its thread uses what is above
 };

@@ -27,6 +27,7 @@ class WebContext final : public gui::GraphicsContext {
 #undef CALOT_GL_FIND
     return nullptr;
   }
+  [[nodiscard]] const char* way() const override { return "WebGL"; }
 };
 
 }  // namespace

@@ -279,18 +279,6 @@ TEST_F(Dashboard, CompareShowsGroupsAndMarksSyntheticOnes) {
   EXPECT_FALSE(chart.property("watermark").toBool());
 }
 
-TEST_F(Dashboard, PicturesOfThePagesAreWritten) {
-  DashboardWindow window(apps::assessProgram());
-  window.show();
-  ASSERT_TRUE(window.openDatabase(cohort()));
-  window.savePictures(QString::fromStdString(folder_.string()));
-  for (const char* name : {"attempts.png", "compare.png"}) {
-    const QImage picture(file(name));
-    EXPECT_GT(picture.width(), 600) << name;
-  }
-  EXPECT_THROW(window.savePictures(file("missing")), Error);
-}
-
 TEST_F(Dashboard, TenThousandAttemptsAreSortedAndSearched) {
   std::vector<analytics::AttemptRow> rows(10000);
   for (int i = 0; i < 10000; ++i) static_cast<AttemptRecord&>(rows[static_cast<std::size_t>(i)]) = attemptNumber(i);

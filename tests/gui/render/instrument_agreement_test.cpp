@@ -31,7 +31,7 @@ TEST(InstrumentAgreement, PictureAndContactShapeLieTogether) {
         if (part.appearance == Appearance::titanium) continue;  // the loaded clip
         for (const Vec3& p : part.mesh.position) {
           if (p[2] < -length) continue;
-          farthest = std::max(farthest, test::distanceTo(shape, p));
+          farthest = std::max(farthest, calot::test::distanceTo(shape, p));
           drawn.include(p);
         }
       }
