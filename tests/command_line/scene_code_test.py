@@ -32,10 +32,10 @@ class SceneCode(program.ProgramTest):
         return {part for part, pattern in PARTS.items() if re.search(pattern, text)}
 
     def test_organs_alone(self):
-        self.assertEqual(self.parts_run_in("touch-liver", "0.2"), set())
+        self.assertEqual(self.parts_run_in("touch-liver", "0.05"), set())
 
     def test_a_bed_has_no_fat_and_no_vessels(self):
-        self.assertEqual(self.parts_run_in("dissect-bed", "0.05"), {"connective"})
+        self.assertEqual(self.parts_run_in("dissect-bed", "0.03"), {"connective"})
 
     def test_vessels_are_found_where_they_are(self):
         self.assertEqual(self.parts_run_in("clip-and-cut", "0.03"), {"vessels"})

@@ -118,7 +118,7 @@ TEST(MeshAndStep, OfADissection) {
 
 /// Not with 20 ms: there a hold that a step misses is no hold, and all that follows is another attempt.
 TEST(MeshAndStep, OfCarving) {
-  const std::vector<Graded> runs = runAll("carve-fat", {{1.0, 10}, {2.0, 10}}, 15.0);
+  const std::vector<Graded> runs = runAll("carve-fat", {{1.0, 10}, {2.0, 10}}, 10.0);
   expectSameMotion(runs);
   expectWithin(runs, "fat-remaining", 0.15);
   expectWithin(runs, "fat-remaining-inside", 0.15);

@@ -13,6 +13,7 @@
 #include "recorder/ring.h"
 #include "sim/step/hand_haptics.h"
 #include "tests/recorder/support/small_scene.h"
+#include "tests/support/sanitized.h"
 
 namespace {
 
@@ -21,14 +22,6 @@ thread_local std::optional<std::size_t> allocations;  // counted where it holds 
 }  // namespace
 
 // The sanitizers bring these themselves: nothing is counted there.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define CALOT_TEST_SANITIZED
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CALOT_TEST_SANITIZED
-#endif
 #ifndef CALOT_TEST_SANITIZED
 void* operator new(std::size_t size) {
   if (allocations) ++*allocations;

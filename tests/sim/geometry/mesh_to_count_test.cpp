@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/geometry/mesh_to_count.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +38,7 @@ void expectPromises(const TriangleMesh& surface, int requested, const StuffedMes
 }
 
 TriangleMesh organ(const std::string& name) {
-  return recorder::readObj(std::string(CALOT_SOURCE_DIR) + "/assets/organs/" + name, recorder::LengthUnit::metre);
+  return recorder::readObj(fmt::format("{}/assets/organs/{}", CALOT_SOURCE_DIR, name), recorder::LengthUnit::metre);
 }
 
 TEST(StuffToCount, LiverAtManyCounts) {

@@ -9,6 +9,7 @@
 
 #include "sim/vessel/tube_surface.h"
 #include "tests/sim/vessel/support/beams.h"
+#include "tests/support/sanitized.h"
 
 namespace {
 
@@ -17,14 +18,6 @@ std::size_t allocations = 0;
 }  // namespace
 
 // The sanitizers bring these themselves: nothing is counted there.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define CALOT_TEST_SANITIZED
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CALOT_TEST_SANITIZED
-#endif
 #ifndef CALOT_TEST_SANITIZED
 void* operator new(std::size_t size) {
   ++allocations;
