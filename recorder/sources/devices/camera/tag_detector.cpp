@@ -68,14 +68,21 @@ std::vector<SeenTag> TagDetector::detect(const GreyImage& image) {
 
 std::array<bool, 100> tagCells(int id) {
   const std::unique_ptr<apriltag_family_t, FreeFamily> family(tag36h11_create());
-  image_u8_t* const picture = apriltag_to_image(family.get(), id);
+  assert(id >= 0 && static_cast<std::uint32_t>(id) < family->ncodes);
+  const auto width = static_cast<std::uint32_t>(family->total_width);
+  const std::uint32_t margin = (width - static_cast<std::uint32_t>(family->width_at_border)) / 2;
   std::array<bool, 100> cells{};
-  assert(picture->width == 10 && picture->height == 10);
-  for (int y = 0; y < picture->height; ++y) {
-    for (int x = 0; x < picture->width; ++x)
-      cells[static_cast<std::size_t>(10 * y + x)] = picture->buf[y * picture->stride + x] == 0;
+  assert(width * width == cells.size());
+  // A white margin, a black border, and the bits in it: white where the code has a one, the highest first.
+  for (std::uint32_t y = 0; y < width; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x)
+      cells[width * y + x] = std::min({x, y, width - 1 - x, width - 1 - y}) >= margin;
   }
-  image_u8_destroy(picture);
+  const std::uint64_t code = family->codes[id];
+  for (std::uint32_t i = 0; i < family->nbits; ++i) {
+    if ((code >> (family->nbits - 1 - i) & 1U) != 0)
+      cells[width * (family->bit_y[i] + margin) + family->bit_x[i] + margin] = false;
+  }
   return cells;
 }
 

@@ -54,7 +54,12 @@ GreyImage pictureAt(const RigCamera& camera, double time, const std::function<do
                     const std::optional<Occluder>& occluder = std::nullopt) {
   std::vector<Body> bodies;
   for (const Hand hand : {Hand::left, Hand::right}) {
-    bodies.push_back(handleBody(hand, [hand](double t) { return handMotion(hand, t); }));
+    // The flap is beside the face that looks at the camera.
+    const Quat turned = rotationBy(jaw ? Vec3(0.0, 0.9, 0.0) : Vec3::Zero());
+    bodies.push_back(handleBody(hand, [hand, turned](double t) {
+      const Pose pose = handMotion(hand, t);
+      return Pose{pose.position, turned * pose.orientation};
+    }));
     if (jaw) bodies.back().flap = [hand, jaw](double t) { return flapAt(hand, jaw(t)); };
   }
   Imaging quick;

@@ -22,6 +22,7 @@ struct Paper {
   Vec3 origin, right, down, normal;  // middle; unit vectors
   int id = 0;
   double shade = 1.0;
+  double left = 1e9, rightmost = -1e9, top = 1e9, bottom = -1e9;  // of the picture, with a margin (pixels)
 };
 
 constexpr double paperHalf = 0.5 * tagPitch;
@@ -55,6 +56,19 @@ std::vector<Paper> papersAt(const RigCamera& camera, const std::vector<Body>& bo
       Paper p{origin + turn * tag.middle, turn * tag.right, turn * tag.down, turn * tag.normal(), tag.id, 1.0};
       if (!(p.normal.dot(p.origin) < 0.0)) continue;
       // Light from above the camera.
+      bool before = true;
+      for (int k = 0; k < 4; ++k) {
+        const Vec3 corner = p.origin + (k == 1 || k == 2 ? paperHalf : -paperHalf) * p.right +
+                            (k < 2 ? paperHalf : -paperHalf) * p.down;
+        before = before && corner.z() > 0.05;
+        if (!before) break;
+        const Eigen::Vector2d pixel = projected(camera.lens, corner);
+        p.left = std::min(p.left, pixel.x() - 2.0);
+        p.rightmost = std::max(p.rightmost, pixel.x() + 2.0);
+        p.top = std::min(p.top, pixel.y() - 2.0);
+        p.bottom = std::max(p.bottom, pixel.y() + 2.0);
+      }
+      if (!before) continue;
       p.shade = 0.55 + 0.45 * std::max(0.0, p.normal.dot(Vec3(0.2, -0.5, -0.85).normalized()));
       out.push_back(p);
     }
@@ -84,60 +98,72 @@ void blurRows(std::vector<double>& values, int width, int height, int stepX, int
   }
 }
 
+/// Where the middle of each pixel looks.
+const std::vector<Eigen::Vector2d>& directionsOf(const CameraLens& lens) {
+  static std::map<std::array<double, 4>, std::vector<Eigen::Vector2d>> known;
+  std::vector<Eigen::Vector2d>& out = known[{lens.focal.x(), lens.focal.y(), lens.centre.x(), lens.centre.y()}];
+  if (!out.empty()) return out;
+  for (int y = 0; y < lens.height; ++y) {
+    for (int x = 0; x < lens.width; ++x) out.push_back(undistorted(lens, {x + 0.5, y + 0.5}));
+  }
+  return out;
+}
+
+const std::vector<double>& normals() {
+  static const std::vector<double> table = [] {
+    Random random(77);
+    std::vector<double> out(1U << 16U);
+    for (double& v : out) v = random.normal();
+    return out;
+  }();
+  return table;
+}
+
 }  // namespace
 
 GreyImage rendered(const RigCamera& camera, const std::vector<Body>& bodies, double time, const Imaging& imaging,
                    Random& random, const std::optional<Occluder>& occluder) {
   const CameraLens& lens = camera.lens;
   const auto pixels = static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height);
-  std::vector<double> grey(pixels);
+  std::vector<double> grey(pixels), rowWave, columnWave;
+  for (int y = 0; y < lens.height; ++y) rowWave.push_back(25.0 * std::cos(0.017 * y));
+  for (int x = 0; x < lens.width; ++x) columnWave.push_back(std::sin(0.011 * x));
   for (int y = 0; y < lens.height; ++y) {
     for (int x = 0; x < lens.width; ++x)  // a room, out of focus
       grey[static_cast<std::size_t>(y * lens.width + x)] =
-          95.0 + 25.0 * std::sin(0.011 * x) * std::cos(0.017 * y + 0.003 * x);
+          rowWave[static_cast<std::size_t>(y)] * columnWave[static_cast<std::size_t>(x)] + 95.0;
   }
   const int moments = std::max(1, imaging.moments), samples = imaging.samples;
   const double share = 1.0 / (moments * samples * samples);
-  // The part of the picture that paper may fill.
-  int left = lens.width, right = 0, top = lens.height, bottom = 0;
-  for (const double at :
-       {time - 0.5 * (imaging.exposure + lens.readout), time, time + 0.5 * (imaging.exposure + lens.readout)}) {
-    for (const Paper& p : papersAt(camera, bodies, at)) {
-      for (const double u : {-paperHalf, paperHalf}) {
-        for (const double v : {-paperHalf, paperHalf}) {
-          const Vec3 corner = p.origin + u * p.right + v * p.down;
-          if (corner.z() < 0.05) continue;
-          const Eigen::Vector2d pixel = projected(lens, corner);
-          left = std::min(left, static_cast<int>(std::floor(pixel.x())) - 3);
-          right = std::max(right, static_cast<int>(std::ceil(pixel.x())) + 3);
-          top = std::min(top, static_cast<int>(std::floor(pixel.y())) - 3);
-          bottom = std::max(bottom, static_cast<int>(std::ceil(pixel.y())) + 3);
-        }
-      }
-    }
-  }
-  left = std::max(left, 0);
-  top = std::max(top, 0);
-  right = std::min(right, lens.width);
-  bottom = std::min(bottom, lens.height);
-  for (int y = top; y < bottom; ++y) {
+  const std::vector<Eigen::Vector2d>& directions = directionsOf(lens);
+  for (int y = 0; y < lens.height; ++y) {
     std::vector<std::vector<Paper>> papers;
+    double left = lens.width, right = 0.0;
     for (int m = 0; m < moments; ++m) {
       const double within = moments > 1 ? (m + 0.5) / moments - 0.5 : 0.0;
-      papers.push_back(
-          papersAt(camera, bodies, time + lens.readout * ((y + 0.5) / lens.height - 0.5) + imaging.exposure * within));
+      const double row = lens.readout * ((y + 0.5) / lens.height - 0.5);
+      papers.push_back(papersAt(camera, bodies, time + row + imaging.exposure * within));
+      std::erase_if(papers.back(), [&](const Paper& p) { return y + 1.0 < p.top || y > p.bottom; });
+      for (const Paper& p : papers.back()) {
+        left = std::min(left, p.left);
+        right = std::max(right, p.rightmost);
+      }
     }
-    for (int x = left; x < right; ++x) {
+    const int first = std::max(0, static_cast<int>(left)), end = std::min(lens.width, static_cast<int>(right) + 1);
+    for (int x = first; x < end; ++x) {
       double& value = grey[static_cast<std::size_t>(y * lens.width + x)];
       const double behind = value;
+      const Eigen::Vector2d centre = directions[static_cast<std::size_t>(y * lens.width + x)];
       double sum = 0.0;
       for (int i = 0; i < samples * samples; ++i) {
-        const Eigen::Vector2d pixel(x + (i % samples + 0.5) / samples, y + (i / samples + 0.5) / samples);
-        const Eigen::Vector2d direction = undistorted(lens, pixel);
+        // Within a pixel the lens bends nothing.
+        const Eigen::Vector2d offset((i % samples + 0.5) / samples - 0.5, (i / samples + 0.5) / samples - 0.5);
+        const Eigen::Vector2d direction = centre + offset.cwiseQuotient(lens.focal);
         const Vec3 ray(direction.x(), direction.y(), 1.0);
         for (const std::vector<Paper>& moment : papers) {
           double depth = 1e9, seen = behind;
           for (const Paper& p : moment) {
+            if (x + 1.0 < p.left || x > p.rightmost) continue;
             if (const std::optional<double> g = greyAt(p, ray, depth)) seen = *g;
           }
           sum += seen;
@@ -159,10 +185,21 @@ GreyImage rendered(const RigCamera& camera, const std::vector<Body>& bodies, dou
   GreyImage out{lens.width, lens.height, std::vector<std::uint8_t>(pixels)};
   for (std::size_t i = 0; i < pixels; ++i) {
     const double across = static_cast<double>(i % static_cast<std::size_t>(lens.width)) / lens.width - 0.5;
-    const double value = grey[i] * imaging.light * (1.0 + imaging.gradient * across) + imaging.noise * random.normal();
+    const double value = grey[i] * imaging.light * (1.0 + imaging.gradient * across) +
+                         imaging.noise * normals()[(random.next() >> 8U) % normals().size()];
     out.pixels[i] = static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
   }
   return out;
+}
+
+CameraRig shrunk(CameraRig rig, int factor) {
+  for (RigCamera& camera : rig.cameras) {
+    camera.lens.width /= factor;
+    camera.lens.height /= factor;
+    camera.lens.focal /= factor;
+    camera.lens.centre /= factor;
+  }
+  return rig;
 }
 
 CameraLens webcam() {

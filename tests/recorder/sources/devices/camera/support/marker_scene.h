@@ -45,6 +45,9 @@ CameraLens webcam();
 /// One camera, or two with their axes meeting at 0.4 m.
 CameraRig rigOfCameras(int count, double readout = 0.0);
 
+/// The same with pictures so many times smaller.
+CameraRig shrunk(CameraRig rig, int factor);
+
 /// A handle half a metre away and nearer, moved and tilted as a hand does; the tip's shaft passes no certain point.
 Pose handMotion(Hand hand, double time);
 Body handleBody(Hand hand, std::function<Pose(double)> at);
