@@ -30,7 +30,7 @@
 namespace calot::apps {
 namespace {
 
-int list(bool asJson) {
+int listDevicesFound(bool asJson) {
   const std::vector<recorder::ListedDevice> devices = recorder::listDevices();
   if (asJson) {
     nlohmann::json out = nlohmann::json::array();
@@ -371,7 +371,7 @@ void addDevices(CLI::App& app, Run& run) {
     else if (play->parsed())
       run = [s] { return serve(*s); };
     else
-      run = [asJson] { return list(*asJson); };
+      run = [asJson] { return listDevicesFound(*asJson); };
   });
 }
 

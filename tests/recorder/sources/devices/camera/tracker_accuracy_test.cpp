@@ -123,7 +123,7 @@ TEST(TrackerAccuracyHeavy, Matrix) {
   blurred.moments = 8;
   for (const int cameras : {1, 2}) {
     const double limit = cameras == 2 ? 0.0015 : 0.003;
-    const int frames = 150;
+    const int frames = 60;
     std::uint64_t seed = 100;
     expectWithin(measured({"clear", cameras, clear()}, frames, ++seed), limit, 0.8);
     expectWithin(measured({"rolling exposure, 25 ms", cameras, clear(), 0.025}, frames, ++seed), limit, 0.8);
