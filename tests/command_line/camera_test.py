@@ -47,9 +47,10 @@ class Sheets(ProgramTest):
 
         self.assertLessEqual(abs(extent(pages[0])[0] - 2100), 2)
         self.assertLessEqual(abs(extent(pages[2])[0] - 2970), 2)
-        # The board's ruler, 100 mm, at 197 mm from above; the tags' black border begins 22.5 + 4 mm from the left.
-        ruler = max((run for y in range(1960, 1980) for run in dark(pages[2], y, 0, 1500)), key=lambda run: run[1] - run[0])
-        self.assertLessEqual(abs(ruler[1] - ruler[0] - 1000), 2, ruler)
+        # The board's ruler, at 197 mm from above: its long marks, at 0, 50 and 100 mm.
+        marks = dark(pages[2], 1930, 0, 1500)
+        self.assertEqual(len(marks), 3, marks)
+        self.assertLessEqual(abs(marks[2][0] - marks[0][0] - 1000), 1, marks)
         # First tag of the handle, upper border: black over 28 mm, 32 to 60 mm from the left, from 84 mm from above.
         border = max(dark(pages[0], 850, 250, 650), key=lambda run: run[1] - run[0])
         self.assertLessEqual(abs(border[0] - 320), 2, border)
@@ -61,16 +62,16 @@ class Films(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.folder = program.tempfile.mkdtemp(prefix="calot-films-")
-        subprocess.run([FILMS, cls.folder], check=True, timeout=program.PATIENCE)
+        cls.made = program.tempfile.mkdtemp(prefix="calot-films-")
+        subprocess.run([FILMS, cls.made], check=True, timeout=program.PATIENCE)
 
     @classmethod
     def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
+        shutil.rmtree(cls.made)
         super().tearDownClass()
 
     def film(self, name):
-        return os.path.join(self.folder, name + ".y4m")
+        return os.path.join(self.made, name + ".y4m")
 
     def both(self, name):
         return f"{self.film(name + '1')},{self.film(name + '2')}"

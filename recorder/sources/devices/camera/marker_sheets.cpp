@@ -77,8 +77,8 @@ MarkerSheet handleSheet(Hand hand) {
   for (const char* text :
        {"1. Print on stiff matt paper at 100 % and check the ruler.",
         "2. Cut along the full lines, fold along the dashed ones, print outwards.",
-        "3. Glue the sleeve around a stick of 36 mm square section, or a rolled core that fills it; close the end with "
-        "the cap.",
+        "3. Glue the sleeve around a stick of 36 mm square section, or a core that fills it.",
+        "    Close the end with the cap.",
         "4. The end without a cap points to the tip. The flap below the first face stays loose: a finger lifts it, and",
         "    its angle opens the jaw. Tape its back, so that it stays flat."}) {
     addText(sheet, left, y, 3.2, text);

@@ -35,7 +35,7 @@ Pose upright(const Vec3& position, const Vec3& turn) {
 /// A shaft that passes a point, `length` before it.
 Pose swept(const Vec3& point, double length, double time) {
   const Pose tilted =
-      upright(Vec3::Zero(), Vec3(0.4 * std::sin(5.0 * time), 0.3 * std::sin(2.3 * time), 0.4 * std::cos(4.1 * time)));
+      upright(Vec3::Zero(), Vec3(0.36 * std::sin(5.0 * time), 0.3 * std::sin(2.3 * time), 0.36 * std::cos(4.1 * time)));
   return {point - length * (tilted.orientation * Vec3::UnitZ()), tilted.orientation};
 }
 
