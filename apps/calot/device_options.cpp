@@ -32,12 +32,13 @@ std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& op
     throw Error(ErrorKind::invalid,
                 "--device: an assessment needs --calibration (calot devices calibrate measures one)");
   }
-  recorder::OpenedDevice opened = recorder::openDevice(options.name, toolsOf(options));
   recorder::DeviceSourceSettings settings;
   settings.mode = mode;
+  if (!options.calibration.empty()) settings.calibration = recorder::readCalibration(options.calibration);
+  recorder::OpenedDevice opened =
+      recorder::openDevice(options.name, toolsOf(options), settings.calibration ? &*settings.calibration : nullptr);
   settings.tickClock = opened.tickClock;
-  if (!options.calibration.empty()) {
-    settings.calibration = recorder::readCalibration(options.calibration);
+  if (settings.calibration) {
     recorder::checkCalibration(*settings.calibration, opened.device->info(), mode, recorder::presentDate(),
                                options.calibration);
   }

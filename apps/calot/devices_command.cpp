@@ -5,26 +5,32 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/calot/calibration_pictures.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/device_options.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/marker_sheet_file.h"
 #include "apps/calot/stop_request.h"
 #include "apps/calot/terminal_text.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/sources/devices/calibration_fit.h"
+#include "recorder/sources/devices/camera/camera_calibration.h"
+#include "recorder/sources/devices/camera/camera_request.h"
+#include "recorder/sources/devices/camera/marker_sheets.h"
 #include "recorder/sources/devices/device_pump.h"
 #include "recorder/sources/devices/openigtlink_server.h"
 
 namespace calot::apps {
 namespace {
 
-int list(bool asJson) {
+int listDevicesFound(bool asJson) {
   const std::vector<recorder::ListedDevice> devices = recorder::listDevices();
   if (asJson) {
     nlohmann::json out = nlohmann::json::array();
@@ -52,6 +58,10 @@ struct CalibrateOptions {
   DeviceOptions device;
   std::string from, stream, output;
   double strokeMillimetres = 100.0;
+  // Of cameras alone.
+  std::vector<std::string> board;
+  std::string phases, pictures;
+  double rulerMillimetres = recorder::rulerLength, readoutMilliseconds = 0.0;
   std::uint32_t validDays = 30;
   bool force = false, json = false;
 };
@@ -61,6 +71,14 @@ struct Step {
   const char* text;
   double seconds;
 };
+
+/// Tells what to do, and waits until the person is ready.
+void promptStep(const std::string& text) {
+  fmt::print("{}\npress Enter to begin: ", text);
+  std::fflush(stdout);
+  std::string line;
+  if (!std::getline(std::cin, line) || stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
+}
 
 /// Records the device through the steps that a person is guided through.
 class GuidedRecording {
@@ -72,10 +90,7 @@ class GuidedRecording {
   }
 
   void run(const Step& step) {
-    fmt::print("{}\npress Enter to begin: ", step.text);
-    std::fflush(stdout);
-    std::string line;
-    if (!std::getline(std::cin, line) || stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
+    promptStep(step.text);
     recorder::DeviceInput skipped;
     pump_.drain(skipped);
     const std::int64_t begin = recorder::monotonicNanoseconds();
@@ -115,9 +130,13 @@ class GuidedRecording {
   std::int64_t time_ = 0;
 };
 
-recorder::DeviceScript guided(recorder::Device& device, double strokeMillimetres) {
+void requireTerminal() {
   if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
     throw Error(ErrorKind::invalid, "calibrate: the guided steps need a terminal; --from FILE takes a recorded stream");
+}
+
+recorder::DeviceScript guided(recorder::Device& device, double strokeMillimetres) {
+  requireTerminal();
   stopOnSignals();
   GuidedRecording recording(device);
   recording.run({{"rest"}, "1. Put the tools down and touch nothing (5 s).", 5.0});
@@ -136,7 +155,31 @@ recorder::DeviceScript guided(recorder::Device& device, double strokeMillimetres
   stroke("stroke right", 3, "to the right");
   stroke("stroke down", 4, "down");
   stroke("stroke away", 5, "away from you");
+  if (device.info().name == recorder::cameraKind.name) {
+    recording.run({{"trocar"},
+                   "6. Put the sticks through the trocars and sweep them by 20 degrees in all directions (15 s).",
+                   15.0});
+  }
   return recording.stream();
+}
+
+void printRig(const recorder::CameraRig& rig) {
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    const recorder::CameraLens& lens = rig.cameras[i].lens;
+    fmt::print("camera {}:\n", i + 1);
+    fmt::print("  lens             {} x {}, focal length {:.1f} {:.1f} pixels, known to {:.2f} %\n", lens.width,
+               lens.height, lens.focal.x(), lens.focal.y(), 100.0 * lens.focalUncertainty);
+    fmt::print("  lens residual    {:.3f} pixels, {} views, {:.0f} % of the picture\n", lens.residual, lens.views,
+               100.0 * lens.coverage);
+    if (i > 0) {
+      fmt::print("  beside camera 1  {:.1f} mm away, residual {:.3f} pixels\n",
+                 1e3 * rig.cameras[i].fromDevice.position.norm(), rig.cameras[i].pairResidual);
+    }
+  }
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (rig.trocar[h]) fmt::print("{} trocar: shaft within {:.2f} mm\n", handNames[h], 1e3 * rig.trocar[h]->residual);
+  }
+  if (rig.printScale != 1.0) fmt::print("sheets printed at {:.4f} of their size\n", rig.printScale);
 }
 
 void printCalibration(const recorder::Calibration& c, const std::vector<std::string>& faults) {
@@ -163,23 +206,14 @@ void printCalibration(const recorder::Calibration& c, const std::vector<std::str
                1e3 * m.jitter, 1e3 * m.longInterval);
     fmt::print("  invalid          {:.1f} %\n", 100.0 * m.invalidShare);
   }
+  if (c.camera) printRig(*c.camera);
   fmt::print("latency: {}\nforce: {}\n", c.latency, c.force);
   for (const std::string& fault : faults) fmt::print("falls short: {}\n", fault);
   fmt::print("{}\n", faults.empty() ? fmt::format("passed; valid for {} days", c.validDays) : "failed");
 }
 
-int calibrate(const CalibrateOptions& o) {
-  recorder::refuseOutput(o.output, o.force);
-  if (!o.stream.empty()) recorder::refuseOutput(o.stream, o.force);
-  const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device));
-  if (o.from.empty() && opened.tickClock) {
-    throw Error(ErrorKind::invalid,
-                fmt::format("calibrate {}: a device without real time is measured with --from FILE", o.device.name));
-  }
-  const recorder::DeviceScript stream =
-      o.from.empty() ? guided(*opened.device, o.strokeMillimetres) : recorder::readDeviceScript(o.from);
-  recorder::Calibration calibration =
-      recorder::measureCalibration(stream, 1e-3 * o.strokeMillimetres, opened.device->info());
+int finishCalibration(const CalibrateOptions& o, const recorder::DeviceScript& stream,
+                      recorder::Calibration calibration) {
   calibration.validDays = o.validDays;
   const std::vector<std::string> faults = recorder::shortcomings(calibration);
   if (!o.stream.empty()) recorder::writeText(o.stream, recorder::deviceScriptText(stream), o.force);
@@ -191,6 +225,65 @@ int calibrate(const CalibrateOptions& o) {
   if (faults.empty()) return 0;
   throw Error(ErrorKind::refused, fmt::format("{}: the calibration failed: {}", o.output, faults.front()));
 }
+
+/// Lenses first; then the handles are a device like others.
+int calibrateCamera(const CalibrateOptions& o) {
+  const std::size_t colon = o.device.name.find(':');
+  const recorder::CameraRequest request = recorder::parseCameraRequest(
+      {o.device.name, colon == std::string::npos ? "" : o.device.name.substr(colon + 1), {}, nullptr});
+  if (!request.live && o.board.empty())
+    throw Error(ErrorKind::invalid,
+                "calibrate: films of the handles need --board with films of the board by the same cameras");
+  if (request.live) requireTerminal();
+  const recorder::RigSettings settings{o.rulerMillimetres / recorder::rulerLength, 1e-3 * o.readoutMilliseconds};
+  if (!o.pictures.empty() && !std::filesystem::is_directory(o.pictures))
+    throw Error(ErrorKind::invalid, Where{o.pictures}, "there is no such folder for the pictures");
+  const std::vector<recorder::DeviceScript::Phase> stated =
+      o.phases.empty() ? std::vector<recorder::DeviceScript::Phase>{} : recorder::parsePhases(o.phases);
+  const recorder::RigFit fit = o.board.empty() ? recorder::measureRigLive(request, settings, promptStep)
+                                               : recorder::measureRigFromFilms(o.board, settings);
+  if (!o.pictures.empty()) writeCalibrationPictures(fit, o.pictures);
+  recorder::Calibration lens;
+  lens.identity = fit.identity;
+  lens.camera = fit.rig;
+  const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device), &lens);
+  recorder::DeviceScript stream;
+  if (request.live) {
+    stream = guided(*opened.device, o.strokeMillimetres);
+  } else {
+    stream = recorder::streamOf(*opened.device, *opened.tickClock);
+    const double seconds = stream.samples.empty() ? 0.0 : 1e-9 * static_cast<double>(stream.samples.back().hostTime);
+    stream.phases = stated.empty() ? recorder::guidedPhases(seconds) : stated;
+  }
+  recorder::Calibration calibration =
+      recorder::measureCalibration(stream, 1e-3 * o.strokeMillimetres, opened.device->info());
+  calibration.camera = fit.rig;
+  recorder::measureTrocars(stream, calibration);
+  recorder::measureLatency(stream, request.live, calibration);
+  return finishCalibration(o, stream, std::move(calibration));
+}
+
+int calibrate(const CalibrateOptions& o) {
+  recorder::refuseOutput(o.output, o.force);
+  if (!o.stream.empty()) recorder::refuseOutput(o.stream, o.force);
+  if (recorder::findDeviceKind(o.device.name) == &recorder::cameraKind) return calibrateCamera(o);
+  if (!o.board.empty() || !o.phases.empty() || !o.pictures.empty())
+    throw Error(ErrorKind::invalid, "calibrate: --board, --phases and --pictures are of cameras");
+  const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device));
+  if (o.from.empty() && opened.tickClock) {
+    throw Error(ErrorKind::invalid,
+                fmt::format("calibrate {}: a device without real time is measured with --from FILE", o.device.name));
+  }
+  const recorder::DeviceScript stream =
+      o.from.empty() ? guided(*opened.device, o.strokeMillimetres) : recorder::readDeviceScript(o.from);
+  return finishCalibration(o, stream,
+                           recorder::measureCalibration(stream, 1e-3 * o.strokeMillimetres, opened.device->info()));
+}
+
+struct PrintOptions {
+  std::string output;
+  bool force = false;
+};
 
 struct ServeOptions {
   DeviceOptions device;
@@ -230,10 +323,28 @@ void addDevices(CLI::App& app, Run& run) {
   measure->add_option("--stroke", c->strokeMillimetres, "length of each stroke, mm")
       ->check(CLI::Range(10.0, 1000.0))
       ->capture_default_str();
+  measure->add_option("--board", c->board, "of cameras in films: films of the board by each of them, FILM[,FILM]")
+      ->delimiter(',');
+  measure->add_option("--phases", c->phases,
+                      "of cameras in films: when each step was done, in seconds: rest=0:5,pivot=5:25,...");
+  measure->add_option("--ruler", c->rulerMillimetres, "of cameras: how long the sheets' ruler of 100 mm is, mm")
+      ->check(CLI::Range(50.0, 200.0))
+      ->capture_default_str();
+  measure
+      ->add_option("--readout", c->readoutMilliseconds,
+                   "of cameras: from the first row's exposure to the last one's, ms")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  measure->add_option("--pictures", c->pictures, "of cameras: write a PNG of each lens into this folder");
   measure->add_option("--valid-days", c->validDays, "from today on")->check(CLI::Range(1, 3650))->capture_default_str();
   measure->add_option("-o,--output", c->output, "the calibration, a JSON file")->required();
   measure->add_flag("--force", c->force, "replace the outputs if they are there");
   measure->add_flag("--json", c->json, "print the result as JSON");
+
+  auto p = std::make_shared<PrintOptions>();
+  CLI::App* print = command->add_subcommand("print", "Handles and board for cameras, to print: a PDF, true to scale.");
+  print->add_option("-o,--output", p->output, "the PDF")->required();
+  print->add_flag("--force", p->force, "replace the output if it is there");
 
   auto s = std::make_shared<ServeOptions>();
   CLI::App* play = command->add_subcommand(
@@ -252,10 +363,15 @@ void addDevices(CLI::App& app, Run& run) {
   command->callback([=, &run] {
     if (measure->parsed())
       run = [c] { return calibrate(*c); };
+    else if (print->parsed())
+      run = [p] {
+        writeMarkerSheets(p->output, p->force);
+        return 0;
+      };
     else if (play->parsed())
       run = [s] { return serve(*s); };
     else
-      run = [asJson] { return list(*asJson); };
+      run = [asJson] { return listDevicesFound(*asJson); };
   });
 }
 

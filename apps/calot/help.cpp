@@ -97,6 +97,8 @@ constexpr Example examples[] = {
     {"checkpoints", "calot checkpoints --json"},
     {"devices", "calot devices"},
     {"devices calibrate", "calot devices calibrate gamepad -o gamepad.json"},
+    {"devices calibrate", "calot devices calibrate camera:0 -o camera.json --pictures ."},
+    {"devices print", "calot devices print -o handles.pdf"},
     {"devices serve", "calot devices serve --kinematics motion.txt --port 18944"},
     {"golden", "calot golden check"},
     {"golden check", "calot golden check --folder my-golden"},

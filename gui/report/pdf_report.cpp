@@ -1,52 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/report/pdf_report.h"
 
-#include <clocale>
-#include <memory>
 #include <QAbstractTextDocumentLayout>
 #include <QBuffer>
 #include <QFont>
-#include <QFontDatabase>
 #include <QGuiApplication>
 #include <QPainter>
 #include <QPdfWriter>
 
+#include "gui/report/offscreen_application.h"
 #include "gui/report/text_document.h"
-#include "recorder/errors.h"
 
 namespace calot::gui {
 namespace {
 
 constexpr int dotsPerInch = 600;
 constexpr double marginMillimetres = 15.0, footMillimetres = 8.0, footPoints = 7.0, markPoints = 90.0;
-
-/// Qt's application without a display, where none is there yet. Qt takes the user's locale as the process': numbers
-/// would get his decimal comma from then on. And it warns of what a desktop would have.
-class Application {
- public:
-  Application() {
-    if (QCoreApplication::instance() != nullptr) return;
-    const std::string locale = std::setlocale(LC_ALL, nullptr);
-    const QtMessageHandler before = qInstallMessageHandler([](QtMsgType, const QMessageLogContext&, const QString&) {});
-    application_ = std::make_unique<QGuiApplication>(count_, words_);
-    qInstallMessageHandler(before);
-    std::setlocale(LC_ALL, locale.c_str());
-  }
-
- private:
-  char name_[6] = "calot", option_[10] = "-platform", platform_[10] = "offscreen";
-  char* words_[4] = {name_, option_, platform_, nullptr};
-  int count_ = 3;
-  std::unique_ptr<QGuiApplication> application_;
-};
-
-QFont reportFont() {
-  if (QFontDatabase::families().isEmpty())
-    throw Error(ErrorKind::failure, "no font is installed, and a PDF needs one (Debian: fonts-dejavu-core)");
-  QFont font;
-  font.setFamilies({"DejaVu Sans", "Liberation Sans", "Sans Serif"});
-  return font;
-}
 
 void paintMark(QPainter& painter, const QSizeF& page, QFont font) {
   painter.save();
@@ -77,7 +46,7 @@ void paintFoot(QPainter& painter, const QRectF& foot, QFont font, const QString&
 }  // namespace
 
 std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker) {
-  const Application application;
+  const OffscreenApplication application;
   const QFont font = reportFont();
   QBuffer bytes;
   bytes.open(QIODevice::WriteOnly);

@@ -31,7 +31,8 @@ const ObjectRule rootRule{"",
                            {"hands"},
                            {"latency"},
                            {"force"},
-                           {"limits"}}};
+                           {"limits"},
+                           {"camera", false}}};
 const ObjectRule handsRule{"hands", {{"left", false}, {"right", false}}};
 const ObjectRule handRule{"hand",
                           {{"tipOffset", false, -2, 2},
@@ -169,6 +170,18 @@ std::vector<std::string> shortcomings(const Calibration& calibration) {
       out.push_back(fmt::format("{} rate: {:.3g} a second, at least {:.3g}", handNames[i], h.rate, limit.rate));
   }
   if (!any) out.emplace_back("no hand was measured");
+  if (calibration.camera) {
+    const std::vector<std::string> rig = rigShortcomings(*calibration.camera);
+    out.insert(out.end(), rig.begin(), rig.end());
+    for (std::size_t i = 0; i < handCount; ++i) {
+      if (!calibration.hand[i] || !calibration.hand[i]->scale) continue;
+      const double error = *calibration.hand[i]->scale - 1.0, most = calibration.camera->limits.scaleError;
+      if (!(std::abs(error) <= most))
+        out.push_back(
+            fmt::format("{} scale: strokes are measured {:.1f} % too {}, at most {:.1f} %: check the sheets' ruler",
+                        handNames[i], 100.0 * std::abs(error), error > 0.0 ? "short" : "long", 100.0 * most));
+    }
+  }
   return out;
 }
 
@@ -187,6 +200,7 @@ std::string calibrationText(const Calibration& c, bool compact) {
   Json limits = Json::object();
   visitLimits(c.limits, WriteValues{limits});
   out["limits"] = limits;
+  if (c.camera) out["camera"] = rigJson(*c.camera);
   return compact ? out.dump() : out.dump(2) + "\n";
 }
 
@@ -211,6 +225,7 @@ Calibration parseCalibration(std::span<const std::byte> bytes, const std::string
   }
   const JsonObject limits = root.at("limits").object(limitsRule);
   visitLimits(c.limits, ReadValues{limits});
+  if (root.has("camera")) c.camera = rigOf(root.at("camera"));
   if (root.at("passed").boolean() != shortcomings(c).empty())
     root.at("passed").fail("does not agree with the values and the limits");
   return c;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "recorder/identity.h"
+#include "recorder/sources/devices/camera/camera_rig.h"
 #include "recorder/sources/devices/device.h"
 
 namespace calot::recorder {
@@ -50,6 +51,7 @@ struct Calibration {
   std::string latency = "not measured";  ///< or a time with its unit
   std::string force = "not applicable";  ///< or the largest error with its unit
   CalibrationLimits limits;
+  std::optional<CameraRig> camera;  ///< of cameras that watch printed handles
 };
 
 /// Violated limits, one phrase each; empty: passed. Rate, noise, intervals and invalid share must be present for at

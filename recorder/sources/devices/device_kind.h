@@ -12,6 +12,8 @@
 
 namespace calot::recorder {
 
+struct Calibration;
+
 /// The clock of a device without real time: a tick is a millisecond of it.
 struct TickClock {
   std::int64_t now = 0;  ///< ns
@@ -22,6 +24,7 @@ struct DeviceRequest {
   std::string name;      ///< as written: "openigtlink:localhost:18944"
   std::string argument;  ///< behind the first colon, never empty where there is a colon: "localhost:18944"
   std::array<std::string, handCount> tools;  ///< names of a tracker's tools, left and right; empty: none
+  const Calibration* calibration = nullptr;  ///< of the device, where one was given: a camera's lens is in it
 
   /// @throws Error (invalid) that names the request and says why
   [[noreturn]] void refuse(const std::string& why) const;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "recorder/errors.h"
+#include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/gamepad_device.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/devices/null_device.h"
@@ -17,7 +18,7 @@ namespace calot::recorder {
 namespace {
 
 // References, so that the linker keeps every device of the library.
-constexpr std::array kinds{&gamepadKind, &openIgtLinkKind, &scriptedKind, &nullKind, &mouseKind};
+constexpr std::array kinds{&gamepadKind, &openIgtLinkKind, &cameraKind, &scriptedKind, &nullKind, &mouseKind};
 
 }  // namespace
 
@@ -45,9 +46,10 @@ std::string deviceUsage(std::string_view last) {
   return fmt::format("{} {} {}", fmt::join(usages, ", "), last, final);
 }
 
-OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools) {
+OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools,
+                        const Calibration* calibration) {
   const std::size_t colon = name.find(':');
-  const DeviceRequest request{name, colon == std::string::npos ? "" : name.substr(colon + 1), tools};
+  const DeviceRequest request{name, colon == std::string::npos ? "" : name.substr(colon + 1), tools, calibration};
   if (colon != std::string::npos && request.argument.empty()) request.refuse("something is missing behind the colon");
   const DeviceKind* const kind = findDeviceKind(name);
   if (kind == nullptr) request.refuse(fmt::format("no such device; there are {}", deviceUsage("and")));

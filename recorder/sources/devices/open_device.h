@@ -26,7 +26,9 @@ std::string deviceUsage(std::string_view last = "or");
 /// @param tools of an OpenIGTLink server: left and right, an empty one for none; ignored for others.
 /// @throws Error: invalid, for a name that is none, a wrong port, no tool or the same one twice; damaged, for a bad
 /// script; failure, for a gamepad that is not there. An OpenIGTLink server need not be there yet.
-OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools);
+/// @param calibration of the device, or null; a camera needs one
+OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools,
+                        const Calibration* calibration = nullptr);
 
 /// What could be opened, of all kinds.
 std::vector<ListedDevice> listDevices();

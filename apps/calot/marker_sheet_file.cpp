@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/calot/marker_sheet_file.h"
+
+#include "recorder/attempt.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_output.h"
+#ifdef CALOT_PDF
+#include "gui/report/sheet_pdf.h"
+#endif
+
+namespace calot::apps {
+
+void writeMarkerSheets([[maybe_unused]] const std::string& file, [[maybe_unused]] bool force) {
+#ifdef CALOT_PDF
+  recorder::refuseOutput(file, force);
+  recorder::writeText(file, gui::sheetsPdf(recorder::markerSheets(), recorder::softwareName(), recorder::tagCells),
+                      force);
+#else
+  throw Error(ErrorKind::invalid, "this build writes no PDF");
+#endif
+}
+
+}  // namespace calot::apps

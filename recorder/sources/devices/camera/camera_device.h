@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "recorder/sources/devices/camera/frame_source.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
+#include "recorder/sources/devices/camera/pedal_keys.h"
+#include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/device_kind.h"
+
+namespace calot::recorder {
+
+/// Two printed handles that one or two cameras watch. D is the first camera's frame, I a handle's
+/// (handle_geometry.h). A frame gives a sample of each hand; it is invalid where no pose can be believed
+/// (HandleTracker). Missing frames are missing numbers.
+///
+/// deviceTime is the exposure's time, on the clock of the frames; hostTime when the pose was there. With live cameras
+/// both are the host's monotonic clock, so that their difference is the latency behind the exposure.
+class CameraDevice final : public Device {
+ public:
+  /// @param sources as many as the rig has cameras, each with its lens' size
+  /// @param clock with which files keep pace; live cameras use it to stamp samples
+  CameraDevice(std::vector<std::unique_ptr<FrameSource>> sources, CameraRig rig, DeviceInfo info, DeviceClock clock,
+               std::unique_ptr<PedalKeys> keys = nullptr);
+
+  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
+  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
+  [[nodiscard]] bool connected() const override { return connected_; }
+  [[nodiscard]] bool ended() const override { return ended_; }
+  void close() override { open_ = false; }
+
+ private:
+  struct Camera {
+    std::unique_ptr<FrameSource> source;
+    Frame pending;
+    bool waiting = false;  ///< `pending` is a frame
+    FrameStatus status = FrameStatus::none;
+    TagDetector detector;
+  };
+  [[nodiscard]] bool live() const { return info_.capabilities.realTime; }
+  bool gather(std::chrono::nanoseconds wait, DeviceInput& out);
+  void measure(std::int64_t time, DeviceInput& out);
+  void put(Hand hand, const HandleSight& sight, std::uint64_t missed, std::int64_t host, DeviceInput& out);
+  void tell(DeviceEvent::Kind kind, const std::string& text, DeviceInput& out);
+
+  DeviceInfo info_;
+  CameraRig rig_;
+  DeviceClock clock_;
+  std::vector<std::unique_ptr<Camera>> camera_;
+  std::unique_ptr<PedalKeys> keys_;
+  std::vector<HandleTracker> tracker_;
+  std::array<std::uint64_t, handCount> sequence_{};
+  std::array<double, handCount> jaw_{};
+  std::array<std::uint32_t, handCount> faultsTold_{};  ///< a bit a fault
+  std::int64_t origin_ = 0, period_ = 0;
+  bool open_ = true, greeted_ = false, connected_ = false, ended_ = false;
+};
+
+/// Films as a device; the same samples every time, on the clock of ticks.
+/// @throws Error: damaged, for a file; invalid, where its size is not the calibrated lens'
+std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, const CameraRig& rig,
+                                        const std::string& identity, DeviceClock clock);
+
+extern const DeviceKind cameraKind;
+
+}  // namespace calot::recorder

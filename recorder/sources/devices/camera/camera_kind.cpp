@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `--device camera`: films or live cameras by name.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "recorder/errors.h"
+#include "recorder/formats/file_bytes.h"
+#include "recorder/sources/devices/calibration.h"
+#include "recorder/sources/devices/camera/camera_device.h"
+#include "recorder/sources/devices/camera/camera_request.h"
+#include "recorder/sources/devices/camera/live_camera.h"
+#include "recorder/sources/devices/camera/video_file.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr std::string_view keysMark = "keys=";
+
+bool isNumber(const std::string& text) {
+  return !text.empty() && text.size() <= 3 &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// SHA-256 of a file of any size, which is mapped, not read into memory.
+std::string sha256OfFile(const std::string& file) {
+  const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat about {};
+  void* address = MAP_FAILED;
+  if (handle >= 0 && fstat(handle, &about) == 0 && about.st_size > 0)
+    address = mmap(nullptr, static_cast<std::size_t>(about.st_size), PROT_READ, MAP_PRIVATE, handle, 0);
+  if (handle >= 0) ::close(handle);
+  if (address == MAP_FAILED) throw Error(ErrorKind::damaged, Where{file}, "cannot be read");
+  const auto size = static_cast<std::size_t>(about.st_size);
+  std::string hash = sha256Hex({static_cast<const std::byte*>(address), size});
+  munmap(address, size);
+  return hash;
+}
+
+void requireLensSize(const FrameSource& source, const CameraLens& lens) {
+  if (source.width() == lens.width && source.height() == lens.height) return;
+  throw Error(ErrorKind::invalid, Where{source.name()},
+              fmt::format("its pictures have {} x {} pixels, those of the calibrated camera {} x {}", source.width(),
+                          source.height(), lens.width, lens.height),
+              {Remedy::measureCalibration});
+}
+
+DeviceInfo cameraInfo(const std::string& identity) {
+  DeviceInfo info;
+  info.name = cameraKind.name;
+  info.identity = identity;
+  info.capabilities.hands = 2;
+  info.capabilities.sensesGripper = true;
+  return info;
+}
+
+OpenedDevice openCamera(const DeviceRequest& request) {
+  const CameraRequest wanted = parseCameraRequest(request);
+  if (request.calibration == nullptr || !request.calibration->camera)
+    throw Error(
+        ErrorKind::invalid,
+        fmt::format("device \"{}\": a camera needs a calibration with its lens: without one, no length is known",
+                    request.name.substr(0, 80)),
+        {Remedy::measureCalibration});
+  const Calibration& calibration = *request.calibration;
+  const CameraRig& rig = *calibration.camera;
+  if (wanted.cameras.size() != rig.cameras.size())
+    request.refuse(
+        fmt::format("{} cameras are named, the calibration is of {}", wanted.cameras.size(), rig.cameras.size()));
+  std::unique_ptr<PedalKeys> keys;
+  if (!wanted.keys.empty()) keys = std::make_unique<PedalKeys>(wanted.keys);
+  if (!wanted.live) {
+    auto ticks = std::make_shared<TickClock>();
+    auto device = openFilms(wanted.cameras, rig, calibration.identity, [ticks] { return ticks->now; });
+    return OpenedDevice{std::move(device), ticks};
+  }
+  std::vector<std::unique_ptr<FrameSource>> sources;
+  std::vector<std::string> cards;
+  for (std::size_t i = 0; i < wanted.cameras.size(); ++i) {
+    auto camera =
+        std::make_unique<LiveCamera>(wanted.cameras[i], rig.cameras[i].lens.width, rig.cameras[i].lens.height);
+    cards.push_back(camera->card());
+    sources.push_back(std::move(camera));
+  }
+  DeviceInfo info = cameraInfo(cameraIdentity(cards));
+  info.detail = fmt::format("{}", fmt::join(wanted.cameras, ", "));
+  return OpenedDevice{
+      std::make_unique<CameraDevice>(std::move(sources), rig, std::move(info), monotonicNanoseconds, std::move(keys)),
+      nullptr};
+}
+
+std::vector<ListedDevice> listCameras() {
+  std::vector<ListedDevice> out;
+  for (const auto& [file, card] : LiveCamera::list())
+    out.push_back({fmt::format("camera:{}", file.substr(std::string("/dev/video").size())), card, true, "2", "6, jaw",
+                   "the camera's"});
+  if (out.empty())
+    out.push_back({"camera", "no camera is attached; camera:FILM plays a film", false, "2", "6, jaw", "the film's"});
+  return out;
+}
+
+}  // namespace
+
+std::string cameraIdentity(const std::vector<std::string>& cards) {
+  return fmt::format("camera:{}", fmt::join(cards, "+")).substr(0, 200);
+}
+
+CameraRequest parseCameraRequest(const DeviceRequest& request) {
+  CameraRequest out;
+  std::string rest = request.argument;
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    std::string part = rest.substr(0, comma);
+    rest = comma < rest.size() ? rest.substr(comma + 1) : "";
+    if (part.empty()) request.refuse("a name is missing beside a comma");
+    if (part.starts_with(keysMark)) {
+      out.keys = part.substr(keysMark.size());
+      if (out.keys.empty()) request.refuse("keys= names no keyboard: keys=/dev/input/by-id/...");
+      continue;
+    }
+    const bool live = isNumber(part) || part.starts_with("/dev/video");
+    if (isNumber(part)) part = fmt::format("/dev/video{}", part);
+    if (!out.cameras.empty() && live != out.live) request.refuse("a film and a live camera cannot be read together");
+    if (std::find(out.cameras.begin(), out.cameras.end(), part) != out.cameras.end())
+      request.refuse("one camera is named twice");
+    out.live = live;
+    out.cameras.push_back(part);
+  }
+  if (out.cameras.empty()) request.refuse("a camera's number or a film is missing: camera:0, camera:FILM.mkv");
+  if (out.cameras.size() > 2) request.refuse("at most two cameras are read");
+  return out;
+}
+
+std::vector<std::unique_ptr<FrameSource>> openFilmSources(const std::vector<std::string>& files) {
+  std::vector<std::unique_ptr<FrameSource>> out;
+  for (const std::string& file : files) out.push_back(std::make_unique<VideoFile>(file));
+  return out;
+}
+
+std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, const CameraRig& rig,
+                                        const std::string& identity, DeviceClock clock) {
+  std::vector<std::unique_ptr<FrameSource>> sources = openFilmSources(files);
+  DeviceInfo info = cameraInfo(identity);
+  std::string hashes;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    requireLensSize(*sources[i], rig.cameras[i].lens);
+    if (i > 0) info.sourceFile += ",";
+    info.sourceFile += sources[i]->name();
+    hashes += sha256OfFile(files[i]);
+  }
+  // Of one film its hash; of two, that of both hashes' text.
+  info.sourceSha256 = files.size() == 1 ? hashes : sha256Hex(std::as_bytes(std::span(hashes)));
+  info.detail = "plays " + info.sourceFile;
+  info.operatorKind = OperatorKind::kinematics;
+  info.capabilities.realTime = false;
+  return std::make_unique<CameraDevice>(std::move(sources), rig, std::move(info), std::move(clock));
+}
+
+constinit const DeviceKind cameraKind{
+    .name = "camera",
+    .usage = "camera:N|FILM[,N|FILM][,keys=KEYBOARD]",
+    .help = "printed handles before one or two cameras, or in films of them",
+    .list = listCameras,
+    .open = openCamera,
+};
+
+}  // namespace calot::recorder

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/camera/handle_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <limits>
+
+#include "recorder/sources/pointing.h"
+
+namespace calot::recorder {
+namespace {
+
+using Pose6 = Eigen::Matrix<double, 6, 1>;
+using Normal6 = Eigen::Matrix<double, 6, 6>;
+constexpr double huberPixels = 1.0;
+constexpr double cornerSigma = 0.3;  // pixels, of a corner of a clear picture
+constexpr double nearest = 0.02;     // m, in front of a camera
+constexpr int mostRounds = 40;
+
+Mat3 crossMatrix(const Vec3& v) {
+  Mat3 out;
+  out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return out;
+}
+
+struct Linearised {
+  Normal6 normal = Normal6::Zero();
+  Pose6 gradient = Pose6::Zero();
+  double cost = 0.0, squares = 0.0;
+};
+
+/// @returns false where a corner lies behind its camera
+bool linearise(const CameraRig& rig, std::span<const CornerSight> corners, const Pose& pose, const Twist& twist,
+               const ShaftConstraint* shaft, Linearised& out) {
+  out = {};
+  for (const CornerSight& c : corners) {
+    const RigCamera& camera = rig.cameras[c.camera];
+    const Vec3 arm = pose.orientation * c.point;
+    const Vec3 x = pose.position + arm + c.later * (twist.velocity + twist.angular.cross(arm));
+    const Mat3 toCamera = camera.fromDevice.orientation.toRotationMatrix();
+    const Vec3 k = camera.fromDevice.position + toCamera * x;
+    if (!(k.z() > nearest)) return false;
+    const Eigen::Vector2d focal = camera.lens.focal;
+    const Eigen::Vector2d error = focal.cwiseProduct(k.head<2>() / k.z() - c.direction);
+    Eigen::Matrix<double, 2, 3> slope;
+    slope << focal.x() / k.z(), 0.0, -focal.x() * k.x() / (k.z() * k.z()),  //
+        0.0, focal.y() / k.z(), -focal.y() * k.y() / (k.z() * k.z());
+    Eigen::Matrix<double, 2, 6> jacobian;
+    jacobian.leftCols<3>() = slope * toCamera;
+    jacobian.rightCols<3>() = -jacobian.leftCols<3>() * crossMatrix(arm);
+    const double size = error.norm();
+    const double weight = size > huberPixels ? huberPixels / size : 1.0;
+    out.cost += size > huberPixels ? huberPixels * (2.0 * size - huberPixels) : size * size;
+    out.squares += size * size;
+    out.normal += weight * jacobian.transpose() * jacobian;
+    out.gradient += weight * jacobian.transpose() * error;
+  }
+  if (shaft != nullptr) {
+    const Mat3 back = pose.orientation.toRotationMatrix().transpose();
+    const Vec3 away = shaft->trocar - pose.position;
+    const double weight = cornerSigma / shaft->sigma;
+    Eigen::Matrix<double, 2, 6> jacobian;
+    jacobian.leftCols<3>() = -weight * back.topRows<2>();
+    jacobian.rightCols<3>() = weight * (back * crossMatrix(away)).topRows<2>();
+    const Eigen::Vector2d error = weight * (back * away).head<2>();
+    out.cost += error.squaredNorm();
+    out.normal += jacobian.transpose() * jacobian;
+    out.gradient += jacobian.transpose() * error;
+  }
+  return std::isfinite(out.cost);
+}
+
+Pose moved(const Pose& pose, const Pose6& step) {
+  return {pose.position + step.head<3>(), (rotationBy(step.tail<3>()) * pose.orientation).normalized()};
+}
+
+}  // namespace
+
+Quat rotationBy(const Vec3& vector) {
+  const double angle = vector.norm();
+  if (angle < 1e-12) return Quat(1.0, 0.5 * vector.x(), 0.5 * vector.y(), 0.5 * vector.z()).normalized();
+  const double s = std::sin(0.5 * angle) / angle;
+  return {std::cos(0.5 * angle), s * vector.x(), s * vector.y(), s * vector.z()};
+}
+
+std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight> corners, const Pose& start,
+                               const Twist& twist, const ShaftConstraint* shaft) {
+  Pose pose = start;
+  Linearised here;
+  if (corners.size() < 4 || !linearise(rig, corners, pose, twist, shaft, here)) return std::nullopt;
+  double damping = 1e-3;
+  for (int round = 0; round < mostRounds; ++round) {
+    Normal6 damped = here.normal;
+    damped.diagonal() += damping * here.normal.diagonal();
+    const Pose6 step = -damped.ldlt().solve(here.gradient);
+    if (!step.allFinite()) return std::nullopt;
+    const Pose next = moved(pose, step);
+    Linearised there;
+    if (linearise(rig, corners, next, twist, shaft, there) && there.cost < here.cost) {
+      const bool done = here.cost - there.cost < 1e-9 * (1.0 + here.cost);
+      pose = next;
+      here = there;
+      damping = std::max(1e-9, 0.1 * damping);
+      if (done) break;
+    } else {
+      damping *= 10.0;
+      if (damping > 1e8) break;
+    }
+  }
+  PoseFit out;
+  out.pose = pose;
+  out.cost = here.cost;
+  out.residual = std::sqrt(here.squares / static_cast<double>(corners.size()));
+  const Eigen::FullPivLU<Normal6> inverse(here.normal);
+  if (!inverse.isInvertible()) return std::nullopt;
+  const Mat3 covariance = inverse.inverse().topLeftCorner<3, 3>();
+  const double noise = std::max(cornerSigma, out.residual / std::sqrt(2.0));
+  const double largest = Eigen::SelfAdjointEigenSolver<Mat3>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  out.uncertainty = noise * std::sqrt(std::max(0.0, largest));
+  return out;
+}
+
+std::vector<Pose> posesOfSquare(const CameraRig& rig, std::span<const CornerSight> corners) {
+  if (corners.size() != 4) return {};
+  // Coordinates of the corners in their plane.
+  const Vec3 middle = 0.25 * (corners[0].point + corners[1].point + corners[2].point + corners[3].point);
+  const Vec3 right = (corners[1].point - corners[0].point).normalized();
+  const Vec3 down = (corners[0].point - corners[3].point).normalized();
+  Eigen::Matrix<double, 8, 9> equations = Eigen::Matrix<double, 8, 9>::Zero();
+  const double unit = (corners[1].point - corners[0].point).norm();
+  for (int i = 0; i < 4; ++i) {
+    const CornerSight& c = corners[static_cast<std::size_t>(i)];
+    const Eigen::RowVector3d at(right.dot(c.point - middle) / unit, down.dot(c.point - middle) / unit, 1.0);
+    equations.block<1, 3>(2 * i, 0) = at;
+    equations.block<1, 3>(2 * i, 6) = -c.direction.x() * at;
+    equations.block<1, 3>(2 * i + 1, 3) = at;
+    equations.block<1, 3>(2 * i + 1, 6) = -c.direction.y() * at;
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix<double, 8, 9>> svd(equations, Eigen::ComputeFullV);
+  const Eigen::Matrix<double, 9, 1> h = svd.matrixV().col(8);
+  Mat3 homography;
+  homography << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
+  if (homography(2, 2) < 0.0) homography = -homography;
+  const double size = 0.5 * (homography.col(0).norm() + homography.col(1).norm());
+  if (!(size > 0.0) || !std::isfinite(size)) return {};
+  homography *= unit / size;
+  homography.col(0) /= unit;
+  homography.col(1) /= unit;
+  Mat3 columns;
+  columns << homography.col(0), homography.col(1), homography.col(0).cross(homography.col(1));
+  const Eigen::JacobiSVD<Mat3> nearestRotation(columns, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 rotation = nearestRotation.matrixU() * nearestRotation.matrixV().transpose();
+  if (!(rotation.determinant() > 0.0)) return {};
+  const Vec3 translation = homography.col(2);  // of the tag's middle, in the camera
+  if (!(translation.z() > nearest)) return {};
+
+  Mat3 inBody;
+  inBody << right, down, right.cross(down);
+  const Pose& camera = rig.cameras[corners[0].camera].fromDevice;
+  const auto inDevice = [&](const Mat3& turn) {
+    const Quat body = quaternionOf(turn * inBody.transpose());
+    const Vec3 position = translation - body * middle;
+    return Pose{camera.orientation.conjugate() * (position - camera.position), camera.orientation.conjugate() * body};
+  };
+  const Vec3 sight = translation.normalized();
+  const Vec3 normal = rotation.col(2);
+  const Vec3 mirrored = 2.0 * normal.dot(sight) * sight - normal;
+  const Mat3 other = Quat::FromTwoVectors(normal, mirrored).toRotationMatrix() * rotation;
+  return {inDevice(rotation), inDevice(other)};
+}
+
+}  // namespace calot::recorder
