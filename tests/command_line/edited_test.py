@@ -37,10 +37,10 @@ class EditedRecording(program.ProgramTest):
                 r = self.edited(short(), change)
                 self.refused(4, "replay", r, names=(r, "contact_set[77]"))
 
-        # In the air any set gives the same force: re-simulation agrees, the chain does not.
+        # In the air any set gives the same force, if it does not fall behind the one before: re-simulation agrees, the chain does not.
         def another(file):
             self.assertFalse(file["/ticks/right/force"][:300].any())
-            file["/ticks/right/contact_set"][205] = 3
+            file["/ticks/right/contact_set"][200] -= 1
 
         r = self.edited(skilled(), another, seal=False)
         self.refused(3, "replay", r, names=(r, "content chain", "flush 1", "re-simulation agrees"))
@@ -66,7 +66,7 @@ class EditedRecording(program.ProgramTest):
                 r = self.edited(short(), change)
                 self.refused(3, "replay", r, names=(r, word))
                 r = self.edited(short(), change, seal=False)
-                self.refused(3, "replay", r, names=(r, "chain"))
+                self.refused(3, "replay", r, names=(r, "chain" if dataset != "/steps/component_names" else "components"))
 
     def test_rows_of_status(self):
         def wall(file):

@@ -31,7 +31,7 @@ class FilesMadeToHang(program.ProgramTest):
         return r
 
     def refusedSoon(self, r, *names, commands=None):
-        for command in commands or (("replay", r), ("inspect", r), ("assess", r), ("recover", r, "-o", self.path("o.h5")),
+        for command in commands or (("replay", r), ("inspect", r), ("assess", r, "--cohort", self.path("c.db")), ("recover", r, "-o", self.path("o.h5")),
                                     ("render", r, "-o", self.path("o.png")), ("state", r, "--step", 1, "-o", self.path("s.h5"))):
             with self.subTest(command[0]):
                 begin = time.monotonic()
@@ -108,7 +108,7 @@ class FilesMadeToHang(program.ProgramTest):
 
         self.refusedSoon(self.changed(declared), "/ticks/left/jaw", "chunks of 42949672", "at most 4194304")
         r = self.changed(stored)
-        self.refusedSoon(r, "needs more than 1024 MiB of memory", commands=(("replay", r), ("inspect", r), ("assess", r)))
+        self.refusedSoon(r, "needs more than 1024 MiB of memory", commands=(("replay", r), ("inspect", r), ("assess", r, "--cohort", self.path("c.db"))))
 
     def test_extents_and_names_without_end(self):
         def extent(file):

@@ -22,10 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       recorder::parseColumnMap(bytes, "map.json");
     } else if (choice % 4 == 2) {
       recorder::ColumnMap map;
-      map.frame = "world";
-      map.time = "t";
+      map.frame = std::string("world");
+      map.time = std::string("t");
       map.hand[0] = recorder::ColumnMap::HandColumns{};
-      map.hand[0]->position = {"x", "y", "z"};
+      map.hand[0]->position = {std::string("x"), std::string("y"), std::string("z")};
       recorder::parseCsvMotion(bytes, "a.csv", map);
     } else {
       analytics::parseCsvTable(fuzz::textOf(bytes), "people.csv");
