@@ -72,8 +72,8 @@ TEST_F(NormRule, theRuleThatNobodyNamesIsShort) {
   EXPECT_EQ(inRule(norm), std::vector<std::string>{"elapsed-time"});
   EXPECT_FALSE(markOf(norm, "critical-view").cut);
   EXPECT_EQ(uncountedWarning(norm),
-            "Warning: harm that does not count, for want of a pass mark (a group has no spread): clip-errors, "
-            "critical-view.");
+            "Warning: harm that does not count, for want of a pass mark (a group has no spread): critical-view, "
+            "clip-errors.");
   request_.checkpoints = {"all"};
   EXPECT_GT(inRule(made()).size(), 1U) << "a difference of 0.0002 counts where it is asked for";
 }
@@ -81,7 +81,7 @@ TEST_F(NormRule, theRuleThatNobodyNamesIsShort) {
 TEST_F(NormRule, anInstructorFixesWhatIsCritical) {
   request_.fixed = {parseFixedCut("critical-view>=5"), parseFixedCut("clip-errors <= 0")};
   const Norm norm = made();
-  EXPECT_EQ(inRule(norm), (std::vector<std::string>{"elapsed-time", "clip-errors", "critical-view"}));
+  EXPECT_EQ(inRule(norm), (std::vector<std::string>{"elapsed-time", "critical-view", "clip-errors"}));
   EXPECT_EQ(markOf(norm, "critical-view").cut, 5.0);
   EXPECT_TRUE(isFixed(markOf(norm, "critical-view")));
   EXPECT_FALSE(isFixed(markOf(norm, "elapsed-time")));
