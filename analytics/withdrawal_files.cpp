@@ -2,10 +2,14 @@
 #include "analytics/withdrawal_files.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <set>
+#include <string_view>
 
+#include "analytics/cohort/cohort_database.h"
 #include "recorder/errors.h"
 #include "recorder/recording/identify.h"
 
@@ -14,23 +18,69 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Does the file hold one of the words, somewhere in its bytes? Read in pieces that overlap.
-bool fileNames(const fs::path& file, const std::vector<std::string>& words) {
-  std::size_t longest = 1;
-  for (const std::string& word : words) longest = std::max(longest, word.size());
-  const std::size_t overlap = longest + 2;  // a word's neighbours tell whether it is one
+/// What may stand beside a pseudonym that is a value of its own: a cell, a string, a word of a sentence.
+bool separates(char c) {
+  return static_cast<unsigned char>(c) <= ' ' || std::string_view(",;|\"'`<>()[]{}=").find(c) != std::string_view::npos;
+}
+
+/// Is this occurrence in a text a value of its own, and no part of a longer name, a number or a time?
+bool standsAlone(std::string_view text, std::size_t at, std::size_t size) {
+  if (at > 0 && !separates(text[at - 1])) return false;
+  const std::size_t end = at + size;
+  if (end == text.size() || separates(text[end])) return true;
+  const bool closes = std::string_view(".:!?").find(text[end]) != std::string_view::npos;
+  return closes && (end + 1 == text.size() || separates(text[end + 1]));
+}
+
+/// What is searched for in a file's bytes.
+struct Wanted {
+  const std::vector<std::string>& uuids;  ///< anywhere: none of them is there by chance
+  std::string pseudonym;                  ///< in text, as a value; empty: not searched for
+};
+
+/// Text has no zero byte among its first ones.
+bool isText(std::string_view bytes) { return bytes.substr(0, 4096).find('\0') == std::string_view::npos; }
+
+/// Does the file hold what is wanted? Read in pieces that overlap.
+bool fileHolds(const fs::path& file, const Wanted& wanted) {
+  std::size_t overlap = wanted.pseudonym.size() + 2;
+  for (const std::string& uuid : wanted.uuids) overlap = std::max(overlap, uuid.size());
   std::ifstream in(file, std::ios::binary);
   std::string window;
   std::string piece(std::size_t{1} << 20U, '\0');
+  bool first = true, text = false;
   while (in) {
     in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     window.append(piece, 0, static_cast<std::size_t>(in.gcount()));
-    for (const std::string& word : words) {
-      if (namesWord(window, word)) return true;
+    if (first) text = isText(window);
+    for (const std::string& uuid : wanted.uuids) {
+      if (window.find(uuid) != std::string::npos) return true;
     }
+    const std::string& name = wanted.pseudonym;
+    for (std::size_t at = text && !name.empty() ? window.find(name) : std::string::npos; at != std::string::npos;
+         at = window.find(name, at + 1)) {
+      // What stands beside it at an edge is known in the next piece, or was in the one before.
+      const bool whole = (at > 0 || first) && (at + name.size() + 1 < window.size() || !in);
+      if (whole && standsAlone(window, at, name.size())) return true;
+    }
+    first = false;
     if (window.size() > overlap) window.erase(0, window.size() - overlap);
   }
   return false;
+}
+
+/// Another cohort that has the participant. What is no cohort has none.
+bool hasParticipant(const fs::path& file, const std::string& pseudonym) {
+  std::array<char, 16> begin{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(begin.data(), begin.size());
+  if (!in || std::memcmp(begin.data(), "SQLite format 3", begin.size()) != 0) return false;
+  try {
+    const auto known = CohortDatabase(file.string(), CohortDatabase::Access::read).participants();
+    return std::any_of(known.begin(), known.end(), [&](const Participant& p) { return p.pseudonym == pseudonym; });
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 bool isPicture(const fs::path& file) {
@@ -76,22 +126,23 @@ WithdrawalFiles findFiles(const Withdrawal& w, const std::string& database, cons
       more = true;
     }
   }
-  std::vector<std::string> words(uuids.begin(), uuids.end());
-  const std::vector<std::string> attempts = words;
-  if (w.scope == WithdrawalScope::all) words.push_back(w.pseudonym);
+  const std::vector<std::string> attempts(uuids.begin(), uuids.end());
+  const std::string pseudonym = w.scope == WithdrawalScope::all ? w.pseudonym : "";
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (identity[i] || kept(files[i]) || !recorder::looksLikeHdf5(files[i])) continue;
-    if (fileNames(files[i], attempts)) remove.insert(files[i]);
+    if (fileHolds(files[i], {attempts, ""})) remove.insert(files[i]);
   }
   const std::set<fs::path> recordings = remove;
-  for (const fs::path& file : files) {
-    if (remove.count(file) > 0 || kept(file)) continue;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path& file = files[i];
+    if (identity[i] || remove.count(file) > 0 || kept(file)) continue;
     const bool beside = isPicture(file) && std::any_of(recordings.begin(), recordings.end(), [&](const fs::path& r) {
                           return r.parent_path() == file.parent_path() && r.stem() == file.stem();
                         });
     if (beside) {
       remove.insert(file);
-    } else if (fileNames(file, words)) {
+    } else if ((!pseudonym.empty() && (file.stem() == pseudonym || hasParticipant(file, pseudonym))) ||
+               fileHolds(file, {attempts, pseudonym})) {
       result.naming.push_back(file);
     }
   }

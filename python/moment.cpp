@@ -91,6 +91,9 @@ Moment MomentSeeker::seek(std::uint64_t step) {
     throw Error(ErrorKind::invalid, Where{recording_.path().string()},
                 fmt::format("has {} steps, from 0 on: there is no step {}", recording_.stepCount(), step));
   seeker_.seek(step);
+  if (const auto& differs = seeker_.differsFrom())
+    throw Error(ErrorKind::refused, Where{recording_.path().string()},
+                fmt::format("diverged at step {}: from there on another attempt would be shown", *differs));
   Moment moment;
   moment.view = seeker_.view();
   moment.smoke = smokeAfter(step);

@@ -7,6 +7,7 @@
 #include "recorder/formats/scene_assets.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/engine_process.h"
+#include "recorder/kept/recorded_names.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {
@@ -51,6 +52,11 @@ bool EngineChoice::fits(const DigestLayout& layout) const {
   if (!scene_) return true;
   const DigestLayout& own = scene_->model().layout();
   return layout.components == own.components && layout.fields.size() == own.fields.size();
+}
+
+std::string EngineChoice::nameFault() const {
+  if (!scene_ || header_.simulationVersion != simulationVersion) return "";
+  return recorder::nameFault(header_, scene_->model());
 }
 
 const SceneDescription& EngineChoice::scene() const {

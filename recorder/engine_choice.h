@@ -37,6 +37,8 @@ class EngineChoice {
   [[nodiscard]] bool isInside() const { return scene_ != nullptr; }
   /// Has the engine the digests of that layout? Another program is asked when it is made, which throws.
   [[nodiscard]] bool fits(const DigestLayout& layout) const;
+  /// nameFault() of the recording; empty for another version, and of another program, which is asked when it is made.
+  [[nodiscard]] std::string nameFault() const;
   /// The recording's scene. @throws Error (damaged) where it cannot be read by this program
   [[nodiscard]] const SceneDescription& scene() const;
   /// To be called after a run: keeps what the scene's runs share (PreparedScene::save()).

@@ -11,6 +11,7 @@
 #include "recorder/kept/engine_folders.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/miss_count.h"
+#include "recorder/recording/layout.h"
 #include "recorder/segments.h"
 #include "recorder/step_comparison.h"
 #include "sim/scene/version.h"
@@ -146,6 +147,12 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
     report.message = "the recorded digests have other components than this build's State: nothing to compare";
     return;
   }
+  if (const std::string fault = choice.nameFault(); !fault.empty()) {
+    report.verdict = ReplayVerdict::diverged;
+    report.message = fault;
+    if (!chain.intact) report.message += fmt::format("; content chain broken: {}", chain.what);
+    return;
+  }
   const bool sameResults = foreign || header.stepResultVersion == stepResultVersion;
   std::vector<Observer*> observers;
   if (settings.observers && sameResults) observers = settings.observers(header, choice.scene());
@@ -241,7 +248,7 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
 }
 
 Seeker::Seeker(Recording& recording, const EngineChoice& choice)
-    : recording_(recording), engine_(choice.make(executor_)) {}
+    : recording_(recording), choice_(choice), engine_(choice_.make(executor_)) {}
 
 void Seeker::seek(std::uint64_t step) {
   const auto nearest = recording_.keyframeAtOrBefore(step);
@@ -257,14 +264,23 @@ void Seeker::seek(std::uint64_t step) {
   } else if (!goOn) {
     engine_->start(recording_.header().seed);
   }
+  if (!goOn) differs_.reset();
   begun_ = true;
   while (engine_->steps() <= step) advance();
+}
+
+bool Seeker::isAsRecorded(const RecordedStep& recorded, const EngineStep& step) {
+  const AttemptHeader& header = recording_.header();
+  if (isMinimal(header) || header.formatVersion == 1) return recorded.digest.component == step.digest.component;
+  shorten(step.digest, brief_);
+  return recorded.brief.state == brief_.state;
 }
 
 void Seeker::advance() {
   try {
     const RecordedStep& recorded = recording_.step(engine_->steps());
-    static_cast<void>(engine_->step({recorded.samples, recorded.ticks, recorded.lateness}));
+    const EngineStep step = engine_->step({recorded.samples, recorded.ticks, recorded.lateness});
+    if (!differs_ && !isAsRecorded(recorded, step)) differs_ = recorded.step;
   } catch (const std::out_of_range& e) {
     throw Error(ErrorKind::damaged, Where{recording_.path().string(), "/ticks"}, e.what());
   }

@@ -14,6 +14,7 @@
 #include "recorder/engine/engine.h"
 #include "recorder/engine_choice.h"
 #include "recorder/errors.h"
+#include "recorder/recording/brief_digest.h"
 #include "recorder/recording/reader.h"
 #include "recorder/step_misses.h"
 
@@ -111,13 +112,20 @@ class Seeker {
   /// What is to be drawn after that step, and the State as bytes.
   [[nodiscard]] SceneView view() { return engine_->view(); }
   [[nodiscard]] Keyframe keyframe() { return engine_->keyframe(); }
+  /// First step since the keyframe that it began at whose State has another digest than the recorded one: from there on
+  /// another attempt is shown. Keyframes themselves are the content chain's concern.
+  [[nodiscard]] const std::optional<std::uint64_t>& differsFrom() const { return differs_; }
 
  private:
   void advance();
+  [[nodiscard]] bool isAsRecorded(const RecordedStep& recorded, const EngineStep& step);
   Recording& recording_;
+  EngineChoice choice_;  ///< its scene lives as long as the engine
   SerialExecutor executor_;
   std::unique_ptr<Engine> engine_;
   bool begun_ = false;
+  BriefDigest brief_;
+  std::optional<std::uint64_t> differs_;
 };
 
 /// JUnit XML: one case a recording; diverged is a failure, damaged an error, undecided skipped, the divergence in the

@@ -18,6 +18,8 @@ say "test clang"
 ctest --test-dir "$root/build/clang" --label-exclude 'heavy|determinism' --parallel "$jobs" --output-on-failure --no-tests=error
 say "heavy tests"
 ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure --no-tests=error "$@"
+say "fuzzing"
+"$root/scripts/fuzz.sh"
 say "the attempt in a browser"
 "$python" -B "$root/scripts/page.py" --jobs "$jobs"
 node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot"

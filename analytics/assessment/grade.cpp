@@ -72,21 +72,24 @@ void judge(GradedFigure& figure, const AttemptValue* found, const Norm& norm, st
 /// The rule answers alike however the unsure figures of it are taken.
 template <class Unsure>
 bool isSteady(const Grade& grade, Unsure unsure) {
-  std::size_t surely = 0, perhaps = 0;
+  std::vector<bool> surely, perhaps;
   for (const GradedFigure& f : grade.figures) {
-    if (!f.mark.inRule) continue;
     const bool passed = f.passed.value_or(false);
-    surely += passed && !unsure(f) ? 1 : 0;
-    perhaps += passed || unsure(f) ? 1 : 0;
+    surely.push_back(passed && !unsure(f));
+    perhaps.push_back(passed || unsure(f));
   }
-  return (surely >= grade.needed) == (perhaps >= grade.needed);
+  return keepsRule(grade.norm, surely) == keepsRule(grade.norm, perhaps);
 }
 
 void conclude(Grade& grade) {
+  std::vector<bool> passed;
+  std::string fixed;
   for (const GradedFigure& f : grade.figures) {
+    passed.push_back(f.passed.value_or(false));
     if (!f.mark.inRule) continue;
     ++grade.inRule;
-    grade.passedCount += f.passed.value_or(false) ? 1 : 0;
+    grade.passedCount += passed.back() ? 1 : 0;
+    if (isFixed(f.mark) && !passed.back()) fixed += fmt::format("; {} has to be passed in any case", f.title);
   }
   grade.needed = neededPasses(grade.norm);
   if (grade.criticalErrors.value_or(0.0) > 0.0) {
@@ -97,16 +100,16 @@ void conclude(Grade& grade) {
                     *grade.criticalErrors == 1.0 ? "" : "s", grade.certain ? "" : "; not decided by this simulation");
     return;
   }
-  grade.passed = grade.passedCount >= grade.needed;
+  grade.passed = keepsRule(grade.norm, passed);
   const bool marked = isSteady(grade, [](const GradedFigure& f) { return f.open; });
   const bool simulated = isSteady(grade, [](const GradedFigure& f) { return f.undecided; }) && !grade.criticalUndecided;
   // Open and undecided figures together may turn what neither turns alone.
   grade.certain = marked && simulated && isSteady(grade, [](const GradedFigure& f) { return f.open || f.undecided; });
-  std::string doubt;
+  std::string doubt = fixed;
   if (!marked) doubt += "; not certain, as figures lie within the intervals of their pass marks";
   if (!simulated) doubt += "; not decided by this simulation, whose intervals hold pass marks";
-  if (!grade.certain && doubt.empty())
-    doubt =
+  if (!grade.certain && doubt == fixed)
+    doubt +=
         "; not certain, as figures within the intervals of their pass marks and figures that this simulation does "
         "not decide can turn it together";
   grade.verdict =

@@ -20,6 +20,7 @@ namespace {
 
 constexpr const char* competentGroup = "competent";
 constexpr const char* otherGroup = "not competent";
+constexpr const char* allFigures = "all";
 constexpr const char* borderlinePrefix = "borderline regression on form ";
 
 std::string figureName(const std::string& checkpoint, const std::string& subject) {
@@ -145,23 +146,39 @@ std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue
   return figures;
 }
 
+/// Whether a figure can be in the rule, if it has a mark.
+bool isCandidate(const std::string& checkpoint, const std::string& subject, const NormRequest& request) {
+  const auto fixed = [&](const FixedCut& cut) {
+    return cut.figure == checkpoint || cut.figure == figureName(checkpoint, subject);
+  };
+  if (std::any_of(request.fixed.begin(), request.fixed.end(), fixed)) return true;
+  if (request.checkpoints.empty()) return countsByDefault(checkpoint);
+  return request.checkpoints.front() == allFigures || isNamed(request.checkpoints, checkpoint, subject);
+}
+
 /// Before any mark is made: a rule that asks for more figures than there can be in it.
 void checkCount(const std::vector<NormFigure>& figures, const NormRequest& request, const std::string& name) {
   const auto candidates =
       static_cast<std::size_t>(std::count_if(figures.begin(), figures.end(), [&](const NormFigure& f) {
-        return request.checkpoints.empty() || isNamed(request.checkpoints, f.definition->name, f.subject);
+        return isCandidate(f.definition->name, f.subject, request);
       }));
   if (candidates > 0 && request.leastPassed > candidates)  // of none, declareRule() says which names are unknown
     throw Error(ErrorKind::refused, Where{name},
                 fmt::format("the rule asks for {} figures, {}", request.leastPassed,
                             request.checkpoints.empty()
-                                ? fmt::format("and the members have {} that judge", candidates)
+                                ? fmt::format("and of those that count the members have {}", candidates)
                                 : fmt::format("and the checkpoints that are named give {}", candidates)));
 }
 
 void declareRule(Norm& norm, const NormRequest& request, const std::string& name) {
-  for (NormCheckpoint& mark : norm.checkpoints) mark.inRule = request.checkpoints.empty() && mark.cut.has_value();
+  setFixedCuts(norm, request.fixed);
+  const bool all = !request.checkpoints.empty() && request.checkpoints.front() == allFigures;
+  for (NormCheckpoint& mark : norm.checkpoints) {
+    if (mark.inRule || !mark.cut) continue;
+    mark.inRule = all || (request.checkpoints.empty() && countsByDefault(mark.checkpoint));
+  }
   for (const std::string& wanted : request.checkpoints) {
+    if (all) break;
     bool found = false;
     for (NormCheckpoint& mark : norm.checkpoints) {
       const std::string figure = figureName(mark.checkpoint, mark.subject);
@@ -177,7 +194,8 @@ void declareRule(Norm& norm, const NormRequest& request, const std::string& name
   }
   const auto inRule = static_cast<std::size_t>(
       std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }));
-  if (inRule == 0) throw Error(ErrorKind::refused, Where{name}, "no figure has a pass mark");
+  if (inRule == 0)
+    throw Error(ErrorKind::refused, Where{name}, "no figure that counts has a pass mark", {Remedy::nameCheckpoints});
   norm.leastPassed = request.leastPassed;
   if (norm.leastPassed > inRule)
     throw Error(ErrorKind::refused, Where{name},
@@ -303,13 +321,12 @@ std::string ownFailureWarning(const Norm& norm) {
 std::pair<PassRate, PassRate> passRates(const Norm& norm) {
   std::pair<PassRate, PassRate> rates;
   for (const NormMember& m : norm.members) {
-    std::size_t passed = 0;
-    for (std::size_t c = 0; c < norm.checkpoints.size(); ++c) {
-      if (norm.checkpoints[c].inRule && m.values[c] && passes(norm.checkpoints[c], *m.values[c])) ++passed;
-    }
+    std::vector<bool> passed;
+    for (std::size_t c = 0; c < norm.checkpoints.size(); ++c)
+      passed.push_back(norm.checkpoints[c].cut && m.values[c] && passes(norm.checkpoints[c], *m.values[c]));
     PassRate& rate = m.competent ? rates.first : rates.second;
     ++rate.members;
-    if (passed >= neededPasses(norm)) ++rate.passed;
+    if (keepsRule(norm, passed)) ++rate.passed;
   }
   return rates;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/assessment/norm_rule.h"
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
@@ -29,9 +30,11 @@ struct NormRequest {
   StudyOptions who;
   std::string judgedBy;  ///< form with the one item "competent", 0 or 1, by which raters judge; empty: by group
   std::optional<BorderlineMark> borderline;  ///< instead of groups and judgedBy
-  std::vector<std::string> checkpoints;  ///< in the rule, "path-length" or "path-length left"; empty: all with a cut
-  std::uint32_t leastPassed = 0;         ///< of them; 0: all
-  std::uint64_t seed = 1;                ///< of the bootstrap
+  /// In the rule, "path-length" or "path-length left"; "all": all with a cut; empty: countsByDefault() of these.
+  std::vector<std::string> checkpoints;
+  std::vector<FixedCut> fixed;    ///< in the rule, too, by marks of a person
+  std::uint32_t leastPassed = 0;  ///< of them; 0: all
+  std::uint64_t seed = 1;         ///< of the bootstrap
 };
 
 /// Name of the form and its item by which raters judge competence.

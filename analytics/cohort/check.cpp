@@ -44,4 +44,12 @@ CohortCheck checkCohort(const std::string& path) {
   });
 }
 
+void refuseUnsound(const std::string& path) {
+  const CohortCheck check = checkCohort(path);
+  if (check.faults.empty()) return;
+  throw Error(ErrorKind::damaged, Where{path},
+              fmt::format("{} faults, the first: {}; restore a copy, or assess the recordings into a new one",
+                          check.faults.size(), check.faults.front()));
+}
+
 }  // namespace calot::analytics

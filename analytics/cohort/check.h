@@ -18,4 +18,7 @@ struct CohortCheck {
 /// signatures that are not of the recording's head. Changes nothing. @throws Error as CohortDatabase does.
 CohortCheck checkCohort(const std::string& path);
 
+/// Before figures of a database are shown. @throws Error (damaged) naming the first fault of checkCohort()
+void refuseUnsound(const std::string& path);
+
 }  // namespace calot::analytics

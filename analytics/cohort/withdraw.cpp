@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <SQLiteCpp/Backup.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -104,16 +106,11 @@ void leaveResearch(SQLite::Database& db, const std::string& pseudonym) {
 }
 
 void removeBackups(const std::string& path) {
-  const std::filesystem::path file(path);
-  const std::string stem = file.filename().string() + backupMark;
-  std::error_code error;
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().filename().string().rfind(stem, 0) != 0) continue;
+  for (const std::string& backup : backupsOf(path)) {
     std::error_code failed;
-    if (!std::filesystem::remove(entry.path(), failed) || failed) {
+    if (!std::filesystem::remove(backup, failed) || failed) {
       throw Error(
-          ErrorKind::failure, Where{entry.path().string()},
+          ErrorKind::failure, Where{backup},
           fmt::format("cannot be removed ({}); it holds what was withdrawn, remove it by hand", failed.message()));
     }
   }
@@ -132,6 +129,56 @@ void rebuild(SQLite::Database& db, const std::string& path) {
   checkpoint();
   db.exec("VACUUM");
   checkpoint();
+}
+
+/// Within a transaction: every row that hangs on the withdrawal, and the words of audit rows that name it.
+void removeRows(SQLite::Database& db, const Withdrawal& w, const std::string& id) {
+  db.exec("PRAGMA defer_foreign_keys = ON");
+  leaveTombstone(db, id, w);
+  SQLite::Statement remove(db, "DELETE FROM attempt WHERE uuid = ?");
+  for (const std::string& uuid : w.attempts) {
+    remove.reset();
+    remove.bind(1, uuid);
+    remove.exec();
+  }
+  if (w.scope == WithdrawalScope::all) {
+    SQLite::Statement who(db, "DELETE FROM participant WHERE pseudonym = ?");
+    who.bind(1, w.pseudonym);
+    who.exec();
+  } else {
+    leaveResearch(db, w.pseudonym);
+  }
+  deleteOrphans(db);
+  for (const std::string& uuid : w.attempts) deleteByUuid(db, uuid);
+  deleteOrphans(db);
+  for (const ExportRow& row : w.exports) {
+    SQLite::Statement empty(db,
+                            "DELETE FROM export WHERE at_utc = ? AND kind = ? AND target = ? AND id NOT IN "
+                            "(SELECT export FROM export_attempt)");
+    SQLite::bind(empty, row.utc, row.kind, row.target);
+    empty.exec();
+  }
+  std::vector<std::string> words = w.attempts;
+  if (w.scope == WithdrawalScope::all) words.push_back(w.pseudonym);
+  silenceAudit(db, words, "withdrawn " + id);
+}
+
+std::vector<std::string> columnsNaming(SQLite::Database& db, const std::vector<std::string>& words) {
+  std::vector<std::string> places;
+  for (const TableFacts& table : readTables(db)) {
+    for (const ColumnFacts& column : table.columns) {
+      if (column.type != "TEXT") continue;
+      SQLite::Statement read(
+          db, fmt::format("SELECT DISTINCT {} FROM {}", quotedName(column.name), quotedName(table.name)));
+      bool found = false;
+      while (!found && read.executeStep()) {
+        const std::string held = text(read.getColumn(0));
+        found = std::any_of(words.begin(), words.end(), [&](const std::string& w) { return namesWord(held, w); });
+      }
+      if (found) places.push_back(table.name + "." + column.name);
+    }
+  }
+  return places;
 }
 
 std::unique_ptr<SQLite::Database> openForDeletion(const std::string& path) {
@@ -153,6 +200,20 @@ bool namesWord(const std::string& where, const std::string& word) {
   return false;
 }
 
+std::vector<std::string> backupsOf(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string stem = file.filename().string() + backupMark;
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  std::vector<std::string> backups;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().filename().string().rfind(stem, 0) == 0)
+      backups.push_back(file.has_parent_path() ? entry.path().string() : entry.path().filename().string());
+  }
+  std::sort(backups.begin(), backups.end());
+  return backups;
+}
+
 std::string withdraw(const std::string& path, const Withdrawal& w) {
   const std::string id = recorder::newUuid();
   guarded(path, [&] {
@@ -160,34 +221,7 @@ std::string withdraw(const std::string& path, const Withdrawal& w) {
     SQLite::Database& db = *handle;
     {
       SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-      db.exec("PRAGMA defer_foreign_keys = ON");
-      leaveTombstone(db, id, w);
-      SQLite::Statement remove(db, "DELETE FROM attempt WHERE uuid = ?");
-      for (const std::string& uuid : w.attempts) {
-        remove.reset();
-        remove.bind(1, uuid);
-        remove.exec();
-      }
-      if (w.scope == WithdrawalScope::all) {
-        SQLite::Statement who(db, "DELETE FROM participant WHERE pseudonym = ?");
-        who.bind(1, w.pseudonym);
-        who.exec();
-      } else {
-        leaveResearch(db, w.pseudonym);
-      }
-      deleteOrphans(db);
-      for (const std::string& uuid : w.attempts) deleteByUuid(db, uuid);
-      deleteOrphans(db);
-      for (const ExportRow& row : w.exports) {
-        SQLite::Statement empty(db,
-                                "DELETE FROM export WHERE at_utc = ? AND kind = ? AND target = ? AND id NOT IN "
-                                "(SELECT export FROM export_attempt)");
-        SQLite::bind(empty, row.utc, row.kind, row.target);
-        empty.exec();
-      }
-      std::vector<std::string> words = w.attempts;
-      if (w.scope == WithdrawalScope::all) words.push_back(w.pseudonym);
-      silenceAudit(db, words, "withdrawn " + id);
+      removeRows(db, w, id);
       audit(db, "participant-withdraw", w.scope == WithdrawalScope::all ? "withdrawn " + id : w.pseudonym,
             fmt::format("scope {}, {} attempts", w.scope == WithdrawalScope::all ? "all" : "research",
                         w.attempts.size()));
@@ -210,22 +244,22 @@ void scrub(const std::string& path) {
 std::vector<std::string> placesNaming(const std::string& path, const std::vector<std::string>& words) {
   return guarded(path, [&] {
     const auto handle = openCohort(path, CohortDatabase::Access::read, withdrawalPatience);
-    SQLite::Database& db = *handle;
-    std::vector<std::string> places;
-    for (const TableFacts& table : readTables(db)) {
-      for (const ColumnFacts& column : table.columns) {
-        if (column.type != "TEXT") continue;
-        SQLite::Statement read(
-            db, fmt::format("SELECT DISTINCT {} FROM {}", quotedName(column.name), quotedName(table.name)));
-        bool found = false;
-        while (!found && read.executeStep()) {
-          const std::string held = text(read.getColumn(0));
-          found = std::any_of(words.begin(), words.end(), [&](const std::string& w) { return namesWord(held, w); });
-        }
-        if (found) places.push_back(table.name + "." + column.name);
-      }
+    return columnsNaming(*handle, words);
+  });
+}
+
+std::vector<std::string> placesLeft(const std::string& path, const Withdrawal& w,
+                                    const std::vector<std::string>& words) {
+  return guarded(path, [&] {
+    SQLite::Database copy(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    {
+      const auto from = openCohort(path, CohortDatabase::Access::read, withdrawalPatience);
+      SQLite::Backup(copy, *from).executeStep(-1);
     }
-    return places;
+    copy.exec("PRAGMA foreign_keys = ON");
+    SQLite::Transaction transaction(copy);
+    if (w.known) removeRows(copy, w, recorder::newUuid());
+    return columnsNaming(copy, words);
   });
 }
 

@@ -49,6 +49,13 @@ void scrub(const std::string& path);
 /// Columns ("table.column") that still contain one of the words as a whole word.
 std::vector<std::string> placesNaming(const std::string& path, const std::vector<std::string>& words);
 
+/// Those of them that withdraw() will leave, tried on a copy in memory.
+std::vector<std::string> placesLeft(const std::string& path, const Withdrawal& withdrawal,
+                                    const std::vector<std::string>& words);
+
+/// Backups that migrations left beside a database, which withdraw() removes.
+std::vector<std::string> backupsOf(const std::string& path);
+
 /// Was the attempt withdrawn from this database?
 bool wasWithdrawn(const std::string& path, const std::string& uuid);
 

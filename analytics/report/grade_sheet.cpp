@@ -89,7 +89,8 @@ ReportTable figuresTable(const Grade& g) {
 
 std::vector<std::string> notes(const Grade& g) {
   std::vector<std::string> lines{
-      "pass mark: the cut of contrasting groups, at which one passes, with its bootstrap interval. open: the value "
+      "pass mark: the cut of contrasting groups, at which one passes, with its bootstrap interval, or a mark that was "
+      "fixed, without one. open: the value "
       "lies within that interval. percentile: among the competent members; higher is better."};
   if (std::any_of(g.figures.begin(), g.figures.end(), [](const GradedFigure& f) { return f.interval.has_value(); })) {
     lines.emplace_back(
@@ -103,7 +104,9 @@ std::vector<std::string> notes(const Grade& g) {
       lines.push_back(fmt::format("{}: computed by a script of the site, version {}, SHA-256 {}.", nameOf(f),
                                   f.mark.version, f.mark.metric->sha256));
   }
-  if (std::string warning = passMarkWarning(g.norm); !warning.empty()) lines.push_back(std::move(warning));
+  for (std::string warning : {ownFailureWarning(g.norm), uncountedWarning(g.norm), passMarkWarning(g.norm)}) {
+    if (!warning.empty()) lines.push_back(std::move(warning));
+  }
   for (const GradedFigure& f : g.figures) {
     if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
     if (f.value && f.passed && !f.rank)

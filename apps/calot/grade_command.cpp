@@ -11,6 +11,7 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/check.h"
 #include "analytics/report/grade_sheet.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
@@ -111,6 +112,7 @@ int grade(const GradeOptions& o) {
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
+  analytics::refuseUnsound(o.database);
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const std::vector<analytics::AttemptRow> attempts = cohort.listAttempts();
   const analytics::AttemptRow attempt = attemptOf(attempts, o);

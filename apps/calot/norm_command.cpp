@@ -36,6 +36,7 @@ constexpr std::size_t maxEvidence = std::size_t{1} << 30U;
 struct NormOptions {
   analytics::BorderlineMark borderline;
   std::string database, name, by, groupBy = "group", attemptRule, rule, seed = "1", statement, file, protocol;
+  std::vector<std::string> fixed;
   analytics::NormRequest request;
   unsigned version = 0;
   bool json = false;
@@ -87,6 +88,7 @@ Json jsonOf(const analytics::Norm& norm) {
                                 {"cut_si", number(c.cut)},
                                 {"lower_si", number(c.lower)},
                                 {"upper_si", number(c.upper)},
+                                {"fixed", analytics::isFixed(c)},
                                 {"reason", c.reason}});
     if (c.metric) j["checkpoints"].back()["source_sha256"] = c.metric->sha256;
   }
@@ -130,7 +132,8 @@ void print(const analytics::Norm& norm) {
                           c.inRule ? "counts" : "", c.reason});
   }
   analytics::printTable(table, std::cout);
-  for (const std::string& warning : {analytics::ownFailureWarning(norm), analytics::passMarkWarning(norm)}) {
+  for (const std::string& warning :
+       {analytics::ownFailureWarning(norm), analytics::uncountedWarning(norm), analytics::passMarkWarning(norm)}) {
     if (!warning.empty()) analytics::printWrapped(warning, std::cout);
   }
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
@@ -143,6 +146,7 @@ int create(NormOptions& o) {
   o.request.seed = std::stoull(o.seed);
   o.request.who.grouping = o.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
   if (!o.attemptRule.empty()) o.request.who.attemptRule = analytics::AttemptRule::first;
+  for (const std::string& text : o.fixed) o.request.fixed.push_back(analytics::parseFixedCut(text));
   if (!o.borderline.form.empty()) o.request.borderline = o.borderline;
   analytics::AssessmentDatabase database(o.database, Access::write);
   const analytics::CohortDatabase cohort(o.database, Access::read);
@@ -163,9 +167,13 @@ int list(NormOptions& o) {
   std::string text;
   for (const analytics::Norm& norm : analytics::AssessmentDatabase(o.database, Access::read).norms()) {
     rows.push_back(jsonOf(norm));
-    text += fmt::format("{} version {}, {}: {} members, judged by {}{}{}\n", norm.name, norm.version, norm.createdUtc,
+    const analytics::PassRate own = analytics::passRates(norm).first;
+    text += fmt::format("{} version {}, {}: {} members, judged by {}{}{}{}\n", norm.name, norm.version, norm.createdUtc,
                         norm.members.size(), norm.judgedBy, norm.evidence.empty() ? ", formative" : "",
-                        norm.synthetic ? ", SYNTHETIC" : "");
+                        norm.synthetic ? ", SYNTHETIC" : "",
+                        own.passed == own.members ? ""
+                                                  : fmt::format(", FAILED by {} of its {} competent members",
+                                                                own.members - own.passed, own.members));
   }
   if (o.json) {
     std::cout << rows.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
@@ -203,8 +211,14 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
   command
       .add_option(
           "--checkpoints", o.request.checkpoints,
-          "Figures in the rule, A,B: a checkpoint, or one of it (\"path-length left\"); default: all with a mark")
+          "Figures in the rule, A,B: a checkpoint, or one of it (\"path-length left\"); all: every one with a mark; "
+          "default: time, path lengths, critical view, clip errors, perforations and burns, as far as they have one")
       ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      .add_option("--fixed", o.fixed,
+                  "A pass mark that a person sets, in the unit of the tables, such as \"clip-errors<=0\": the figure "
+                  "counts by it; may be repeated")
       ->allow_extra_args(false);
   CLI::Option* protocol = command.add_option(
       "--protocol", o.protocol,

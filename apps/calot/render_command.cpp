@@ -22,7 +22,7 @@ struct RenderOptions {
   std::optional<std::string> at, from, to, overlay, beside;
   double speed = 1.0;
   int fps = 25;
-  bool force = false;
+  bool force = false, anyway = false;
 };
 
 gui::Quality qualityOf(const std::string& word, bool film) {
@@ -58,12 +58,16 @@ int render(const RenderOptions& o) {
   settings.fps = o.fps;
   settings.alignment = o.align == "phase" ? gui::Alignment::phase : gui::Alignment::start;
   if (o.beside) settings.beside = *o.beside;
+  settings.anyway = o.anyway;
 
   std::vector<std::string> attempts;
   std::vector<std::string> files{o.recording};
   if (o.beside) files.push_back(*o.beside);
   for (const std::string& file : files) {
-    recorder::probe(file);
+    if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact) {
+      if (!o.anyway) throw Error(ErrorKind::refused, Where{file}, chain.what, {Remedy::replayAnyway});
+      settings.doubt = "NOT AS RECORDED: content was changed";
+    }
     if (!o.cohort.empty()) attempts.push_back(recorder::Recording(file).header().attempt);
   }
   if (film)
@@ -111,6 +115,8 @@ void addRender(CLI::App& app, Run& run) {
   command->add_option("--align", o->align, "with --beside: both from the start, or phase by phase")
       ->check(CLI::IsMember({"start", "phase"}));
   command->add_option("--cohort", o->cohort, "cohort database that notes the picture, for withdrawals");
+  command->add_flag("--anyway", o->anyway,
+                    "draw recordings of a simulation version without an engine, and changed ones, too: with a mark");
   command->add_flag("--force", o->force, "replace the output if it is there");
   command->callback([o, &run] { run = [o] { return render(*o); }; });
 }

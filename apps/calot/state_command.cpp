@@ -25,7 +25,7 @@ constexpr std::uint64_t flatSteps = 200;
 struct StateOptions {
   std::string recording, output;
   std::uint64_t step = 0;
-  bool flat = false, force = false;
+  bool flat = false, force = false, anyway = false;
 };
 
 int state(const StateOptions& o) {
@@ -35,6 +35,14 @@ int state(const StateOptions& o) {
   if (o.step >= recording.stepCount()) {
     throw Error(ErrorKind::invalid, fmt::format("{}: has steps 0 to {}, not {}", o.recording,
                                                 static_cast<std::int64_t>(recording.stepCount()) - 1, o.step));
+  }
+  const std::uint32_t version = recording.header().simulationVersion;
+  if (version != simulationVersion) {
+    const std::string what =
+        fmt::format("recorded with simulation version {}, this build has {}: its State is that of another attempt",
+                    version, simulationVersion);
+    if (!o.anyway) throw Error(ErrorKind::undecided, Where{o.recording}, what, {Remedy::replayAnyway});
+    std::cerr << "calot: warning: " << o.recording << ": " << what << '\n';
   }
   // What a State's bytes mean this build knows of its own version alone.
   const recorder::EngineChoice choice(recording, {.anyway = true});
@@ -107,6 +115,7 @@ void addState(CLI::App& app, Run& run) {
   command->add_option("--step", o->step, "the step after which")->check(wholeNumber)->required();
   command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
   command->add_option("-o,--output", o->output, "file to write")->required();
+  command->add_flag("--anyway", o->anyway, "what this build makes of a recording of another simulation version, too");
   command->add_flag("--force", o->force, "replace the output if it is there");
   command->callback([o, &run] { run = [o] { return state(*o); }; });
 }

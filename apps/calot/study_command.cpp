@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/cohort/check.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
@@ -123,6 +124,7 @@ void addStudy(CLI::App& app, Run& run) {
       for (const std::string& file : {options->html, options->pdf}) {
         if (!file.empty()) recorder::refuseOutput(file, options->force);
       }
+      if (!options->source.database.empty()) analytics::refuseUnsound(options->source.database);
       return designOf(options->design, options->source) == analytics::Design::twoGroups ? runTwoGroups(*options)
                                                                                         : runDesign(*options);
     };

@@ -57,12 +57,29 @@ void addFilms(const analytics::Withdrawal& w, std::vector<fs::path>& remove) {
   }
 }
 
-void tell(const analytics::Withdrawal& w, const analytics::WithdrawalFiles& files) {
+/// All of it, before anything is done: what goes, then what stays and has to be looked into.
+void tell(const WithdrawOptions& o, const analytics::Withdrawal& w, const analytics::WithdrawalFiles& files,
+          bool named) {
   for (const std::string& uuid : w.attempts) std::cout << "attempt " << uuid << '\n';
   for (const std::string& uuid : w.branchesOfOthers)
     std::cout << "of these, a branch that another participant made: " << uuid << '\n';
   for (const std::string& uuid : files.unknown) std::cout << "attempt (not in the database) " << uuid << '\n';
   for (const fs::path& file : files.remove) std::cout << "file " << file.string() << '\n';
+  for (const std::string& backup : analytics::backupsOf(o.cohort)) std::cout << "backup " << backup << '\n';
+  if (named) std::cout << "entry of the key file " << o.key << '\n';
+  const std::set<fs::path> gone(files.remove.begin(), files.remove.end());
+  for (const analytics::ExportRow& e : w.exports) {
+    if (!isFilm(e) || (fs::exists(e.target) && gone.count(e.target) == 0))
+      std::cout << fmt::format("was handed out: {} {} ({}); not removed\n", e.kind, e.target, e.utc);
+  }
+  for (const fs::path& file : files.naming)
+    std::cout << "still names it: " << file.string() << "; not removed, look into it\n";
+  if (w.scope != analytics::WithdrawalScope::all) return;
+  std::vector<std::string> words = w.attempts;
+  words.insert(words.end(), files.unknown.begin(), files.unknown.end());
+  words.push_back(w.pseudonym);
+  for (const std::string& place : analytics::placesLeft(o.cohort, w, words))
+    std::cout << fmt::format("still names it: {} {}; written by a person, look into it\n", o.cohort, place);
 }
 
 int withdraw(const WithdrawOptions& o) {
@@ -72,6 +89,7 @@ int withdraw(const WithdrawOptions& o) {
   const std::vector<fs::path> folders(o.folders.begin(), o.folders.end());
   std::vector<fs::path> keep{o.cohort, o.cohort + "-wal", o.cohort + "-shm"};
   if (!o.key.empty()) keep.emplace_back(o.key);
+  for (const std::string& backup : analytics::backupsOf(o.cohort)) keep.emplace_back(backup);
   analytics::WithdrawalFiles files = analytics::findFiles(w, o.cohort, folders, keep);
   addFilms(w, files.remove);
   std::unique_ptr<analytics::KeyFile> key;
@@ -80,8 +98,7 @@ int withdraw(const WithdrawOptions& o) {
   if (!w.known && files.remove.empty() && !named)
     throw Error(ErrorKind::refused,
                 fmt::format("{}: no participant \"{}\", and nothing left of one", o.cohort, o.pseudonym));
-  tell(w, files);
-  if (named) std::cout << "entry of the key file " << o.key << '\n';
+  tell(o, w, files, named);
   if (o.dryRun) {
     std::cout << "nothing was changed (--dry-run)\n";
     return static_cast<int>(ExitCode::yes);
@@ -90,8 +107,6 @@ int withdraw(const WithdrawOptions& o) {
   for (const fs::path& file : files.remove) removeFile(file);
   if (named) key->remove(o.pseudonym);
   w.attempts.insert(w.attempts.end(), files.unknown.begin(), files.unknown.end());
-  std::vector<std::string> words = w.attempts;
-  if (scope == analytics::WithdrawalScope::all) words.push_back(o.pseudonym);
   if (w.known) {
     const std::string tombstone = analytics::withdraw(o.cohort, w);
     std::cout << fmt::format("{}: {} attempts and {} files removed; tombstone {}\n", o.cohort, w.attempts.size(),
@@ -100,18 +115,6 @@ int withdraw(const WithdrawOptions& o) {
     analytics::scrub(o.cohort);
     std::cout << fmt::format("{}: {} files removed; the participant was not in the database\n", o.cohort,
                              files.remove.size());
-  }
-  for (const analytics::ExportRow& e : w.exports) {
-    if (!isFilm(e) || fs::exists(e.target))
-      std::cout << fmt::format("was handed out: {} {} ({}); not removed\n", e.kind, e.target, e.utc);
-  }
-  for (const fs::path& file : files.naming) {
-    if (!fs::exists(file)) continue;  // a backup of the database
-    std::cout << "still names it: " << file.string() << "; not removed, look into it\n";
-  }
-  for (const std::string& place : analytics::placesNaming(o.cohort, words)) {
-    if (scope == analytics::WithdrawalScope::all)
-      std::cout << fmt::format("still names it: {} {}; written by a person, look into it\n", o.cohort, place);
   }
   return static_cast<int>(ExitCode::yes);
 }

@@ -13,7 +13,7 @@ const char* adviceOf(Remedy remedy) {
     case Remedy::installEngine:
       return "calot engine list shows those that are there";
     case Remedy::replayAnyway:
-      return "--anyway replays and reports";
+      return "--anyway repeats it all the same, and says so";
     case Remedy::moveFork:
       return "move it with --at";
     case Remedy::measureCalibration:

@@ -77,6 +77,9 @@ class ReplayPlayer::Run {
     const std::uint64_t steps = stepsTo(reach(), step);
     const auto begin = Clock::now();
     seeker_.seek(step);
+    if (const auto& differs = seeker_.differsFrom())
+      throw Error(ErrorKind::refused, Where{recording_.path().filename().string()},
+                  fmt::format("diverged at step {}: from there on another operation would be shown", *differs));
     done_ = step;
     if (steps > 0) stepCost_ += 0.2 * (secondsSince(begin) / static_cast<double>(steps) - stepCost_);
   }

@@ -17,6 +17,7 @@
 #include "gui/film/look_ahead.h"
 #include "gui/render/png_file.h"
 #include "gui/render/renderer.h"
+#include "recorder/engine_choice.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -86,7 +87,9 @@ class Cutter {
     Image whole;
     for (std::size_t s = 0; s < scenes.size(); ++s) {
       Image image = renderer_.render(scenes[s].view, width, height, quality, scenes[s].moment.smoke);
-      letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view, captions_[s]);
+      Captions captions = captions_[s];
+      captions.doubt = scenes[s].doubt.empty() ? settings_.doubt : scenes[s].doubt;
+      letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view, captions);
       if (scenes.size() == 1) return image;
       if (s == 0) {
         whole.width = settings_.size.width;
@@ -100,9 +103,9 @@ class Cutter {
 
  private:
   void add(const std::filesystem::path& recording) {
-    sources_.push_back(std::make_unique<FilmSource>(recording, settings_.overlays));
+    sources_.push_back(std::make_unique<FilmSource>(recording, settings_.overlays, settings_.anyway));
     const FilmSource& source = *sources_.back();
-    captions_.push_back({settings_.beside ? source.title() : "", source.mark(settings_.blinded)});
+    captions_.push_back({settings_.beside ? source.title() : "", source.mark(settings_.blinded), ""});
   }
 
   FilmSettings settings_;
@@ -113,10 +116,11 @@ class Cutter {
   OverlayPainter letters_{settings_.size.height};
 };
 
-/// Length of a recording that has something to draw (s).
-double secondsOf(const std::filesystem::path& recording) {
+/// Length of a recording that has something to draw, and an engine that draws it (s).
+double secondsOf(const std::filesystem::path& recording, bool anyway) {
   const recorder::Recording opened(recording);
   if (opened.stepCount() == 0) throw Error(ErrorKind::damaged, Where{recording.string()}, "holds no step to draw");
+  if (!anyway) static_cast<void>(recorder::EngineChoice(opened, {}));
   return opened.seconds();
 }
 
@@ -128,7 +132,7 @@ void checkTime(const std::filesystem::path& recording, double time, double secon
 
 void checkBeside(const FilmSettings& settings) {
   if (!settings.beside) return;
-  static_cast<void>(secondsOf(*settings.beside));
+  static_cast<void>(secondsOf(*settings.beside, settings.anyway));
   if (settings.size.width % 4 != 0)
     throw Error(ErrorKind::invalid,
                 fmt::format("{} pixels wide: two recordings side by side need a multiple of 4", settings.size.width));
@@ -142,7 +146,7 @@ void checkFilm(const std::filesystem::path& recording, const std::filesystem::pa
   if (!(settings.speed >= 0.01 && settings.speed <= 100.0))
     throw Error(ErrorKind::invalid, fmt::format("{} times as fast: a film goes 0.01 to 100 times", settings.speed));
   checkBeside(settings);
-  const double seconds = secondsOf(recording);
+  const double seconds = secondsOf(recording, settings.anyway);
   const double to = settings.to.value_or(seconds);
   checkTime(recording, to, seconds);
   if (settings.from >= to)
@@ -152,7 +156,7 @@ void checkFilm(const std::filesystem::path& recording, const std::filesystem::pa
 
 void checkMoment(const std::filesystem::path& recording, const FilmSettings& settings) {
   checkBeside(settings);
-  checkTime(recording, settings.from, secondsOf(recording));
+  checkTime(recording, settings.from, secondsOf(recording, settings.anyway));
 }
 
 std::int64_t writeFilm(const std::filesystem::path& recording, const std::filesystem::path& output,

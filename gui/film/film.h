@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "gui/film/overlay.h"
 #include "gui/render/picture.h"
@@ -29,10 +30,15 @@ struct FilmSettings {
   std::optional<std::filesystem::path> beside;  ///< a second recording, in the right half
   Alignment alignment = Alignment::start;
   bool blinded = false;  ///< the mark of a synthetic attempt does not name its profile
+  /// Draws what this program makes of recordings that it cannot decide, or that differ, too: each frame has a mark
+  /// then.
+  bool anyway = false;
+  std::string doubt;  ///< a mark for every frame, where what is recorded is in doubt itself
 };
 
 /// What the functions below would refuse of their arguments, before anything is done.
-/// @throws calot::Error: invalid for settings out of range; damaged where a recording cannot be read or holds no step
+/// @throws calot::Error: invalid for settings out of range; damaged where a recording cannot be read or holds no step;
+/// undecided where no engine of a recording's simulation version is here, if not `anyway`
 void checkFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
                const FilmSettings& settings);
 void checkMoment(const std::filesystem::path& recording, const FilmSettings& settings);
@@ -43,8 +49,8 @@ void checkMoment(const std::filesystem::path& recording, const FilmSettings& set
 /// @param output .mp4 or .mkv; replaced if it exists
 /// @param progress called after every frame; an exception from it stops the film
 /// @return the number of pictures
-/// @throws calot::Error: invalid for settings out of range; damaged where a recording cannot be read; failure where the
-/// film cannot be written. Nothing is left behind then.
+/// @throws calot::Error: as checkFilm(); refused where re-simulation comes to another State than was recorded, if not
+/// `anyway`; failure where the film cannot be written. Nothing is left behind then.
 std::int64_t writeFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
                        const FilmSettings& settings,
                        const std::function<void(std::uint64_t done, std::uint64_t of)>& progress = {});

@@ -1,13 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/film/film_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "recorder/engine_choice.h"
+#include "recorder/errors.h"
+#include "recorder/kept/engine_folders.h"
+#include "sim/scene/version.h"
+
 namespace calot::gui {
 
-FilmSource::FilmSource(const std::filesystem::path& recording, const Overlays& overlays)
-    : recording_(recording), seeker_(recording_) {
+namespace {
+
+/// The engine of a recording's version goes before this program's own, which shows another operation.
+bool isForeign(const recorder::Recording& recording) {
+  const std::uint32_t version = recording.header().simulationVersion;
+  return version != simulationVersion && recorder::commandOfEngine(version).empty();
+}
+
+}  // namespace
+
+FilmSource::FilmSource(const std::filesystem::path& recording, const Overlays& overlays, bool anyway)
+    : recording_(recording),
+      anyway_(anyway),
+      foreign_(isForeign(recording_)),
+      seeker_(recording_, recorder::EngineChoice(recording_, {.anyway = anyway && foreign_})) {
   if (overlays.needTrack() || hasResults(recording_))
     track_ = std::make_unique<MomentTrack>(recording, overlays.checkpoints);
 }
@@ -24,6 +44,16 @@ FilmSource::Scene FilmSource::at(std::uint64_t step) {
   seeker_.seek(step);
   Scene scene;
   scene.view = seeker_.view();
+  if (foreign_) {
+    scene.doubt = fmt::format("NOT AS RECORDED: by version {}, shown by {}", recording_.header().simulationVersion,
+                              simulationVersion);
+  } else if (const auto& differs = seeker_.differsFrom()) {
+    if (!anyway_)
+      throw Error(ErrorKind::refused, Where{recording_.path().string()},
+                  fmt::format("diverged at step {}: from there on another operation would be shown", *differs),
+                  {Remedy::replayAnyway});
+    scene.doubt = fmt::format("NOT AS RECORDED: differs from step {} on", *differs);
+  }
   if (track_)
     scene.moment = track_->at(step);
   else

@@ -99,6 +99,28 @@ void OverlayPainter::paintTitle(Image& image, std::string title) const {
   letters_.write(image, title, image.width / 2, margin_, Anchor::middle, white);
 }
 
+/// In lines that fit, broken at spaces: whatever the size of the picture, none of it is left out.
+void OverlayPainter::paintDoubt(Image& image, const std::string& doubt) const {
+  int y = image.height / 4;
+  std::string line;
+  const auto write = [&] {
+    letters_.write(image, line, image.width / 2, y, Anchor::middle, amber);
+    y += letters_.lineHeight();
+  };
+  for (std::size_t at = 0; at < doubt.size();) {
+    const std::size_t end = std::min(doubt.find(' ', at), doubt.size());
+    const std::string longer = line + (line.empty() ? "" : " ") + doubt.substr(at, end - at);
+    if (!line.empty() && letters_.widthOf(longer) > image.width - 2 * margin_) {
+      write();
+      line = doubt.substr(at, end - at);
+    } else {
+      line = longer;
+    }
+    at = end + 1;
+  }
+  write();
+}
+
 void OverlayPainter::paintEvents(Image& image, const Moment& moment, int bottom) const {
   int y = bottom;
   for (auto line = moment.events.rbegin(); line != moment.events.rend(); ++line) {
@@ -132,6 +154,7 @@ void OverlayPainter::paint(Image& image, const Overlays& overlays, const Moment&
     letters_.write(image, captions.mark, image.width - margin_, bottom - letters_.lineHeight(), Anchor::right, grey,
                    0.85);
   if (!captions.title.empty()) paintTitle(image, captions.title);
+  if (!captions.doubt.empty()) paintDoubt(image, captions.doubt);
 }
 
 }  // namespace calot::gui

@@ -25,6 +25,7 @@ struct Overlays {
 struct Captions {
   std::string title;  ///< at the upper edge; truncated if too long
   std::string mark;   ///< at the lower edge: a non-human operator ("synthetic")
+  std::string doubt;  ///< in the middle of the upper half, in amber: what is shown is not what was recorded
 };
 
 /// Draws overlays in sizes that fit the picture's height: time and phase in the upper left corner, checkpoints in the
@@ -40,6 +41,7 @@ class OverlayPainter {
 
  private:
   void paintTitle(Image& image, std::string title) const;
+  void paintDoubt(Image& image, const std::string& doubt) const;
   void paintEvents(Image& image, const Moment& moment, int bottom) const;
 
   Lettering letters_;

@@ -8,6 +8,7 @@
 
 #include "recorder/engine/wire_forms.h"
 #include "recorder/kept/receive_message.h"
+#include "recorder/kept/recorded_names.h"
 
 namespace calot::recorder {
 
@@ -78,6 +79,7 @@ void EngineProcess::load(const AttemptHeader& header, const Where& where) {
   }
   if (layout_.components != header.layout.components || layout_.fields.size() != header.layout.fields.size())
     fail("the recorded digests have other components than the engine's State: nothing to compare");
+  if (const std::string fault = nameFault(header.layout, layout_); !fault.empty()) fail(fault);
   if (identity_.stepResultVersion != header.stepResultVersion)
     fail(fmt::format("its results are of version {}, those of its engine {}", header.stepResultVersion,
                      identity_.stepResultVersion));

@@ -148,7 +148,8 @@ std::string extractStep(const Layout& layout, const Block& block, std::uint64_t 
   RowVisitor<BlockRow> visit{layout, BlockRow{layout, block, at}, layout.tickColumns, false, {}};
   visitStep(out.digest, out.brief, out.forces, out.lateness, out.result, out.procedure, visit);
   out.result.step = out.step;
-  return named(visit.fault, out.step);
+  const bool ranAway = (out.result.misses & miss::runaway) != 0;
+  return named(visit.fault.empty() && !ranAway ? visit.unfinite : visit.fault, out.step);
 }
 
 }  // namespace calot::recorder

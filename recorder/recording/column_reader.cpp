@@ -81,7 +81,8 @@ StatusRow ColumnReader::readStatus(std::uint64_t row) const {
   std::vector<std::byte> bytes;
   read(status_, statusColumn_, row, 1, bytes);
   StatusRow out;
-  if (!parseStatus(bytes, out)) throw damaged(path_, "/status", fmt::format("row {} has an unknown outcome", row));
+  if (const std::string fault = parseStatus(bytes, out); !fault.empty())
+    throw damaged(path_, "/status", fmt::format("row {} {}", row, fault));
   if (row == 0 && (out.ticks | out.steps | out.events | out.keyframes | out.keyframeWords) != 0) {
     throw damaged(path_, "/status", "row 0 does not start at nothing");
   }

@@ -9,10 +9,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <new>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -53,16 +57,43 @@ std::optional<Error> unpacked(const std::string& text) {
   return Error(static_cast<ErrorKind>(text[0]), Where{part[0], part[1]}, part[2], std::move(remedies));
 }
 
+constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
+
+/// Lets this process have so many bytes more than it has now.
+void limitMemory(std::size_t bytes) {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  if (pages == 0) return;
+  const rlim_t most = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + bytes;
+  const rlimit limit{most, most};
+  ::setrlimit(RLIMIT_AS, &limit);
+}
+
+Error tooLarge(const Where& where, const GuardLimits& limits) {
+  return {ErrorKind::damaged, where,
+          fmt::format("reading it needs more than {} MiB of memory; the file is damaged or not a recording",
+                      limits.memory / mebibyte)};
+}
+
+/// The reading library says in words of its own that it had no memory.
+bool isOfMemory(const Error& error) { return error.fault().find("memory allocation failed") != std::string::npos; }
+
 /// Runs the task and sends what came of it: a letter, then its text or the error.
-[[noreturn]] void runChild(int out, const std::function<std::string()>& task) {
+[[noreturn]] void runChild(int out, const std::string& what, const std::function<std::string()>& task,
+                           const GuardLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit noCore{0, 0};
   ::setrlimit(RLIMIT_CORE, &noCore);
+  limitMemory(limits.memory);
   std::string message;
   try {
     message = succeeded + task();
   } catch (const Error& e) {
-    message = failed + packed(e);
+    message = failed + packed(isOfMemory(e) ? tooLarge(e.where(), limits) : e);
+  } catch (const std::bad_alloc&) {
+    message = failed + packed(tooLarge(Where{what}, limits));
+  } catch (const std::length_error&) {
+    message = failed + packed(tooLarge(Where{what}, limits));
   } catch (const std::exception& e) {
     message = failed + packed(Error(ErrorKind::failure, e.what()));
   }
@@ -95,7 +126,15 @@ bool readAll(int in, std::chrono::steady_clock::time_point end, std::string& out
 
 }  // namespace
 
-std::string runGuarded(const std::string& what, const std::function<std::string()>& task, std::chrono::seconds limit) {
+GuardLimits readingLimits(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  GuardLimits limits;
+  limits.time = std::chrono::seconds(60 + (error ? 0 : std::min<std::uintmax_t>(bytes / mebibyte, 3600)));
+  return limits;
+}
+
+std::string runGuarded(const std::string& what, const std::function<std::string()>& task, const GuardLimits& limits) {
   std::array<int, 2> pipe{};
   if (::pipe(pipe.data()) != 0)
     throw Error(ErrorKind::failure, Where{what}, fmt::format("no pipe: {}", std::strerror(errno)));
@@ -107,7 +146,7 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
   }
   if (child == 0) {
     ::close(pipe[0]);
-    runChild(pipe[1], task);
+    runChild(pipe[1], what, task, limits);
   }
   ::close(pipe[1]);
   if (child < 0) {
@@ -115,15 +154,16 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
     throw Error(ErrorKind::failure, Where{what}, fmt::format("no child process: {}", std::strerror(errno)));
   }
   std::string message;
-  const bool inTime = readAll(pipe[0], std::chrono::steady_clock::now() + limit, message);
+  const bool inTime = readAll(pipe[0], std::chrono::steady_clock::now() + limits.time, message);
   ::close(pipe[0]);
   if (!inTime) ::kill(child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!inTime) {
-    throw Error(ErrorKind::damaged, Where{what},
-                fmt::format("reading it took longer than {} s; the file is damaged or not a recording", limit.count()));
+    throw Error(
+        ErrorKind::damaged, Where{what},
+        fmt::format("reading it took longer than {} s; the file is damaged or not a recording", limits.time.count()));
   }
   const bool ended = WIFEXITED(status) && !message.empty();
   if (ended && message[0] == succeeded) return message.substr(1);

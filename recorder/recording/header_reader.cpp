@@ -16,6 +16,9 @@ using hdf5::Id;
 
 constexpr std::size_t maxAttribute = 32768;
 constexpr std::size_t maxName = 1024;
+/// All names of a list together, as they are stored, and all files of a scene (bytes).
+constexpr std::uint64_t maxNameBytes = std::uint64_t{1} << 20U;
+constexpr std::uint64_t maxAssetBytes = std::uint64_t{512} << 20U;
 
 class HeaderReader {
  public:
@@ -67,6 +70,8 @@ class HeaderReader {
       throw damaged(path_, place, "does not hold fixed-length strings");
     }
     if (rows < 1 || rows > most) throw damaged(path_, place, "has the wrong shape");
+    if (rows * size > maxNameBytes)
+      throw damaged(path_, place, fmt::format("takes {} bytes; names take at most {}", rows * size, maxNameBytes));
     std::string all(size * rows, '\0');
     if (H5Dread(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
       throw damaged(path_, place, hdf5::reason());
@@ -80,7 +85,7 @@ class HeaderReader {
     return out;
   }
 
-  Asset asset(const std::string& place) const {
+  Asset asset(const std::string& place) {
     Asset out;
     std::uint64_t rows = 0;
     const Id d = vector(place, rows);
@@ -88,6 +93,9 @@ class HeaderReader {
     if (H5Tequal(type.get(), H5T_STD_U8LE) <= 0) throw damaged(path_, place, "has the wrong type");
     // Deflate cannot shrink more than 1032 to 1.
     if (rows / 1040 > fileBytes_) throw damaged(path_, place, "claims more bytes than the file can hold");
+    assetBytes_ += rows;
+    if (rows > maxAssetBytes || assetBytes_ > maxAssetBytes)
+      throw damaged(path_, place, fmt::format("the scene's files take more than {} bytes", maxAssetBytes));
     out.name = text(d.get(), place, "name");
     const std::string sha = text(d.get(), place, "sha256");
     out.bytes.resize(static_cast<std::size_t>(rows));
@@ -130,6 +138,7 @@ class HeaderReader {
   const std::filesystem::path& path_;
   const Id& file_;
   std::uint64_t fileBytes_;
+  std::uint64_t assetBytes_ = 0;  ///< of those that were read
 };
 
 struct ReadAttributes {
@@ -169,7 +178,7 @@ bool isUuid(const std::string& text) {
 }  // namespace
 
 AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file, std::uint64_t fileBytes) {
-  const HeaderReader reader(path, file, fileBytes);
+  HeaderReader reader(path, file, fileBytes);
   AttemptHeader h;
   ReadAttributes attributes{reader};
   // What the other attributes are depends on the version.

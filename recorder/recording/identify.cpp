@@ -32,7 +32,7 @@ RecordingIdentity identify(const std::filesystem::path& path) {
                     {"head", recording.status().back().chain}}
             .dump();
       },
-      std::chrono::seconds(60));
+      GuardLimits{std::chrono::seconds(60)});
   const json told = json::parse(answer);
   RecordingIdentity id;
   id.attempt = told["attempt"].get<std::string>();

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "recorder/errors.h"
+#include "recorder/recording/shape.h"
 #include "recorder/recording/types.h"
 
 namespace calot::recorder {
@@ -41,6 +42,16 @@ Superblock readSuperblock(const std::filesystem::path& path) {
   return s;
 }
 
+namespace {
+
+std::uint64_t sizeOfFile(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return error ? 0 : bytes;
+}
+
+}  // namespace
+
 hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   const Superblock superblock = readSuperblock(path);
   const Id how = hdf5::fileAccess(access == Access::settled ? 1 : 0);
@@ -49,11 +60,12 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG}) {
     H5Pset_fclose_degree(how.get(), degree);
     Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get()));
-    if (file.valid()) return file;
+    if (!file.valid()) continue;
+    checkShape(path, file, sizeOfFile(path));
+    return file;
   }
   const std::string why = hdf5::reason();
-  std::error_code ignored;
-  const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
+  const std::uint64_t bytes = sizeOfFile(path);
   if (superblock.endOfFile > bytes && !superblock.writing) {
     throw Error(ErrorKind::damaged, Where{path.string()},
                 fmt::format("is cut off: {} of {} bytes are there", bytes, superblock.endOfFile), {Remedy::recover});

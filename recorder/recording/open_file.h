@@ -19,7 +19,8 @@ struct Superblock {
 /// @throws Error damaged: there is no file, it is empty, or it is no HDF5 file.
 Superblock readSuperblock(const std::filesystem::path& path);
 
-/// Opens a file for reading: the SWMR way if its writer did not close it, plainly otherwise.
+/// Opens a file for reading: the SWMR way if its writer did not close it, plainly otherwise. Refuses one that has not
+/// the shape of a recording (shape.h) before any of its data is read.
 hdf5::Id openForReading(const std::filesystem::path& path, Access access);
 
 }  // namespace calot::recorder

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "recorder/recording/chain.h"
 #include "recorder/recording/column_reader.h"
@@ -72,14 +73,28 @@ struct Recording::Impl {
     columns->readRaw(before, status[row], *block);
     events.assign(static_cast<std::size_t>(status[row].steps - before.steps), {});
     const std::vector<std::byte>& packed = block->column[layout->events];
+    std::uint64_t latest = 0;
     for (std::uint64_t i = 0; i < status[row].events - before.events; ++i) {
       const Event e = parseEvent(std::span(packed).subspan(static_cast<std::size_t>(i) * eventBytes));
-      if (e.step < before.steps || e.step >= status[row].steps) {
-        throw hdf5::damaged(path, "/events", fmt::format("row {} is of a step outside its flush", before.events + i));
-      }
+      const auto refuse = [&](const char* why) {
+        throw hdf5::damaged(path, "/events", fmt::format("row {} {}", before.events + i, why));
+      };
+      if (e.step < before.steps || e.step >= status[row].steps) refuse("is of a step outside its flush");
+      if (i > 0 && e.step < latest) refuse("is of a step before that of the row before it");
+      if (e.hand >= handCount && e.hand != 255) refuse("is of no hand");
+      latest = e.step;
       events[static_cast<std::size_t>(e.step - before.steps)].push_back(e);
     }
     blockRow = row;
+  }
+
+  /// What ran away may be no number any more; nothing else.
+  void refuseUnfinite(const StepResult& result) const {
+    if ((result.misses & miss::runaway) != 0) return;
+    for (const Event& event : result.events) {
+      if (!event.position.allFinite() || !std::isfinite(event.value))
+        throw hdf5::damaged(path, "/events", fmt::format("one of step {} is not finite", event.step));
+    }
   }
 };
 
@@ -114,6 +129,7 @@ const RecordedStep& Recording::step(std::uint64_t n) {
   const std::string fault = extractStep(*impl.layout, *impl.block, n - first, impl.current);
   if (!fault.empty()) throw Error(ErrorKind::damaged, Where{impl.path.string()}, fault);
   impl.current.result.events = impl.events[static_cast<std::size_t>(n - first)];
+  impl.refuseUnfinite(impl.current.result);
   return impl.current;
 }
 
@@ -185,12 +201,15 @@ ChainVerdict Recording::verifyChain() {
 }
 
 ChainVerdict probe(const std::filesystem::path& path) {
-  const std::string answer = runGuarded(path.string(), [&path] {
-    Recording recording(path);
-    for (std::uint64_t n = 0; n < recording.stepCount(); ++n) recording.step(n);
-    const ChainVerdict v = recording.verifyChain();
-    return fmt::format("{} {} {} {} {}", v.intact ? 1 : 0, v.flush, v.firstStep, v.endStep, v.what);
-  });
+  const std::string answer = runGuarded(
+      path.string(),
+      [&path] {
+        Recording recording(path);
+        for (std::uint64_t n = 0; n < recording.stepCount(); ++n) recording.step(n);
+        const ChainVerdict v = recording.verifyChain();
+        return fmt::format("{} {} {} {} {}", v.intact ? 1 : 0, v.flush, v.firstStep, v.endStep, v.what);
+      },
+      readingLimits(path));
   ChainVerdict verdict;
   std::size_t at = 0;
   const auto number = [&] {

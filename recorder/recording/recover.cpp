@@ -173,10 +173,13 @@ Recovered recover(const std::filesystem::path& in, const std::filesystem::path& 
   std::filesystem::path scratch = out;
   scratch += ".cut.part";
   try {
-    const std::string answer = runGuarded(in.string(), [&] {
-      const Recovered r = rewrite(in, temporary, scratch);
-      return fmt::format("{} {} {} {}", r.steps, r.ticks, r.complete ? 1 : 0, r.lost);
-    });
+    const std::string answer = runGuarded(
+        in.string(),
+        [&] {
+          const Recovered r = rewrite(in, temporary, scratch);
+          return fmt::format("{} {} {} {}", r.steps, r.ticks, r.complete ? 1 : 0, r.lost);
+        },
+        readingLimits(in));
     Recovered result;
     std::size_t at = 0;
     const auto number = [&] {

@@ -23,9 +23,9 @@ struct RowVisitor {
   const Layout& layout;
   Place place;  ///< where the row of a column lies, by its number
   std::size_t index = 0;
-  bool input =
-      false;  ///< samples must be finite; results are what the simulation made of them, and the chain's concern
+  bool input = false;  ///< samples must be finite; results too, but where the simulation ran away (unfinite)
   std::string fault;
+  std::string unfinite = {};  ///< first result that is no finite number
 
   template <class T>
   void operator()(const char*, const char*, const char*, T& value) {
@@ -53,7 +53,7 @@ struct RowVisitor {
   }
   void operator()(const char*, const char*, const char*, Vec3& v) {
     std::memcpy(v.data(), at(), 3 * sizeof(double));
-    if (input && !v.allFinite()) fail("is not finite");
+    if (!v.allFinite()) failUnfinite();
     ++index;
   }
   void operator()(const char*, const char*, const char*, Quat& q) {
@@ -62,12 +62,14 @@ struct RowVisitor {
     q = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
     const double norm = std::sqrt(wxyz[0] * wxyz[0] + wxyz[1] * wxyz[1] + wxyz[2] * wxyz[2] + wxyz[3] * wxyz[3]);
     if (input && !(std::abs(norm - 1.0) <= 1e-3)) fail("is not a unit quaternion within 1e-3");
+    if (!std::isfinite(norm)) failUnfinite();
     ++index;
   }
   template <class T>
   void outside(const char*, const char*, const char*, T& value) {
     std::memcpy(&value, at(), sizeof value);
-    check(value);
+    if (!std::isfinite(value)) fail("is not finite");
+    if (value < T{}) fail("is negative");
     ++index;
   }
   template <class T>
@@ -107,8 +109,12 @@ struct RowVisitor {
   template <class T>
   void check(const T& value) {
     if constexpr (std::is_floating_point_v<T>) {
-      if (input && !std::isfinite(value)) fail("is not finite");
+      if (!std::isfinite(value)) failUnfinite();
     }
+  }
+  void failUnfinite() {
+    std::string& whose = input ? fault : unfinite;
+    if (whose.empty()) whose = fmt::format("{}[{{row}}] is not finite", layout.columns[index].path);
   }
   void fail(const char* why) {
     if (fault.empty()) fault = fmt::format("{}[{{row}}] {}", layout.columns[index].path, why);

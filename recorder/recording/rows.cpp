@@ -53,7 +53,7 @@ void appendStatus(const StatusRow& row, std::vector<std::byte>& out) {
   appendBytes(out, row.chain.data(), row.chain.size());
 }
 
-bool parseStatus(std::span<const std::byte> bytes, StatusRow& row) {
+std::string parseStatus(std::span<const std::byte> bytes, StatusRow& row) {
   row.ticks = takeValue<std::uint64_t>(bytes);
   row.steps = takeValue<std::uint64_t>(bytes);
   row.events = takeValue<std::uint64_t>(bytes);
@@ -65,8 +65,10 @@ bool parseStatus(std::span<const std::byte> bytes, StatusRow& row) {
   std::memcpy(row.chain.data(), bytes.data(), row.chain.size());
   row.completed = completed == 1;
   row.outcome = static_cast<Outcome>(outcome);
-  return completed <= 1 && outcome <= static_cast<std::uint8_t>(Outcome::technicalFailure) &&
-         (completed == 1) == (row.outcome != Outcome::running);
+  if (row.wallNanoseconds < 0) return "was written before 1970";
+  const bool known = completed <= 1 && outcome <= static_cast<std::uint8_t>(Outcome::technicalFailure) &&
+                     (completed == 1) == (row.outcome != Outcome::running);
+  return known ? "" : "has an unknown outcome";
 }
 
 void appendRawCounts(const StatusRow& row, std::vector<std::byte>& out) {

@@ -47,8 +47,8 @@ void appendKeyframeRow(const KeyframeRow& row, std::vector<std::byte>& out);
 KeyframeRow parseKeyframeRow(std::span<const std::byte> row);
 
 void appendStatus(const StatusRow& row, std::vector<std::byte>& out);
-/// @return false if a field is out of range.
-bool parseStatus(std::span<const std::byte> bytes, StatusRow& row);
+/// @return an empty string, or what of it cannot be.
+std::string parseStatus(std::span<const std::byte> bytes, StatusRow& row);
 
 /// The row of /device/counts that belongs to a row of /status.
 void appendRawCounts(const StatusRow& row, std::vector<std::byte>& out);

@@ -8,6 +8,7 @@
 #include "recorder/formats/text_output.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/hdf5.h"
+#include "recorder/recording/shape.h"
 #include "recorder/recording/superblock.h"
 #include "sim/math/fields.h"
 
@@ -71,6 +72,7 @@ StateFile readHere(const std::filesystem::path& path) {
   const hdf5::Session session;
   const hdf5::Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (!file.valid()) throw hdf5::damaged(path, "/", "is no state file that can be opened (" + hdf5::reason() + ")");
+  checkShape(path, file, std::filesystem::file_size(path));
   StateFile state;
   readAttribute(path, file.get(), stateFormatName);
   state.step = readAttribute(path, file.get(), "step");

@@ -172,7 +172,7 @@ class Ratings(Assessment):
 class Grades(Assessment):
     def make(self, *more):
         return ("norm", "create", self.database, "pipeline", "--by", "test", "--group-by", "performer", "--include-synthetic", "--rule",
-                "at-least:1", *more)
+                "at-least:1", *(() if "--checkpoints" in more else ("--checkpoints", "all")), *more)
 
     def test_a_sheet_from_recordings(self):
         self.well(*self.make())

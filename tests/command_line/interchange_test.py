@@ -61,7 +61,8 @@ class Interchange(program.ProgramTest):
         json.loads(done.stdout)
 
     def test_a_grade_on_paper(self):
-        self.well("norm", "create", self.database, "n", "--by", "test", "--group-by", "performer", "--include-synthetic", "--rule", "at-least:1")
+        self.well("norm", "create", self.database, "n", "--by", "test", "--group-by", "performer", "--include-synthetic", "--rule", "at-least:1",
+                  "--checkpoints", "all")
         attempt = sqlite3.connect(self.database).execute("SELECT uuid FROM attempt").fetchone()[0]
         sheet = self.path("g.pdf")
         self.well("grade", self.database, "--attempt", attempt, "--pdf", sheet)

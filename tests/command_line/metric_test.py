@@ -242,7 +242,7 @@ def compute(attempt):
         file.write_text(json.dumps(protocol), encoding="utf-8")
         self.refused(4, "protocol", "check", file, names=("p.json", "/hypotheses/0/external"))
         # Norms and sheets.
-        norm = self.well("norm", "create", cohort, "n", "--by", "test", *who, "--rule", "at-least:1").out
+        norm = self.well("norm", "create", cohort, "n", "--by", "test", *who, "--rule", "at-least:1", "--checkpoints", "all").out
         self.assertIn("left-x (external)", norm)
         attempt = query(cohort, "SELECT uuid FROM attempt LIMIT 1")[0][0]
         sheet = self.well("grade", cohort, "--attempt", attempt).out

@@ -163,6 +163,43 @@ class Withdraw(program.ProgramTest):
         self.assertNotIn("similar", said)
         self.assertEqual(sorted(p.name for p in self.data.rglob("*") if p.is_file()), ["c.h5", "note.txt", "similar.txt"])
 
+    def test_search_by_identity(self):
+        # Two characters are somewhere in any megabyte, and in any table of numbers.
+        who, cohort, data = "07", self.path("o.db"), self.path("other")
+        data.mkdir()
+        mine, other = shutil.copy(of(who, 1), data / "mine.h5"), shutil.copy(of("P2", 3), data / "other.h5")
+        self.well("participant", "add", who, "--cohort", cohort)
+        self.well("assess", mine, other, "--cohort", cohort)
+        elsewhere = data / "elsewhere.db"
+        self.well("participant", "add", who, "--cohort", elsewhere)
+        (data / "film.mp4").write_bytes(bytes(range(32)) + b" 07 " + bytes(5000) + b"\n07\n")
+        (data / "numbers.csv").write_text("time,x\n07:30,0.07\n2026-07-01,-07e3\n1.07,107\n")
+        (data / "people.csv").write_text("participant,group\n07,novice\n")
+        (data / "answers.json").write_text('{"participant": "07"}')
+        (data / "note.txt").write_text("x" * ((1 << 20) - 8) + " seen: 07. Call back\n")  # across two pieces of a megabyte
+        (data / "longer.txt").write_text("x" * ((1 << 20) - 2) + " 0712\n")
+        named = [data / name for name in ("answers.json", "elsewhere.db", "note.txt", "people.csv")]
+        command = ("participant", "withdraw", who, "--cohort", cohort, "--scope", "all", "--recordings", data, "--no-key")
+        dry, wet = self.well(*command, "--dry-run").out.splitlines(), self.well(*command).out.splitlines()
+        self.assertEqual([line for line in dry if line.startswith("still names it")],
+                         [f"still names it: {path}; not removed, look into it" for path in named])
+        self.assertEqual(sum(line.startswith("file ") for line in dry), 1)
+        self.assertEqual(dry[:-1], wet[:-1], "--dry-run shows the same list")
+        self.assertIn("nothing was changed", dry[-1])
+        self.assertIn("1 attempts and 1 files removed", wet[-1])
+
+    def test_the_same_list_first(self):
+        note = self.data / "note.txt"
+        note.write_text(f"call {WHO} on Monday")
+        (others,) = query(self.cohort, "SELECT uuid FROM attempt WHERE participant = (SELECT id FROM participant WHERE pseudonym = 'P2')")
+        self.well("attempt", "exclude", others[0], "--cohort", self.cohort, "--reason", f"sat beside {WHO}", "--by", "me")
+        dry = self.withdraw("--dry-run").out.splitlines()
+        wet = self.withdraw().out.splitlines()
+        self.assertEqual(dry[:-1], wet[:-1])
+        for words in ("was handed out: recording-csv", f"still names it: {note}", f"still names it: {self.cohort} ",
+                      "backup " + str(self.path("c.db.schema-2.bak"))):
+            self.assertTrue(any(line.startswith(words) for line in dry), (words, dry))
+
     def test_killed_at_any_moment_and_run_again(self):
         draw = program.seeded("withdraw killed")
         for _ in range(12 if program.HEAVY else 4):

@@ -305,7 +305,7 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
               if (!r.verifyChain().intact) return "broken";
               return r.status().back().chain == head && r.complete() ? "same" : "SILENT";
             },
-            std::chrono::seconds(20));
+            GuardLimits{std::chrono::seconds(20)});
       } catch (const Error& e) {
         const std::string what = e.what();
         EXPECT_EQ(e.kind(), ErrorKind::damaged) << what;
@@ -326,7 +326,7 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
 TEST(Guarded, ACrashOrAHangBecomesAnError) {
   const auto kind = [](const std::function<std::string()>& task) -> std::optional<ErrorKind> {
     try {
-      runGuarded("file", task, std::chrono::seconds(1));
+      runGuarded("file", task, GuardLimits{std::chrono::seconds(1)});
       return std::nullopt;
     } catch (const Error& e) {
       return e.kind();
@@ -342,9 +342,29 @@ TEST(Guarded, ACrashOrAHangBecomesAnError) {
             }),
             ErrorKind::damaged);
   EXPECT_EQ(kind([]() -> std::string { throw Error(ErrorKind::undecided, "x"); }), ErrorKind::undecided);
-  EXPECT_EQ(kind([]() -> std::string { throw std::bad_alloc(); }), ErrorKind::failure);
+  EXPECT_EQ(kind([]() -> std::string { throw std::bad_alloc(); }), ErrorKind::damaged);
+  EXPECT_EQ(kind([]() -> std::string { throw std::runtime_error("x"); }), ErrorKind::failure);
   const std::string large(1000000, 'a');
   EXPECT_EQ(runGuarded("file", [&] { return large; }), large);
+}
+
+TEST(Guarded, TheMessageSaysWhichLimitItWas) {
+  const auto message = [](const std::function<std::string()>& task) -> std::string {
+    try {
+      return runGuarded("file", task, {std::chrono::seconds(1), std::size_t{256} << 20U});
+    } catch (const Error& e) {
+      return e.what();
+    }
+  };
+  EXPECT_NE(message([]() -> std::string {
+              for (;;) ::pause();
+            }).find("took longer than 1 s"),
+            std::string::npos);
+#ifndef CALOT_SANITIZED  // a sanitizer's allocator has its memory beforehand
+  EXPECT_NE(message([] { return std::string(std::size_t{512} << 20U, 'a'); }).find("more than 256 MiB of memory"),
+            std::string::npos);
+#endif
+  EXPECT_EQ(message([] { return std::string(std::size_t{1} << 20U, 'a'); }).size(), std::size_t{1} << 20U);
 }
 
 TEST(Guarded, AnErrorComesOutOfTheChildAsItWas) {

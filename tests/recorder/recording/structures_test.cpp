@@ -168,7 +168,7 @@ TEST(HostileNames, AreDamageAndNamed) {
     std::size_t bytes;
     const char* fault;
   } cases[] = {
-      {"/scene/vessels", six, 0, "fixed-length"},
+      {"/scene/vessels", six, 0, "variable length"},
       {"/scene/vessels", {"a", "b", "c", "d", "e", std::string("f\0g", 3)}, 3, "zero inside"},
       {"/scene/vessels", six, 2000, "fixed-length"},
       {"/scene/vessels", Names(17, "a"), 1, "shape"},

@@ -182,7 +182,7 @@ Step randomStep(const AttemptHeader& header, std::uint64_t n, std::uint64_t seed
     Event event;
     event.step = n;
     event.kind = static_cast<EventKind>(1 + r.next() % 31);
-    event.hand = static_cast<std::uint8_t>(r.next());
+    event.hand = r.next() % 3 == 0 ? std::uint8_t{255} : static_cast<std::uint8_t>(r.next() % 2);
     event.subject = static_cast<std::uint16_t>(r.next());
     event.position = randomVector(r);
     event.value = r.uniform();

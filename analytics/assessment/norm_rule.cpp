@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/assessment/norm_rule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "analytics/assessment/norm.h"
+#include "analytics/checkpoints/registry.h"
+#include "recorder/errors.h"
+#include "recorder/formats/text_words.h"
+
+namespace calot::analytics {
+namespace {
+
+/// What harms the patient.
+constexpr std::array<std::string_view, 4> harms{"critical-view", "clip-errors", "organ-perforations", "organ-burned"};
+/// How long it took, and how far the tips went.
+constexpr std::array<std::string_view, 2> efforts{"elapsed-time", "path-length"};
+
+/// Stored as the reason for which there is no interval.
+constexpr const char* fixedMark = "no interval: fixed by ";
+
+template <class List>
+bool holds(const List& list, std::string_view checkpoint) {
+  return std::find(list.begin(), list.end(), checkpoint) != list.end();
+}
+
+std::string nameOfFigure(const NormCheckpoint& mark) {
+  return mark.subject.empty() ? mark.checkpoint : mark.checkpoint + " " + mark.subject;
+}
+
+}  // namespace
+
+FixedCut parseFixedCut(const std::string& text) {
+  FixedCut cut;
+  const std::size_t at = text.find_first_of("<>");
+  std::string fault;
+  if (at != std::string::npos && at > 0 && at + 2 < text.size() && text[at + 1] == '=') {
+    cut.figure = text.substr(0, at);
+    while (!cut.figure.empty() && cut.figure.back() == ' ') cut.figure.pop_back();
+    cut.atLeast = text[at] == '>';
+    std::string number = text.substr(at + 2);
+    number.erase(0, number.find_first_not_of(' '));
+    cut.value = recorder::readFiniteNumber(number, fault);
+    if (fault.empty() && !cut.figure.empty()) return cut;
+  }
+  throw Error(ErrorKind::invalid,
+              fmt::format("norm: fixed mark {}: a figure, <= or >=, and a number are wanted", recorder::shown(text)));
+}
+
+bool countsByDefault(std::string_view checkpoint) { return holds(harms, checkpoint) || holds(efforts, checkpoint); }
+
+void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed) {
+  for (const FixedCut& cut : fixed) {
+    bool found = false;
+    for (NormCheckpoint& mark : norm.checkpoints) {
+      if (cut.figure != mark.checkpoint && cut.figure != nameOfFigure(mark)) continue;
+      found = true;
+      if (cut.atLeast != (mark.direction == Direction::higher))
+        throw Error(ErrorKind::invalid, fmt::format("norm: fixed mark of {}: of it {} is better",
+                                                    recorder::shown(cut.figure), cut.atLeast ? "less" : "more"));
+      const CheckpointDefinition* definition = mark.metric ? &mark.metric->definition : findCheckpoint(mark.checkpoint);
+      mark.cut = definition == nullptr ? cut.value : cut.value / definition->displayFactor;
+      mark.lower.reset();
+      mark.upper.reset();
+      mark.logScale = false;
+      mark.reason = fixedMark + norm.by;
+      mark.inRule = true;
+    }
+    if (!found)
+      throw Error(ErrorKind::invalid,
+                  fmt::format("norm: the members have no figure \"{}\" that judges", recorder::shown(cut.figure)),
+                  {Remedy::nameCheckpoints});
+  }
+}
+
+bool isFixed(const NormCheckpoint& mark) { return mark.reason.rfind(fixedMark, 0) == 0; }
+
+bool keepsRule(const Norm& norm, const std::vector<bool>& passed) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < norm.checkpoints.size(); ++i) {
+    if (!norm.checkpoints[i].inRule) continue;
+    if (!passed[i] && isFixed(norm.checkpoints[i])) return false;
+    count += passed[i] ? 1 : 0;
+  }
+  return count >= neededPasses(norm);
+}
+
+std::string uncountedWarning(const Norm& norm) {
+  std::string names, reasons;
+  for (const NormCheckpoint& mark : norm.checkpoints) {
+    if (mark.inRule || mark.cut || !holds(harms, mark.checkpoint)) continue;
+    names += (names.empty() ? "" : ", ") + nameOfFigure(mark);
+    if (reasons.find(mark.reason) == std::string::npos) reasons += (reasons.empty() ? "" : "; ") + mark.reason;
+  }
+  if (names.empty()) return {};
+  return fmt::format("Warning: harm that does not count, for want of a pass mark ({}): {}.", reasons, names);
+}
+
+}  // namespace calot::analytics

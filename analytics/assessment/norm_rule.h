@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which figures count in a norm's rule, and pass marks that a person sets.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analytics/cohort/assessment_database.h"
+
+namespace calot::analytics {
+
+/// A pass mark that an instructor sets for what is critical, whatever the members' spread.
+struct FixedCut {
+  std::string figure;    ///< "clip-errors", or one of several, "path-length left"
+  bool atLeast = false;  ///< else at most
+  double value = 0.0;    ///< in the unit that tables show
+};
+
+/// "critical-view>=1", "clip-errors<=0". @throws Error (invalid)
+FixedCut parseFixedCut(const std::string& text);
+
+/// Does a checkpoint count where the rule names none? Few do: how long it took, how far the tips went, and what harms
+/// the patient. The others describe; hundreds of them would decide by what competent people happen to differ in.
+bool countsByDefault(std::string_view checkpoint);
+
+/// Puts an instructor's marks in the place of those of the members' spread; these figures are in the rule.
+/// @throws Error (invalid) where no figure is called so, or its better side is the other one
+void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed);
+/// Was the mark set by a person? Such a figure has to be passed whatever number of others is.
+bool isFixed(const NormCheckpoint& mark);
+
+/// Whether the rule is kept: by enough of its figures, and by each that is fixed.
+/// @param passed by Norm::checkpoints
+bool keepsRule(const Norm& norm, const std::vector<bool>& passed);
+
+/// Warning that names figures of harm which do not count, since they have no pass mark; or empty.
+std::string uncountedWarning(const Norm& norm);
+
+}  // namespace calot::analytics

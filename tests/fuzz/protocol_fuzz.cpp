@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The protocol of a study.
+#include "analytics/assessment/protocol.h"
+
+#include "tests/fuzz/support/fuzz_target.h"
+
+using namespace calot;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::span bytes(reinterpret_cast<const std::byte*>(data), size);
+  return fuzz::tried([&] { analytics::parseProtocol(bytes, "protocol.json"); });
+}
