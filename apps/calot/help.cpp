@@ -98,6 +98,7 @@ constexpr Example examples[] = {
     {"devices", "calot devices"},
     {"devices calibrate", "calot devices calibrate gamepad -o gamepad.json"},
     {"devices serve", "calot devices serve --kinematics motion.txt --port 18944"},
+    {"devices simulate", "calot devices simulate --hands both --delay 2"},
     {"golden", "calot golden check"},
     {"golden check", "calot golden check --folder my-golden"},
     {"golden update", "calot golden update --reason \"contact solver: other tolerance\""},

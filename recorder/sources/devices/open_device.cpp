@@ -7,6 +7,9 @@
 #include <utility>
 
 #include "recorder/errors.h"
+#include "recorder/sources/devices/combined_device.h"
+#include "recorder/sources/devices/force/force_device.h"
+#include "recorder/sources/devices/force/haply_device.h"
 #include "recorder/sources/devices/gamepad_device.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/devices/null_device.h"
@@ -17,7 +20,8 @@ namespace calot::recorder {
 namespace {
 
 // References, so that the linker keeps every device of the library.
-constexpr std::array kinds{&gamepadKind, &openIgtLinkKind, &scriptedKind, &nullKind, &mouseKind};
+constexpr std::array kinds{&gamepadKind,  &forceKind, &haplyKind, &openIgtLinkKind,
+                           &scriptedKind, &nullKind,  &mouseKind};
 
 }  // namespace
 
@@ -45,9 +49,11 @@ std::string deviceUsage(std::string_view last) {
   return fmt::format("{} {} {}", fmt::join(usages, ", "), last, final);
 }
 
-OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools) {
+OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools,
+                        std::optional<Hand> hand) {
+  if (isCombination(name)) return openCombination(name, tools);
   const std::size_t colon = name.find(':');
-  const DeviceRequest request{name, colon == std::string::npos ? "" : name.substr(colon + 1), tools};
+  const DeviceRequest request{name, colon == std::string::npos ? "" : name.substr(colon + 1), tools, hand};
   if (colon != std::string::npos && request.argument.empty()) request.refuse("something is missing behind the colon");
   const DeviceKind* const kind = findDeviceKind(name);
   if (kind == nullptr) request.refuse(fmt::format("no such device; there are {}", deviceUsage("and")));
