@@ -15,13 +15,14 @@
 #include "recorder/sources/devices/null_device.h"
 #include "recorder/sources/devices/openigtlink_device.h"
 #include "recorder/sources/devices/scripted_device.h"
+#include "recorder/sources/devices/space_mouse.h"
 
 namespace calot::recorder {
 namespace {
 
 // References, so that the linker keeps every device of the library.
 constexpr std::array kinds{&gamepadKind,  &forceKind, &haplyKind, &openIgtLinkKind,
-                           &scriptedKind, &nullKind,  &mouseKind};
+                           &scriptedKind, &nullKind,  &mouseKind, &spaceMouseKind};
 
 }  // namespace
 

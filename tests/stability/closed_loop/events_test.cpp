@@ -16,7 +16,7 @@ using test::LoopSettings;
 
 constexpr double largestChange = 0.001 * ForceOutput::maxSlew + 1e-9;  // N a tick
 
-/// A spring that holds the hand 12 mm off what it intends, with about 1.5 N.
+/// A hand that presses on a spring (200 N/m from 0 on) by up to 20 mm within 0.2 s: about 1.5 N.
 struct Held {
   explicit Held(int delay = 2) : loop(settingsOf(delay)) {}
   static LoopSettings settingsOf(int delay) {
@@ -24,19 +24,28 @@ struct Held {
     out.delay = delay;
     return out;
   }
-  void run(int ticks) {
-    for (int k = 0; k < ticks; ++k) loop.tick(-200.0 * loop.position(), Vec3(0.0, 0.02, 0.0));
+  void run(int ticks, double intended = 0.02) {
+    const Vec3 from = way;
+    for (int k = 1; k <= ticks; ++k) {
+      const double share = std::min(1.0, k / 200.0);
+      way = from + share * (Vec3(0.0, intended, 0.0) - from);
+      const double depth = loop.position().y();
+      loop.tick(Vec3(0.0, depth > 0.0 ? -200.0 * depth : 0.0, 0.0), way);
+    }
   }
   ClosedLoop loop;
+  Vec3 way = Vec3::Zero();
 };
 
 TEST(ForceEvents, AppearingRisesWithoutAJump) {
   Held held;
   held.loop.silent = true;
-  held.run(1500);
+  held.run(1500, 0.01);
   EXPECT_EQ(held.loop.sent().norm(), 0.0);
   held.loop.silent = false;
-  held.run(1500);
+  held.run(1);
+  EXPECT_LE(held.loop.sent().norm(), 0.05);
+  held.run(1500, 0.03);
   EXPECT_GT(held.loop.sent().norm(), 0.5);
   EXPECT_LE(held.loop.maxChange, largestChange);
 }
@@ -52,6 +61,7 @@ TEST(ForceEvents, ClutchFallsWithinThirtyMillisecondsAndRisesAfter) {
   held.loop.clutched = false;
   held.run(1);
   EXPECT_LT(held.loop.sent().norm(), 0.1 * before);
+  held.run(1500, 0.0);
   held.run(1500);
   EXPECT_GT(held.loop.sent().norm(), 0.5);
   EXPECT_LE(held.loop.maxChange, largestChange);
@@ -85,6 +95,7 @@ TEST(ForceEvents, ALostDeviceBeginsAtZero) {
   held.loop.output().lost();
   held.run(1);
   EXPECT_LE(held.loop.sent().norm(), largestChange);
+  held.run(1500, 0.0);
   held.run(1500);
   EXPECT_GT(held.loop.sent().norm(), 0.5);
 }

@@ -16,18 +16,14 @@ EnergyTank::EnergyTank(const TankModel& model) : model_(model), error_(halfDiago
 
 double EnergyTank::reserve(double effort) const {
   const double beyond = std::max(0.0, effort - model_.friction);
-  double out = 2.0 * error_ * effort;
-  if (beyond > 0.0) out += beyond * beyond * model_.period / (4.0 * model_.damping);
-  return out;
+  return beyond > 0.0 ? beyond * beyond * model_.period / (4.0 * model_.damping) : 0.0;
 }
 
 void EnergyTank::account(std::uint32_t number, const Vec3& effort, const Vec3& displacement, double seconds) {
   const double certain = std::max(0.0, displacement.norm() - 2.0 * error_);
   level_ -= effort.dot(displacement);
-  level_ -= error_ * (effort - last_).norm();
   if (seconds > 0.0) level_ += model_.damping * certain * certain / seconds;
   level_ += model_.friction * certain;
-  last_ = effort;
   lowest_ = std::min(lowest_, level_);
   // The command that was in force may be held for another interval: its reserve stays until a later one is seen.
   while (count_ > 0 && flight_[first_].number < number) {
@@ -41,13 +37,8 @@ void EnergyTank::account(std::uint32_t number, const Vec3& effort, const Vec3& d
 double EnergyTank::bound() const {
   const double free = level_ - reserved_;
   if (!(free > 0.0) || count_ == flight_.size()) return 0.0;
-  // 2 e f + (f - c)^2 T / (4 b) = free, for f
-  const double slope = 2.0 * error_;
-  if (slope * model_.friction >= free) return std::min(model_.maxEffort, free / slope);
   if (!(model_.damping > 0.0)) return std::min(model_.maxEffort, model_.friction);
-  const double a = model_.period / (4.0 * model_.damping);
-  const double beyond = (std::sqrt(slope * slope + 4.0 * a * (free - slope * model_.friction)) - slope) / (2.0 * a);
-  return std::min(model_.maxEffort, model_.friction + beyond);
+  return std::min(model_.maxEffort, model_.friction + std::sqrt(4.0 * model_.damping * free / model_.period));
 }
 
 void EnergyTank::sent(std::uint32_t number, double effort) {
@@ -66,7 +57,6 @@ void EnergyTank::reset() {
   level_ = std::clamp(level_, 0.0, initial);
   reserved_ = 0.0;
   count_ = 0;
-  last_ = Vec3::Zero();
 }
 
 }  // namespace calot::recorder

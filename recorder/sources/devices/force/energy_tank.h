@@ -30,8 +30,8 @@ struct TankModel {
 /// interval is not measured yet, however long they are on their way. Then the tank is never negative, and port and
 /// mechanism together give the hand no more than `initial` beyond what it gave them: they are passive.
 ///
-/// Positions are quantised. Sums of F . d lose at most half a quantum for each change of F, which is taken off; the
-/// mechanism's part counts for the motion that is certain.
+/// Positions are quantised: what the mechanism dissipates counts for the motion that is certain. A force that follows
+/// quantised positions is still a function of the true ones and makes no energy of it.
 class EnergyTank {
  public:
   static constexpr double initial = 0.0005;  ///< J, what it holds where nothing is touched
@@ -66,7 +66,6 @@ class EnergyTank {
   TankModel model_;
   double error_;  ///< largest error of a measured position
   double level_ = initial, lowest_ = initial, reserved_ = 0.0;
-  Vec3 last_ = Vec3::Zero();  ///< effort of the last interval
   // Commands under way: a second of them at 1 kHz would fit; more are not sent (bound() is 0).
   std::array<Flight, 1024> flight_{};
   std::size_t first_ = 0, count_ = 0;
