@@ -48,7 +48,7 @@ SpaceMouse::SpaceMouse(Hand hand, DeviceClock clock) : hand_(hand), clock_(std::
   }
   there_ = true;
   info_.name = spaceMouseKind.name;
-  info_.identity = "spacemouse";
+  info_.identity = "spacenav";
   info_.detail = "SpaceMouse by spacenavd";
   DeviceCapabilities& c = info_.capabilities;
   c.hands = 1;
@@ -135,13 +135,13 @@ void SpaceMouse::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
 }
 
 constinit const DeviceKind spaceMouseKind{
-    .name = "spacemouse",
-    .usage = "spacemouse",
+    .name = "spacenav",
+    .usage = "spacenav",
     .help = "SpaceMouse by spacenavd; drives one hand",
     .list =
         [] {
           return std::vector<ListedDevice>{
-              {"spacemouse", "SpaceMouse, where spacenavd runs", true, "1", "3 + roll, jaw, buttons", "250"}};
+              {"spacenav", "SpaceMouse, where spacenavd runs", true, "1", "3 + roll, jaw, buttons", "250"}};
         },
     .open =
         [](const DeviceRequest& request) {

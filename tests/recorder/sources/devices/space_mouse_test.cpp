@@ -97,7 +97,7 @@ TEST(SpaceMouse, DeflectionsAreSpeedsAndALossIsTold) {
 TEST(SpaceMouse, WithoutADaemonThatIsSaid) {
   setenv("SPNAV_SOCKET", "/nowhere/spnav", 1);
   try {
-    openDevice("spacemouse", {});
+    openDevice("spacenav", {});
     ADD_FAILURE();
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::failure);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <functional>
@@ -72,21 +73,24 @@ TEST(ForceDevice, GivesPosesAndShowsForces) {
   EXPECT_EQ(device.info().capabilities.actuated, 3);
   EXPECT_EQ(device.info().capabilities.maxForce, 8.0);
   DeviceInput input;
-  Vec3 free = Vec3::Zero();
-  ASSERT_TRUE(until(device, input, [&] { return input.samples.size() >= 300; }));
-  free = input.samples.back().position;
-  for (std::size_t i = 1; i < input.samples.size(); ++i) {
-    EXPECT_EQ(input.samples[i].sequence, i);
-    EXPECT_GT(input.samples[i].deviceTime, input.samples[i - 1].deviceTime);
-    EXPECT_TRUE(input.samples[i].valid);
-  }
-  // A spring that draws the hand 20 mm to the right.
+  // The hand reaches 30 mm away within two seconds; a spring of 200 N/m stands against it, the arm has 135 N/m.
   ASSERT_TRUE(until(device, input, [&] {
-    const Vec3 p = input.samples.back().position;
-    device.setWrench(Hand::right, {Vec3(100.0 * (0.02 - p.x()), 0, 0), Vec3::Zero()});
-    return input.samples.size() >= 1500;
+    if (input.samples.empty()) return false;
+    const double depth = input.samples.back().position.z();
+    device.setWrench(Hand::right, {Vec3(0, 0, -200.0 * std::max(0.0, depth)), Vec3::Zero()});
+    return input.samples.size() >= 2000;
   }));
-  EXPECT_GT(input.samples.back().position.x() - free.x(), 0.002);
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < input.samples.size(); ++i) {
+    EXPECT_EQ(input.samples[i].sequence, i);
+    EXPECT_TRUE(input.samples[i].valid);
+    if (i > 0) {
+      EXPECT_GT(input.samples[i].deviceTime, input.samples[i - 1].deviceTime);
+    }
+    deepest = std::max(deepest, input.samples[i].position.z());
+  }
+  EXPECT_GT(deepest, 0.005);
+  EXPECT_LT(deepest, 0.022);
   device.close();
   EXPECT_FALSE(device.connected());
   ASSERT_EQ(device.report().size(), 1U);

@@ -103,7 +103,8 @@ TEST(ForceWire, BytesStandWhereTheSchemaSays) {
 }
 
 TEST(ForceWire, AnotherProtocolIsRefused) {
-  for (const std::string text : {"HTTP/1.1 200 OK\r\n\r\n", "\x04\x00\x09\x00....", "\xff\xff\x05\x00"}) {
+  using namespace std::string_literals;
+  for (const std::string& text : {"HTTP/1.1 200 OK\r\n\r\n"s, "\x04\x00\x09\x00...."s, "\xff\xff\x05\x00"s}) {
     Decoder decoder;
     std::vector<Frame> got;
     std::vector<std::byte> bytes(text.size());

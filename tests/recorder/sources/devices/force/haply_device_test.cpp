@@ -44,7 +44,8 @@ TEST(HaplyDevice, TurnsItsFrameAndShowsForcesWithinTheLimit) {
     device.setWrench(Hand::right, {Vec3(0, 0, 0.8), Vec3::Zero()});
     return input.samples.size() >= 900;
   }));
-  EXPECT_GT(input.samples.back().position.z(), 0.122);
+  // Not far: a force that draws has no energy to come from.
+  EXPECT_GT(input.samples.back().position.z(), 0.1205);
   EXPECT_NEAR(input.samples.back().position.y(), -0.15, 1e-3);
   ASSERT_TRUE(pollUntil(device, input, [&] {
     device.setWrench(Hand::right, {Vec3(100, 0, 0), Vec3::Zero()});
