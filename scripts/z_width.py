@@ -81,7 +81,7 @@ def main():
     rows = measured(arguments.program)
     before, rest = text.split(BEGIN, 1)
     after = rest.split(END, 1)[1]
-    picture = "![Stiffness over the damping of the wall, for delays of 0 to 5 ms: stiffest still wall without, felt stiffness with the controller](../pictures/z-width.svg)"
+    picture = "![Stiffest still wall without the controller and felt stiffness with it](../pictures/z-width.svg)"
     diagram(rows, arguments.root / "docs/pictures/z-width.svg")
     page.write_text(f"{before}{BEGIN}\n\n{table(rows)}\n\n{picture}\n\n{END}{after}", encoding="utf-8")
     print(f"z-width: {page.name} and z-width.svg written")
