@@ -63,7 +63,7 @@ TEST(SpaceMouse, DeflectionsAreSpeedsAndALossIsTold) {
   std::int64_t now = 1'000'000'000;
   SpaceMouse mouse(Hand::left, [&now] { return now; });
   daemon.accept();
-  EXPECT_THROW(SpaceMouse(Hand::right), Error);  // one connection
+  EXPECT_THROW(SpaceMouse(Hand::right, [&now] { return now; }), Error);  // one connection
   DeviceInput input;
   const auto run = [&](int milliseconds) {
     for (int i = 0; i < milliseconds; ++i) {
