@@ -23,7 +23,7 @@ struct DeviceRequest {
   std::string name;      ///< as written: "openigtlink:localhost:18944"
   std::string argument;  ///< behind the first colon, never empty where there is a colon: "localhost:18944"
   std::array<std::string, handCount> tools;  ///< names of a tracker's tools, left and right; empty: none
-  std::optional<Hand> hand;                  ///< the one hand that it is to drive, beside another device
+  std::optional<Hand> hand = std::nullopt;   ///< the one hand that it is to drive, beside another device
 
   /// @throws Error (invalid) that names the request and says why
   [[noreturn]] void refuse(const std::string& why) const;

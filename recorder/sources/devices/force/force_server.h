@@ -36,8 +36,7 @@ struct Intention {
 class IntendedPath {
  public:
   IntendedPath(const DeviceScript& script, Hand hand);
-  /// A path of its own: reaches 30 mm away and back every four seconds and draws small circles there, so that there is
-  /// something to feel in any scene.
+  /// A path of its own: reaches 30 mm away and back every four seconds, in small circles.
   IntendedPath() = default;
   [[nodiscard]] Intention at(double seconds) const;
 
