@@ -10,7 +10,7 @@ packages=(
   libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
   nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev libegl-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libapriltag-dev libfreetype-dev
-  libsdl2-dev libopenigtlink-dev libseccomp-dev
+  libsdl2-dev libopenigtlink-dev libspnav-dev libseccomp-dev
   qt6-base-dev qt6-charts-dev libqt6opengl6-dev libbullet-dev
   pybind11-dev python3-dev
   # run

@@ -71,6 +71,7 @@ void tellDevice(recorder::SampleSource& source) {
   fmt::print("{}: {} samples, {} invalid, gone {} times\n", device->provenance().device, counts.samples, counts.invalid,
              counts.losses);
   for (const std::string& line : counts.told) fmt::print("  {}\n", line);
+  for (const std::string& line : device->deviceReport()) fmt::print("  {}\n", line);
 }
 
 }  // namespace calot::apps

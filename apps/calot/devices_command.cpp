@@ -16,6 +16,7 @@
 #include "apps/calot/device_options.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/marker_sheet_file.h"
+#include "apps/calot/simulate_device.h"
 #include "apps/calot/stop_request.h"
 #include "apps/calot/terminal_text.h"
 #include "recorder/errors.h"
@@ -360,7 +361,9 @@ void addDevices(CLI::App& app, Run& run) {
       ->capture_default_str();
   play->add_flag("--once", s->settings.once, "end when the first client has gone");
 
+  CLI::App* simulate = addSimulateDevice(*command, run);
   command->callback([=, &run] {
+    if (simulate->parsed()) return;
     if (measure->parsed())
       run = [c] { return calibrate(*c); };
     else if (print->parsed())

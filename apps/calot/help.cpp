@@ -100,6 +100,7 @@ constexpr Example examples[] = {
     {"devices calibrate", "calot devices calibrate camera:0 -o camera.json --pictures ."},
     {"devices print", "calot devices print -o handles.pdf"},
     {"devices serve", "calot devices serve --kinematics motion.txt --port 18944"},
+    {"devices simulate", "calot devices simulate --hands both --delay 2"},
     {"golden", "calot golden check"},
     {"golden check", "calot golden check --folder my-golden"},
     {"golden update", "calot golden update --reason \"contact solver: other tolerance\""},

@@ -96,6 +96,9 @@ class Device {
   /// device without motors ignores it.
   virtual void setWrench(Hand, const Wrench&) {}
 
+  /// Lines for people about what it did, for the end of a run. Any thread.
+  [[nodiscard]] virtual std::vector<std::string> report() const { return {}; }
+
   /// Closes the device; further polls return nothing.
   virtual void close() = 0;
 };

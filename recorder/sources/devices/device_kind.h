@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct DeviceRequest {
   std::string argument;  ///< behind the first colon, never empty where there is a colon: "localhost:18944"
   std::array<std::string, handCount> tools;  ///< names of a tracker's tools, left and right; empty: none
   const Calibration* calibration = nullptr;  ///< of the device, where one was given: a camera's lens is in it
+  std::optional<Hand> hand = std::nullopt;   ///< the one hand that it is to drive, beside another device
 
   /// @throws Error (invalid) that names the request and says why
   [[noreturn]] void refuse(const std::string& why) const;

@@ -73,6 +73,7 @@ class DeviceSource final : public SampleSource {
 
   [[nodiscard]] const DeviceCounts& counts() const { return counts_; }
   [[nodiscard]] const DeviceInfo& deviceInfo() const { return device_->info(); }
+  [[nodiscard]] std::vector<std::string> deviceReport() const { return device_->report(); }
 
  private:
   struct HandState {

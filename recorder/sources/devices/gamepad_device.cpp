@@ -76,6 +76,8 @@ struct GamepadDevice::Sdl {
     SDL_GameControllerUpdate();
     for (int i = 0; i < SDL_NumJoysticks(); ++i) {
       if (SDL_IsGameController(i) == SDL_FALSE) continue;
+      // The other hand's: SDL would give the same one twice.
+      if (SDL_GameControllerFromInstanceID(SDL_JoystickGetDeviceInstanceID(i)) != nullptr) continue;
       const SDL_JoystickGUID guid = SDL_JoystickGetDeviceGUID(i);
       if (known ? std::memcmp(&guid, &model, sizeof guid) != 0
                 : printable(SDL_GameControllerNameForIndex(i)).find(name) == std::string::npos)
@@ -97,8 +99,11 @@ struct GamepadDevice::Sdl {
   }
 };
 
-GamepadDevice::GamepadDevice(const std::string& name, DeviceClock clock)
-    : sdl_(std::make_unique<Sdl>()), clock_(std::move(clock)) {
+GamepadDevice::GamepadDevice(const std::string& name, DeviceClock clock, std::optional<Hand> only)
+    : sdl_(std::make_unique<Sdl>()),
+      clock_(std::move(clock)),
+      hand_(only.value_or(Hand::right)),
+      bound_(only.has_value()) {
   if (!sdl_->find(name)) {
     throw Error(ErrorKind::failure,
                 name.empty() ? "gamepad: none is attached; plug one in"
@@ -129,7 +134,7 @@ void GamepadDevice::put(std::int64_t now, double seconds, DeviceInput& out) {
   const Sdl& pad = *sdl_;
   const auto pressed = [&](SDL_GameControllerButton b) { return pad.pressed(b) ? 1.0 : 0.0; };
   const bool switches = pad.pressed(SDL_CONTROLLER_BUTTON_START);
-  if (switches && !switching_) hand_ = hand_ == Hand::right ? Hand::left : Hand::right;
+  if (switches && !switching_ && !bound_) hand_ = hand_ == Hand::right ? Hand::left : Hand::right;
   switching_ = switches;
   const auto h = static_cast<std::size_t>(hand_);
   Pointer& p = pointer_[h];
@@ -225,7 +230,8 @@ constinit const DeviceKind gamepadKind{
         },
     .open =
         [](const DeviceRequest& request) {
-          return OpenedDevice{std::make_unique<GamepadDevice>(request.argument), nullptr};
+          return OpenedDevice{std::make_unique<GamepadDevice>(request.argument, monotonicNanoseconds, request.hand),
+                              nullptr};
         },
 };
 

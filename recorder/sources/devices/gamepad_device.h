@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,11 @@ namespace calot::recorder {
 /// dead zone of 12 %.
 class GamepadDevice final : public Device {
  public:
-  /// Takes the first gamepad whose name contains `name` (empty: any).
+  /// Takes the first gamepad whose name contains `name` (empty: any) and that no other device of this program has.
+  /// @param only the hand that it drives, which Start then does not change; none: the right one first
   /// @throws Error (failure) where there is none, or where the system's gamepads cannot be asked.
-  explicit GamepadDevice(const std::string& name = "", DeviceClock clock = monotonicNanoseconds);
+  explicit GamepadDevice(const std::string& name = "", DeviceClock clock = monotonicNanoseconds,
+                         std::optional<Hand> only = std::nullopt);
   ~GamepadDevice() override;
 
   [[nodiscard]] const DeviceInfo& info() const override { return info_; }
@@ -43,6 +46,7 @@ class GamepadDevice final : public Device {
   std::array<Pointer, handCount> pointer_;
   std::array<std::uint64_t, handCount> sequence_{};
   Hand hand_ = Hand::right;
+  bool bound_ = false;            ///< to that hand
   bool switching_ = false;        ///< Start was held at the last sample
   std::int64_t last_ = 0;         ///< time of the last sample (ns)
   std::int64_t nextAttempt_ = 0;  ///< to find it again (ns)

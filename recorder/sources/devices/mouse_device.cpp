@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/sources/devices/mouse_device.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <thread>
 #include <utility>
 
+#include "recorder/sources/devices/evdev_mouse.h"
 #include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 
@@ -134,10 +137,17 @@ constinit const DeviceKind mouseKind{
     .needsWindow = true,
     .list =
         [] {
-          return std::vector<ListedDevice>{{"mouse", "needs a window: calot-trainer has one", false, "2, 1 at a time",
-                                            "3 + roll, jaw, buttons", "250"}};
+          std::vector<ListedDevice> out{{"mouse", "needs a window: calot-trainer has one", false, "2, 1 at a time",
+                                         "3 + roll, jaw, buttons", "250"}};
+          const std::vector<ListedMouse> mice = listMice();
+          for (std::size_t i = 0; i < mice.size(); ++i)
+            out.push_back({fmt::format("mouse:{}", i), mice[i].name + ", taken from the system's pointer", true, "1",
+                           "3 + roll, jaw, buttons", "250"});
+          return out;
         },
     .open = [](const DeviceRequest& request) -> OpenedDevice {
+      if (!request.argument.empty())
+        return {std::make_unique<EvdevMouse>(request.argument, request.hand.value_or(Hand::right)), nullptr};
       request.refuse("mouse and keyboard need a window: calot-trainer has one");
     },
 };

@@ -8,17 +8,22 @@
 
 #include "recorder/errors.h"
 #include "recorder/sources/devices/camera/camera_device.h"
+#include "recorder/sources/devices/combined_device.h"
+#include "recorder/sources/devices/force/force_device.h"
+#include "recorder/sources/devices/force/haply_device.h"
 #include "recorder/sources/devices/gamepad_device.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/devices/null_device.h"
 #include "recorder/sources/devices/openigtlink_device.h"
 #include "recorder/sources/devices/scripted_device.h"
+#include "recorder/sources/devices/space_mouse.h"
 
 namespace calot::recorder {
 namespace {
 
 // References, so that the linker keeps every device of the library.
-constexpr std::array kinds{&gamepadKind, &openIgtLinkKind, &cameraKind, &scriptedKind, &nullKind, &mouseKind};
+constexpr std::array kinds{&gamepadKind,  &forceKind, &haplyKind, &openIgtLinkKind, &cameraKind,
+                           &scriptedKind, &nullKind,  &mouseKind, &spaceMouseKind};
 
 }  // namespace
 
@@ -47,9 +52,10 @@ std::string deviceUsage(std::string_view last) {
 }
 
 OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools,
-                        const Calibration* calibration) {
+                        const Calibration* calibration, std::optional<Hand> hand) {
+  if (isCombination(name)) return openCombination(name, tools);
   const std::size_t colon = name.find(':');
-  const DeviceRequest request{name, colon == std::string::npos ? "" : name.substr(colon + 1), tools, calibration};
+  const DeviceRequest request{name, colon == std::string::npos ? "" : name.substr(colon + 1), tools, calibration, hand};
   if (colon != std::string::npos && request.argument.empty()) request.refuse("something is missing behind the colon");
   const DeviceKind* const kind = findDeviceKind(name);
   if (kind == nullptr) request.refuse(fmt::format("no such device; there are {}", deviceUsage("and")));

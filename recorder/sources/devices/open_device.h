@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,13 +23,14 @@ const DeviceKind* findDeviceKind(std::string_view name);
 /// @param last joins the last two: "or", "and"
 std::string deviceUsage(std::string_view last = "or");
 
-/// Opens a device by its name.
+/// Opens a device by its name, or two by "left=NAME,right=NAME".
 /// @param tools of an OpenIGTLink server: left and right, an empty one for none; ignored for others.
 /// @throws Error: invalid, for a name that is none, a wrong port, no tool or the same one twice; damaged, for a bad
 /// script; failure, for a gamepad that is not there. An OpenIGTLink server need not be there yet.
 /// @param calibration of the device, or null; a camera needs one
+/// @param hand the one hand that it is to drive, beside another device
 OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools,
-                        const Calibration* calibration = nullptr);
+                        const Calibration* calibration = nullptr, std::optional<Hand> hand = std::nullopt);
 
 /// What could be opened, of all kinds.
 std::vector<ListedDevice> listDevices();

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/sources/devices/force/force_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace calot::recorder {
+namespace {
+
+constexpr double torqueShare = 1.0 / 25.0;
+constexpr double longestPeriod = 0.02;  // s; a device that was silent for longer does not make the force jump
+
+Vec3 limited(const Vec3& v, double longest) {
+  if (!v.allFinite() || !(longest > 0.0)) return Vec3::Zero();
+  const double largest = v.cwiseAbs().maxCoeff();
+  if (largest == 0.0) return Vec3::Zero();
+  // In two steps, as the square of a huge number overflows.
+  const Vec3 scaled = v / largest;
+  const double length = largest * scaled.norm();
+  if (length <= longest) return v;
+  Vec3 out = longest * scaled.normalized();
+  // Rounding may leave it longer by a bit, and the limit is exact.
+  while (out.norm() > longest) out *= 1.0 - 1e-15;
+  return out;
+}
+
+Vec3 towards(const Vec3& from, const Vec3& to, double most) { return from + limited(to - from, most); }
+
+// Rotation vector from one orientation to the next, in D; exact enough for the steps of a millisecond.
+Vec3 rotationBetween(const Quat& from, const Quat& to) {
+  Quat step = to * from.conjugate();
+  if (step.w() < 0.0) step.coeffs() = -step.coeffs();
+  return 2.0 * step.vec();
+}
+
+}  // namespace
+
+std::string forceReport(const char* hand, const ForceStatistics& s) {
+  return fmt::format(
+      "force on the {} hand: {} wrenches, at most {:.2f} N, changes of at most {:.3f} N, {} softened to stay passive, "
+      "round trip at most {:.1f} ms",
+      hand, s.sent, s.maxForce, s.maxChange, s.softened, 1e-6 * static_cast<double>(s.maxRoundTrip));
+}
+
+ForceOutput::ForceOutput(const HandleModel& model) : model_(model), force_(model.force), torque_(model.torque) {}
+
+void ForceOutput::command(const Wrench& wrench, std::int64_t now) {
+  asked_ = {limited(wrench.force, model_.force.maxEffort), limited(wrench.torque, model_.torque.maxEffort)};
+  commanded_ = now;
+  any_ = true;
+}
+
+double ForceOutput::gainAfter(const HandleMeasurement& measurement, std::int64_t now, double seconds) const {
+  const bool on = any_ && !released_ && measurement.valid && !measurement.clutched && now - commanded_ < silence;
+  return on ? std::min(1.0, gain_ + seconds / rise) : std::max(0.0, gain_ - seconds / fall);
+}
+
+void ForceOutput::noteRoundTrip(std::uint32_t shown, std::int64_t now) {
+  if (shown <= shown_ || shown > number_ || number_ - shown >= sentAt_.size()) return;
+  shown_ = shown;
+  statistics_.maxRoundTrip = std::max(statistics_.maxRoundTrip, now - sentAt_[shown % sentAt_.size()]);
+}
+
+Wrench ForceOutput::measured(const HandleMeasurement& measurement, std::int64_t now) {
+  const auto since = [&](std::int64_t time) { return 1e-9 * static_cast<double>(measurement.deviceTime - time); };
+  double seconds = model_.force.period;
+  if (heard_) seconds = std::clamp(since(lastTime_), 0.0, longestPeriod);
+  heard_ = true;
+  lastTime_ = measurement.deviceTime;
+  if (measurement.valid) {
+    if (seen_) {
+      force_.account(measurement.number, measurement.shown.force, measurement.position - position_, since(seenTime_));
+      torque_.account(measurement.number, measurement.shown.torque,
+                      rotationBetween(orientation_, measurement.orientation), since(seenTime_));
+    }
+    position_ = measurement.position;
+    orientation_ = measurement.orientation;
+    seenTime_ = measurement.deviceTime;
+    seen_ = true;
+  }
+  noteRoundTrip(measurement.number, now);
+  gain_ = gainAfter(measurement, now, seconds);
+  const auto next = [&](EnergyTank& tank, const Vec3& asked, const Vec3& sent, double slew) {
+    const Vec3 wanted = gain_ * asked;
+    tank.settle(std::max(wanted.norm(), sent.norm()));
+    const Vec3 reached = towards(sent, wanted, slew * seconds);
+    // Where the motion is not known, nor is its energy: the force falls.
+    if (!measurement.valid) return limited(reached, sent.norm());
+    const Vec3 out = limited(reached, tank.bound());
+    if (out.norm() < reached.norm()) ++statistics_.softened;
+    return out;
+  };
+  const Wrench before = sent_;
+  sent_.force = next(force_, asked_.force, sent_.force, maxSlew);
+  sent_.torque = next(torque_, asked_.torque, sent_.torque, torqueShare * maxSlew);
+  ++number_;
+  force_.sent(number_, sent_.force.norm());
+  torque_.sent(number_, sent_.torque.norm());
+  sentAt_[number_ % sentAt_.size()] = now;
+  ++statistics_.sent;
+  statistics_.maxForce = std::max(statistics_.maxForce, sent_.force.norm());
+  statistics_.maxChange = std::max(statistics_.maxChange, (sent_.force - before.force).norm());
+  statistics_.lowestEnergy = force_.lowest();
+  return sent_;
+}
+
+void ForceOutput::lost() {
+  force_.reset();
+  torque_.reset();
+  sent_ = {};
+  gain_ = 0.0;
+  seen_ = heard_ = false;
+}
+
+}  // namespace calot::recorder
