@@ -23,7 +23,9 @@
 #include "gui/trainer/trainer_window.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/errors.h"
+#include "recorder/formats/dates.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/sources/devices/mouse_device.h"
 
 namespace calot::apps {
 namespace {
@@ -50,7 +52,8 @@ void add(CLI::App& app, Options& o) {
                  "watch a synthetic operator: skilled, intermediate, unskilled, or a file")
       ->excludes(device);
   addTools(app, o.source.device);
-  app.add_option("--calibration", o.source.device.calibration, "of the device; an assessment needs one")->needs(device);
+  app.add_option("--calibration", o.source.device.calibration,
+                 "of the device, or of mouse and keyboard; an assessment needs one");
   app.add_option("--participant", o.participant, "pseudonym")->check([](const std::string& p) {
     return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
   });
@@ -76,6 +79,23 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
 
+/// Of mouse and keyboard.
+recorder::DeviceSourceSettings mouseSettings(const Options& o, recorder::Mode mode) {
+  const std::string& file = o.source.device.calibration;
+  recorder::DeviceSourceSettings settings;
+  settings.mode = mode;
+  if (file.empty() && mode == recorder::Mode::assessment) {
+    throw Error(ErrorKind::invalid,
+                "--mode assessment: mouse and keyboard need a --calibration (calot devices calibrate mouse --pixel "
+                "declares one), or name a --device and its own");
+  }
+  if (file.empty()) return settings;
+  settings.calibration = recorder::readCalibration(file);
+  const recorder::MouseDevice device(std::make_shared<recorder::MouseInput>());
+  recorder::checkCalibration(*settings.calibration, device.info(), mode, recorder::presentDate(), file);
+  return settings;
+}
+
 /// Everything that can be wrong is told here, before there is a window.
 gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedScene>& scene) {
   requireFolder(o.folder, "recordings");
@@ -92,14 +112,12 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   setup.settings.folder = o.folder;
   setup.settings.threads = o.threads;
   SourceOptions who = o.source;
+  if (!who.performer.empty() && !who.device.calibration.empty())
+    throw Error(ErrorKind::invalid, "--calibration is of a device; a performer has none");
   who.mode = attempt.mode;
   if (who.device.name.empty() && who.performer.empty()) {
-    if (attempt.mode == recorder::Mode::assessment) {
-      throw Error(ErrorKind::invalid,
-                  "--mode assessment: mouse and keyboard cannot be calibrated; name a --device and its --calibration");
-    }
     setup.mouse = std::make_shared<recorder::MouseInput>();
-    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse);
+    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, attempt.mode));
   } else {
     auto input = std::make_shared<OptionsInput>(who, o.seed);
     // A performer needs a scene; a device is there or not whatever the scene.

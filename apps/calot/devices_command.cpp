@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot devices: what there is, what it measures like, and a server to try a set-up without a tracker.
+// calot devices: what there is, the commands below it, and a server to try a set-up without a tracker.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
-#include <filesystem>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
-#include "apps/calot/calibration_pictures.h"
+#include "apps/calot/calibrate_device.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/device_options.h"
 #include "apps/calot/environment.h"
@@ -20,12 +15,6 @@
 #include "apps/calot/stop_request.h"
 #include "apps/calot/terminal_text.h"
 #include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
-#include "recorder/sources/devices/calibration_fit.h"
-#include "recorder/sources/devices/camera/camera_calibration.h"
-#include "recorder/sources/devices/camera/camera_request.h"
-#include "recorder/sources/devices/camera/marker_sheets.h"
-#include "recorder/sources/devices/device_pump.h"
 #include "recorder/sources/devices/openigtlink_server.h"
 
 namespace calot::apps {
@@ -53,232 +42,6 @@ int listDevicesFound(bool asJson) {
     fmt::print("{:<24} {}\n", d.name, wrappedText(text, terminalColumns(), detailAt, detailAt));
   }
   return 0;
-}
-
-struct CalibrateOptions {
-  DeviceOptions device;
-  std::string from, stream, output;
-  double strokeMillimetres = 100.0;
-  // Of cameras alone.
-  std::vector<std::string> board;
-  std::string phases, pictures;
-  double rulerMillimetres = recorder::rulerLength, readoutMilliseconds = 0.0;
-  std::uint32_t validDays = 30;
-  bool force = false, json = false;
-};
-
-struct Step {
-  std::vector<const char*> phases;
-  const char* text;
-  double seconds;
-};
-
-/// Tells what to do, and waits until the person is ready.
-void promptStep(const std::string& text) {
-  fmt::print("{}\npress Enter to begin: ", text);
-  std::fflush(stdout);
-  std::string line;
-  if (!std::getline(std::cin, line) || stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
-}
-
-/// Records the device through the steps that a person is guided through.
-class GuidedRecording {
- public:
-  explicit GuidedRecording(recorder::Device& device) : device_(device), pump_(device) {
-    stream_.name = device.info().identity;
-    stream_.file = device.info().name;
-    stream_.rate = device.info().capabilities.rate;
-  }
-
-  void run(const Step& step) {
-    promptStep(step.text);
-    recorder::DeviceInput skipped;
-    pump_.drain(skipped);
-    const std::int64_t begin = recorder::monotonicNanoseconds();
-    const auto length = static_cast<std::int64_t>(1e9 * step.seconds);
-    const std::size_t before = stream_.samples.size();
-    Progress progress("measuring, seconds");
-    while (recorder::monotonicNanoseconds() < begin + length) {
-      if (stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      take(begin);
-      progress.show(static_cast<std::uint64_t>((recorder::monotonicNanoseconds() - begin) / 1'000'000'000),
-                    static_cast<std::uint64_t>(step.seconds));
-    }
-    take(begin);
-    // The steps follow each other without the time in which nobody measured.
-    for (const char* phase : step.phases) stream_.phases.push_back({phase, time_, time_ + length});
-    time_ += length;
-    if (stream_.samples.size() == before)
-      throw Error(ErrorKind::failure, fmt::format("{}: no sample came", device_.info().detail));
-  }
-
-  [[nodiscard]] const recorder::DeviceScript& stream() const { return stream_; }
-
- private:
-  void take(std::int64_t begin) {
-    recorder::DeviceInput input;
-    pump_.drain(input);
-    for (recorder::DeviceSample sample : input.samples) {
-      sample.hostTime += time_ - begin;
-      if (sample.hostTime >= time_) stream_.samples.push_back(sample);
-    }
-  }
-
-  recorder::Device& device_;
-  recorder::DevicePump pump_;
-  recorder::DeviceScript stream_;
-  std::int64_t time_ = 0;
-};
-
-void requireTerminal() {
-  if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
-    throw Error(ErrorKind::invalid, "calibrate: the guided steps need a terminal; --from FILE takes a recorded stream");
-}
-
-recorder::DeviceScript guided(recorder::Device& device, double strokeMillimetres) {
-  requireTerminal();
-  stopOnSignals();
-  GuidedRecording recording(device);
-  recording.run({{"rest"}, "1. Put the tools down and touch nothing (5 s).", 5.0});
-  if (device.info().capabilities.absolute && device.info().capabilities.sensedRotations == 3) {
-    recording.run(
-        {{"pivot"},
-         "2. Hold each tool's tip in a dimple and tilt the tool by 30 degrees and more in all directions (20 s).",
-         20.0});
-  }
-  const auto stroke = [&](const char* phase, int number, const char* way) {
-    const std::string text =
-        fmt::format("{}. Wait a second, move each tip by {:g} mm {}, and hold it there until the 6 seconds are over.",
-                    number, strokeMillimetres, way);
-    recording.run({{phase}, text.c_str(), 6.0});
-  };
-  stroke("stroke right", 3, "to the right");
-  stroke("stroke down", 4, "down");
-  stroke("stroke away", 5, "away from you");
-  if (device.info().name == recorder::cameraKind.name) {
-    recording.run({{"trocar"},
-                   "6. Put the sticks through the trocars and sweep them by 20 degrees in all directions (15 s).",
-                   15.0});
-  }
-  return recording.stream();
-}
-
-void printRig(const recorder::CameraRig& rig) {
-  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
-    const recorder::CameraLens& lens = rig.cameras[i].lens;
-    fmt::print("camera {}:\n", i + 1);
-    fmt::print("  lens             {} x {}, focal length {:.1f} {:.1f} pixels, known to {:.2f} %\n", lens.width,
-               lens.height, lens.focal.x(), lens.focal.y(), 100.0 * lens.focalUncertainty);
-    fmt::print("  lens residual    {:.3f} pixels, {} views, {:.0f} % of the picture\n", lens.residual, lens.views,
-               100.0 * lens.coverage);
-    if (i > 0) {
-      fmt::print("  beside camera 1  {:.1f} mm away, residual {:.3f} pixels\n",
-                 1e3 * rig.cameras[i].fromDevice.position.norm(), rig.cameras[i].pairResidual);
-    }
-  }
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (rig.trocar[h]) fmt::print("{} trocar: shaft within {:.2f} mm\n", handNames[h], 1e3 * rig.trocar[h]->residual);
-  }
-  if (rig.printScale != 1.0) fmt::print("sheets printed at {:.4f} of their size\n", rig.printScale);
-}
-
-void printCalibration(const recorder::Calibration& c, const std::vector<std::string>& faults) {
-  fmt::print("{} ({})\n", c.identity, c.date);
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (!c.hand[h]) continue;
-    const recorder::HandCalibration& m = *c.hand[h];
-    fmt::print("{}:\n", handNames[h]);
-    if (m.tipOffset) {
-      fmt::print("  tip offset       {:.2f} {:.2f} {:.2f} mm\n", 1e3 * m.tipOffset->x(), 1e3 * m.tipOffset->y(),
-                 1e3 * m.tipOffset->z());
-      fmt::print("  pivot residual   {:.3f} mm\n", 1e3 * *m.pivotResidual);
-    } else {
-      fmt::print("  tip offset       not measured\n");
-    }
-    if (m.scale) {
-      fmt::print("  scale            {:.4f}, strokes apart by {:.1f} %\n", *m.scale, 100.0 * *m.scaleSpread);
-      fmt::print("  axes             within {:.1f} degrees\n", 57.29577951308232 * *m.axesResidual);
-    } else {
-      fmt::print("  scale, axes      not measured\n");
-    }
-    fmt::print("  noise at rest    {:.3f} {:.3f} {:.3f} mm\n", 1e3 * m.noise.x(), 1e3 * m.noise.y(), 1e3 * m.noise.z());
-    fmt::print("  rate             {:.1f} a second, intervals {:.2f} ms sd, {:.2f} ms at 99 %\n", m.rate,
-               1e3 * m.jitter, 1e3 * m.longInterval);
-    fmt::print("  invalid          {:.1f} %\n", 100.0 * m.invalidShare);
-  }
-  if (c.camera) printRig(*c.camera);
-  fmt::print("latency: {}\nforce: {}\n", c.latency, c.force);
-  for (const std::string& fault : faults) fmt::print("falls short: {}\n", fault);
-  fmt::print("{}\n", faults.empty() ? fmt::format("passed; valid for {} days", c.validDays) : "failed");
-}
-
-int finishCalibration(const CalibrateOptions& o, const recorder::DeviceScript& stream,
-                      recorder::Calibration calibration) {
-  calibration.validDays = o.validDays;
-  const std::vector<std::string> faults = recorder::shortcomings(calibration);
-  if (!o.stream.empty()) recorder::writeText(o.stream, recorder::deviceScriptText(stream), o.force);
-  recorder::writeText(o.output, recorder::calibrationText(calibration, false), o.force);
-  if (o.json)
-    fmt::print("{}", recorder::calibrationText(calibration, false));
-  else
-    printCalibration(calibration, faults);
-  if (faults.empty()) return 0;
-  throw Error(ErrorKind::refused, fmt::format("{}: the calibration failed: {}", o.output, faults.front()));
-}
-
-/// Lenses first; then the handles are a device like others.
-int calibrateCamera(const CalibrateOptions& o) {
-  const std::size_t colon = o.device.name.find(':');
-  const recorder::CameraRequest request = recorder::parseCameraRequest(
-      {o.device.name, colon == std::string::npos ? "" : o.device.name.substr(colon + 1), {}, nullptr});
-  if (!request.live && o.board.empty())
-    throw Error(ErrorKind::invalid,
-                "calibrate: films of the handles need --board with films of the board by the same cameras");
-  if (request.live) requireTerminal();
-  const recorder::RigSettings settings{o.rulerMillimetres / recorder::rulerLength, 1e-3 * o.readoutMilliseconds};
-  if (!o.pictures.empty() && !std::filesystem::is_directory(o.pictures))
-    throw Error(ErrorKind::invalid, Where{o.pictures}, "there is no such folder for the pictures");
-  const std::vector<recorder::DeviceScript::Phase> stated =
-      o.phases.empty() ? std::vector<recorder::DeviceScript::Phase>{} : recorder::parsePhases(o.phases);
-  const recorder::RigFit fit = o.board.empty() ? recorder::measureRigLive(request, settings, promptStep)
-                                               : recorder::measureRigFromFilms(o.board, settings);
-  if (!o.pictures.empty()) writeCalibrationPictures(fit, o.pictures);
-  recorder::Calibration lens;
-  lens.identity = fit.identity;
-  lens.camera = fit.rig;
-  const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device), &lens);
-  recorder::DeviceScript stream;
-  if (request.live) {
-    stream = guided(*opened.device, o.strokeMillimetres);
-  } else {
-    stream = recorder::streamOf(*opened.device, *opened.tickClock);
-    const double seconds = stream.samples.empty() ? 0.0 : 1e-9 * static_cast<double>(stream.samples.back().hostTime);
-    stream.phases = stated.empty() ? recorder::guidedPhases(seconds) : stated;
-  }
-  recorder::Calibration calibration =
-      recorder::measureCalibration(stream, 1e-3 * o.strokeMillimetres, opened.device->info());
-  calibration.camera = fit.rig;
-  recorder::measureTrocars(stream, calibration);
-  recorder::measureLatency(stream, request.live, calibration);
-  return finishCalibration(o, stream, std::move(calibration));
-}
-
-int calibrate(const CalibrateOptions& o) {
-  recorder::refuseOutput(o.output, o.force);
-  if (!o.stream.empty()) recorder::refuseOutput(o.stream, o.force);
-  if (recorder::findDeviceKind(o.device.name) == &recorder::cameraKind) return calibrateCamera(o);
-  if (!o.board.empty() || !o.phases.empty() || !o.pictures.empty())
-    throw Error(ErrorKind::invalid, "calibrate: --board, --phases and --pictures are of cameras");
-  const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device));
-  if (o.from.empty() && opened.tickClock) {
-    throw Error(ErrorKind::invalid,
-                fmt::format("calibrate {}: a device without real time is measured with --from FILE", o.device.name));
-  }
-  const recorder::DeviceScript stream =
-      o.from.empty() ? guided(*opened.device, o.strokeMillimetres) : recorder::readDeviceScript(o.from);
-  return finishCalibration(o, stream,
-                           recorder::measureCalibration(stream, 1e-3 * o.strokeMillimetres, opened.device->info()));
 }
 
 struct PrintOptions {
@@ -315,33 +78,6 @@ void addDevices(CLI::App& app, Run& run) {
   command->add_flag("--json", *asJson, "print JSON");
   command->require_subcommand(0, 1);
 
-  auto c = std::make_shared<CalibrateOptions>();
-  CLI::App* measure = command->add_subcommand("calibrate", "Measures a device in guided steps and stores the result.");
-  measure->add_option("device", c->device.name, "as for record --device")->required();
-  addTools(*measure, c->device);
-  measure->add_option("--from", c->from, "measure this stream instead, recorded by --keep-stream");
-  measure->add_option("--keep-stream", c->stream, "write what was measured from, for --from");
-  measure->add_option("--stroke", c->strokeMillimetres, "length of each stroke, mm")
-      ->check(CLI::Range(10.0, 1000.0))
-      ->capture_default_str();
-  measure->add_option("--board", c->board, "of cameras in films: films of the board by each of them, FILM[,FILM]")
-      ->delimiter(',');
-  measure->add_option("--phases", c->phases,
-                      "of cameras in films: when each step was done, in seconds: rest=0:5,pivot=5:25,...");
-  measure->add_option("--ruler", c->rulerMillimetres, "of cameras: how long the sheets' ruler of 100 mm is, mm")
-      ->check(CLI::Range(50.0, 200.0))
-      ->capture_default_str();
-  measure
-      ->add_option("--readout", c->readoutMilliseconds,
-                   "of cameras: from the first row's exposure to the last one's, ms")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  measure->add_option("--pictures", c->pictures, "of cameras: write a PNG of each lens into this folder");
-  measure->add_option("--valid-days", c->validDays, "from today on")->check(CLI::Range(1, 3650))->capture_default_str();
-  measure->add_option("-o,--output", c->output, "the calibration, a JSON file")->required();
-  measure->add_flag("--force", c->force, "replace the outputs if they are there");
-  measure->add_flag("--json", c->json, "print the result as JSON");
-
   auto p = std::make_shared<PrintOptions>();
   CLI::App* print = command->add_subcommand("print", "Handles and board for cameras, to print: a PDF, true to scale.");
   print->add_option("-o,--output", p->output, "the PDF")->required();
@@ -362,11 +98,10 @@ void addDevices(CLI::App& app, Run& run) {
   play->add_flag("--once", s->settings.once, "end when the first client has gone");
 
   CLI::App* simulate = addSimulateDevice(*command, run);
+  CLI::App* measure = addCalibrateDevice(*command, run);
   command->callback([=, &run] {
-    if (simulate->parsed()) return;
-    if (measure->parsed())
-      run = [c] { return calibrate(*c); };
-    else if (print->parsed())
+    if (simulate->parsed() || measure->parsed()) return;
+    if (print->parsed())
       run = [p] {
         writeMarkerSheets(p->output, p->force);
         return 0;

@@ -22,13 +22,15 @@ std::array<Vec3, handCount> portsFrom(const SceneDescription& scene, const std::
 
 }  // namespace
 
-MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse) : mouse_(std::move(mouse)) {}
+MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse,
+                                     recorder::DeviceSourceSettings settings)
+    : mouse_(std::move(mouse)), settings_(std::move(settings)) {}
 
 std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescription& scene) {
   mouse_->reset();
   mouse_->setPorts(portsFrom(scene, {scene.hands[0].home, scene.hands[1].home}));
-  auto source = std::make_unique<recorder::DeviceSource>(std::make_unique<recorder::MouseDevice>(mouse_), scene,
-                                                         recorder::DeviceSourceSettings{});
+  auto source =
+      std::make_unique<recorder::DeviceSource>(std::make_unique<recorder::MouseDevice>(mouse_), scene, settings_);
   source->waitForFirst(patience);
   return source;
 }

@@ -4,15 +4,16 @@
 #include <memory>
 
 #include "gui/trainer/attempt_input.h"
+#include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_input.h"
 
 namespace calot::gui {
 
-/// Both hands by mouse and keyboard. Practice only: a mouse has no calibration.
+/// Both hands by mouse and keyboard. An assessment wants a calibration, which is declared.
 class MouseAttemptInput final : public AttemptInput {
  public:
   /// @param mouse what the window writes to; not null
-  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse);
+  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse, recorder::DeviceSourceSettings settings = {});
 
   std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;
   void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) override;
@@ -21,6 +22,7 @@ class MouseAttemptInput final : public AttemptInput {
 
  private:
   std::shared_ptr<recorder::MouseInput> mouse_;
+  recorder::DeviceSourceSettings settings_;
 };
 
 }  // namespace calot::gui

@@ -207,6 +207,15 @@ class Calibrating(ProgramTest):
         self.assertAlmostEqual(found["hands"]["right"]["tipOffset"][2], 0.2, 6)
         self.refused(2, "devices", "calibrate", self.device, "--from", self.path("stream.json"), "-o", self.path("c.json"))
 
+    def test_a_mouse_is_declared(self):
+        said = self.well("devices", "calibrate", "mouse", "--pixel", 0.05, "-o", self.path("c.json")).out
+        self.assertIn("declared, not measured: the hand moves 0.05 mm for a pixel", said)
+        found = json.loads(self.path("c.json").read_text(encoding="utf-8"))
+        self.assertEqual((found["device"], found["passed"], found["declaredPixel"]), ("mouse", True, 5e-5))
+        for pixel in (0, -1, 100, "nan"):
+            self.refused(2, "devices", "calibrate", "mouse", "--pixel", pixel, "-o", self.path("d.json"), names=("pixel",))
+        self.refused(2, "devices", "calibrate", self.device, "--pixel", 0.05, "-o", self.path("d.json"), names=("only a mouse",))
+
     def test_failed_is_written_and_exits_3(self):
         answer = self.refused(3, "devices", "calibrate", self.device, "--from", self.path("noisy.json"), "-o", self.path("c.json"),
                               names=("failed",))

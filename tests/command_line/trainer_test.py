@@ -36,7 +36,7 @@ class Trainer(ProgramTest):
         self.assertIn("no such device", self.declined(2, "--scene", SCENE, "--device", "joystick", *out))
         self.assertIn("no such device", self.declined(2, "--device", "joystick", *out))
         self.assertIn("--calibration", self.declined(2, "--scene", SCENE, "--device", "null", "--mode", "assessment", *out))
-        self.assertIn("mouse and keyboard", self.declined(2, "--scene", SCENE, "--mode", "assessment", *out))
+        self.assertIn("calibrate mouse --pixel", self.declined(2, "--scene", SCENE, "--mode", "assessment", *out))
         self.assertIn("/nowhere", self.declined(2, "--scene", SCENE, "-o", "/nowhere"))
         self.declined(2, "--scene", SCENE, "--mode", "play", *out)
         self.declined(2, "--device", "null", "--performer", "skilled", *out)

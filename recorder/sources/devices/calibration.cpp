@@ -32,7 +32,8 @@ const ObjectRule rootRule{"",
                            {"latency"},
                            {"force"},
                            {"limits"},
-                           {"camera", false}}};
+                           {"camera", false},
+                           {"declaredPixel", false, 0, 1, true, false}}};
 const ObjectRule handsRule{"hands", {{"left", false}, {"right", false}}};
 const ObjectRule handRule{"hand",
                           {{"tipOffset", false, -2, 2},
@@ -201,6 +202,7 @@ std::string calibrationText(const Calibration& c, bool compact) {
   visitLimits(c.limits, WriteValues{limits});
   out["limits"] = limits;
   if (c.camera) out["camera"] = rigJson(*c.camera);
+  if (c.declaredPixel) out["declaredPixel"] = *c.declaredPixel;
   return compact ? out.dump() : out.dump(2) + "\n";
 }
 
@@ -226,6 +228,7 @@ Calibration parseCalibration(std::span<const std::byte> bytes, const std::string
   const JsonObject limits = root.at("limits").object(limitsRule);
   visitLimits(c.limits, ReadValues{limits});
   if (root.has("camera")) c.camera = rigOf(root.at("camera"));
+  ReadValues{root}("declaredPixel", c.declaredPixel);
   if (root.at("passed").boolean() != shortcomings(c).empty())
     root.at("passed").fail("does not agree with the values and the limits");
   return c;

@@ -52,6 +52,8 @@ struct Calibration {
   std::string force = "not applicable";  ///< or the largest error with its unit
   CalibrationLimits limits;
   std::optional<CameraRig> camera;  ///< of cameras that watch printed handles
+  /// Of a mouse: how far the hand moves for a pixel (m), as whoever set it up says; nothing was measured then.
+  std::optional<double> declaredPixel;
 };
 
 /// Violated limits, one phrase each; empty: passed. Rate, noise, intervals and invalid share must be present for at

@@ -3,11 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "recorder/errors.h"
+#include "recorder/formats/dates.h"
 #include "recorder/sources/devices/calibration_fit.h"
+#include "recorder/sources/devices/declared_calibration.h"
+#include "recorder/sources/devices/mouse_device.h"
 #include "tests/recorder/sources/devices/support/calibration_streams.h"
 
 namespace calot::recorder {
@@ -53,6 +58,19 @@ TEST(Calibration, BadFilesAreRefusedWithTheirPlace) {
   refused("/hands/left/noise", {1, 2}, "/hands/left/noise");
   refused("/hands/middle", 1, "middle");
   refused("/limits/rate", "fast", "/limits/rate");
+}
+
+TEST(Calibration, OfAMouseIsDeclared) {
+  const MouseDevice mouse(std::make_shared<MouseInput>());
+  const Calibration c = declaredCalibration(mouse.info(), 0.00005);
+  EXPECT_TRUE(shortcomings(c).empty());
+  EXPECT_NO_THROW(checkCalibration(c, mouse.info(), Mode::assessment, presentDate(), "c.json"));
+  const Calibration back = parseCalibration(bytesOf(calibrationText(c, true)), "c.json");
+  EXPECT_EQ(back.declaredPixel, 0.00005);
+  EXPECT_FALSE(back.hand[0]->scale) << "the tip moves as it did";
+  EXPECT_THROW(declaredCalibration(trackerInfo(), 0.00005), Error);
+  for (const double pixel : {0.0, -0.001, 1.0, std::nan("")})
+    EXPECT_THROW(declaredCalibration(mouse.info(), pixel), Error);
 }
 
 TEST(Calibration, AssessmentRefusesWhatPracticeMayUse) {
