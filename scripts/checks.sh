@@ -11,7 +11,7 @@ if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
 fastTests=(test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_formats test_recording test_recorder test_sources test_statistics
-  test_design test_analytics test_report test_checkpoints conformance_reader)
+  test_design test_analytics test_report test_checkpoints conformance_reader fuzz_corpus)
 threadTests=(test_recording test_recorder conformance_reader)
 
 # fast PRESET LEFT_OUT TARGET...: builds these test programs and runs them; heavy ones are left out, and those whose names
@@ -23,7 +23,7 @@ fast() {
   configure "$preset"
   build "$preset" "$@"
   say "test $preset"
-  ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording|statistics' --label-exclude heavy --exclude-regex "$leftOut" --parallel "$jobs" \
+  ctest --test-dir "$root/build/$preset" --label-regex 'unit|recording|statistics|fuzz' --label-exclude heavy --exclude-regex "$leftOut" --parallel "$jobs" \
     --output-on-failure --no-tests=error
 }
 
@@ -79,7 +79,7 @@ for stage in "${stages[@]}"; do
       ;;
     tsan)
       export TSAN_OPTIONS=second_deadlock_stack=1:halt_on_error=1
-      fast tsan '^(Branch|Blend|Size|Fuzz|Schema|RawSamplesChanged|GoldenContent|Server)\.|^PreparedScenes\.(BelieveNoF|Work|Save|FindOut)|^Segments\.Name|^Kept\.AnEngineApart|^Replay\.NamesStep' "${threadTests[@]}"
+      fast tsan '^fuzz\.|^(Branch|Blend|Size|Fuzz|Schema|RawSamplesChanged|GoldenContent|Server)\.|^PreparedScenes\.(BelieveNoF|Work|Save|FindOut)|^Segments\.Name|^Kept\.AnEngineApart|^Replay\.NamesStep' "${threadTests[@]}"
       ;;
     tidy)
       configure clang
