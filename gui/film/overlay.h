@@ -23,9 +23,9 @@ struct Overlays {
 
 /// Titles and marks shown on every frame.
 struct Captions {
-  std::string title;  ///< at the upper edge; truncated if too long
-  std::string mark;   ///< at the lower edge: a non-human operator ("synthetic")
-  std::string doubt;  ///< in the middle of the upper half, in amber: what is shown is not what was recorded
+  std::string title;       ///< at the upper edge; truncated if too long
+  std::string mark;        ///< at the lower edge: a non-human operator ("synthetic")
+  std::string doubt = {};  ///< in the middle of the upper half, in amber: what is shown is not what was recorded
 };
 
 /// Draws overlays in sizes that fit the picture's height: time and phase in the upper left corner, checkpoints in the
