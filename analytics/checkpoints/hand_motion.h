@@ -73,7 +73,7 @@ std::unique_ptr<Checkpoint> perHandAndPhase(const CheckpointDefinition& definiti
 /// @param rank among the figures of phases
 template <const CheckpointDefinition& (*whole)(), MotionMeasure measure>
 CheckpointEntry phaseMotionEntry(int rank) {
-  static const CheckpointDefinition d = phaseDefinition(whole(), "points", 2);
+  static const CheckpointDefinition d = phaseDefinition(whole(), "points", whole().version);
   return {{CheckpointFamily::phases, rank}, d, [](const AttemptContext& context) {
             return perHandAndPhase(d, measure, context);
           }};
