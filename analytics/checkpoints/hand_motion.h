@@ -70,10 +70,10 @@ std::unique_ptr<Checkpoint> perHandAndPhase(const CheckpointDefinition& definiti
                                             const AttemptContext& context);
 
 /// The entry of the figure of each hand in each phase, declared as phaseDefinition() of the whole attempt's says.
-/// @param rank among the figures of phases
+/// @param rank among the figures of phases @param version of the definition, without the judgement's
 template <const CheckpointDefinition& (*whole)(), MotionMeasure measure>
-CheckpointEntry phaseMotionEntry(int rank) {
-  static const CheckpointDefinition d = phaseDefinition(whole(), "points", whole().version);
+CheckpointEntry phaseMotionEntry(int rank, std::uint32_t version = 2) {
+  static const CheckpointDefinition d = phaseDefinition(whole(), "points", version);
   return {{CheckpointFamily::phases, rank}, d, [](const AttemptContext& context) {
             return perHandAndPhase(d, measure, context);
           }};

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import sys
+import unittest
 
 import program
 
@@ -37,6 +38,7 @@ class SceneCode(program.ProgramTest):
     def test_a_bed_has_no_fat_and_no_vessels(self):
         self.assertEqual(self.parts_run_in("dissect-bed", "0.03"), {"connective"})
 
+    @unittest.skipUnless(program.HEAVY, "long: a scene with vessels under a profiler")
     def test_vessels_are_found_where_they_are(self):
         self.assertEqual(self.parts_run_in("clip-and-cut", "0.03"), {"vessels"})
 

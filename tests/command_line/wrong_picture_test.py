@@ -38,8 +38,8 @@ class NeverAWrongPicture(program.ProgramTest):
         r = self.of_another_version()
         for time in (0, 2, 5):
             with self.subTest(time=time):
-                self.well("render", skilled(), "--at", time, "--size", "320x180", "-o", self.path("own.png"), "--force")
-                self.well("render", r, "--anyway", "--at", time, "--size", "320x180", "-o", self.path("marked.png"), "--force")
+                self.well("render", skilled(), "--at", time, "--size", "320x180", "--quality", "interactive", "-o", self.path("own.png"), "--force")
+                self.well("render", r, "--anyway", "--at", time, "--size", "320x180", "--quality", "interactive", "-o", self.path("marked.png"), "--force")
                 self.assertGreater(amber(self.path("marked.png")), amber(self.path("own.png")) + 100)
         # However small it is, and beside one that needs none.
         self.well("render", r, "--anyway", "--size", "64x48", "-o", self.path("small.png"))
@@ -68,12 +68,12 @@ class NeverAWrongPicture(program.ProgramTest):
             recording_file.reseal(file)
             frames = file["/keyframes/index"]["step"]
         after = int(frames[frames > 123][0])
-        self.well("render", r, "--at", 1.1, "-o", picture)
+        self.well("render", r, "--at", 1.1, "--size", "64x48", "-o", picture)
         at = min(1.3, after / 100 - 0.02)
         self.refused(3, "render", r, "--at", at, "-o", self.path("p.png"), names=(r, "diverged at step 123", "--anyway"))
         self.refused(3, "render", r, "--from", 1, "--to", at, "-o", self.path("p.mp4"), "--size", "64x48", names=(r, "diverged at step 123"))
         self.assertFalse(self.path("p.mp4").exists())
-        self.well("render", r, "--at", at, "--anyway", "-o", self.path("p.png"), "--size", "320x180")
+        self.well("render", r, "--at", at, "--anyway", "-o", self.path("p.png"), "--size", "320x180", "--quality", "interactive")
         self.assertGreater(amber(self.path("p.png")), 100)
 
 

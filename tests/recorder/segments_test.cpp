@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -62,15 +63,21 @@ TEST(Segments, NameTheFirstDifferenceThatARunFromTheStartNames) {
   };
   check(std::nullopt);
   using About = Lie::About;
+  // Each kind at one of the steps, in turn; all of them in the long form.
+  const bool all = std::getenv("CALOT_HEAVY") != nullptr;
+  std::size_t turn = 0;
   for (const About about :
        {About::force, About::torque, About::contactSet, About::sample, About::digest, About::volume, About::event}) {
+    ++turn;
     for (const std::uint64_t step : {99U, 100U, 207U}) {
+      if (!all && (step == 99U ? 0U : step == 100U ? 1U : 2U) != turn % 3) continue;
       SCOPED_TRACE("lie " + std::to_string(static_cast<int>(about)) + " at step " + std::to_string(step));
       check(Lie{about, step});
     }
   }
   for (const About about : {About::keyframe, About::lastByte}) {
     for (const std::uint64_t step : {99U, 199U}) {
+      if (!all && (about == About::keyframe) != (step == 99U)) continue;
       SCOPED_TRACE("lie " + std::to_string(static_cast<int>(about)) + " at step " + std::to_string(step));
       check(Lie{about, step});
     }

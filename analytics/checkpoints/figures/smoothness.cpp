@@ -152,7 +152,7 @@ std::vector<CheckpointEntry> smoothnessEntries() {
   return {{{CheckpointFamily::motion, 100},
            sparcDefinition(),
            [](const AttemptContext&) { return perHand(sparcDefinition(), sparc); }},
-          phaseMotionEntry<sparcDefinition, sparc>(80),
+          phaseMotionEntry<sparcDefinition, sparc>(80, 3),
           {{CheckpointFamily::motion, 110},
            jerkDefinition(),
            [](const AttemptContext&) { return perHand(jerkDefinition(), jerk); }},
