@@ -33,7 +33,7 @@ Intention IntendedPath::at(double seconds) const {
   if (samples_.empty()) {
     const double turn = 2.0 * std::numbers::pi * seconds;
     const double reach = 0.5 - 0.5 * std::cos(0.25 * turn);
-    out.position = Vec3(0.003 * std::sin(0.5 * turn), 0.003 * std::cos(0.5 * turn) - 0.003, 0.03 * reach);
+    out.position = Vec3(0.003 * std::sin(0.5 * turn), 0.003 * std::cos(0.5 * turn) - 0.003, 0.065 * reach);
     return out;
   }
   const auto time = static_cast<std::int64_t>(1e9 * seconds);

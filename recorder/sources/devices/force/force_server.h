@@ -36,7 +36,8 @@ struct Intention {
 class IntendedPath {
  public:
   IntendedPath(const DeviceScript& script, Hand hand);
-  /// A path of its own: reaches 30 mm away and back every four seconds, in small circles.
+  /// A path of its own: reaches 65 mm away and back every four seconds, in small circles: in touch-liver the right hand
+  /// meets the liver.
   IntendedPath() = default;
   [[nodiscard]] Intention at(double seconds) const;
 
