@@ -16,6 +16,8 @@ say "clang-tidy"
 "$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs"
 say "test clang"
 ctest --test-dir "$root/build/clang" --label-exclude 'heavy|determinism' --parallel "$jobs" --output-on-failure --no-tests=error
+say "all of the sanitizers' tests"
+CALOT_CHECKS_ALL=1 "$root/scripts/checks.sh" asan-ubsan
 say "heavy tests"
 ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure --no-tests=error "$@"
 say "fuzzing"

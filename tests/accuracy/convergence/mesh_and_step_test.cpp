@@ -117,8 +117,9 @@ TEST(MeshAndStep, OfADissection) {
 }
 
 /// Not with 20 ms: there a hold that a step misses is no hold, and all that follows is another attempt.
-TEST(MeshAndStep, OfCarving) {
-  const std::vector<Graded> runs = runAll("carve-fat", {{1.0, 10}, {2.0, 10}}, 10.0);
+TEST(CarvingHeavy, OnTwoMeshes) {
+  if (std::getenv("CALOT_HEAVY") == nullptr) GTEST_SKIP() << "set CALOT_HEAVY";
+  const std::vector<Graded> runs = runAll("carve-fat", {{1.0, 10}, {2.0, 10}}, 15.0);
   expectSameMotion(runs);
   expectWithin(runs, "fat-remaining", 0.15);
   expectWithin(runs, "fat-remaining-inside", 0.15);
