@@ -59,10 +59,15 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   // Who has the file open already in this process decides how it is closed: another library of files has the default.
   for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG}) {
     H5Pset_fclose_degree(how.get(), degree);
-    Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get()));
+    const auto open = [&] { return hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get())); };
+    Id file = open();
     if (!file.valid()) continue;
     checkShape(path, file, sizeOfFile(path));
-    return file;
+    if (!superblock.writing) return file;
+    // What was looked at is remembered with the extents that it had then, and the file grows: it is forgotten.
+    file.reset();
+    file = open();
+    if (file.valid()) return file;
   }
   const std::string why = hdf5::reason();
   const std::uint64_t bytes = sizeOfFile(path);
