@@ -77,6 +77,7 @@ std::vector<ListedMouse> listMice() {
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<ListedMouse> out;
+  out.reserve(found.size());
   for (auto& [number, mouse] : found) out.push_back(std::move(mouse));
   return out;
 }

@@ -138,6 +138,7 @@ CameraRequest parseCameraRequest(const DeviceRequest& request) {
 
 std::vector<std::unique_ptr<FrameSource>> openFilmSources(const std::vector<std::string>& files) {
   std::vector<std::unique_ptr<FrameSource>> out;
+  out.reserve(files.size());
   for (const std::string& file : files) out.push_back(std::make_unique<VideoFile>(file));
   return out;
 }

@@ -90,6 +90,7 @@ HandleTracker::HandleTracker(const CameraRig& rig, Hand hand, TrackerLimits limi
     : rig_(&rig), hand_(hand), limits_(limits) {
   for (const TagPlace& tag : handleTags(hand, rig.printScale)) {
     std::vector<Vec3> corners;
+    corners.reserve(4);
     for (int k = 0; k < 4; ++k) corners.push_back(tag.corner(k, tagSide * rig.printScale));
     point_.push_back(corners);
   }

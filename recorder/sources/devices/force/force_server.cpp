@@ -50,8 +50,8 @@ Intention IntendedPath::at(double seconds) const {
   return out;
 }
 
-ForceServer::ForceServer(const DeviceScript* motion, ForceServerSettings settings)
-    : settings_(std::move(settings)), listener_(settings_.port) {
+ForceServer::ForceServer(const DeviceScript* motion, const ForceServerSettings& settings)
+    : settings_(settings), listener_(settings_.port) {
   hello_.hands = settings_.hands;
   hello_.name = "simulated force device";
   hello_.serial = "sim-1";

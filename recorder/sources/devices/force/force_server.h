@@ -50,7 +50,7 @@ class ForceServer {
  public:
   /// @param motion what the hands intend; null: a path of its own. Outlives the server.
   /// @throws Error (failure) where the port is taken.
-  ForceServer(const DeviceScript* motion, ForceServerSettings settings);
+  ForceServer(const DeviceScript* motion, const ForceServerSettings& settings);
 
   [[nodiscard]] int port() const { return listener_.port(); }
   /// What it says of itself.
