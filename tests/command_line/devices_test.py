@@ -59,8 +59,10 @@ def whole_stream(noise=0.0):
 class Server:
     """calot devices serve, on any port or a certain one."""
 
+    command = "serve"
+
     def __init__(self, *arguments, port=0):
-        self.process = subprocess.Popen([str(PROGRAM), "devices", "serve", "--port", str(port), *map(str, arguments)],
+        self.process = subprocess.Popen([str(PROGRAM), "devices", self.command, "--port", str(port), *map(str, arguments)],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = self.process.stdout.readline()
         self.port = int(line.rsplit(":", 1)[1]) if ":" in line else None
@@ -71,7 +73,7 @@ class Server:
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGTERM)
         try:
-            self.process.communicate(timeout=20)
+            self.out, self.err = self.process.communicate(timeout=20)
         except subprocess.TimeoutExpired:
             self.process.kill()
             raise

@@ -8,25 +8,14 @@ import time
 
 import program
 import h5py  # after the program, which says where it is missing
-from devices_test import script, moving
+from devices_test import Server, script, moving
 from program import PROGRAM, SCENE, ProgramTest
 
 
-class Simulated:
-    """calot devices simulate, on any port or a certain one."""
+class Simulated(Server):
+    """calot devices simulate."""
 
-    def __init__(self, *arguments, port=0):
-        self.process = subprocess.Popen([str(PROGRAM), "devices", "simulate", "--port", str(port), *map(str, arguments)],
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        line = self.process.stdout.readline()
-        self.port = int(line.rsplit(":", 1)[1]) if ":" in line else None
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.send_signal(signal.SIGTERM)
-        self.out, self.err = self.process.communicate(timeout=20)
+    command = "simulate"
 
 
 class ForceDevice(ProgramTest):

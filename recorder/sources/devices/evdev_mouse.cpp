@@ -87,10 +87,10 @@ EvdevMouse::EvdevMouse(std::string which, Hand hand, DeviceClock clock)
   const std::string fault = open();
   if (!fault.empty())
     throw Error(ErrorKind::failure, fmt::format("mouse \"{}\": {}", which_, fault), {Remedy::listDevices});
-  const std::string called = nameOf(descriptor_);
+  name_ = nameOf(descriptor_);
   info_.name = "mouse";
-  info_.identity = fmt::format("mouse:{}", called);
-  info_.detail = fmt::format("{}, {}", called, path_.string());
+  info_.identity = fmt::format("mouse:{}", name_);
+  info_.detail = fmt::format("{}, {}", name_, path_.string());
   DeviceCapabilities& c = info_.capabilities;
   c.hands = 1;
   c.sensedRotations = 1;
@@ -125,6 +125,11 @@ std::string EvdevMouse::open() {
   if (::ioctl(descriptor_, EVIOCGRAB, 1) < 0 && errno == EBUSY) {
     ::close(std::exchange(descriptor_, -1));
     return fmt::format("{}: another program has grabbed it", path_.string());
+  }
+  // Numbers of mice change when one is unplugged: another one is not taken for it.
+  if (!name_.empty() && nameOf(descriptor_) != name_) {
+    ::close(std::exchange(descriptor_, -1));
+    return fmt::format("{}: another mouse", path_.string());
   }
   held_.fill(false);
   skipping_ = false;

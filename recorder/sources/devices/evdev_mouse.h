@@ -39,6 +39,7 @@ class EvdevMouse final : public Device {
   void advance(double seconds);
 
   std::string which_;
+  std::string name_;  ///< as the kernel has it: the one that may come back
   Hand hand_;
   DeviceInfo info_;
   DeviceClock clock_;

@@ -157,8 +157,7 @@ void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
   m.clutched = (sample.buttons & clutchButton) != 0;
   const Wrench wrench = output_[h]->measured(m, now);
   stream_.send(forcewire::encode(forcewire::WrenchFrame{pose.hand, output_[h]->number(), pose.deviceTime, wrench}));
-  const std::lock_guard<std::mutex> lock(mutex_);
-  statistics_[h] = output_[h]->statistics();
+  reports_.note(h, output_[h]->statistics());
 }
 
 void ForceDevice::receive(DeviceInput& out) {
@@ -224,15 +223,6 @@ void ForceDevice::close() {
   open_ = false;
   if (stream_.open()) stream_.send(forcewire::encode(forcewire::End{}));
   stream_.close();
-}
-
-std::vector<std::string> ForceDevice::report() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::string> out;
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (statistics_[h].sent > 0) out.push_back(forceReport(handNames[h], statistics_[h]));
-  }
-  return out;
 }
 
 constinit const DeviceKind forceKind{

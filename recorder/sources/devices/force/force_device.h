@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,7 +37,7 @@ class ForceDevice final : public Device {
   void setWrench(Hand hand, const Wrench& wrench) override;
   /// Lets the force fall to zero first, for at most a fifth of a second.
   void close() override;
-  [[nodiscard]] std::vector<std::string> report() const override;
+  [[nodiscard]] std::vector<std::string> report() const override { return reports_.lines(); }
 
  private:
   /// @returns what is wrong, or an empty text
@@ -60,9 +59,7 @@ class ForceDevice final : public Device {
   std::int64_t nextAttempt_ = 0;
   std::string refusal_;
   bool open_ = true, greeted_ = false, toldInvalid_ = false;
-
-  mutable std::mutex mutex_;  ///< report() is asked for by another thread
-  std::array<ForceStatistics, handCount> statistics_;
+  ForceReports reports_;
 };
 
 extern const DeviceKind forceKind;

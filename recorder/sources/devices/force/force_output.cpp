@@ -43,6 +43,20 @@ std::string forceReport(const char* hand, const ForceStatistics& s) {
       hand, s.sent, s.maxForce, s.maxChange, s.softened, 1e-6 * static_cast<double>(s.maxRoundTrip));
 }
 
+void ForceReports::note(std::size_t hand, const ForceStatistics& statistics) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  statistics_[hand] = statistics;
+}
+
+std::vector<std::string> ForceReports::lines() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> out;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (statistics_[h].sent > 0) out.push_back(forceReport(handNames[h], statistics_[h]));
+  }
+  return out;
+}
+
 ForceOutput::ForceOutput(const HandleModel& model) : model_(model), force_(model.force), torque_(model.torque) {}
 
 void ForceOutput::command(const Wrench& wrench, std::int64_t now) {

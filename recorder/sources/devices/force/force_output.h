@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "recorder/sources/devices/device.h"
 #include "recorder/sources/devices/force/energy_tank.h"
@@ -38,6 +41,18 @@ struct ForceStatistics {
 
 /// A line for people: "force on the left hand: ...".
 std::string forceReport(const char* hand, const ForceStatistics& statistics);
+
+/// What both hands' outputs did, for a thread that asks while another one drives the device.
+class ForceReports {
+ public:
+  void note(std::size_t hand, const ForceStatistics& statistics);
+  /// A line for each hand that was sent a wrench.
+  [[nodiscard]] std::vector<std::string> lines() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::array<ForceStatistics, handCount> statistics_;
+};
 
 /// Between the simulation's force and a device's motors, for one hand. What is sent
 ///   - never exceeds the device's limits, and is finite;

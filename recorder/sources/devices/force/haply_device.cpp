@@ -221,8 +221,7 @@ void HaplyDevice::sample(std::size_t hand, const Json& device, const Json* grip,
   m.shown = handle.shown;
   handle.shown = handle.last;
   handle.last = handle.output.measured(m, now);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  statistics_[hand] = handle.output.statistics();
+  reports_.note(hand, handle.output.statistics());
 }
 
 void HaplyDevice::take(const std::string& message, DeviceInput& out) {
@@ -321,15 +320,6 @@ void HaplyDevice::close() {
   if (stream_.open()) sendForces();
   open_ = false;
   stream_.close();
-}
-
-std::vector<std::string> HaplyDevice::report() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::string> out;
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (statistics_[h].sent > 0) out.push_back(forceReport(handNames[h], statistics_[h]));
-  }
-  return out;
 }
 
 constinit const DeviceKind haplyKind{

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -39,7 +38,7 @@ class HaplyDevice final : public Device {
   void setWrench(Hand hand, const Wrench& wrench) override;
   /// Lets the force fall to zero first, for at most a fifth of a second.
   void close() override;
-  [[nodiscard]] std::vector<std::string> report() const override;
+  [[nodiscard]] std::vector<std::string> report() const override { return reports_.lines(); }
 
  private:
   struct Handle {
@@ -66,9 +65,7 @@ class HaplyDevice final : public Device {
   bool open_ = true, greeted_ = false, introduced_ = false, due_ = false, toldMalformed_ = false;
   std::int64_t sent_ = 0, nextAttempt_ = 0;
   std::string refusal_;
-
-  mutable std::mutex mutex_;
-  std::array<ForceStatistics, handCount> statistics_;
+  ForceReports reports_;
 };
 
 extern const DeviceKind haplyKind;
