@@ -20,6 +20,9 @@ namespace {
 
 using hdf5::Id;
 
+/// What the kernel writes whole or not at all, whenever the process is killed: a page of its cache.
+constexpr hsize_t atomicBytes = 4096;
+
 /// Creates objects in a file in memory, which is written plainly once complete: HDF5 does not always survive a disk
 /// that fills up during creation. Every failure is an exception.
 class Builder {
@@ -29,6 +32,9 @@ class Builder {
     // Attributes and links stay in the object headers, at the front of the file.
     H5Pset_attr_phase_change(create.get(), 64, 32);
     H5Pset_link_phase_change(create.get(), 64, 32);
+    // No piece of structure lies across two pages: a writer that is killed leaves each as it was or as it became.
+    H5Pset_file_space_strategy(create.get(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
+    H5Pset_file_space_page_size(create.get(), atomicBytes);
     const Id access = hdf5::fileAccess(0);
     H5Pset_fapl_core(access.get(), std::size_t{1} << 20U, false);
     file_ = hdf5::file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create.get(), access.get()));
