@@ -22,7 +22,8 @@ namespace calot::recorder {
 inline constexpr const char* formatName = "calot-recording";
 inline constexpr std::uint32_t maxTicksPerStep = 1000;
 inline constexpr std::uint64_t keyframeChunkWords = 8192;
-inline constexpr std::uint64_t rawChunkRows = 64;
+/// A chunk that is written more than once lies in one page of 4,096 bytes: a kill in the middle of a write spares it.
+inline constexpr std::uint64_t rawChunkRows = 40;
 inline constexpr const char* rawCountsPath = "/device/counts";
 inline constexpr const char* signaturePath = "/signature/value";
 inline constexpr const char* publicKeyPath = "/signature/public_key";
