@@ -14,10 +14,11 @@ using recorder::MouseControl;
 namespace {
 constexpr double notch = 120.0;           // of QWheelEvent::angleDelta
 constexpr std::size_t drawersAtOnce = 2;  // the picture follows the hand: it is to come as often as the machine can
+constexpr double wantedRate = 30.0;       // pictures a second, as many as are handed out (ViewTap)
 }  // namespace
 
 OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, QWidget* parent)
-    : ScenePictureWidget(parent, drawersAtOnce), mouse_(std::move(mouse)) {
+    : ScenePictureWidget(parent, drawersAtOnce, wantedRate), mouse_(std::move(mouse)) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
   setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape holds the run, Tab leaves.");

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/trainer_window.h"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <iterator>
 #include <QBoxLayout>
@@ -60,10 +58,10 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   connect(view_, &OperationView::mountRequested, this, &TrainerWindow::mount);
   connect(view_, &OperationView::pauseRequested, this, &TrainerWindow::togglePause);
   connect(view_, &OperationView::handSwitched, this, &TrainerWindow::refresh);
-  connect(view_, &ScenePictureWidget::pictureShown, this, [this] {
+  connect(view_, &ScenePictureWidget::pictureShown, this, [this](quint64 step) {
     if (!session_) return;
-    rate_.shown(std::chrono::steady_clock::now());
-    session_->shown();
+    const std::optional<double> delay = session_->shown(step);
+    rate_.shown(std::chrono::steady_clock::now(), view_->side(), delay);
   });
   connect(panel_, &RunPanel::pauseRequested, this, &TrainerWindow::togglePause);
   connect(panel_, &RunPanel::finishRequested, finishAction_, &QAction::trigger);
@@ -150,11 +148,8 @@ void TrainerWindow::endSession() {
   std::vector<std::string> lines = session_->recorded();
   recorded_.insert(recorded_.end(), std::make_move_iterator(lines.begin()), std::make_move_iterator(lines.end()));
   if (rate_.pictures() > 0) {
-    recorded_.push_back(
-        fmt::format("{}: {:.1f} pictures a second of {}x{} in {:.1f} s, one stood for {:.2f} s at most; "
-                    "drawn by {}",
-                    session_->scene().name, rate_.mean(), view_->width(), view_->height(), rate_.seconds(),
-                    rate_.longest(), view_->drawnBy()));
+    recorded_.push_back(session_->scene().name + ": " +
+                        rate_.report(view_->width(), view_->height(), view_->drawnBy()));
   }
   session_.reset();
 }

@@ -116,7 +116,12 @@ bool TrainingSession::mount(Hand hand, InstrumentKind instrument) {
   return true;
 }
 
-void TrainingSession::shown() { tap_.shown(); }
+std::optional<double> TrainingSession::shown(std::uint64_t step) {
+  tap_.shown();
+  const std::optional<MotionClock::Time> motion = step > 0 ? motions_.of(step - 1) : std::nullopt;
+  if (!motion) return std::nullopt;
+  return std::chrono::duration<double>(MotionClock::Time::clock::now() - *motion).count();
+}
 
 TrainingStatus TrainingSession::status() const {
   const std::lock_guard lock(mutex_);
@@ -269,7 +274,8 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
       status_.operatorKind = header.provenance.kind;
       status_.report = {};
     }
-    report = recorder::runAttempt(session, controlled, run);
+    ClockedSource clocked(controlled, motions_, session.steps(), scene().ticksPerStep);
+    report = recorder::runAttempt(session, clocked, run);
   }
   writer.finish();
   prepared_->save();

@@ -15,6 +15,7 @@
 
 #include "gui/trainer/attempt_input.h"
 #include "gui/trainer/attempt_monitor.h"
+#include "gui/trainer/motion_clock.h"
 #include "gui/trainer/view_tap.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/controlled_source.h"
@@ -81,8 +82,9 @@ class TrainingSession {
   bool mount(Hand hand, InstrumentKind instrument);
   /// Ends what runs as stopped and waits for its recording; no command does anything any more.
   void stop();
-  /// A view was shown.
-  void shown();
+  /// A view was shown. @param step how many steps its State has behind it. @return how long ago the last motion in it
+  /// was asked for (s); none where that is not known
+  std::optional<double> shown(std::uint64_t step);
 
   [[nodiscard]] TrainingStatus status() const;
   [[nodiscard]] recorder::Mode mode() const { return settings_.attempt.mode; }
@@ -116,6 +118,7 @@ class TrainingSession {
   TrainingSettings settings_;
   std::shared_ptr<AttemptInput> input_;
   ViewTap tap_;
+  MotionClock motions_;
   std::shared_ptr<recorder::PreparedScene> prepared_;  ///< the thread's, made by it
 
   mutable std::mutex mutex_;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gui/render/image.h"
+#include "gui/view/picture_scale.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -26,6 +27,9 @@ struct ScenePicture {
 /// Renders the newest view. While one is being rendered, later ones replace each other: nothing queues and nobody
 /// waits. The last view given is always rendered eventually, in the last size given.
 ///
+/// Where a rate is wanted, pictures are drawn smaller while the machine cannot keep it (PictureScale): whoever shows
+/// them scales them up. What no view follows for a moment is drawn once more, whole.
+///
 /// Two drawers render two views at a time, since much of a picture is single-threaded work. Pictures are delivered in
 /// the order of their views; one overtaken by a newer one is dropped.
 class PictureLoop {
@@ -38,7 +42,8 @@ class PictureLoop {
     std::function<void(const std::string&)> failed;  ///< a view could not be drawn: one line
   };
 
-  PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers = 1);
+  /// @param rate pictures a second that are worth a smaller size; 0: all are drawn in the size given
+  PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers = 1, double rate = 0.0);
   /// Waits for pictures in progress and drops waiting views.
   ~PictureLoop();
   PictureLoop(const PictureLoop&) = delete;
@@ -52,7 +57,16 @@ class PictureLoop {
   void clear();
 
  private:
+  struct Work {
+    std::shared_ptr<const SceneView> view;
+    int width = 0, height = 0;
+    double side = 1.0;         ///< share of the size given
+    std::uint64_t number = 0;  ///< 0: nobody waits for it; what draws is made ready
+  };
+
   void run();
+  /// Waits for a view to draw. @return false at the end
+  bool take(bool warm, Work& work);
 
   MakeDraw make_;
   Receiver receiver_;
@@ -61,6 +75,8 @@ class PictureLoop {
   std::shared_ptr<const SceneView> newest_;
   int width_ = 0, height_ = 0;  ///< 0: none is wanted yet
   bool stale_ = false;          ///< the newest view was not taken yet in this size
+  bool reduced_ = false;        ///< it was taken, to be drawn smaller than the size given
+  PictureScale scale_;
   bool stop_ = false;
   std::uint64_t taken_ = 0;      ///< pictures begun
   std::uint64_t delivered_ = 0;  ///< the newest of them that the receiver has

@@ -32,7 +32,7 @@ QSize pictureSize(const QSize& size, double ratio) {
 
 }  // namespace
 
-ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers) : QWidget(parent) {
+ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers, double rate) : QWidget(parent) {
   setObjectName("scene");
   setAccessibleName("Picture of the scene");
   setAttribute(Qt::WA_OpaquePaintEvent);
@@ -57,7 +57,7 @@ ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers) : Q
                               QMetaObject::invokeMethod(
                                   this, [this, text] { takeFailure(text); }, Qt::QueuedConnection);
                             }},
-      drawers);
+      drawers, rate);
 }
 
 ScenePictureWidget::~ScenePictureWidget() { loop_.reset(); }
@@ -67,6 +67,11 @@ void ScenePictureWidget::drawBy(Graphics graphics) { chosen = graphics; }
 std::string ScenePictureWidget::drawnBy() const {
   const std::lock_guard lock(mutex_);
   return drawnBy_;
+}
+
+double ScenePictureWidget::side() const {
+  if (picture_.isNull()) return 1.0;
+  return std::min(1.0, static_cast<double>(picture_.width()) / pictureSize(size(), devicePixelRatioF()).width());
 }
 
 void ScenePictureWidget::showView(std::shared_ptr<const SceneView> view) {

@@ -18,8 +18,9 @@ namespace calot::gui {
 class ScenePictureWidget : public QWidget {
   Q_OBJECT
  public:
-  /// @param drawers how many views are drawn at a time (PictureLoop)
-  explicit ScenePictureWidget(QWidget* parent = nullptr, std::size_t drawers = 1);
+  /// @param drawers how many views are drawn at a time. @param rate pictures a second that are worth a smaller size,
+  /// which is scaled up on the screen; 0: none (PictureLoop)
+  explicit ScenePictureWidget(QWidget* parent = nullptr, std::size_t drawers = 1, double rate = 0.0);
   ~ScenePictureWidget() override;
 
   /// Any thread; returns at once. @pre not null, changed by nobody any more
@@ -37,6 +38,8 @@ class ScenePictureWidget : public QWidget {
 
   /// The picture on the screen; null before the first one.
   [[nodiscard]] const QImage& picture() const { return picture_; }
+  /// Its share of the size that it is shown in; 1 before the first one.
+  [[nodiscard]] double side() const;
 
   [[nodiscard]] QSize sizeHint() const override { return {640, 400}; }
   [[nodiscard]] QSize minimumSizeHint() const override { return {160, 100}; }

@@ -38,5 +38,20 @@ TEST(PictureRate, APauseDoesNotCount) {
   EXPECT_NEAR(rate.longest(), 0.05, 1e-9);
 }
 
+TEST(PictureRate, SaysHowLargeAndHowLate) {
+  PictureRate rate;
+  PictureRate::Time now{};
+  rate.setRunning(true);
+  EXPECT_EQ(rate.side(), 1.0);
+  EXPECT_FALSE(rate.delay(0.5));
+  rate.shown(now, 0.5, 9.0);  // none before it: not counted
+  for (int i = 1; i <= 20; ++i) rate.shown(now += milliseconds(33), i <= 10 ? 1.0 : 0.75, 0.001 * i);
+  rate.shown(now += milliseconds(33), 0.875);
+  EXPECT_NEAR(rate.side(), 0.875, 1e-12);
+  EXPECT_NEAR(*rate.delay(0.5), 0.010, 1e-6);
+  EXPECT_NEAR(*rate.delay(0.95), 0.019, 1e-6);
+  EXPECT_NEAR(*rate.delay(1.0), 0.020, 1e-6);
+}
+
 }  // namespace
 }  // namespace calot::gui

@@ -35,7 +35,7 @@ struct Rig {
     session = std::make_unique<TrainingSession>(std::move(settings), input, [this](auto view) {
       EXPECT_GT(view->surface.size(), 0U);
       ++views;
-      session->shown();
+      session->shown(view->step);
     });
   }
   /// @returns whether the attempt ended within a minute
@@ -103,7 +103,7 @@ TEST(TrainingSession, AnAttemptBeginsWhenItsFirstPictureWasShown) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_EQ(session.status().stage, Stage::preparing);
   EXPECT_EQ(views, 1);
-  session.shown();
+  session.shown(0);
   EXPECT_TRUE(waitFor([&] { return session.status().stage == Stage::ended; }));
   EXPECT_EQ(session.status().report.outcome, Outcome::completed);
 }
