@@ -17,7 +17,7 @@ void PictureScale::drew(double side, double seconds) {
   if (possible < rate_ && level_ + 1 < sides.size()) return take(level_ + 1);
   if (level_ > 0) {
     const double growth = sides[level_ - 1] / sides[level_];
-    if (possible > room * rate_ * growth * growth) return take(level_ - 1);
+    if (possible > spare * rate_ * growth * growth) return take(level_ - 1);
   }
   take(level_);
 }
