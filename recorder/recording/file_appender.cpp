@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "recorder/recording/chain.h"
+#include "recorder/recording/file_driver.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/types.h"
 
@@ -11,6 +12,7 @@ FileAppender::FileAppender(const std::filesystem::path& path, const Layout& layo
     : path_(path), layout_(layout), swmr_(swmr), last_(first) {
   const hdf5::Session session;
   const hdf5::Id access = hdf5::fileAccess(0);
+  if (!hdf5::useOwnDriver(access.get())) fail("cannot be opened for writing");
   file_ = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDWR | (swmr ? H5F_ACC_SWMR_WRITE : 0U), access.get()));
   if (!file_.valid()) fail("cannot be opened for writing");
   for (const Column& column : layout.columns) {
@@ -55,7 +57,7 @@ FileAppender::~FileAppender() {
 
 void FileAppender::fail(const std::string& what) {
   const std::string why = hdf5::reason();
-  hdf5::freeze(file_);
+  hdf5::freeze(file_.get());
   throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("{}: {}", what, why));
 }
 

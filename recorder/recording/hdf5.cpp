@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/recording/hdf5.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace calot::recorder::hdf5 {
 
@@ -41,15 +39,6 @@ std::string reason() {
   // Upward: innermost call first.
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, calotCollectReason, &text);
   return text.empty() ? "unknown reason" : text;
-}
-
-void freeze(const Id& file) {
-  void* handle = nullptr;
-  if (!file.valid() || H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &handle) < 0 || handle == nullptr) return;
-  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (nowhere < 0) return;
-  ::dup2(nowhere, *static_cast<int*>(handle));
-  ::close(nowhere);
 }
 
 Error damaged(const std::filesystem::path& file, const std::string& place, const std::string& what) {

@@ -71,10 +71,6 @@ std::mutex& processLock();
 /// the innermost description.
 std::string reason();
 
-/// Redirects the descriptor of a file that could not be written. HDF5 would keep trying to write its cache until the
-/// file is closed, in an order that endangers flushed data; after this the file stays unchanged.
-void freeze(const Id& file);
-
 /// Message of a damaged file: FILE: PLACE: WHAT.
 Error damaged(const std::filesystem::path& file, const std::string& place, const std::string& what);
 
