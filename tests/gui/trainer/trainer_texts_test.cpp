@@ -234,7 +234,7 @@ TEST(KeyBindings, HelpNamesEveryInstrumentInTheOrderOfItsKeys) {
     }
     return "(no such row)";
   };
-  const std::vector<KeyHelp> mouse = keyHelp(true, false), device = keyHelp(false, false);
+  const std::vector<KeyHelp> mouse = keyHelp(true, false, false), device = keyHelp(false, false, false);
   EXPECT_EQ(what(mouse, "1 2 3 4 9").rfind("grasper, hook, clip applier, scissors, probe", 0), 0U);
   EXPECT_EQ(what(device, "1 2 3 4 9").rfind("right hand: grasper, hook, clip applier, scissors, probe", 0), 0U);
   EXPECT_EQ(what(mouse, "5 6 7 8 0"), "the same for the other hand");
