@@ -12,7 +12,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double lineOfSight = 0.5;      // m, that is searched for an organ
+constexpr double scopeSight = 0.5;      // m, that is searched for an organ
 constexpr double usualDistance = 0.12;   // m, where it meets none
 constexpr double longestDistance = 0.2;  // m
 constexpr double minAngle = 1e-6;        // rad; below, an optic is straight
@@ -30,8 +30,8 @@ double wrapped(double angle) {
 double distanceToFirstOrgan(const SceneDescription& scene) {
   const Vec3 view = scene.camera.orientation.normalized() * Vec3(0.0, 0.0, 1.0);
   const auto hit =
-      SceneSurfaces(scene).firstHit(scene.camera.position, scene.camera.position + Vec3(lineOfSight * view));
-  return hit ? std::min(lineOfSight * hit->parameter, longestDistance) : usualDistance;
+      SceneSurfaces(scene).firstHit(scene.camera.position, scene.camera.position + Vec3(scopeSight * view));
+  return hit ? std::min(scopeSight * hit->parameter, longestDistance) : usualDistance;
 }
 
 /// Directions in the base's frame: where a shaft of that pan and tilt points.
