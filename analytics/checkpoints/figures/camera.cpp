@@ -57,7 +57,7 @@ const CheckpointDefinition& centringDefinition() {
   static const CheckpointDefinition d = [] {
     CheckpointDefinition centring = cameraDefinition(
         "camera-centring", "Time with the active tip in the middle of the picture", Direction::higher,
-        "#{steps in which the active tip is in the middle third of the picture's width and of its height} / #{steps "
+        "#{steps in which the active tip is nearer to the picture's centre than half of the field's radius} / #{steps "
         "with an active tip}; active: the tip whose hook carries current, else the faster one, if it moves at 5 mm/s "
         "or more");
     centring.unit = "1";
@@ -203,7 +203,7 @@ class CameraCentring final : public Checkpoint {
     }
     if (active == nullptr) return;
     ++active_;
-    centred_ += recorder::isInPicture(track_.frame(), track_.camera(), active->tipSimulated, 1.0 / 3.0) ? 1 : 0;
+    centred_ += recorder::isInPicture(track_.frame(), track_.camera(), active->tipSimulated, 0.5) ? 1 : 0;
   }
 
   [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {

@@ -12,7 +12,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double scopeSight = 0.5;      // m, that is searched for an organ
+constexpr double scopeSight = 0.5;       // m, that is searched for an organ
 constexpr double usualDistance = 0.12;   // m, where it meets none
 constexpr double longestDistance = 0.2;  // m
 constexpr double minAngle = 1e-6;        // rad; below, an optic is straight

@@ -25,7 +25,9 @@ std::optional<PicturePoint> pointInPicture(const PictureFrame& frame, const Came
 
 bool isInPicture(const PictureFrame& frame, const CameraSample& camera, const Vec3& p_W, double share) {
   const std::optional<PicturePoint> p = pointInPicture(frame, camera, p_W);
-  return p && std::abs(p->right) <= share * pictureAspect && std::abs(p->down) <= share;
+  if (!p || std::abs(p->down) > 1.0) return false;
+  const double radius = share * fieldRadius;
+  return p->right * p->right + p->down * p->down <= radius * radius;
 }
 
 std::optional<double> horizonDeviation(const PictureFrame& frame, const CameraSample& camera) {

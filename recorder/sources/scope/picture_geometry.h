@@ -9,8 +9,9 @@
 
 namespace calot::recorder {
 
-/// Width of the picture / its height, as trainer, films and dashboard show it.
-inline constexpr double pictureAspect = 16.0 / 9.0;
+/// Radius of the endoscope's round field in wide pictures, in halves of their height, as trainer, films and dashboard
+/// show it (gui/render/sight.h); the picture cuts it above and below.
+inline constexpr double fieldRadius = 1.12;
 
 /// The picture of an endoscope that stands at the scene's camera: what is level there is the horizon.
 struct PictureFrame {
@@ -18,8 +19,7 @@ struct PictureFrame {
   double verticalFieldOfView = 1.0;  ///< rad
 };
 
-/// A point of the picture: right and down from its centre, in halves of its height. The picture's corners are
-/// (+-16/9, +-1).
+/// A point of the picture: right and down from its centre, in halves of its height.
 struct PicturePoint {
   double right = 0.0, down = 0.0;
 };
@@ -28,7 +28,7 @@ struct PicturePoint {
 /// but inside the field of view has a point.
 std::optional<PicturePoint> pointInPicture(const PictureFrame& frame, const CameraSample& camera, const Vec3& p_W);
 
-/// Is the point inside the picture's field? @param share of its width and height, about its centre: 1 the whole picture
+/// Is the point inside the picture's round field? @param share of the field's radius, about its centre: 1 all of it
 bool isInPicture(const PictureFrame& frame, const CameraSample& camera, const Vec3& p_W, double share = 1.0);
 
 /// Angle by which the picture is rotated about the view from level (rad, in (-pi, pi]), positive where the camera is

@@ -79,7 +79,7 @@ TEST(Camera, CentringCountsTheStepsOfTheActiveTip) {
   for (int i = 0; i < 8; ++i) {
     // The left tip moves at 10 mm/s near the centre, the right one at 20 mm/s beside it in two of eight steps.
     o.now.hand[0].tipSimulated.x() = i % 2 == 0 ? 0.0001 : 0.0;
-    o.now.hand[1].tipSimulated = Vec3(0.0, i < 2 && i % 2 == 0 ? 0.0502 : 0.05, 0.1);
+    o.now.hand[1].tipSimulated = Vec3(0.0, i < 2 && i % 2 == 0 ? 0.0702 : 0.07, 0.1);
     o.stepWith(rolled(1.0));
   }
   o.end();
@@ -92,7 +92,7 @@ TEST(Camera, CentringGivesCurrentPrecedenceOverSpeed) {
   o.stepWith(rolled(0.0));
   o.now.hand[1].instrument = InstrumentKind::hook;
   o.now.hand[1].cautery = Cautery::withoutContact;
-  o.now.hand[1].tipSimulated = Vec3(0.0, 0.05, 0.1);
+  o.now.hand[1].tipSimulated = Vec3(0.0, 0.07, 0.1);
   o.stepWith(rolled(0.0));
   for (int i = 0; i < 3; ++i) {
     o.now.hand[0].tipSimulated.x() += 0.001;
@@ -114,7 +114,7 @@ TEST(Camera, TipsOutOfViewAreTimed) {
   Filmed o;
   for (int i = 0; i < 10; ++i) {
     o.now.hand[0].tipSimulated = i < 4 ? Vec3(0.0, -0.11, 0.1) : Vec3(0.0, -0.09, 0.1);
-    o.now.hand[1].tipSimulated = i < 7 ? Vec3(0.0, 0.0, -0.1) : Vec3(0.17, 0.0, 0.1);
+    o.now.hand[1].tipSimulated = i < 7 ? Vec3(0.0, 0.0, -0.1) : Vec3(0.11, 0.0, 0.1);
     o.stepWith(rolled(0.0));
   }
   o.end();
@@ -135,7 +135,7 @@ TEST(Camera, CurrentOnTissueOutOfViewIsTimed) {
   o.now.hand[1].instrument = InstrumentKind::hook;
   for (int i = 0; i < 10; ++i) {
     o.now.hand[1].cautery = i < 6 ? Cautery::onTissue : Cautery::withoutContact;
-    o.now.hand[1].tipSimulated = i % 2 == 0 ? Vec3(0.2, 0.0, 0.1) : Vec3(0.0, 0.0, 0.1);
+    o.now.hand[1].tipSimulated = i % 2 == 0 ? Vec3(0.115, 0.0, 0.1) : Vec3(0.0, 0.0, 0.1);
     o.stepWith(rolled(0.0));
   }
   o.end();

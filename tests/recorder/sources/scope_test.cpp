@@ -124,11 +124,12 @@ TEST(PictureGeometry, EdgesOfThePicture) {
   const CameraSample camera = frame.start;
   EXPECT_TRUE(isInPicture(frame, camera, Vec3(0.0, 0.099, 0.1)));
   EXPECT_FALSE(isInPicture(frame, camera, Vec3(0.0, 0.101, 0.1)));
-  EXPECT_TRUE(isInPicture(frame, camera, Vec3(0.177, 0.0, 0.1)));
-  EXPECT_FALSE(isInPicture(frame, camera, Vec3(0.179, 0.0, 0.1)));
+  EXPECT_TRUE(isInPicture(frame, camera, Vec3(0.1119, 0.0, 0.1))) << "the round field";
+  EXPECT_FALSE(isInPicture(frame, camera, Vec3(0.1121, 0.0, 0.1)));
+  EXPECT_FALSE(isInPicture(frame, camera, Vec3(0.08, 0.08, 0.1))) << "0.113 off the centre";
   EXPECT_FALSE(isInPicture(frame, camera, Vec3(0.0, 0.0, -0.1))) << "behind the lens";
-  EXPECT_TRUE(isInPicture(frame, camera, Vec3(0.0, 0.033, 0.1), 1.0 / 3.0));
-  EXPECT_FALSE(isInPicture(frame, camera, Vec3(0.0, 0.034, 0.1), 1.0 / 3.0));
+  EXPECT_TRUE(isInPicture(frame, camera, Vec3(0.0, 0.055, 0.1), 0.5));
+  EXPECT_FALSE(isInPicture(frame, camera, Vec3(0.0, 0.057, 0.1), 0.5));
   EXPECT_FALSE(horizonDeviation(frame, {Vec3::Zero(), Quat(Eigen::AngleAxisd(90.0 * degree, Vec3::UnitX()))}))
       << "a view along the vertical has no horizon";
 }
