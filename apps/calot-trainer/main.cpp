@@ -123,8 +123,8 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
     setup.mouse = std::make_shared<recorder::MouseInput>();
     gui::MouseAttemptInput::AddScope addScope;
     if (who.scope.moves()) {
-      addScope = [scope = who.scope](std::unique_ptr<recorder::SampleSource> source, const SceneDescription& scene) {
-        return withScope(std::move(source), scope, scene, {}, 0);
+      addScope = [scope = who.scope](std::unique_ptr<recorder::SampleSource> source, const SceneDescription& of) {
+        return withScope(std::move(source), scope, of, {}, 0);
       };
     }
     setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, attempt.mode), addScope);
