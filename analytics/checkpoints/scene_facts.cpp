@@ -57,6 +57,7 @@ SceneFacts sceneFacts(const SceneDescription& scene) {
     facts.connective.push_back({tissue.name, holds, holds ? bedAreaOf(scene, tissue) : 0.0});
   }
   facts.fat = scene.fat.size();
+  facts.picture = {scene.camera, scene.verticalFieldOfView};
   facts.triangle = std::any_of(scene.fat.begin(), scene.fat.end(),
                                [](const FatDescription& fat) { return fat.triangleDepth > 0.0; });
   return facts;

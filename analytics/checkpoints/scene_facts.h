@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "recorder/sources/scope/picture_geometry.h"
 #include "sim/scene/description.h"
 
 namespace calot::analytics {
@@ -35,6 +36,7 @@ struct SceneFacts {
   std::vector<Connective> connective;
   std::size_t fat = 0;    ///< bodies
   bool triangle = false;  ///< a region of fat that is to be cleared is marked
+  recorder::PictureFrame picture = {};
 
   [[nodiscard]] bool hasCystic() const;  ///< there is a cystic vessel
 };

@@ -52,6 +52,7 @@ void add(CLI::App& app, Options& o) {
                  "watch a synthetic operator: skilled, intermediate, unskilled, or a file")
       ->excludes(device);
   addTools(app, o.source.device);
+  addScope(app, o.source.scope);
   app.add_option("--calibration", o.source.device.calibration,
                  "of the device, or of mouse and keyboard; an assessment needs one");
   app.add_option("--participant", o.participant, "pseudonym")->check([](const std::string& p) {
@@ -112,12 +113,21 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   setup.settings.folder = o.folder;
   setup.settings.threads = o.threads;
   SourceOptions who = o.source;
+  refuseScope(who.scope);
+  if (who.scope.moves() && who.scope.device.empty() && who.performer.empty())
+    setup.scope = who.scope.keys = std::make_shared<recorder::ScopeInput>();
   if (!who.performer.empty() && !who.device.calibration.empty())
     throw Error(ErrorKind::invalid, "--calibration is of a device; a performer has none");
   who.mode = attempt.mode;
   if (who.device.name.empty() && who.performer.empty()) {
     setup.mouse = std::make_shared<recorder::MouseInput>();
-    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, attempt.mode));
+    gui::MouseAttemptInput::AddScope addScope;
+    if (who.scope.moves()) {
+      addScope = [scope = who.scope](std::unique_ptr<recorder::SampleSource> source, const SceneDescription& of) {
+        return withScope(std::move(source), scope, of, {}, 0);
+      };
+    }
+    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, attempt.mode), addScope);
   } else {
     auto input = std::make_shared<OptionsInput>(who, o.seed);
     // A performer needs a scene; a device is there or not whatever the scene.

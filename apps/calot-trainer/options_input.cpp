@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "recorder/sources/scope/scope_source.h"
+
 namespace calot::apps {
 
 OptionsInput::OptionsInput(SourceOptions options, std::uint64_t seed) : options_(std::move(options)), seed_(seed) {}
@@ -15,6 +17,7 @@ std::unique_ptr<recorder::SampleSource> OptionsInput::open(const SceneDescriptio
 
 void OptionsInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
   if (auto* const device = source.device(); device != nullptr) device->setOutFrom(start);
+  if (auto* const scope = source.scope(); scope != nullptr) scope->setOutFrom(start.camera);
 }
 
 void OptionsInput::drive(recorder::SampleSource& source, recorder::RunSettings& run) { driveDevice(source, run); }

@@ -17,6 +17,7 @@
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
+#include "recorder/sources/scope/scope_source.h"
 
 namespace calot::apps {
 
@@ -81,6 +82,7 @@ int branch(const BranchOptions& o) {
   }
   file.publish();
 
+  if (auto* const scope = source->scope(); scope != nullptr) scope->setOutFrom(pose.last.camera);
   recorder::BlendedSource blended(*source, pose.last);
   recorder::RunSettings run;
   run.seconds = o.seconds > 0.0 ? static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds : 0.0;

@@ -7,6 +7,7 @@
 
 #include "recorder/errors.h"
 #include "recorder/formats/dates.h"
+#include "recorder/sources/scope/scope_source.h"
 
 namespace calot::apps {
 namespace {
@@ -48,6 +49,7 @@ std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& op
 }
 
 void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run) {
+  if (const auto* const scope = source.scope(); scope != nullptr) run.paced = run.paced || scope->realTime();
   auto* device = source.device();
   if (device == nullptr) return;
   const recorder::DeviceCapabilities& can = device->deviceInfo().capabilities;

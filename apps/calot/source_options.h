@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/calot/device_options.h"
+#include "apps/calot/scope_options.h"
 #include "recorder/sources/source.h"
 #include "sim/scene/description.h"
 
@@ -15,6 +16,7 @@ namespace calot::apps {
 struct SourceOptions {
   std::string performer, kinematics;
   DeviceOptions device;
+  ScopeOptions scope;
   recorder::Mode mode = recorder::Mode::practice;  ///< what a device may be used for
 };
 

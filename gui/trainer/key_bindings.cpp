@@ -11,6 +11,7 @@
 namespace calot::gui {
 
 using recorder::MouseControl;
+using recorder::ScopeControl;
 
 namespace {
 
@@ -29,6 +30,17 @@ constexpr std::array<std::pair<int, MouseControl>, 14> controls{{{Qt::Key_Right,
                                                                  {Qt::Key_F, MouseControl::coagulate},
                                                                  {Qt::Key_E, MouseControl::fire},
                                                                  {Qt::Key_Shift, MouseControl::fine}}};
+
+constexpr std::array<std::pair<int, ScopeControl>, 10> scopeControls{{{Qt::Key_L, ScopeControl::right},
+                                                                      {Qt::Key_J, ScopeControl::left},
+                                                                      {Qt::Key_I, ScopeControl::up},
+                                                                      {Qt::Key_K, ScopeControl::down},
+                                                                      {Qt::Key_O, ScopeControl::in},
+                                                                      {Qt::Key_U, ScopeControl::out},
+                                                                      {Qt::Key_G, ScopeControl::cableRight},
+                                                                      {Qt::Key_T, ScopeControl::cableLeft},
+                                                                      {Qt::Key_N, ScopeControl::headRight},
+                                                                      {Qt::Key_B, ScopeControl::headLeft}}};
 
 /// Keys of the instruments, in the order of their list: for the hand that is driven, and for the other one. A new
 /// instrument takes the next pair, so that no key ever changes its meaning.
@@ -80,8 +92,18 @@ std::optional<KeyAction> actionOf(int key) {
     action.control = control->second;
     return action;
   }
+  const auto* const scope =
+      std::find_if(scopeControls.begin(), scopeControls.end(), [key](const auto& entry) { return entry.first == key; });
+  if (scope != scopeControls.end()) {
+    action.kind = KeyAction::Kind::scope;
+    action.scope = scope->second;
+    return action;
+  }
   if (const std::optional<KeyAction> mount = mountOf(key)) return mount;
   switch (key) {
+    case Qt::Key_V:
+      action.kind = KeyAction::Kind::scopePedal;
+      return action;
     case Qt::Key_Space:
       action.kind = KeyAction::Kind::switchHand;
       return action;
@@ -97,7 +119,7 @@ std::optional<KeyAction> actionOf(int key) {
   }
 }
 
-std::vector<KeyHelp> keyHelp(bool mouse, bool pauses) {
+std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
   const InstrumentHelp instruments = instrumentHelp();
   std::vector<KeyHelp> out;
   if (mouse) {
@@ -116,6 +138,14 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool pauses) {
            {instruments.other, "the same for the other hand"}};
   } else {
     out = {{instruments.driven, "right hand: " + instruments.names}, {instruments.other, "the same for the left hand"}};
+  }
+  if (scope) {
+    const std::vector<KeyHelp> keys{{"J, L, I, K", "endoscope: look left, right, up, down"},
+                                    {"O, U", "endoscope: in, out"},
+                                    {"T, G", "turn the light cable"},
+                                    {"B, N", "turn the camera head"},
+                                    {"V with the mouse", "move the endoscope"}};
+    out.insert(out.end(), keys.begin(), keys.end());
   }
   if (pauses) out.push_back({"Escape", "pause, go on"});
   return out;

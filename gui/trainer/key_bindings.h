@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "recorder/sources/devices/mouse_input.h"
+#include "recorder/sources/devices/scope_input.h"
 #include "sim/scene/samples.h"
 
 namespace calot::gui {
@@ -16,11 +17,14 @@ struct KeyAction {
     control,     ///< does it while it is held
     switchHand,  ///< passes mouse and keyboard to the other hand
     toggleLock,
-    mount,  ///< exchanges an instrument
-    pause,  ///< or goes on
+    mount,       ///< exchanges an instrument
+    scope,       ///< moves the endoscope while it is held
+    scopePedal,  ///< while it is held, the mouse moves the endoscope
+    pause,       ///< or goes on
   };
   Kind kind = Kind::control;
   recorder::MouseControl control = recorder::MouseControl::right;
+  recorder::ScopeControl scope = recorder::ScopeControl::right;
   InstrumentKind instrument = InstrumentKind::none;
   bool otherHand = false;  ///< mount: not the hand that is driven
 };
@@ -34,7 +38,7 @@ struct KeyHelp {
   std::string what;
 };
 /// @param mouse both hands are driven by mouse and keyboard; else only instruments are exchanged and runs held
-/// @param pauses the mode has a pause
-[[nodiscard]] std::vector<KeyHelp> keyHelp(bool mouse, bool pauses);
+/// @param scope keys move the endoscope @param pauses the mode has a pause
+[[nodiscard]] std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses);
 
 }  // namespace calot::gui

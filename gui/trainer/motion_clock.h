@@ -45,6 +45,7 @@ class ClockedSource final : public recorder::SampleSource {
   void rest() override { source_.rest(); }
   [[nodiscard]] recorder::Observer* watcher() override { return source_.watcher(); }
   [[nodiscard]] recorder::DeviceSource* device() override { return source_.device(); }
+  [[nodiscard]] recorder::ScopeSource* scope() override { return source_.scope(); }
   [[nodiscard]] recorder::Outcome ending() const override { return source_.ending(); }
   [[nodiscard]] std::string statusText() const override { return source_.statusText(); }
 

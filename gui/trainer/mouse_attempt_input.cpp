@@ -6,6 +6,7 @@
 
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
+#include "recorder/sources/scope/scope_source.h"
 
 namespace calot::gui {
 namespace {
@@ -23,8 +24,8 @@ std::array<Vec3, handCount> portsFrom(const SceneDescription& scene, const std::
 }  // namespace
 
 MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse,
-                                     recorder::DeviceSourceSettings settings)
-    : mouse_(std::move(mouse)), settings_(std::move(settings)) {}
+                                     recorder::DeviceSourceSettings settings, AddScope addScope)
+    : mouse_(std::move(mouse)), settings_(std::move(settings)), addScope_(std::move(addScope)) {}
 
 std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescription& scene) {
   mouse_->reset();
@@ -32,6 +33,7 @@ std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescr
   auto source =
       std::make_unique<recorder::DeviceSource>(std::make_unique<recorder::MouseDevice>(mouse_), scene, settings_);
   source->waitForFirst(patience);
+  if (addScope_) return addScope_(std::move(source), scene);
   return source;
 }
 
@@ -39,6 +41,7 @@ void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescri
                                const TickSamples& start) {
   mouse_->setPorts(portsFrom(scene, {start.hand[0].position, start.hand[1].position}));
   source.device()->setOutFrom(start);
+  if (auto* const scope = source.scope(); scope != nullptr) scope->setOutFrom(start.camera);
 }
 
 void MouseAttemptInput::record(recorder::SampleSource& source, recorder::RecordingWriter& writer,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "gui/trainer/attempt_input.h"
@@ -12,8 +13,13 @@ namespace calot::gui {
 /// Both hands by mouse and keyboard. An assessment wants a calibration, which is declared.
 class MouseAttemptInput final : public AttemptInput {
  public:
-  /// @param mouse what the window writes to; not null
-  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse, recorder::DeviceSourceSettings settings = {});
+  /// Lets an endoscope move with the hands of a source (ScopeSource).
+  using AddScope = std::function<std::unique_ptr<recorder::SampleSource>(std::unique_ptr<recorder::SampleSource>,
+                                                                         const SceneDescription&)>;
+
+  /// @param mouse what the window writes to; not null. @param addScope empty: the camera is fixed
+  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse, recorder::DeviceSourceSettings settings = {},
+                             AddScope addScope = {});
 
   std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;
   void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) override;
@@ -23,6 +29,7 @@ class MouseAttemptInput final : public AttemptInput {
  private:
   std::shared_ptr<recorder::MouseInput> mouse_;
   recorder::DeviceSourceSettings settings_;
+  AddScope addScope_;
 };
 
 }  // namespace calot::gui

@@ -17,8 +17,9 @@ constexpr std::size_t drawersAtOnce = 2;  // the picture follows the hand: it is
 constexpr double wantedRate = 30.0;       // pictures a second, as many as are handed out (ViewTap)
 }  // namespace
 
-OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, QWidget* parent)
-    : ScenePictureWidget(parent, drawersAtOnce, wantedRate), mouse_(std::move(mouse)) {
+OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::shared_ptr<recorder::ScopeInput> scope,
+                             QWidget* parent)
+    : ScenePictureWidget(parent, drawersAtOnce, wantedRate), mouse_(std::move(mouse)), scope_(std::move(scope)) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
   setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape holds the run, Tab leaves.");
@@ -31,7 +32,12 @@ void OperationView::setActive(bool active) {
   active_ = active;
   last_.reset();
   setCursor(active && mouse_ ? Qt::CrossCursor : Qt::ArrowCursor);
+  releaseAll();
+}
+
+void OperationView::releaseAll() {
   if (mouse_) mouse_->release();
+  if (scope_) scope_->release();
 }
 
 void OperationView::press(const KeyAction& action) {
@@ -50,9 +56,21 @@ void OperationView::press(const KeyAction& action) {
     case KeyAction::Kind::mount:
       emit mountRequested(action.instrument, action.otherHand);
       break;
+    case KeyAction::Kind::scope:
+      if (scope_) scope_->hold(action.scope, true);
+      break;
+    case KeyAction::Kind::scopePedal:
+      if (scope_) scope_->pressPedal(true);
+      break;
     case KeyAction::Kind::pause:
       break;  // at any time
   }
+}
+
+void OperationView::release(const KeyAction& action) {
+  if (mouse_ && action.kind == KeyAction::Kind::control) mouse_->hold(action.control, false);
+  if (scope_ && action.kind == KeyAction::Kind::scope) scope_->hold(action.scope, false);
+  if (scope_ && action.kind == KeyAction::Kind::scopePedal) scope_->pressPedal(false);
 }
 
 void OperationView::keyPressEvent(QKeyEvent* event) {
@@ -71,11 +89,10 @@ void OperationView::keyPressEvent(QKeyEvent* event) {
 void OperationView::keyReleaseEvent(QKeyEvent* event) {
   const std::optional<KeyAction> action = actionOf(event->key());
   if (event->isAutoRepeat()) return;
-  if (!action) {
+  if (action)
+    release(*action);
+  else
     ScenePictureWidget::keyReleaseEvent(event);
-  } else if (mouse_ && action->kind == KeyAction::Kind::control) {
-    mouse_->hold(action->control, false);
-  }
 }
 
 void OperationView::holdButton(Qt::MouseButton button, bool held) {
@@ -93,16 +110,27 @@ void OperationView::mouseReleaseEvent(QMouseEvent* event) { holdButton(event->bu
 void OperationView::mouseMoveEvent(QMouseEvent* event) {
   const QPointF now = event->position();
   // A button keeps the pointer's events here beyond the border; the hand stays where the picture ends.
-  if (!active_ || !mouse_ || !rect().contains(now.toPoint()) || (event->modifiers() & Qt::ControlModifier) != 0) {
+  if (!active_ || !(mouse_ || scope_) || !rect().contains(now.toPoint()) ||
+      (event->modifiers() & Qt::ControlModifier) != 0) {
     last_.reset();
     return;
   }
-  if (last_) mouse_->move(now.x() - last_->x(), now.y() - last_->y());
+  if (last_) {
+    const QPointF moved = now - *last_;
+    if (scope_ && scope_->pedal())
+      scope_->move(moved.x(), moved.y());
+    else if (mouse_)
+      mouse_->move(moved.x(), moved.y());
+  }
   last_ = now;
 }
 
 void OperationView::wheelEvent(QWheelEvent* event) {
-  if (active_ && mouse_) mouse_->turnWheel(static_cast<double>(event->angleDelta().y()) / notch);
+  const double notches = static_cast<double>(event->angleDelta().y()) / notch;
+  if (active_ && scope_ && scope_->pedal())
+    scope_->turnWheel(notches);
+  else if (active_ && mouse_)
+    mouse_->turnWheel(notches);
   event->accept();
 }
 
@@ -112,7 +140,7 @@ void OperationView::leaveEvent(QEvent* event) {
 }
 
 void OperationView::focusOutEvent(QFocusEvent* event) {
-  if (mouse_) mouse_->release();
+  releaseAll();
   ScenePictureWidget::focusOutEvent(event);
 }
 

@@ -8,6 +8,7 @@
 #include "gui/trainer/key_bindings.h"
 #include "gui/view/scene_picture_widget.h"
 #include "recorder/sources/devices/mouse_input.h"
+#include "recorder/sources/devices/scope_input.h"
 
 namespace calot::gui {
 
@@ -18,7 +19,9 @@ class OperationView : public ScenePictureWidget {
   Q_OBJECT
  public:
   /// @param mouse null: another device drives; keys still exchange instruments and hold the run
-  explicit OperationView(std::shared_ptr<recorder::MouseInput> mouse, QWidget* parent = nullptr);
+  /// @param scope null: the endoscope is fixed, or held by another
+  explicit OperationView(std::shared_ptr<recorder::MouseInput> mouse,
+                         std::shared_ptr<recorder::ScopeInput> scope = nullptr, QWidget* parent = nullptr);
 
   /// Whether a run is there to take what is done.
   void setActive(bool active);
@@ -44,9 +47,12 @@ class OperationView : public ScenePictureWidget {
 
  private:
   void press(const KeyAction& action);
+  void release(const KeyAction& action);
+  void releaseAll();
   void holdButton(Qt::MouseButton button, bool held);
 
   std::shared_ptr<recorder::MouseInput> mouse_;
+  std::shared_ptr<recorder::ScopeInput> scope_;
   bool active_ = false;
   std::optional<QPointF> last_;  ///< of the pointer over the picture
 };

@@ -38,14 +38,14 @@ void say(QLabel* label, const QString& text) {
   label->setVisible(!text.isEmpty());
 }
 
-QWidget* keyPage(bool mouse, bool pauses) {
+QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   auto* const page = new QWidget;
   auto* const grid = new QGridLayout(page);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setVerticalSpacing(3);
   grid->setColumnStretch(1, 1);
   int row = 0;
-  for (const KeyHelp& help : keyHelp(mouse, pauses)) {
+  for (const KeyHelp& help : keyHelp(mouse, scope, pauses)) {
     auto* const keys = new QLabel(QString::fromStdString(help.keys));
     QFont bold = keys->font();
     bold.setBold(true);
@@ -62,7 +62,7 @@ QWidget* keyPage(bool mouse, bool pauses) {
 
 }  // namespace
 
-RunPanel::RunPanel(recorder::Mode mode, bool mouse, QWidget* parent)
+RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
     : QWidget(parent),
       mode_(mode),
       stage_(plainLabel("stage", false)),
@@ -76,7 +76,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, QWidget* parent)
       hand_{plainLabel("left"), plainLabel("right")},
       progress_(new QProgressBar),
       lower_(new QStackedWidget),
-      keys_(keyPage(mouse, mode == recorder::Mode::practice)),
+      keys_(keyPage(mouse, scope, mode == recorder::Mode::practice)),
       mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(new QListWidget),

@@ -22,8 +22,8 @@ namespace calot::gui {
 class RunPanel : public QWidget {
   Q_OBJECT
  public:
-  /// @param mouse both hands are driven by mouse and keyboard
-  RunPanel(recorder::Mode mode, bool mouse, QWidget* parent = nullptr);
+  /// @param mouse both hands are driven by mouse and keyboard @param scope keys move the endoscope
+  RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent = nullptr);
 
   void show(const TrainingStatus& status, const PanelText& text, double stepSeconds);
 

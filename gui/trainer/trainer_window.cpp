@@ -29,8 +29,8 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
       stack_(new QStackedWidget),
       scenes_(new ScenesPage),
       operation_(new QWidget),
-      view_(new OperationView(setup_.mouse)),
-      panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr)) {
+      view_(new OperationView(setup_.mouse, setup_.scope)),
+      panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr, setup_.scope != nullptr)) {
   setWindowTitle("Calot trainer");
   problem_->setObjectName("problem");
   problem_->setTextFormat(Qt::PlainText);

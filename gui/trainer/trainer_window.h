@@ -11,6 +11,7 @@
 #include "gui/trainer/scene_choice.h"
 #include "gui/trainer/training_session.h"
 #include "recorder/sources/devices/mouse_input.h"
+#include "recorder/sources/devices/scope_input.h"
 
 class QAction;
 class QLabel;
@@ -27,6 +28,7 @@ struct TrainerSetup {
   TrainingSettings settings;                    ///< its scene is left empty
   std::shared_ptr<AttemptInput> input;          ///< not null
   std::shared_ptr<recorder::MouseInput> mouse;  ///< what the input listens to; null: another device drives
+  std::shared_ptr<recorder::ScopeInput> scope;  ///< what the endoscope listens to; null: it is fixed, or held otherwise
   std::vector<SceneChoice> scenes;
 };
 

@@ -21,7 +21,7 @@ std::vector<ObjectRule> makeRules() {
   return {
       {"",
        {KeyRule{"format"}, bounded("formatVersion", 1, 1), KeyRule{"name"}, KeyRule{"version"}, KeyRule{"summary"},
-        KeyRule{"motor"}, KeyRule{"perception"}, KeyRule{"decision"}, KeyRule{"operation"}}},
+        KeyRule{"motor"}, KeyRule{"perception"}, KeyRule{"decision"}, KeyRule{"operation"}, KeyRule{"scope", false}}},
       {"motor",
        {bounded("strokeSpeed", 0.001, 1), bounded("contactSpeed", 0.001, 0.5), bounded("shortestStroke", 0.05, 5),
         bounded("endpointNoise", 0, 0.3), bounded("tremorAmplitude", 0, 0.002), bounded("tremorLower", 2, 20),
@@ -41,6 +41,7 @@ std::vector<ObjectRule> makeRules() {
         bounded("pull", 0, 0.05), bounded("stretch", 0.001, 0.05), bounded("slipShare", 0, 1),
         bounded("anticipation", 0, 1), bounded("series", 1, 20), bounded("window", 0, 200),
         bounded("patience", 10, 3600)}},
+      {"scope", {bounded("reaction", 0.05, 5), bounded("deadZone", 0, 1), bounded("horizonError", 0, 0.5)}},
   };
 }
 
@@ -122,6 +123,13 @@ PerformerProfile loadPerformer(const fs::path& file) {
   operation.read("series", profile.operation.series);
   operation.read("window", profile.operation.window);
   operation.read("patience", profile.operation.patience);
+
+  if (object.has("scope")) {
+    const JsonObject scope = object.at("scope").object(ruleOf("scope"));
+    scope.read("reaction", profile.scope.reaction);
+    scope.read("deadZone", profile.scope.deadZone);
+    scope.read("horizonError", profile.scope.horizonError);
+  }
   return profile;
 }
 

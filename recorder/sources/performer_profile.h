@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "recorder/formats/json_reader.h"
+#include "recorder/sources/scope/scope_skill.h"
 
 namespace calot::recorder {
 
@@ -71,6 +72,9 @@ struct PerformerProfile {
     std::uint32_t window = 0;      ///< strokes at most, to clear the triangle between the vessels
     double patience = 0.0;         ///< after which the attempt is given up (s)
   } operation;
+
+  /// Of the assistant who holds the endoscope, where it moves (ScopeAssistant).
+  ScopeSkill scope;
 };
 
 const std::vector<ObjectRule>& performerRules();

@@ -11,6 +11,7 @@
 namespace calot::recorder {
 
 class DeviceSource;
+class ScopeSource;
 
 /// Whether a source can give ticks now. Only a source with a device behind it is ever other than ok.
 enum class SourceStatus : std::uint8_t {
@@ -59,6 +60,9 @@ class SampleSource {
   /// The device behind this source, for who records its raw samples, drives its motors or reports what came from it.
   /// nullptr: there is none.
   [[nodiscard]] virtual DeviceSource* device() { return nullptr; }
+
+  /// The endoscope that moves with this source: a branch sets it out from where it stood. nullptr: the camera is fixed.
+  [[nodiscard]] virtual ScopeSource* scope() { return nullptr; }
 
   /// How the attempt ended, once next() has returned false.
   [[nodiscard]] virtual Outcome ending() const { return Outcome::completed; }

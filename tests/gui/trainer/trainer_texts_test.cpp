@@ -212,17 +212,23 @@ TEST_F(Texts, NumbersFollowTheLocale) {
 TEST(KeyBindings, EveryKeyOnceAndEveryControlHasOne) {
   std::set<recorder::MouseControl> controls;
   std::set<std::pair<InstrumentKind, bool>> mounts;
+  std::set<recorder::ScopeControl> scope;
   for (int key = 0x20; key <= 0x01000100; key = key == 0xff ? 0x01000000 : key + 1) {
     const std::optional<KeyAction> action = actionOf(key);
     if (!action) continue;
     if (action->kind == KeyAction::Kind::control) {
       EXPECT_TRUE(controls.insert(action->control).second) << key;
     }
+    if (action->kind == KeyAction::Kind::scope) {
+      EXPECT_TRUE(scope.insert(action->scope).second) << key;
+    }
     if (action->kind == KeyAction::Kind::mount) {
       EXPECT_TRUE(mounts.emplace(action->instrument, action->otherHand).second) << key;
     }
   }
   EXPECT_EQ(controls.size(), recorder::mouseControls);
+  EXPECT_EQ(scope.size(), 10U) << "five joints, both ways";
+  EXPECT_EQ(keyHelp(true, true, false).size(), keyHelp(true, false, false).size() + 5) << "told where it moves";
   EXPECT_EQ(mounts.size(), 2 * instruments().size()) << "every instrument for either hand";
   EXPECT_FALSE(actionOf(Qt::Key_Tab)) << "leads out of the picture";
 }
@@ -234,7 +240,7 @@ TEST(KeyBindings, HelpNamesEveryInstrumentInTheOrderOfItsKeys) {
     }
     return "(no such row)";
   };
-  const std::vector<KeyHelp> mouse = keyHelp(true, false), device = keyHelp(false, false);
+  const std::vector<KeyHelp> mouse = keyHelp(true, false, false), device = keyHelp(false, false, false);
   EXPECT_EQ(what(mouse, "1 2 3 4 9").rfind("grasper, hook, clip applier, scissors, probe", 0), 0U);
   EXPECT_EQ(what(device, "1 2 3 4 9").rfind("right hand: grasper, hook, clip applier, scissors, probe", 0), 0U);
   EXPECT_EQ(what(mouse, "5 6 7 8 0"), "the same for the other hand");

@@ -16,6 +16,8 @@
 #include "gui/trainer/operation_view.h"
 #include "recorder/errors.h"
 #include "recorder/recording/reader.h"
+#include "recorder/sources/devices/scope_keys.h"
+#include "recorder/sources/scope/scope_source.h"
 #include "tests/gui/trainer/support/trainer_rig.h"
 
 namespace calot::gui {
@@ -42,7 +44,13 @@ class Trainer : public ::testing::Test {
 
   /// @param device another device's input; null: mouse and keyboard
   TrainerWindow& open(std::shared_ptr<AttemptInput> device = nullptr, recorder::Mode mode = recorder::Mode::practice) {
+    return open(std::move(device), mode, nullptr);
+  }
+  /// @param scope keys of an endoscope that moves; null: it is fixed
+  TrainerWindow& open(std::shared_ptr<AttemptInput> device, recorder::Mode mode,
+                      const std::shared_ptr<recorder::ScopeInput>& scope) {
     TrainerSetup setup;
+    setup.scope = scope;
     setup.settings.attempt.mode = mode;
     setup.settings.folder = folder_ / "";
     setup.scenes = {{"touch-liver", "Touch the liver.", CALOT_SOURCE_DIR "/assets/scenes/touch-liver.json"},
@@ -51,7 +59,15 @@ class Trainer : public ::testing::Test {
       setup.input = std::move(device);
     } else {
       setup.mouse = std::make_shared<recorder::MouseInput>();
-      setup.input = std::make_shared<MouseAttemptInput>(setup.mouse);
+      MouseAttemptInput::AddScope addScope;
+      if (scope) {
+        addScope = [scope](std::unique_ptr<recorder::SampleSource> source, const SceneDescription& scene) {
+          return std::make_unique<recorder::ScopeSource>(std::move(source), recorder::Endoscope(scene, 0.0),
+                                                         std::make_unique<recorder::ScopeKeys>(scope));
+        };
+      }
+      setup.input =
+          std::make_shared<MouseAttemptInput>(setup.mouse, recorder::DeviceSourceSettings{}, std::move(addScope));
     }
     window_ = std::make_unique<TrainerWindow>(std::move(setup));
     window_->show();
@@ -156,6 +172,36 @@ TEST_F(Trainer, MouseAndKeysDriveTheHands) {
   const Vec3 left = scene.camera.orientation.conjugate() * (last.hand[0].position - scene.hands[0].home);
   EXPECT_GT(left.y(), 0.0145);
   EXPECT_NEAR(left.x(), 0.0, 1e-5);
+}
+
+TEST_F(Trainer, KeysAndPedalMoveTheEndoscope) {
+  TrainerWindow& window = open(nullptr, recorder::Mode::practice, std::make_shared<recorder::ScopeInput>());
+  beginSmall();
+  OperationView& view = *window.view();
+  const auto seconds = [&](double length) {
+    return [&window, length, begin = window.session()->status().figures.time] {
+      return window.session()->status().figures.time > begin + length;
+    };
+  };
+  hold(Qt::Key_L, seconds(0.5));
+  const QPoint middle = view.rect().center();
+  QTest::mouseMove(&view, middle);
+  QTest::keyPress(&view, Qt::Key_V);
+  QTest::mouseMove(&view, middle + QPoint(0, -100));
+  QTest::keyRelease(&view, Qt::Key_V);
+  ASSERT_TRUE(QTest::qWaitFor(seconds(1.0), patience));
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  const std::filesystem::path file = window.session()->status().file;
+  expectExact(file);
+  recorder::Recording recording(file);
+  const SceneDescription& scene = window.session()->scene();
+  const TickSamples last = recording.step(recording.stepCount() - 1).samples.back();
+  const recorder::ScopeJoints joints = recorder::Endoscope(scene, 0.0).jointsOf(last.camera);
+  // 0.5 s of a key are 0.15 rad to the right; the machine may be late in letting it go. 100 pixels are 0.15 rad up.
+  EXPECT_GT(joints.pan, 0.14);
+  EXPECT_NEAR(joints.tilt, 0.15, 0.002);
+  EXPECT_NEAR((last.hand[1].position - scene.hands[1].home).norm(), 0.0, 1e-5) << "the pedal passed the mouse on";
 }
 
 TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A rigid endoscope through its port. docs/how-to/endoscope.md
+#pragma once
+
+#include <array>
+
+#include "recorder/sources/scope/picture_geometry.h"
+#include "sim/scene/description.h"
+
+namespace calot::recorder {
+
+/// What an assistant moves: the shaft about its port, in and out and about itself, and the camera head on it.
+struct ScopeJoints {
+  double pan = 0.0;        ///< of the shaft to the right, about the vertical of the scene's camera (rad)
+  double tilt = 0.0;       ///< of the shaft upwards, about its level axis (rad)
+  double insertion = 0.0;  ///< from the port to the lens (m)
+  double cable = 0.0;      ///< light cable about the shaft: 0 up, so that an angled optic looks down (rad)
+  double head = 0.0;       ///< camera head about the shaft: 0 level (rad)
+
+  bool operator==(const ScopeJoints&) const = default;
+};
+
+/// Geometry of the endoscope of a scene.
+///
+/// The port lies `portDistance` behind the scene's camera, on its line of sight. Frame of the base: the scene's camera,
+/// moved into the port. Shaft d = R d_0 with R = R_C R_y(pan) R_x(tilt), d_0 = (0, 0, 1); lens p = port + insertion d;
+/// camera R R_z(cable) R_x(-optic) R_z(head - cable): the light cable rotates the direction of view about the shaft,
+/// and the picture is level as long as the camera head is. With a straight optic the light cable changes nothing.
+class Endoscope {
+ public:
+  static constexpr double portDistance = 0.08;                   ///< m
+  static constexpr double maxSwing = 1.05;                       ///< of pan and tilt, each way (rad)
+  static constexpr double minInsertion = 0.02;                   ///< m
+  static constexpr double maxInsertion = 0.20;                   ///< m
+  static constexpr double maxRotation = 3.141592653589793;       ///< of light cable and camera head, each way (rad)
+  static constexpr double maxOptic = 70.0 * 0.0174532925199433;  ///< rad
+
+  /// @param optic angle between shaft and direction of view (rad), in [0, maxOptic]
+  Endoscope(const SceneDescription& scene, double optic);
+
+  [[nodiscard]] double optic() const { return optic_; }
+  [[nodiscard]] const Vec3& port() const { return port_; }
+  [[nodiscard]] const PictureFrame& frame() const { return frame_; }
+
+  /// How the endoscope stands at the start: a straight optic exactly as the scene's camera; an angled one looks at the
+  /// same point of the first organ from the same distance, from above.
+  [[nodiscard]] const ScopeJoints& start() const { return start_; }
+  /// From the lens to that point (m).
+  [[nodiscard]] double workingDistance() const { return workingDistance_; }
+
+  [[nodiscard]] CameraSample pose(const ScopeJoints& joints) const;
+  /// The joints at which the endoscope has this pose. A pose that it cannot have gives those of the lens and the view
+  /// that come nearest, within the limits.
+  [[nodiscard]] ScopeJoints jointsOf(const CameraSample& camera) const;
+  [[nodiscard]] static ScopeJoints withinLimits(const ScopeJoints& joints);
+
+  /// Joints with the light cable up and the camera head level that show a point in the picture's centre, from a
+  /// distance; nearer to the port than that, from as far as the limits let. The present ones where the point is too
+  /// near to the port to be shown.
+  [[nodiscard]] ScopeJoints aimedAt(const Vec3& p_W, double distance, const ScopeJoints& present) const;
+
+ private:
+  double optic_;
+  PictureFrame frame_;
+  Quat base_;
+  Vec3 port_;
+  double workingDistance_;
+  ScopeJoints start_;
+};
+
+}  // namespace calot::recorder
