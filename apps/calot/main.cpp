@@ -25,12 +25,13 @@ int main(int argc, char** argv) {
   apps::lookForCohort(words);
   apps::Run run;
   for (const auto add :
-       {apps::addRecord,  apps::addReplay,      apps::addEngine,  apps::addBranch,      apps::addInspect,
-        apps::addRecover, apps::addExport,      apps::addState,   apps::addDiff,        apps::addImport,
-        apps::addAssess,  apps::addVerify,      apps::addStudy,   apps::addProtocol,    apps::addPower,
-        apps::addRate,    apps::addNorm,        apps::addGrade,   apps::addParticipant, apps::addAttempt,
-        apps::addRegrade, apps::addCohort,      apps::addStation, apps::addRender,      apps::addMesh,
-        apps::addScenes,  apps::addCheckpoints, apps::addDevices, apps::addGolden,      apps::addCache}) {
+       {apps::addRecord,  apps::addReplay, apps::addEngine,      apps::addBranch,      apps::addInspect,
+        apps::addRecover, apps::addExport, apps::addState,       apps::addDiff,        apps::addImport,
+        apps::addAssess,  apps::addVerify, apps::addStudy,       apps::addProtocol,    apps::addPower,
+        apps::addRate,    apps::addNorm,   apps::addGrade,       apps::addParticipant, apps::addAttempt,
+        apps::addRegrade, apps::addCohort, apps::addStation,     apps::addRender,      apps::addMesh,
+        apps::addScenes,  apps::addScene,  apps::addCheckpoints, apps::addDevices,     apps::addGolden,
+        apps::addCache}) {
     add(app, run);
   }
   apps::dressHelp(app);
