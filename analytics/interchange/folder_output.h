@@ -20,7 +20,8 @@ struct WrittenFile {
 /// and six letters, which goes when this does.
 class FolderOutput {
  public:
-  /// @param force whether to replace a folder of this name, unless it holds a file that the new one has not: finish() looks; none: never
+  /// @param force whether to replace a folder of this name, unless it holds a file that the new one has not (finish()
+  /// looks); none: never
   /// @throws Error (invalid) where there is something of this name that is not to be replaced, or no folder to put it
   /// in; (failure) where it cannot be made.
   explicit FolderOutput(const std::filesystem::path& path, std::optional<bool> force = {});

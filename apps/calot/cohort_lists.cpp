@@ -39,7 +39,7 @@ bool isAsked(const AttemptRow& a, const ListOptions& o) {
          (o.scene.empty() || a.scene == o.scene) && (o.all || !a.excluded);
 }
 
-std::string whoOf(const AttemptRow& a) { return a.synthetic ? a.profile + " (synthetic)" : a.participant; }
+std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profile : a.participant; }
 
 Json jsonOf(const AttemptRow& a) {
   return {{"attempt", a.uuid},       {"participant", a.participant},
@@ -73,24 +73,30 @@ int listAttempts(const ListOptions& o) {
                               {"who", Align::left},
                               {"group", Align::left},
                               {"scene", Align::left},
-                              {"start (UTC)", Align::left},
+                              {"day (UTC)", Align::left},
                               {"seconds", Align::right},
                               {"outcome", Align::left},
-                              {"verdict", Align::left},
-                              {"excluded", Align::left}});
+                              {"verdict", Align::left}});
+  std::string notes;
+  std::size_t synthetic = 0;
   Json list = Json::array();
   for (const AttemptRow& a : rows) {
     if (!isAsked(a, o)) continue;
     list.push_back(jsonOf(a));
-    table.add({a.uuid.substr(0, length), whoOf(a), a.group, a.scene, a.startUtc.substr(0, 16),
+    const std::string beginning = a.uuid.substr(0, length);
+    table.add({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
                fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
-               nameOf(a.verification.verdict), a.excluded ? a.exclusionReason : ""});
+               nameOf(a.verification.verdict)});
+    if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
+    synthetic += a.synthetic ? 1 : 0;
   }
   if (o.json) {
     printResult("attempt-list", {{"attempts", list}});
     return static_cast<int>(ExitCode::yes);
   }
   if (!list.empty()) table.print(std::cout, terminalColumns());
+  std::cout << notes;
+  if (synthetic > 0) std::cout << fmt::format("{} of them by performers (synthetic)\n", synthetic);
   const std::size_t left = rows.size() - list.size();
   std::cout << fmt::format(
       "{}: {} attempts{}\n", o.cohort, list.size(),

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "recorder/errors.h"
+#include "recorder/formats/json_faults.h"
 #include "recorder/formats/nearest_word.h"
 
 namespace calot::recorder {
@@ -182,11 +183,11 @@ JsonObject::JsonObject(const JsonPlace& place, const ObjectRule& rule) : place_(
     if (!known) {
       std::string names;
       for (const KeyRule& k : rule.keys) names += (names.empty() ? "" : ", ") + k.key;
-      std::vector<std::string> known;
-      for (const KeyRule& k : rule.keys) known.push_back(k.key);
+      std::vector<std::string> keys;
+      for (const KeyRule& k : rule.keys) keys.push_back(k.key);
       JsonFaults::part([&] {
         JsonPlace(value, place_.file_, place_.pointer_ + "/" + escaped(entry.key()))
-            .fail(fmt::format("unknown key{}; known are {}", didYouMean(entry.key(), known), names));
+            .fail(fmt::format("unknown key{}; known are {}", didYouMean(entry.key(), keys), names));
       });
     }
   }

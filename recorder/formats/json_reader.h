@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/errors.h"
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
@@ -36,38 +35,6 @@ struct ObjectRule {
 /// @param file the name that messages use.
 /// @throws Error (damaged) with file, line and column.
 nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::string& file);
-
-/// While one lives, objects that this thread reads note faults where reading can go on, instead of throwing the first:
-/// unknown and missing keys, and values out of their range, which stay at their defaults.
-class JsonFaults {
- public:
-  JsonFaults();
-  ~JsonFaults();
-  JsonFaults(const JsonFaults&) = delete;
-  JsonFaults& operator=(const JsonFaults&) = delete;
-
-  /// In the order in which they were found, each once.
-  [[nodiscard]] const std::vector<Error>& found() const { return found_; }
-  void note(const Error& fault);
-
-  /// How many faults this thread has noted; 0 where none are noted.
-  [[nodiscard]] static std::size_t count();
-  /// Notes the fault where faults are noted. @throws the fault where they are not
-  static void report(const Error& fault);
-  /// Runs a part of the reading whose fault does not keep other parts from being read.
-  template <class Work>
-  static void part(Work&& work) {
-    try {
-      work();
-    } catch (const Error& fault) {
-      report(fault);
-    }
-  }
-
- private:
-  JsonFaults* outer_;
-  std::vector<Error> found_;
-};
 
 class JsonObject;
 
@@ -119,7 +86,7 @@ class JsonObject {
   JsonObject(const JsonPlace& place, const ObjectRule& rule);
 
   [[nodiscard]] bool has(const std::string& key) const;
-  /// @pre the key is there; where faults are noted, one that is missing ends this part of the reading.
+  /// @pre the key is there.
   [[nodiscard]] JsonPlace at(const std::string& key) const;
   [[noreturn]] void fail(const std::string& fault) const { place_.fail(fault); }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "recorder/errors.h"
+#include "recorder/formats/json_faults.h"
 #include "recorder/formats/json_reader.h"
 #include "recorder/formats/scene_connective.h"
 #include "recorder/formats/scene_fat.h"

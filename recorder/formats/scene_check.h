@@ -11,7 +11,7 @@
 
 namespace calot::recorder {
 
-/// What contact with an organ's surface takes, as far as its resolution decides.
+/// What an organ's surface costs, as far as its resolution decides.
 struct ContactCost {
   std::string organ;
   std::size_t triangles = 0;
@@ -21,7 +21,7 @@ struct ContactCost {
   /// Triangles whose edges are a third of a cell: finer ones show no more of how the organ deforms.
   std::size_t sensibleTriangles = 0;
 
-  /// Is the surface so fine that contact takes several times what it need?
+  /// Is the surface so fine that preparing and drawing take several times what they need?
   [[nodiscard]] bool isFine() const;
 };
 
