@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A coarser surface of an organ: contact takes time with the triangles that an instrument can reach.
+// A coarser surface of an organ: preparing and drawing take with its triangles.
 #pragma once
 
 #include <string>

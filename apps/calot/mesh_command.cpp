@@ -165,7 +165,7 @@ void addMesh(CLI::App& app, Run& run) {
                                              "the closed surface to write, a .obj file in metres, for scenes");
   command
       ->add_option("--surface-triangles", options->surfaceTriangles,
-                   "make that surface anew with about so many triangles: contact with a coarser one is faster")
+                   "make that surface anew with about so many triangles")
       ->check(CLI::Range(100, 1'000'000))
       ->needs(surface);
   command->add_flag("--repair", options->repair, "fill holes");

@@ -37,7 +37,7 @@ nlohmann::ordered_json checkJson(const std::string& file, const recorder::SceneC
                      {"fine", c.isFine()}});
   }
   return {{"file", file},     {"scene", check.scene}, {"sound", check.faults.empty()},
-          {"faults", faults}, {"notes", check.notes}, {"contact", costs}};
+          {"faults", faults}, {"notes", check.notes}, {"surfaces", costs}};
 }
 
 void printCosts(const recorder::SceneCheck& check) {
@@ -47,13 +47,12 @@ void printCosts(const recorder::SceneCheck& check) {
                               {"edge (mm)", Align::right},
                               {"tetrahedra", Align::right},
                               {"cell (mm)", Align::right},
-                              {"contact", Align::left}});
+                              {"surface", Align::left}});
   bool fine = false;
   for (const recorder::ContactCost& c : check.costs) {
-    table.add(
-        {c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge), std::to_string(c.tetrahedra),
-         fmt::format("{:.2f}", 1000.0 * c.cellSize),
-         c.isFine() ? fmt::format("slow: {} triangles would do", c.sensibleTriangles) : "as the scenes of Calot"});
+    table.add({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),
+               std::to_string(c.tetrahedra), fmt::format("{:.2f}", 1000.0 * c.cellSize),
+               c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
     fine = fine || c.isFine();
   }
   table.print(std::cout, terminalColumns());
@@ -91,7 +90,7 @@ void addScene(CLI::App& app, Run& run) {
   };
   const auto c = std::make_shared<CheckOptions>();
   CLI::App* check = command->add_subcommand(
-      "check", "Say all faults of a scene at once, what catches nothing in it, and what contact costs");
+      "check", "Say all faults of a scene at once, what catches nothing in it, and surfaces that are too fine");
   check->add_option("scene", c->scene, "name of a scene (calot scenes), or a scene file")->required();
   check->add_flag("--json", c->json, "print the result as JSON");
   check->callback([c, &run] { run = [c] { return checkOne(c->scene, c->json); }; });

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A scene of one's own from a scanner's surface: holes are told and filled, units that cannot be are refused, what was lost is a warning,
-the surface written can be used in a scene; a scene's check says all faults at once, what catches nothing, and what contact costs."""
+the surface written can be used in a scene; a scene's check says all faults at once, what catches nothing, and surfaces that are too fine."""
 
 import json
 import math
@@ -132,7 +132,7 @@ class Scene(ProgramTest):
         for name in ("touch-liver", "carve-fat"):
             said = json.loads(self.well("scene", "check", name, "--json").out)
             self.assertEqual((said["sound"], said["faults"], [n for n in said["notes"] if "catches" in n or "ties nothing" in n]), (True, [], []))
-            self.assertFalse(any(c["fine"] for c in said["contact"]))
+            self.assertFalse(any(c["fine"] for c in said["surfaces"]))
 
     def test_a_template_is_not_written_over_another_scene(self):
         target = self.path("t") / "scenes" / "one.json"
