@@ -138,7 +138,7 @@ class Cohort(ProgramTest):
                  "calot-attempt-list": ["attempt", "list", self.cohort], "calot-participant-list": ["participant", "list", self.cohort],
                  "calot-record": ["record", "--scene", program.SCENE, "--performer", "skilled", "--seconds", 0.1, "-o", self.path("n.h5")],
                  "calot-power": ["power", "--effect", 1.5, "--n", "4", "--simulations", 100],
-                 "calot-mesh": ["mesh", program.SOURCE / "assets/organs/gallbladder.obj", "--unit", "m", "--tetrahedra", 120, "-o", self.path("g.vtk")]}
+                 "calot-mesh": ["mesh", program.SOURCE / "assets/organs/gallbladder.obj", "--unit", "m", "--surface-output", self.path("g.obj")]}
         book = (program.SOURCE / "schemas/results.md").read_text(encoding="utf-8")
         for schema, words in asked.items():
             with self.subTest(schema=schema):
@@ -164,8 +164,7 @@ class Force(ProgramTest):
         cohort = self.path("c.db")
         self.well("assess", r, "--cohort", cohort)
         gallbladder = program.SOURCE / "assets/organs/gallbladder.obj"
-        writers = {"j.xml": ["replay", r, "--junit"], "m.vtk": ["mesh", gallbladder, "--unit", "m", "--tetrahedra", 120, "-o"],
-                   "m.obj": ["mesh", gallbladder, "--unit", "m", "--surface-output"], "s.h5": ["state", r, "--step", 3, "-o"],
+        writers = {"j.xml": ["replay", r, "--junit"], "m.obj": ["mesh", gallbladder, "--unit", "m", "--surface-output"], "s.h5": ["state", r, "--step", 3, "-o"],
                    "n.h5": ["record", "--scene", program.SCENE, "--performer", "skilled", "--seconds", 0.1, "-o"],
                    "out": ["cohort", "export", cohort, "-o"], "motion": ["export", r, "--motion"]}
         for name, words in writers.items():
