@@ -73,7 +73,8 @@ class Cohort(ProgramTest):
 
     def test_attempt_list(self):
         rows = json.loads(self.well("attempt", "list", "--cohort", self.cohort, "--json").out)["attempts"]
-        self.assertEqual([r["participant"] for r in rows], ["P1", "P2", "P3"])
+        self.assertEqual(sorted(r["participant"] for r in rows), ["P1", "P2", "P3"])
+        rows.sort(key=lambda r: r["participant"])
         self.assertEqual({(r["scene"], r["verdict"], r["excluded"]) for r in rows}, {("touch-liver", "verified", False)})
         out = self.well("attempt", "list", "--cohort", self.cohort).out
         self.assertIn(f"{self.cohort}: 3 attempts\n", out)
