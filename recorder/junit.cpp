@@ -35,17 +35,20 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-void writeJunit(const std::filesystem::path& file, const std::vector<ReplayReport>& reports) {
+void writeJunit(const std::filesystem::path& file, const std::vector<ReplayReport>& reports,
+                const JunitOptions& options) {
   const auto count = [&](ReplayVerdict v) {
     return std::count_if(reports.begin(), reports.end(), [v](const ReplayReport& r) { return r.verdict == v; });
   };
+  const auto undecided = count(ReplayVerdict::undecided);
   double time = 0.0;
   for (const ReplayReport& r : reports) time += r.wallSeconds;
   std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  xml += fmt::format(
-      "<testsuite name=\"calot replay\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\">\n",
-      reports.size(), count(ReplayVerdict::diverged), count(ReplayVerdict::damaged), count(ReplayVerdict::undecided),
-      time);
+  xml +=
+      fmt::format("<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\">\n",
+                  escaped(options.suite), reports.size(), count(ReplayVerdict::diverged),
+                  count(ReplayVerdict::damaged) + (options.skipUndecided ? 0 : undecided),
+                  options.skipUndecided ? undecided : 0, time);
   for (const ReplayReport& r : reports) {
     xml += fmt::format("  <testcase classname=\"replay\" name=\"{}\" time=\"{:.3f}\"",
                        escaped(r.path.filename().string()), r.wallSeconds);
@@ -62,13 +65,15 @@ void writeJunit(const std::filesystem::path& file, const std::vector<ReplayRepor
         xml += fmt::format(">\n    <error message=\"damaged\">{}</error>\n", body);
         break;
       case ReplayVerdict::undecided:
-        xml += fmt::format(">\n    <skipped message=\"{}\"/>\n", body);
+        xml += options.skipUndecided
+                   ? fmt::format(">\n    <skipped message=\"{}\"/>\n", body)
+                   : fmt::format(">\n    <error message=\"of another simulation version\">{}</error>\n", body);
         break;
     }
     xml += "  </testcase>\n";
   }
   xml += "</testsuite>\n";
-  writeText(file, xml, true);
+  writeText(file, xml, options.force);
 }
 
 }  // namespace calot::recorder

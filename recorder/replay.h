@@ -128,8 +128,16 @@ class Seeker {
   std::optional<std::uint64_t> differs_;
 };
 
-/// JUnit XML: one case a recording; diverged is a failure, damaged an error, undecided skipped, the divergence in the
-/// body. @throws Error (failure) where the file cannot be written.
-void writeJunit(const std::filesystem::path& file, const std::vector<ReplayReport>& reports);
+struct JunitOptions {
+  std::string suite = "calot replay";
+  bool skipUndecided = false;  ///< recordings of another simulation version are skipped tests, which CI shows as green
+  bool force = false;          ///< replace a file that is there
+};
+
+/// JUnit XML: one case a recording; diverged is a failure, damaged an error, undecided an error too unless it is to be
+/// skipped, the divergence in the body.
+/// @throws Error (invalid) where the file exists and is not to be replaced; (failure) where it cannot be written.
+void writeJunit(const std::filesystem::path& file, const std::vector<ReplayReport>& reports,
+                const JunitOptions& options = {});
 
 }  // namespace calot::recorder

@@ -6,6 +6,8 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
+"$root/scripts/setup.sh" checks
+
 stages=(format lint docs guard asan-ubsan tsan matrix tidy)
 if [[ $# -gt 0 ]]; then stages=("$@"); fi
 

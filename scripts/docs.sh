@@ -5,7 +5,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-"$root/scripts/setup.sh" mkdocs mkdocs-material doxygen
+"$root/scripts/setup.sh" docs
 
 say "site"
 cd "$root"

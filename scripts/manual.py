@@ -57,7 +57,7 @@ def value_of(option):
 def syntax(option):
     """The names of an option, bold, with its value in italics."""
     value = value_of(option)
-    if option["positional"]:
+    if option["positional"] and not option["names"]:
         return f"\\fI{roff(option['positional'])}\\fR"
     names = ", ".join(f"\\fB{roff(n)}\\fR" for n in option["names"])
     return f"{names} \\fI{roff(value)}\\fR" if value else names

@@ -1,26 +1,51 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what Calot is built and checked with on Debian 12 (docs/reference/dependencies.md says what for). Does nothing when all
-# is there. As root, or with sudo. More packages may be named.
+# setup.sh [--list] [build|demo|test|checks|docs|all] [PACKAGE...]: installs what that takes on Debian 12
+# (docs/reference/dependencies.md says what for), all by default. Does nothing when it is there. As root, or with sudo. More
+# packages may be named. --list prints the packages instead.
+#   build   the programs          demo    build, and what scripts/demo.sh runs
+#   docs    the site's tools      test    demo, and what scripts/test.sh runs
+#   checks  test, and what scripts/checks.sh runs
 set -euo pipefail
 
-packages=(
-  # build
+build=(
   cmake ninja-build g++ pkg-config git ca-certificates
   libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
   nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev libegl-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libapriltag-dev libfreetype-dev
-  libsdl2-dev libopenigtlink-dev libspnav-dev libseccomp-dev
-  qt6-base-dev qt6-charts-dev libqt6opengl6-dev libbullet-dev
-  pybind11-dev python3-dev
-  # run
-  fonts-dejavu-core
-  # tests and checks
-  xvfb xauth libgtest-dev libbenchmark-dev python3 python3-h5py python3-scipy python3-pandas hdf5-tools
-  clang clang-format clang-tidy libclang-rt-14-dev shellcheck reuse valgrind
-  g++-aarch64-linux-gnu qemu-user nodejs
-  "$@"
+  libsdl2-dev libopenigtlink-dev libspnav-dev libseccomp-dev libbenchmark-dev
+  qt6-base-dev qt6-charts-dev libqt6opengl6-dev
+  # Optional, but whoever adds them later builds everything anew.
+  libbullet-dev pybind11-dev python3-dev
 )
+demo=("${build[@]}" fonts-dejavu-core python3 python3-h5py)
+test=("${demo[@]}" libgtest-dev xvfb xauth python3-scipy python3-pandas hdf5-tools valgrind nodejs
+  tmux shellcheck reuse clang-format)
+docs=(mkdocs mkdocs-material doxygen)
+checks=("${test[@]}" clang clang-tidy libclang-rt-14-dev g++-aarch64-linux-gnu qemu-user)
+
+list=
+if [[ ${1:-} == --list ]]; then
+  list=1
+  shift
+fi
+case ${1:-} in
+  build) packages=("${build[@]}") && shift ;;
+  demo) packages=("${demo[@]}") && shift ;;
+  test) packages=("${test[@]}") && shift ;;
+  docs) packages=("${docs[@]}") && shift ;;
+  checks | all) packages=("${checks[@]}") && shift ;;
+  -*)
+    echo "usage: setup.sh [--list] [build|demo|test|checks|docs|all] [PACKAGE...]" >&2
+    exit 2
+    ;;
+  *) packages=("${checks[@]}") ;;
+esac
+packages+=("$@")
+if [[ -n $list ]]; then
+  printf '%s\n' "${packages[@]}" | sort -u
+  exit 0
+fi
 
 installed=$(dpkg-query --show --showformat '${Package} ${Status}\n' "${packages[@]}" 2>/dev/null || true)
 missing=()

@@ -4,8 +4,8 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-"$root/scripts/setup.sh"
-configure release
+"$root/scripts/setup.sh" test
+configure release -DBUILD_TESTING=ON
 build release
 say "test release"
 # One more than there are processors: some tests wait for devices, folders and clocks.

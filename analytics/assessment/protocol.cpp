@@ -10,6 +10,7 @@
 #include "analytics/checkpoints/registry.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
+#include "recorder/formats/nearest_word.h"
 #include "recorder/formats/text_words.h"
 
 namespace calot::analytics {
@@ -23,6 +24,12 @@ using recorder::Outcome;
 constexpr std::size_t maxBytes = 1U << 20U;
 constexpr std::size_t maxHypotheses = 200, maxCriteria = 20, maxReasons = 50;
 constexpr double maxBound = 1e9;
+
+std::string didYouMeanCheckpoint(const std::string& name) {
+  std::vector<std::string> known;
+  for (const CheckpointEntry& entry : checkpointRegistry()) known.push_back(entry.definition.name);
+  return recorder::didYouMean(name, known);
+}
 
 const ObjectRule rootRule{"",
                           {{"format"},
@@ -119,7 +126,9 @@ DirectedHypothesis hypothesisAt(const Protocol& protocol, const JsonPlace& place
   } else {
     o.read("checkpoint", hypothesis.checkpoint, maxName);
     if (findCheckpoint(hypothesis.checkpoint) == nullptr)
-      o.at("checkpoint").fail("no checkpoint of this name (calot checkpoints lists them)");
+      o.at("checkpoint")
+          .fail(fmt::format("no checkpoint of this name{} (calot checkpoints lists them)",
+                            didYouMeanCheckpoint(hypothesis.checkpoint)));
   }
   o.read("subject", hypothesis.subject, maxName);
   o.read("larger", hypothesis.larger, maxName);

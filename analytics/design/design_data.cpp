@@ -10,6 +10,7 @@
 #include "analytics/report/study_groups.h"
 #include "analytics/statistics/repeated_attempts.h"
 #include "recorder/errors.h"
+#include "recorder/formats/nearest_word.h"
 #include "recorder/formats/text_words.h"
 
 namespace calot::analytics {
@@ -69,7 +70,8 @@ void keepNamedFigures(DesignData& data, const DesignChoices& choices) {
   for (const std::string& name : wanted) {
     if (std::none_of(data.figures.begin(), data.figures.end(), [&](const auto& f) { return isFigure(f, name); })) {
       throw Error(ErrorKind::invalid, Where{data.where},
-                  fmt::format("there is no figure \"{}\" (there are: {})", recorder::shown(name), commaList(there)));
+                  fmt::format("there is no figure \"{}\"{} (there are: {})", recorder::shown(name),
+                              recorder::didYouMean(name, there), commaList(there)));
     }
   }
   if (choices.family.empty()) return;

@@ -158,12 +158,12 @@ const char* readme() {
 
 }  // namespace
 
-std::vector<fs::path> writeBidsDataset(std::vector<BidsAttempt> attempts, const fs::path& folder) {
+std::vector<fs::path> writeBidsDataset(std::vector<BidsAttempt> attempts, const fs::path& folder, bool force) {
   if (attempts.empty()) throw Error(ErrorKind::invalid, "a data set wants at least one attempt");
   std::stable_sort(attempts.begin(), attempts.end(), [](const BidsAttempt& a, const BidsAttempt& b) {
     return a.participant != b.participant ? a.participant < b.participant : a.startUtc < b.startUtc;
   });
-  FolderOutput out(folder);
+  FolderOutput out(folder, force);
   std::map<std::string, std::string> subjects, tasks, systems;
   std::map<std::string, int> runs;
   std::map<std::string, bool> people;

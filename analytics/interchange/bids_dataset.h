@@ -36,6 +36,6 @@ struct BidsAttempt {
 /// @return the files. @throws Error (refused) for an attempt without participant or motion, and for two names that
 /// become one label; (invalid) where the folder is there; (failure) where it cannot be written
 std::vector<std::filesystem::path> writeBidsDataset(std::vector<BidsAttempt> attempts,
-                                                    const std::filesystem::path& folder);
+                                                    const std::filesystem::path& folder, bool force = false);
 
 }  // namespace calot::analytics

@@ -228,8 +228,8 @@ class Writer {
 
 }  // namespace
 
-Bundle writeBundle(const std::string& database, const std::string& folder, const BundleOptions& options) {
-  FolderOutput output(folder);
+Bundle writeBundle(const std::string& database, const std::string& folder, const BundleOptions& options, bool force) {
+  FolderOutput output(folder, force);
   const BundleSource source = readBundleSource(database);
   Bundle bundle;
   bundle.recruited = source.attempts.size();

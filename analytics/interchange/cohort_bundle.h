@@ -41,6 +41,7 @@ struct Bundle {
 /// is noted in the database for withdrawals: where the one finds something or the other fails, there is no bundle.
 /// @throws Error as CohortDatabase and FolderOutput do; Error (refused) where nothing is left to hand out, or an
 /// original name is found, with the file and what kind of name it is.
-Bundle writeBundle(const std::string& database, const std::string& folder, const BundleOptions& options);
+Bundle writeBundle(const std::string& database, const std::string& folder, const BundleOptions& options,
+                   bool force = false);
 
 }  // namespace calot::analytics

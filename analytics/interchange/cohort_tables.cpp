@@ -63,8 +63,8 @@ std::string jsonOf(const TableFacts& table, const std::vector<Row>& rows) {
 
 }  // namespace
 
-std::vector<ExportedTable> exportCohort(const std::string& database, const std::string& folder) {
-  FolderOutput output(folder);
+std::vector<ExportedTable> exportCohort(const std::string& database, const std::string& folder, bool force) {
+  FolderOutput output(folder, force);
   std::vector<ExportedTable> written;
   std::vector<std::string> attempts;
   guarded(database, [&] {

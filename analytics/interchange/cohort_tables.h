@@ -17,6 +17,6 @@ struct ExportedTable {
 /// withdrawals before the folder gets its name. Not de-identified: writeBundle() is.
 /// In CSV nothing is an empty cell and bytes are hexadecimal; numbers have as many digits as give them back.
 /// @throws Error as CohortDatabase and FolderOutput do.
-std::vector<ExportedTable> exportCohort(const std::string& database, const std::string& folder);
+std::vector<ExportedTable> exportCohort(const std::string& database, const std::string& folder, bool force = false);
 
 }  // namespace calot::analytics

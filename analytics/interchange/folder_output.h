@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,9 +20,11 @@ struct WrittenFile {
 /// and six letters, which goes when this does.
 class FolderOutput {
  public:
-  /// @throws Error (invalid) where there is something of this name, or no folder to put it in; (failure) where it
-  /// cannot be made.
-  explicit FolderOutput(const std::filesystem::path& path);
+  /// @param force whether to replace a folder of this name, unless it holds a file that the new one has not (finish()
+  /// looks); none: never
+  /// @throws Error (invalid) where there is something of this name that is not to be replaced, or no folder to put it
+  /// in; (failure) where it cannot be made.
+  explicit FolderOutput(const std::filesystem::path& path, std::optional<bool> force = {});
   ~FolderOutput();
   FolderOutput(const FolderOutput&) = delete;
   FolderOutput& operator=(const FolderOutput&) = delete;
@@ -31,11 +34,14 @@ class FolderOutput {
   /// Where it is filled, for files that add() does not write; files() does not list them.
   [[nodiscard]] const std::filesystem::path& folder() const { return temporary_; }
   [[nodiscard]] const std::vector<WrittenFile>& files() const { return files_; }
-  /// Gives the folder its name. @throws Error (failure)
+  /// Gives the folder its name. @throws Error (failure); (invalid) where a folder of this name is not to be replaced
   void finish();
 
  private:
+  void replace();
+
   std::filesystem::path path_, temporary_;
+  bool force_;
   std::vector<WrittenFile> files_;
 };
 

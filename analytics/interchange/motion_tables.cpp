@@ -82,8 +82,8 @@ nlohmann::ordered_json summaryOf(const Motion& motion) {
 }  // namespace
 
 std::vector<std::filesystem::path> writeMotionTables(const std::array<Motion, handCount>& motion,
-                                                     const std::filesystem::path& folder) {
-  FolderOutput output(folder);
+                                                     const std::filesystem::path& folder, bool force) {
+  FolderOutput output(folder, force);
   std::string spans = "hand,kind,number,begin (s),end (s),after_gap\n";
   nlohmann::ordered_json summary{
       {"rate_hz", motionRate}, {"cutoff_hz", motion[0].cutoff}, {"filter", motionFilterText(motion[0].cutoff)}};

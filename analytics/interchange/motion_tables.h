@@ -24,6 +24,6 @@ namespace calot::analytics {
 /// Numbers are the shortest that give the same bits. @return the files. @throws Error (invalid) where the folder is
 /// there; (failure) where it cannot be written
 std::vector<std::filesystem::path> writeMotionTables(const std::array<Motion, handCount>& motion,
-                                                     const std::filesystem::path& folder);
+                                                     const std::filesystem::path& folder, bool force = false);
 
 }  // namespace calot::analytics

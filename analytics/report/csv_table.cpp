@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "recorder/errors.h"
+#include "recorder/formats/nearest_word.h"
 #include "recorder/formats/text_words.h"
 
 namespace calot::analytics {
@@ -104,7 +105,8 @@ std::size_t CsvTable::column(const std::string& name) const {
     std::string list;
     for (const std::string& c : columns) list += (list.empty() ? "" : ", ") + recorder::shown(c);
     throw Error(ErrorKind::invalid, Where{path, "line 1"},
-                fmt::format("there is no column \"{}\" (there are: {})", recorder::shown(name), list));
+                fmt::format("there is no column \"{}\"{} (there are: {})", recorder::shown(name),
+                            recorder::didYouMean(name, columns), list));
   }
   if (std::find(at + 1, columns.end(), name) != columns.end()) {
     throw Error(ErrorKind::invalid, Where{path, "line 1"},

@@ -17,6 +17,7 @@
 #include "apps/calot/key_fault.h"
 #include "apps/calot/metric_options.h"
 #include "apps/calot/replay_report.h"
+#include "apps/calot/results.h"
 #include "apps/calot/share_options.h"
 #include "apps/calot/value_report.h"
 #include "recorder/errors.h"
@@ -125,8 +126,9 @@ class AssessOutput {
   }
 
   ExitCode end(const analytics::CohortDatabase* database) {
+    Progress::erase();
     if (options_.json) {
-      std::cout << list_.dump(2) << '\n';
+      printResult("assess", {{"recordings", list_}});
     } else {
       std::cout << std::flush;
       std::fflush(stdout);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "analytics/cohort/cohort_database.h"
+#include "apps/calot/cohort_lists.h"
 #include "apps/calot/commands.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
@@ -44,8 +45,9 @@ void addDecision(CLI::App& parent, Run& run, bool exclude) {
 }  // namespace
 
 void addAttempt(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("attempt", "Keep attempts out of studies, or take them in again");
+  CLI::App* command = app.add_subcommand("attempt", "List attempts, keep them out of studies, or take them in again");
   command->require_subcommand(1);
+  addAttemptList(*command, run);
   addDecision(*command, run, true);
   addDecision(*command, run, false);
 }

@@ -97,6 +97,7 @@ int branch(const BranchOptions& o) {
   };
   const recorder::RunReport report = recorder::runAttempt(session, blended, run);
   writer.finish();
+  Progress::erase();
   if (!o.json) {
     fmt::print("{}: branch of {} after its step {}\n", o.output, header.parent, forkStep);
     tellDevice(*source);

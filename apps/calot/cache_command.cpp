@@ -8,6 +8,7 @@
 
 #include "analytics/report/text_table.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/results.h"
 #include "recorder/compliance_cache.h"
 
 namespace calot::apps {
@@ -57,7 +58,7 @@ void printJson(const std::string& folder, const std::vector<CacheEntry>& entries
                               {"columns", e.columns},
                               {"bytes", e.bytes}});
   }
-  std::cout << out.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  printResult("cache", out);
 }
 
 void printTable(const std::vector<CacheEntry>& entries) {

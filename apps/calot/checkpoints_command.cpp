@@ -8,6 +8,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
@@ -82,7 +83,7 @@ void addCheckpoints(CLI::App& app, Run& run) {
           print(entry.definition);
         }
       }
-      if (*json) std::cout << list.dump(2) << '\n';
+      if (*json) printResult("checkpoints", {{"checkpoints", list}});
       return static_cast<int>(ExitCode::yes);
     };
   });

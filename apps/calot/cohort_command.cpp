@@ -14,8 +14,10 @@
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "apps/calot/cohort_exports.h"
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
+#include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
@@ -23,8 +25,6 @@ namespace calot::apps {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string text(const ordered_json& json) { return json.dump(2, ' ', false, ordered_json::error_handler_t::replace); }
 
 void addMerge(CLI::App& parent, Run& run) {
   struct Options {
@@ -40,16 +40,15 @@ void addMerge(CLI::App& parent, Run& run) {
     run = [o] {
       const analytics::CohortMerge m = analytics::mergeCohorts(o->into, o->from);
       if (o->json) {
-        std::cout << text({{"merged", m.conflicts.empty()},
-                           {"participants", m.participants},
-                           {"attempts", m.attempts},
-                           {"extended", m.extended},
-                           {"other_rows", m.rows},
-                           {"audit_rows", m.audit},
-                           {"filled", m.filled},
-                           {"withdrawn", m.withdrawn},
-                           {"conflicts", m.conflicts}})
-                  << '\n';
+        printResult("cohort-merge", {{"merged", m.conflicts.empty()},
+                                     {"participants", m.participants},
+                                     {"attempts", m.attempts},
+                                     {"extended", m.extended},
+                                     {"other_rows", m.rows},
+                                     {"audit_rows", m.audit},
+                                     {"filled", m.filled},
+                                     {"withdrawn", m.withdrawn},
+                                     {"conflicts", m.conflicts}});
       } else if (m.conflicts.empty()) {
         std::cout << fmt::format(
             "{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n", o->into,
@@ -71,19 +70,18 @@ void addCheck(CLI::App& parent, Run& run) {
   };
   const auto o = std::make_shared<Options>();
   CLI::App* command = parent.add_subcommand("check", "Look at a whole cohort database for damage");
-  command->add_option("cohort", o->cohort, "Cohort database")->required();
+  addCohortOption(*command, o->cohort)->required();
   command->add_flag("--json", o->json, "Print JSON");
   command->callback([o, &run] {
     run = [o] {
       const analytics::CohortCheck c = analytics::checkCohort(o->cohort);
       if (o->json) {
-        std::cout << text({{"sound", c.faults.empty()},
-                           {"schema", c.schema},
-                           {"participants", c.participants},
-                           {"attempts", c.attempts},
-                           {"values", c.values},
-                           {"faults", c.faults}})
-                  << '\n';
+        printResult("cohort-check", {{"sound", c.faults.empty()},
+                                     {"database_schema", c.schema},
+                                     {"participants", c.participants},
+                                     {"attempts", c.attempts},
+                                     {"values", c.values},
+                                     {"faults", c.faults}});
       } else if (c.faults.empty()) {
         std::cout << fmt::format("{}: sound; schema {}, {} participants, {} attempts, {} values\n", o->cohort, c.schema,
                                  c.participants, c.attempts, c.values);
@@ -102,7 +100,7 @@ void addScrub(CLI::App& parent, Run& run) {
   const auto cohort = std::make_shared<std::string>();
   CLI::App* command =
       parent.add_subcommand("scrub", "Overwrite what was deleted, empty the log, remove backups of migrations");
-  command->add_option("cohort", *cohort, "Cohort database")->required();
+  addCohortOption(*command, *cohort)->required();
   command->callback([cohort, &run] {
     run = [cohort] {
       analytics::scrub(*cohort);
@@ -116,7 +114,7 @@ void addUpgrade(CLI::App& parent, Run& run) {
   const auto cohort = std::make_shared<std::string>();
   CLI::App* command = parent.add_subcommand(
       "upgrade", "Bring a database of an older Calot to the schema of this one; a copy is kept beside it");
-  command->add_option("cohort", *cohort, "Cohort database")->required();
+  addCohortOption(*command, *cohort)->required();
   command->callback([cohort, &run] {
     run = [cohort] {
       const analytics::CohortDatabase database(*cohort, analytics::CohortDatabase::Access::write);
@@ -187,7 +185,7 @@ void addList(CLI::App& parent, Run& run) {
   };
   const auto o = std::make_shared<Options>();
   CLI::App* command = parent.add_subcommand("list", "Sites, arms, stations and cohorts of a database");
-  command->add_option("cohort", o->cohort, "Cohort database")->required();
+  addCohortOption(*command, o->cohort)->required();
   command->add_flag("--json", o->json, "Print JSON");
   command->callback([o, &run] {
     run = [o] {
@@ -207,7 +205,7 @@ void addList(CLI::App& parent, Run& run) {
       for (const auto& c : r.cohorts)
         out["cohorts"].push_back({{"name", c.name}, {"participants", c.participants}, {"note", c.note}});
       if (o->json) {
-        std::cout << text(out) << '\n';
+        printResult("cohort-list", out);
         return static_cast<int>(ExitCode::yes);
       }
       for (const char* kind : {"sites", "arms", "stations", "cohorts"}) {

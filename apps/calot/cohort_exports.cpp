@@ -12,6 +12,8 @@
 #include "analytics/interchange/cohort_bundle.h"
 #include "analytics/interchange/cohort_tables.h"
 #include "analytics/interchange/xapi_statements.h"
+#include "apps/calot/cohort_option.h"
+#include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
@@ -24,11 +26,11 @@ using Json = nlohmann::ordered_json;
 struct CohortExportsOptions {
   std::string cohort, folder;
   analytics::BundleOptions bundle;
-  bool json = false;
+  bool json = false, force = false;
 };
 
 int exportTables(const CohortExportsOptions& o) {
-  const std::vector<analytics::ExportedTable> tables = analytics::exportCohort(o.cohort, o.folder);
+  const std::vector<analytics::ExportedTable> tables = analytics::exportCohort(o.cohort, o.folder, o.force);
   Json list = Json::array();
   for (const analytics::ExportedTable& t : tables) {
     if (o.json) {
@@ -37,12 +39,12 @@ int exportTables(const CohortExportsOptions& o) {
       std::cout << fmt::format("{:<24}{} rows\n", t.name, t.rows);
     }
   }
-  if (o.json) std::cout << list.dump(2) << '\n';
+  if (o.json) printResult("cohort-export", {{"tables", list}});
   return static_cast<int>(ExitCode::yes);
 }
 
 int handOut(const CohortExportsOptions& o) {
-  const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle);
+  const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle, o.force);
   if (o.json) {
     Json left = Json::array(), files = Json::array();
     for (const auto& row : b.leftOut) left.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
@@ -54,7 +56,7 @@ int handOut(const CohortExportsOptions& o) {
                    {"left_out", left},
                    {"smallest_group", b.smallest},
                    {"files", files}};
-    std::cout << all.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    printResult("cohort-bundle", all);
     return static_cast<int>(ExitCode::yes);
   }
   std::cout << fmt::format("{}: {} of {} attempts, of {} participants, {} values\n", o.folder, b.attempts, b.recruited,
@@ -77,7 +79,7 @@ void addXapi(CLI::App& parent, Run& run) {
   const auto o = std::make_shared<Options>();
   CLI::App* command =
       parent.add_subcommand("xapi", "Write attempts and values as statements for a learning record store");
-  command->add_option("cohort", o->cohort, "Cohort database")->required();
+  addCohortOption(*command, o->cohort)->required();
   command
       ->add_option("--home-page", o->xapi.home,
                    "Begin of the site's identifiers, such as https://training.example.org: accounts, activities and "
@@ -100,8 +102,9 @@ void addXapi(CLI::App& parent, Run& run) {
 CLI::App* addOne(CLI::App& parent, Run& run, const char* name, const char* help,
                  const std::shared_ptr<CohortExportsOptions>& o, int (*work)(const CohortExportsOptions&)) {
   CLI::App* command = parent.add_subcommand(name, help);
-  command->add_option("cohort", o->cohort, "Cohort database")->required();
-  command->add_option("-o,--output", o->folder, "Folder to make; it must not be there yet")->required();
+  addCohortOption(*command, o->cohort)->required();
+  command->add_option("-o,--output", o->folder, "Folder to make")->required();
+  command->add_flag("--force", o->force, "Replace a folder of this name that holds no other files");
   command->add_flag("--json", o->json, "Print JSON");
   command->callback([o, work, &run] { run = [o, work] { return work(*o); }; });
   return command;

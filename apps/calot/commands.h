@@ -37,6 +37,7 @@ void addAttempt(CLI::App& app, Run& run);
 void addRegrade(CLI::App& app, Run& run);
 void addCohort(CLI::App& app, Run& run);
 void addStation(CLI::App& app, Run& run);
+void addScene(CLI::App& app, Run& run);
 void addScenes(CLI::App& app, Run& run);
 void addCheckpoints(CLI::App& app, Run& run);
 void addDevices(CLI::App& app, Run& run);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/calot/wrong_word.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -45,7 +46,7 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
   std::vector<std::string> names;
   for (const analytics::DesignEntry& e : analytics::designs()) names.emplace_back(e.name);
   command.add_option("--design", o.design, "What is asked of the data; see below (default: two-groups)")
-      ->check(CLI::IsMember(names));
+      ->check(oneOf(names));
   command.add_option("--strata", o.strata,
                      "Strata of the designs strata and repeated: of a cohort site or arm, of a table a column");
   command.add_option("--against", o.against,
@@ -62,7 +63,7 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
       ->expected(2)
       ->default_str("0.05,0.15");
   command.add_option("--curve", o.shape, "Shape of the learning curve: a - b/x, a - b x^-c or a - b exp(-c x)")
-      ->check(CLI::IsMember({"inverse", "power", "exponential"}))
+      ->check(oneOf({"inverse", "power", "exponential"}))
       ->capture_default_str();
   command.add_option("--finished-column", o.finishedColumn,
                      "Of a table: whether the attempt was finished, 1 or 0 (time-to-criterion)");

@@ -11,6 +11,7 @@
 #include "apps/calot/device_options.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/marker_sheet_file.h"
+#include "apps/calot/results.h"
 #include "apps/calot/simulate_device.h"
 #include "apps/calot/stop_request.h"
 #include "apps/calot/terminal_text.h"
@@ -32,7 +33,7 @@ int listDevicesFound(bool asJson) {
                      {"senses", d.senses},
                      {"rate", d.rate}});
     }
-    fmt::print("{}\n", nlohmann::json{{"devices", out}}.dump(2));
+    printResult("devices", {{"devices", out}});
     return 0;
   }
   constexpr std::size_t detailAt = 25;

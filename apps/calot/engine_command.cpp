@@ -12,6 +12,7 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/program_files.h"
@@ -53,7 +54,7 @@ int list(bool json) {
       out.push_back(
           {{"version", e.version}, {"kind", kindOf(e)}, {"file", e.file.string()}, {"runs", !e.command.empty()}});
     }
-    std::cout << nlohmann::json{{"own_version", simulationVersion}, {"engines", out}}.dump(2) << '\n';
+    printResult("engines", {{"own_version", simulationVersion}, {"engines", out}});
     return 0;
   }
   fmt::print("this program decides simulation version {}\n", simulationVersion);

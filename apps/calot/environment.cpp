@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -11,12 +12,19 @@
 #include <system_error>
 
 #include "recorder/errors.h"
+#include "recorder/formats/nearest_word.h"
 #include "recorder/formats/program_files.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/text_words.h"
 
 namespace calot::apps {
+namespace {
+
+/// A terminal has one last line.
+std::atomic<bool> lineDrawn{false};
+
+}  // namespace
 
 std::vector<std::filesystem::path> assetFolders() { return recorder::ProgramFiles::ofThisProgram().assetRoots(); }
 
@@ -47,20 +55,26 @@ std::filesystem::path findAsset(const std::string& name, const std::string& fold
     throw Error(ErrorKind::damaged, fmt::format("{}: there is no such file", recorder::shown(name)));
   }
   std::string known;
+  std::vector<std::string> names;
   for (const std::filesystem::path& file : listAssets(folder)) {
     if (file.stem() == name) return file;
-    known += (known.empty() ? "" : ", ") + file.stem().string();
+    names.push_back(file.stem().string());
+    known += (known.empty() ? "" : ", ") + names.back();
   }
   throw Error(ErrorKind::invalid,
-              fmt::format("there is no {} \"{}\"; {}", what, recorder::shown(name),
+              fmt::format("there is no {} \"{}\"{}; {}", what, recorder::shown(name), recorder::didYouMean(name, names),
                           known.empty() ? "none was found (set CALOT_ASSETS)" : "there are " + known));
 }
 
 Progress::Progress(std::string what, bool quiet)
     : what_(std::move(what)), terminal_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
-Progress::~Progress() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
+Progress::~Progress() { erase(); }
+
+void Progress::erase() {
+  if (!lineDrawn.exchange(false)) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
 }
 
 void Progress::show(std::uint64_t done, std::uint64_t of) {
@@ -70,7 +84,7 @@ void Progress::show(std::uint64_t done, std::uint64_t of) {
           .count();
   if (now - last_ < 100) return;
   last_ = now;
-  drawn_ = true;
+  lineDrawn = true;
   const std::string text = of > 0 ? fmt::format("\r\033[K{}: {} of {} ({:.0f} %)", what_, done, of,
                                                 100.0 * static_cast<double>(done) / static_cast<double>(of))
                                   : fmt::format("\r\033[K{}: {}", what_, done);

@@ -32,11 +32,13 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   /// @param of 0: no end is known
   void show(std::uint64_t done, std::uint64_t of);
+  /// Takes the line away, whichever Progress drew it: before anything else is printed, so that results never stand
+  /// behind it. The next show() draws it again.
+  static void erase();
 
  private:
   std::string what_;
   bool terminal_;
-  bool drawn_ = false;
   std::int64_t last_ = 0;
 };
 

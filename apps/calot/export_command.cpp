@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "analytics/interchange/bids_dataset.h"
 #include "analytics/interchange/motion_tables.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/environment.h"
 #include "apps/calot/motion_import.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
@@ -42,8 +42,8 @@ int exportMotionFile(const ExportOptions& o) {
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
   const recorder::TrackedMotion tracked = readMotion(o.file, map ? &*map : nullptr);
-  printFiles(
-      analytics::writeMotionTables({analytics::motionOf(tracked, 0), analytics::motionOf(tracked, 1)}, o.motion));
+  printFiles(analytics::writeMotionTables({analytics::motionOf(tracked, 0), analytics::motionOf(tracked, 1)}, o.motion,
+                                          o.force));
   return static_cast<int>(ExitCode::yes);
 }
 
@@ -73,7 +73,7 @@ int exportBids(const ExportOptions& o) {
   std::vector<analytics::BidsAttempt> attempts;
   std::vector<std::string> uuids;
   for (const std::string& file : o.files) attempts.push_back(bidsAttemptOf(file, uuids.emplace_back()));
-  const std::vector<std::filesystem::path> files = analytics::writeBidsDataset(std::move(attempts), o.bids);
+  const std::vector<std::filesystem::path> files = analytics::writeBidsDataset(std::move(attempts), o.bids, o.force);
   if (!o.cohort.empty()) analytics::recordExport(o.cohort, "bids", o.bids, uuids);
   printFiles(files);
   return static_cast<int>(ExitCode::yes);
@@ -92,15 +92,14 @@ int exportRecording(const ExportOptions& o) {
     analytics::recordExport(o.cohort, "recording-csv", o.folder.empty() ? o.motion : o.folder,
                             {recording.header().attempt});
   if (!o.folder.empty()) {
-    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    Progress progress("exporting, steps");
     const std::uint64_t steps = recording.stepCount();
-    const auto progress = [terminal, steps](std::uint64_t done) {
-      if (terminal && (done % 1000 == 0 || done == steps))
-        fmt::print(stderr, "\r{} of {} steps{}", done, steps, done == steps ? "\n" : "");
-    };
-    printFiles(recorder::exportCsv(recording, o.folder, o.force, progress));
+    const std::vector<std::filesystem::path> files = recorder::exportCsv(
+        recording, o.folder, o.force, [&progress, steps](std::uint64_t done) { progress.show(done, steps); });
+    Progress::erase();
+    printFiles(files);
   }
-  if (!o.motion.empty()) printFiles(analytics::writeMotionTables(analytics::motionOf(recording), o.motion));
+  if (!o.motion.empty()) printFiles(analytics::writeMotionTables(analytics::motionOf(recording), o.motion, o.force));
   if (!recording.complete()) fmt::print("incomplete\n");
   // What was asked for is there; that it was changed since it was recorded is the answer.
   if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
@@ -120,16 +119,17 @@ void addExport(CLI::App& app, Run& run) {
   CLI::Option* csv = command->add_option("--csv", options->folder, "Folder for all that is recorded");
   CLI::Option* motion = command->add_option(
       "--motion", options->motion,
-      "New folder for both hands' filtered motion with its segments and movements, as checkpoints see it");
+      "Folder for both hands' filtered motion with its segments and movements, as checkpoints see it");
   command
       ->add_option("--bids", options->bids,
-                   "New folder for the motion of all these recordings as a data set of BIDS (motion), without dates")
+                   "Folder for the motion of all these recordings as a data set of BIDS (motion), without dates")
       ->excludes(csv)
       ->excludes(motion);
   command->add_option("--columns", options->columns, "A JSON file that says what the columns of a CSV motion file are")
       ->needs(motion);
   command->add_option("--cohort", options->cohort, "Cohort database that notes that this was handed out");
-  command->add_flag("--force", options->force, "Replace files that --csv finds there");
+  command->add_flag("--force", options->force,
+                    "Replace files that --csv finds there, or the folder of --motion or --bids");
   command->callback([options, &run] {
     run = [options] {
       if (!options->bids.empty()) return exportBids(*options);

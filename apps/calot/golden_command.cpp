@@ -12,6 +12,7 @@
 #include "apps/calot/golden_update.h"
 #include "apps/calot/golden_values.h"
 #include "apps/calot/replay_report.h"
+#include "apps/calot/results.h"
 #include "apps/calot/stop_request.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
@@ -22,9 +23,9 @@ namespace calot::apps {
 namespace {
 
 struct GoldenOptions {
-  std::string folder, reason, only;
+  std::string folder, reason, only, junit;
   unsigned threads = 1;
-  bool json = false;
+  bool json = false, force = false, skipUndecided = false;
 };
 
 std::filesystem::path folderOf(const GoldenOptions& o) {
@@ -38,6 +39,7 @@ std::filesystem::path folderOf(const GoldenOptions& o) {
 int check(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / "golden.json");
+  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
   std::vector<recorder::ReplayReport> reports;
   nlohmann::json rows = nlohmann::json::array();
   Progress progress("replaying, recordings", o.json);
@@ -56,7 +58,9 @@ int check(const GoldenOptions& o) {
     }
   }
   if (reports.empty()) throw Error(ErrorKind::invalid, fmt::format("golden: --only {}: not in the list", o.only));
-  if (o.json) std::cout << rows.dump(2) << '\n';
+  Progress::erase();
+  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot golden check", o.skipUndecided, o.force});
+  if (o.json) printResult("golden-check", {{"recordings", rows}});
   return static_cast<int>(worstOf(reports));
 }
 
@@ -75,6 +79,7 @@ int takeValues(const GoldenOptions& o) {
       return static_cast<int>(worstOf({replay.report}));
     }
     refuseValues(entry, replay.values);
+    Progress::erase();
     fmt::print("{}: {} checkpoints, {} changed\n", entry.file, replay.values.size(), replay.changed.size());
     for (const std::string& line : replay.changed) fmt::print("    {}\n", line);
     entry.values = replay.values;
@@ -113,6 +118,7 @@ void addGolden(CLI::App& app, Run& run) {
     one->add_option("--threads", o->threads, "of the simulation; 0: all")
         ->check(CLI::Range(0U, 64U))
         ->capture_default_str();
+  addJunitOptions(*checking, o->junit, o->skipUndecided, o->force);
   checking->add_flag("--json", o->json, "print the result as JSON");
   for (CLI::App* one : {updating, values})
     one->add_option("--reason", o->reason, "why they change; kept in the list")->required();

@@ -13,9 +13,11 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/check.h"
 #include "analytics/report/grade_sheet.h"
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/report_files.h"
+#include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -127,7 +129,7 @@ int grade(const GradeOptions& o) {
   writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
               o.withReplay ? &inPage : nullptr);
   if (o.json) {
-    std::cout << analytics::gradeJson(result) << '\n';
+    printResult("grade", nlohmann::ordered_json::parse(analytics::gradeJson(result)));
   } else {
     analytics::printGrade(result, std::cout);
   }
@@ -139,7 +141,7 @@ int grade(const GradeOptions& o) {
 void addGrade(CLI::App& app, Run& run) {
   const auto o = std::make_shared<GradeOptions>();
   CLI::App* command = app.add_subcommand("grade", "Hold an attempt against a norm");
-  command->add_option("cohort", o->database, "Cohort database")->required();
+  addCohortOption(*command, o->database)->required();
   command->add_option("--attempt", o->attempt, "Its uuid, or how that begins")->required();
   command->add_option("--norm", o->norm, "The norm; not needed where there is one alone");
   command->add_option("--norm-version", o->version, "Its version; default: the newest");

@@ -16,7 +16,9 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/metric_options.h"
 #include "apps/calot/motion_import.h"
+#include "apps/calot/results.h"
 #include "apps/calot/value_report.h"
+#include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/sources/column_map.h"
@@ -69,6 +71,7 @@ int import(const ImportOptions& o) {
     const ImportedFile result = importOne(file, o, map, metrics, database);
     codes.push_back(worstOf({result.code, reportFailures(result.external, file)}));
     progress.show(codes.size(), o.files.size());
+    Progress::erase();
     if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
     if (o.json) {
       list.push_back(jsonOf(file, result));
@@ -82,7 +85,7 @@ int import(const ImportOptions& o) {
     }
   }
   if (o.json) {
-    std::cout << list.dump(2) << '\n';
+    printResult("import", {{"files", list}});
   } else if (database) {
     analytics::printAttempts(*database, std::cout);
   }
@@ -117,16 +120,16 @@ void addImport(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_option("--participant", o->declaration.participant, "pseudonym")->check(wordOf("participant"));
   command->add_option("--mode", o->mode, "practice or assessment")
-      ->check(CLI::IsMember({"practice", "assessment"}))
+      ->check(oneOf({"practice", "assessment"}))
       ->capture_default_str();
   command->add_option("--purpose", o->declaration.purpose, "training, study, demo")
-      ->check(CLI::IsMember({"training", "study", "demo"}))
+      ->check(oneOf({"training", "study", "demo"}))
       ->capture_default_str();
   command->add_option("--handedness", o->declaration.handedness, "right, left, unknown")
-      ->check(CLI::IsMember({"right", "left", "unknown"}))
+      ->check(oneOf({"right", "left", "unknown"}))
       ->capture_default_str();
   command->add_option("--outcome", o->outcome, "completed, abandoned, stopped")
-      ->check(CLI::IsMember({"completed", "abandoned", "stopped"}))
+      ->check(oneOf({"completed", "abandoned", "stopped"}))
       ->capture_default_str();
   command->add_option("--start", o->declaration.startUtc, "when it began: 2026-01-31T12:00:00Z")
       ->check(wordOf("start"));

@@ -9,6 +9,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
 #include "apps/calot/inspect_text.h"
+#include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
@@ -150,7 +151,7 @@ void addInspect(CLI::App& app, Run& run) {
       recorder::Recording recording(options->file);
       const ordered_json d = describe(recording, chain);
       if (options->json) {
-        fmt::print("{}\n", d.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+        printResult("inspect", d);
       } else {
         fmt::print("{}", inspectText(d, terminalColumns()));
       }

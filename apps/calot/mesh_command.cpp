@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot mesh: tetrahedra from a closed surface, with an honest report.
+// calot mesh: tetrahedra from a closed surface, with an honest report; repaired and coarser surfaces for scenes.
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/calot/coarse_surface.h"
 #include "apps/calot/commands.h"
+#include "apps/calot/results.h"
+#include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/mesh_report.h"
+#include "recorder/formats/obj_file.h"
 #include "recorder/formats/surface_file.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/vtk.h"
@@ -20,51 +25,152 @@ struct MeshOptions {
   std::string input;
   std::string unit;
   int tetrahedra = 0;
-  std::string output;
-  bool json = false;
-  bool force = false;
+  std::string output, surfaceOutput;
+  int surfaceTriangles = 0;
+  bool repair = false, json = false, force = false;
 };
 
-int meshSurface(const MeshOptions& options) {
-  if (!recorder::isSurfaceName(options.input)) {
-    throw Error(ErrorKind::invalid, options.input + ": surfaces are read from .obj, .stl and .ply files");
-  }
-  if (!options.output.ends_with(".vtk"))
-    throw Error(ErrorKind::invalid, options.output + ": the output's name must end in .vtk");
-  recorder::refuseOutput(options.output, options.force);
+/// Longest side of an organ's bounds (m): what scenes accept.
+constexpr double leastSize = 0.001, mostSize = 1.0;
 
-  recorder::MeshReport report;
-  report.input = options.input;
-  report.unit = options.unit;
-  const TriangleMesh surface = recorder::readSurface(options.input, recorder::parseLengthUnit(options.unit));
-  report.found = inspectSurface(surface);
-  report.repair = repairSurface(surface);
-  report.stuffed = stuffToCount(report.repair.mesh, options.tetrahedra);
-  if (report.stuffed.ok()) {
-    recorder::writeVtk(options.output, report.stuffed.mesh, "calot mesh of " + options.input + ", metres",
-                       options.force);
-    report.output = options.output;
+void checkFiles(const MeshOptions& o) {
+  if (!recorder::isSurfaceName(o.input))
+    throw Error(ErrorKind::invalid, o.input + ": surfaces are read from .obj, .stl and .ply files");
+  if (o.output.empty() && o.surfaceOutput.empty())
+    throw Error(ErrorKind::invalid, "mesh: -o F.vtk writes tetrahedra, --surface-output F.obj the surface");
+  if (!o.output.empty() && !o.output.ends_with(".vtk"))
+    throw Error(ErrorKind::invalid, o.output + ": the output's name must end in .vtk");
+  if (!o.output.empty() && o.tetrahedra == 0)
+    throw Error(ErrorKind::invalid, "mesh: --tetrahedra is wanted, the number of them");
+  if (!o.surfaceOutput.empty() && !o.surfaceOutput.ends_with(".obj"))
+    throw Error(ErrorKind::invalid, o.surfaceOutput + ": the surface's name must end in .obj");
+  for (const std::string& file : {o.output, o.surfaceOutput}) {
+    if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
-  fmt::print("{}", options.json ? recorder::meshReportJson(report) : recorder::meshReportText(report));
-  if (!report.stuffed.ok()) throw Error(ErrorKind::refused, options.input + ": " + report.stuffed.error);
+}
+
+/// A surface of a size that no organ has, and which units would make it one.
+void checkUnit(const MeshOptions& o, const SurfaceReport& found) {
+  if (found.triangles == 0) return;
+  const double size = (found.box.upper - found.box.lower).maxCoeff();
+  if (size >= leastSize && size <= mostSize) return;
+  const double own = o.unit == "m" ? 1.0 : o.unit == "cm" ? 0.01 : 0.001;
+  std::string fitting;
+  for (const auto& [name, length] : {std::pair{"m", 1.0}, std::pair{"cm", 0.01}, std::pair{"mm", 0.001}}) {
+    const double other = size / own * length;
+    if (other >= leastSize && other <= mostSize)
+      fitting += fmt::format("{}--unit {} ({:.4g} mm)", fitting.empty() ? "" : " or ", name, 1000.0 * other);
+  }
+  throw Error(ErrorKind::invalid, fmt::format("{}: {:.4g} m long in {}; an organ is 1 mm to 1 m long{}", o.input, size,
+                                              o.unit, fitting.empty() ? std::string() : ": " + fitting + " would fit"));
+}
+
+/// Why a surface has no inside. Empty: it has one.
+std::string openFault(const MeshOptions& o, const recorder::MeshReport& report, const SurfaceReport& now) {
+  if (now.openEdges > 0) {
+    std::string holes;
+    std::size_t left = 0;
+    for (const SurfaceHole& hole : report.holes) {
+      if (hole.area > 0.0) continue;
+      if (++left <= 3) holes += (holes.empty() ? ": " : "; ") + recorder::describe(hole);
+    }
+    if (left > 3) holes += "; ...";
+    return fmt::format("the surface is open: {} edges, {} holes{}{}", now.openEdges, left, holes,
+                       o.repair ? "" : "; --repair fills holes");
+  }
+  if (now.nonManifoldEdges > 0)
+    return fmt::format("{} edges have more than two triangles: what is inside there is not defined",
+                       now.nonManifoldEdges);
+  return {};
+}
+
+void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, recorder::MeshReport& report) {
+  TriangleMesh written = surface;
+  if (o.surfaceTriangles > 0) {
+    CoarseSurface coarse = coarseSurface(surface, o.surfaceTriangles);
+    if (!coarse.error.empty()) {
+      report.faults.push_back(coarse.error);
+      return;
+    }
+    written = std::move(coarse.mesh);
+  }
+  if (!o.output.empty()) {
+    report.stuffed = stuffToCount(surface, o.tetrahedra);
+    if (!report.stuffed.ok()) {
+      report.faults.push_back(report.stuffed.error);
+      return;
+    }
+    recorder::writeVtk(o.output, report.stuffed.mesh, "calot mesh of " + o.input + ", metres", o.force);
+    report.output = o.output;
+  }
+  if (o.surfaceOutput.empty()) return;
+  recorder::writeObj(o.surfaceOutput, written, "calot mesh of " + o.input + ", metres", o.force);
+  report.surfaceOutput = o.surfaceOutput;
+  report.surfaceTriangles = written.triangles();
+  report.surfaceOutputVolume = signedVolume(written);
+}
+
+int meshSurface(const MeshOptions& o) {
+  checkFiles(o);
+  recorder::MeshReport report;
+  report.input = o.input;
+  report.unit = o.unit;
+  const TriangleMesh surface = recorder::readSurface(o.input, recorder::parseLengthUnit(o.unit));
+  report.found = inspectSurface(surface);
+  checkUnit(o, report.found);
+  report.repair = repairSurface(surface);
+  TriangleMesh whole = report.repair.mesh;
+  if (o.repair) {
+    HoleFilling filling = fillHoles(whole);
+    report.holes = std::move(filling.holes);
+    // Once more: only of a closed surface is it known what is outside.
+    SurfaceRepair closed = repairSurface(filling.mesh);
+    report.repair.flippedTriangles += closed.flippedTriangles;
+    whole = std::move(closed.mesh);
+  } else {
+    report.holes = findHoles(whole);
+  }
+  if (const std::string fault = openFault(o, report, inspectSurface(whole)); !fault.empty()) {
+    report.faults.push_back(fault);
+  } else {
+    report.crossing = findSelfCrossing(whole);
+    writeOutputs(o, whole, report);
+  }
+  if (o.json) {
+    printResult("mesh", nlohmann::ordered_json::parse(recorder::meshReportJson(report)));
+  } else {
+    fmt::print("{}", recorder::meshReportText(report));
+    std::fflush(stdout);
+  }
+  for (const std::string& warning : recorder::meshWarnings(report))
+    fmt::print(stderr, "calot: warning: {}: {}\n", o.input, warning);
+  if (!report.faults.empty()) throw Error(ErrorKind::refused, o.input + ": " + report.faults.front());
   return static_cast<int>(ExitCode::yes);
 }
 
 }  // namespace
 
 void addMesh(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("mesh", "Fill a closed surface with tetrahedra (isosurface stuffing)");
+  CLI::App* command = app.add_subcommand(
+      "mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene");
   const auto options = std::make_shared<MeshOptions>();
   command->add_option("surface", options->input, "the surface, a .obj, .stl or .ply file")->required();
   command->add_option("--unit", options->unit, "of the file's coordinates: m, cm or mm")
       ->required()
-      ->check(CLI::IsMember({"m", "cm", "mm"}));
+      ->check(oneOf({"m", "cm", "mm"}));
   command->add_option("--tetrahedra", options->tetrahedra, "how many are wanted")
-      ->required()
       ->check(CLI::Range(12, maxTetrahedronCount));
-  command->add_option("-o,--output", options->output, "the mesh to write, a .vtk file")->required();
+  command->add_option("-o,--output", options->output, "the mesh to write, a .vtk file");
+  CLI::Option* surface = command->add_option("--surface-output", options->surfaceOutput,
+                                             "the closed surface to write, a .obj file in metres, for scenes");
+  command
+      ->add_option("--surface-triangles", options->surfaceTriangles,
+                   "make that surface anew with about so many triangles")
+      ->check(CLI::Range(100, 1'000'000))
+      ->needs(surface);
+  command->add_flag("--repair", options->repair, "fill holes");
   command->add_flag("--json", options->json, "print the report as JSON");
-  command->add_flag("--force", options->force, "replace a file that is there");
+  command->add_flag("--force", options->force, "replace files that are there");
   command->callback([options, &run] { run = [options] { return meshSurface(*options); }; });
 }
 

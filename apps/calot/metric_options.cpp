@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/calot/environment.h"
 #include "apps/common/advice.h"
 #include "recorder/errors.h"
 
@@ -54,6 +55,7 @@ void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const std
 ExitCode reportFailures(const analytics::MetricOutcomes& outcomes, const std::string& attempt) {
   std::vector<ExitCode> codes{ExitCode::yes};
   for (const Error& e : outcomes.failures) {
+    Progress::erase();
     fmt::print(stderr, "calot: {} (of {}; no value of it is stored)\n", messageOf(e), attempt);
     codes.push_back(codeOf(e.kind()));
   }

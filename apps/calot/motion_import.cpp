@@ -13,6 +13,7 @@
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/manifest_faults.h"
+#include "apps/calot/results.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
 #include "recorder/errors.h"
@@ -145,7 +146,7 @@ int importManifest(const ManifestOptions& o) {
     }
   }
   if (o.json) {
-    std::cout << list.dump(2) << '\n';
+    printResult("import", {{"files", list}});
   } else {
     printSummary(manifest, counts, practice);
   }

@@ -10,6 +10,7 @@
 
 #include "analytics/assessment/angoff_judges.h"
 #include "analytics/report/report_table.h"
+#include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 
 namespace calot::apps {
@@ -42,15 +43,13 @@ int judgeByAngoff(const AngoffOptions& o) {
     items.push_back({{"item", a.items[item]}, {"mean", sum / judges}, {"least", least}, {"most", most}});
   }
   if (o.json) {
-    std::cout << nlohmann::ordered_json{{"judges", a.judges},
-                                        {"items", items},
-                                        {"cut", a.cut.cut},
-                                        {"error", a.cut.error},
-                                        {"lower", a.cut.interval.lower},
-                                        {"upper", a.cut.interval.upper},
-                                        {"needed", a.needed}}
-                     .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << '\n';
+    printResult("norm-angoff", {{"judges", a.judges},
+                                {"items", items},
+                                {"cut", a.cut.cut},
+                                {"error", a.cut.error},
+                                {"lower", a.cut.interval.lower},
+                                {"upper", a.cut.interval.upper},
+                                {"needed", a.needed}});
     return static_cast<int>(ExitCode::yes);
   }
   analytics::printTable(table, std::cout);

@@ -16,9 +16,12 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_table.h"
 #include "analytics/report/study_tables.h"
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/norm_angoff.h"
+#include "apps/calot/results.h"
+#include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
@@ -176,7 +179,7 @@ int list(NormOptions& o) {
                                                                 own.members - own.passed, own.members));
   }
   if (o.json) {
-    std::cout << rows.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    printResult("norms", {{"norms", rows}});
   } else {
     std::cout << (text.empty() ? "no norms\n" : text);
   }
@@ -186,7 +189,7 @@ int list(NormOptions& o) {
 int show(NormOptions& o) {
   const analytics::Norm norm = analytics::AssessmentDatabase(o.database, Access::read).norm(o.name, o.version);
   if (o.json) {
-    std::cout << jsonOf(norm).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    printResult("norm", jsonOf(norm));
   } else {
     print(norm);
   }
@@ -237,10 +240,10 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
   for (const char* other : {"--groups", "--better", "--judged-by", "--protocol"})
     form->excludes(command.get_option(other));
   command.add_option("--group-by", o.groupBy, "What makes the groups")
-      ->check(CLI::IsMember({"performer", "group"}))
+      ->check(oneOf({"performer", "group"}))
       ->capture_default_str();
   command.add_option("--attempt-rule", o.attemptRule, "Of a participant's several attempts the first")
-      ->check(CLI::IsMember({"first"}));
+      ->check(oneOf({"first"}));
   command.add_option("--key", who.key, "Only attempts of this comparability key");
   command.add_flag("--include-synthetic", who.includeSynthetic, "Take in what performers made (watermarked)");
   command.add_flag("--include-practice", who.includePractice, "Take in attempts in practice mode");
@@ -262,7 +265,7 @@ void addNorm(CLI::App& app, Run& run) {
   command->require_subcommand(1);
   const auto add = [&](const char* name, const char* what, int (*call)(NormOptions&)) {
     CLI::App* sub = command->add_subcommand(name, what);
-    sub->add_option("cohort", o->database, "Cohort database")->required();
+    addCohortOption(*sub, o->database)->required();
     sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
     return sub;
   };

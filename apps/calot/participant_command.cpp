@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
+#include "apps/calot/cohort_lists.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/withdraw_command.h"
 #include "apps/common/exit_code.h"
@@ -60,8 +61,9 @@ void addOptions(CLI::App* command, const std::shared_ptr<ParticipantOptions>& op
 }  // namespace
 
 void addParticipant(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("participant", "Add, change or withdraw participants of a cohort");
+  CLI::App* command = app.add_subcommand("participant", "List, add, change or withdraw participants of a cohort");
   command->require_subcommand(1);
+  addParticipantList(*command, run);
   addWithdraw(*command, run);
   addKey(*command, run);
 

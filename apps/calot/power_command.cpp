@@ -15,6 +15,8 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/power_plan.h"
+#include "apps/calot/results.h"
+#include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
@@ -106,6 +108,7 @@ int power(PowerOptions& o) {
     if (reached && enough == 0) enough = n;
     progress.show(results.size(), sizes.size());
   }
+  Progress::erase();
   if (!o.json) {
     print(o, planned, results, enough);
     return static_cast<int>(ExitCode::yes);
@@ -134,7 +137,7 @@ int power(PowerOptions& o) {
     row["untestable"] = r.power.untestable;
     j["sizes"].push_back(row);
   }
-  std::cout << j.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  printResult("power", j);
   return static_cast<int>(ExitCode::yes);
 }
 
@@ -154,7 +157,7 @@ void addPower(CLI::App& app, Run& run) {
                    "NAME:MEAN,SD,MEAN,SD of the first and the second group; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--shape", o->shape, "Of --effect and --checkpoint")
-      ->check(CLI::IsMember({"normal", "lognormal"}))
+      ->check(oneOf({"normal", "lognormal"}))
       ->capture_default_str();
   command->add_option("--n", o->sizes, "People in the first group: FROM:TO:STEP, A,B,C or one number")
       ->capture_default_str();
@@ -168,7 +171,7 @@ void addPower(CLI::App& app, Run& run) {
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command->add_option("--adjustment", o->adjustment, "Of the p values of all checkpoints")
-      ->check(CLI::IsMember({"holm", "benjamini-hochberg", "none"}))
+      ->check(oneOf({"holm", "benjamini-hochberg", "none"}))
       ->capture_default_str();
   command->add_option("--level", o->level, "Level of significance")
       ->check(CLI::Range(0.0001, 0.5))

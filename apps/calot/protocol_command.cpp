@@ -13,8 +13,10 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/statistics/two_groups.h"
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/results.h"
 #include "apps/calot/study_options.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
@@ -94,7 +96,7 @@ int listShipped(const ProtocolOptions& o) {
             '\n';
   }
   if (o.json) {
-    std::cout << rows.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    printResult("protocols", {{"protocols", rows}});
   } else {
     std::cout << (text.empty() ? "no protocols (CALOT_ASSETS names the folder that has them)\n" : text);
   }
@@ -115,7 +117,7 @@ int list(const ProtocolOptions& o) {
                         p.sha256);
   }
   if (o.json) {
-    std::cout << rows.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    printResult("protocols", {{"protocols", rows}});
   } else {
     std::cout << (text.empty() ? "no protocols\n" : text);
   }
@@ -138,18 +140,18 @@ void addProtocol(CLI::App& app, Run& run) {
   checked->add_option("protocol", o->protocol, file)->required();
   CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerIt);
   registered->add_option("protocol", o->protocol, file)->required();
-  registered->add_option("cohort", o->database, "Cohort database; made where there is none")->required();
+  addCohortOption(*registered, o->database, "Cohort database; made where there is none")->required();
   registered->add_option("--by", o->by, "Who registers it")->required();
   CLI::App* locked = add("lock", "Fix a study's analysis, after which its groups are named", lock);
   locked->add_option("protocol", o->protocol, file)->required();
-  locked->add_option("cohort", o->database, "Cohort database")->required();
+  addCohortOption(*locked, o->database)->required();
   locked->add_option("--by", o->by, "Who locks it")->required();
   locked->add_option("--cohort-name", o->study.cohortName, "As the study's option of this name");
   locked->add_option("--key", o->study.cohort.key, "As the study's option of this name");
   locked->add_flag("--mix-keys", o->study.cohort.mixKeys, "As the study's option of this name");
   locked->add_flag("--phases", o->study.cohort.includePhases, "As the study's option of this name");
   CLI::App* listed = add("list", "List the protocols that a cohort holds, or those that come with the program", list);
-  listed->add_option("cohort", o->database, "Cohort database; none: what comes with the program");
+  addCohortOption(*listed, o->database, "Cohort database; none: what comes with the program");
   listed->add_flag("--json", o->json, "Print JSON");
 }
 

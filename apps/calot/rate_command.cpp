@@ -13,9 +13,11 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/ratings.h"
 #include "analytics/report/ratings_json.h"
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/rate_files.h"
+#include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
@@ -61,7 +63,7 @@ int listForms(const RateOptions& o) {
                     {"most", form.most},
                     {"items", items}});
   }
-  if (o.json) std::cout << rows.dump(2) << '\n';
+  if (o.json) printResult("forms", {{"forms", rows}});
   return static_cast<int>(ExitCode::yes);
 }
 
@@ -131,7 +133,7 @@ int show(const RateOptions& o) {
   const std::vector<analytics::FormReport> reports =
       analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
   if (o.json) {
-    std::cout << analytics::ratingsJson(reports).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    printResult("ratings", {{"forms", analytics::ratingsJson(reports)}});
     return static_cast<int>(ExitCode::yes);
   }
   if (reports.empty()) std::cout << "no ratings\n";
@@ -148,7 +150,7 @@ int show(const RateOptions& o) {
 void addRate(CLI::App& app, Run& run) {
   const auto o = std::make_shared<RateOptions>();
   CLI::App* command = app.add_subcommand("rate", "Store and summarise what raters and participants judge, by forms");
-  command->add_option("cohort", o->database, "Cohort database");
+  addCohortOption(*command, o->database);
   command->add_flag("--forms", o->forms, "List the forms that come with the program");
   command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
   command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");

@@ -11,6 +11,7 @@
 #include "analytics/intake/rating_manifest.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/manifest_faults.h"
+#include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 
 namespace calot::apps {
@@ -32,7 +33,7 @@ int storeRatingManifest(const std::string& cohort, const std::string& manifest, 
                                      {"added", stored.added},
                                      {"unchanged", stored.unchanged},
                                      {"replaced", stored.replaced}};
-    std::cout << row.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    printResult("rate-manifest", row);
   } else {
     std::cout << fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", manifest, read.rows.size(),
                              stored.added, stored.unchanged, stored.replaced);

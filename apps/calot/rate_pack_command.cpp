@@ -17,6 +17,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/folder_output.h"
 #include "analytics/report/rating_page.h"
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/pack_films.h"
 #include "apps/calot/rate_files.h"
@@ -137,7 +138,7 @@ CLI::App* addRatePack(CLI::App& rate, Run& run) {
   const auto o = std::make_shared<PackOptions>();
   CLI::App* command = rate.add_subcommand(
       "pack", "Pack films and a form for raters, under random names and in random order; the key stays in the cohort");
-  command->add_option("cohort", o->database, "Cohort database")->required();
+  addCohortOption(*command, o->database)->required();
   command->add_option("--form", o->form, "The form to fill in: its name, or a file")->required();
   command
       ->add_option("--films", o->films,

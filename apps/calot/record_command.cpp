@@ -10,6 +10,7 @@
 #include "apps/calot/source_options.h"
 #include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
+#include "apps/calot/wrong_word.h"
 #include "recorder/attempt.h"
 #include "recorder/errors.h"
 #include "recorder/formats/scene_file.h"
@@ -74,6 +75,7 @@ int record(const RecordOptions& o) {
   const recorder::RunReport report = recorder::runAttempt(session, *source, run);
   writer.finish();
   prepared->save();
+  Progress::erase();
   if (!o.json) tellDevice(*source);
   return tell({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live},
               o.json);
@@ -95,13 +97,13 @@ void addRecord(CLI::App& app, Run& run) {
   command->add_option("--station", o->station, "name of this training station");
   addStationKey(*command, o->stationKey);
   command->add_option("--purpose", o->purpose, "training, study, demo, golden")
-      ->check(CLI::IsMember({"training", "study", "demo", "golden"}))
+      ->check(oneOf({"training", "study", "demo", "golden"}))
       ->capture_default_str();
   command->add_option("--handedness", o->handedness, "right, left, unknown")
-      ->check(CLI::IsMember({"right", "left", "unknown"}))
+      ->check(oneOf({"right", "left", "unknown"}))
       ->capture_default_str();
   command->add_option("--mode", o->mode, "practice or assessment")
-      ->check(CLI::IsMember({"practice", "assessment"}))
+      ->check(oneOf({"practice", "assessment"}))
       ->capture_default_str();
   command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
   command->add_flag("--live", o->live, "run at real time with the haptic ticks on a thread of their own, 1 kHz");

@@ -9,9 +9,11 @@
 
 #include "analytics/regrade.h"
 #include "analytics/regrade_shares.h"
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/regrade_report.h"
+#include "apps/calot/results.h"
 #include "apps/calot/share_options.h"
 #include "recorder/errors.h"
 
@@ -33,8 +35,9 @@ std::vector<std::filesystem::path> placesOf(const RegradeOptions& o) {
 }
 
 void showRegrade(const analytics::Regrade& regrade, bool json) {
+  Progress::erase();
   if (json) {
-    std::cout << regradeJson(regrade).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    printResult("regrade", regradeJson(regrade));
   } else {
     printRegrade(regrade);
   }
@@ -84,7 +87,7 @@ void addRegrade(CLI::App& app, Run& run) {
   const auto o = std::make_shared<RegradeOptions>();
   CLI::App* command =
       app.add_subcommand("regrade", "Compute the derived values of a cohort anew, and show what changed");
-  command->add_option("cohort", o->cohort, "Cohort database")->required();
+  addCohortOption(*command, o->cohort)->required();
   command->add_option("recordings", o->places, "Recordings, or folders that hold them; default: the database's folder");
   addSharing(*command, o->share);
   command->add_option("--jobs", o->jobs, "Recordings at a time; 0: one for each processor")

@@ -9,6 +9,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/stop_request.h"
+#include "apps/calot/wrong_word.h"
 #include "gui/film/film.h"
 #include "recorder/errors.h"
 #include "recorder/recording/reader.h"
@@ -86,6 +87,7 @@ int render(const RenderOptions& o) {
     if (stopRequested()) throw Error(ErrorKind::failure, o.output + ": stopped before its end; nothing is left of it");
     bar.show(done, of);
   });
+  Progress::erase();
   fmt::print("{}: {} frames, {:.2f} s\n", o.output, frames, static_cast<double>(frames) / settings.fps);
   return 0;
 }
@@ -104,16 +106,16 @@ void addRender(CLI::App& app, Run& run) {
   command->add_option("--speed", o->speed, "of a film: recorded seconds in one of its seconds")->capture_default_str();
   command->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command->add_option("--quality", o->quality, "film: all effects; interactive: fast (default: film for pictures)")
-      ->check(CLI::IsMember({"film", "interactive"}));
+      ->check(oneOf({"film", "interactive"}));
   command
       ->add_option("--graphics", o->graphics,
                    "what draws: software (the same bytes each time), card, auto (a card where there is one)")
-      ->check(CLI::IsMember(gui::graphicsWords()))
+      ->check(oneOf(gui::graphicsWords()))
       ->capture_default_str();
   command->add_option("--overlay", o->overlay, "any of time,phase,checkpoints,events,tools");
   command->add_option("--beside", o->beside, "another recording, in the right half");
   command->add_option("--align", o->align, "with --beside: both from the start, or phase by phase")
-      ->check(CLI::IsMember({"start", "phase"}));
+      ->check(oneOf({"start", "phase"}));
   command->add_option("--cohort", o->cohort, "cohort database that notes the picture, for withdrawals");
   command->add_flag("--anyway", o->anyway,
                     "draw recordings of a simulation version without an engine, and changed ones, too: with a mark");

@@ -11,6 +11,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
+#include "apps/calot/results.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/replay.h"
@@ -24,13 +25,13 @@ struct ReplayOptions {
   std::string junit, engine;
   std::vector<std::size_t> segments;  ///< first and last; empty: all
   unsigned threads = 1, jobs = 1;
-  bool anyway = false, apart = false, json = false;
+  bool anyway = false, apart = false, json = false, force = false, skipUndecided = false;
 };
 
 int replay(const ReplayOptions& o) {
   if (!o.segments.empty() && o.files.size() > 1)
     throw Error(ErrorKind::invalid, "--segments are those of one recording: name one");
-  if (!o.junit.empty()) recorder::refuseOutput(o.junit, true);
+  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
   Progress progress(single ? "replaying, step" : "replaying, recordings", o.json);
@@ -64,12 +65,12 @@ int replay(const ReplayOptions& o) {
   for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back(work);
   work();
   for (std::thread& t : threads) t.join();
-  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports);
+  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot replay", o.skipUndecided, o.force});
   if (failure) std::rethrow_exception(failure);
   if (o.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const recorder::ReplayReport& r : reports) list.push_back(reportJson(r));
-    std::cout << list.dump(2) << '\n';
+    printResult("replay", {{"recordings", list}});
   } else {
     for (const recorder::ReplayReport& r : reports) printReport(r);
     const auto exact = std::count_if(reports.begin(), reports.end(), [](const recorder::ReplayReport& r) {
@@ -95,7 +96,7 @@ void addReplay(CLI::App& app, Run& run) {
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();
   command->add_option("--segments", o->segments, "verify these alone, FIRST LAST, numbered from 0")->expected(2);
-  command->add_option("--junit", o->junit, "write the result as JUnit XML");
+  addJunitOptions(*command, o->junit, o->skipUndecided, o->force);
   command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
   command->add_flag("--apart", o->apart,
                     "re-simulate in confined programs, as recordings of other simulation versions are");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/calot/environment.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
 #include "recorder/replay_words.h"
@@ -10,6 +11,7 @@
 namespace calot::apps {
 
 void printReport(const recorder::ReplayReport& r) {
+  Progress::erase();
   if (r.verdict == recorder::ReplayVerdict::exact) {
     fmt::print("{}: bit-exact{}, {:.2f} s ({} steps), {:.1f} x real time\n", r.path.string(),
                r.complete ? "" : ", incomplete", r.seconds, r.steps,
@@ -26,6 +28,15 @@ void printReport(const recorder::ReplayReport& r) {
 
 nlohmann::ordered_json missesJson(const recorder::StepMisses& m) {
   return {{"steps", m.any}, {"solver", m.solver}, {"contact", m.contact}, {"held_back", m.heldBack}};
+}
+
+void addJunitOptions(CLI::App& command, std::string& file, bool& skipUndecided, bool& force) {
+  CLI::Option* junit = command.add_option("--junit", file, "write the result as JUnit XML");
+  command
+      .add_flag("--skip-other-versions", skipUndecided,
+                "in the JUnit XML, recordings of another simulation version are skipped, not errors (still exit 5)")
+      ->needs(junit);
+  command.add_flag("--force", force, "replace the JUnit XML if it is there")->needs(junit);
 }
 
 nlohmann::json reportJson(const recorder::ReplayReport& r) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "apps/common/exit_code.h"
@@ -12,6 +14,9 @@ namespace calot::apps {
 /// "R.h5: bit-exact, 46.70 s (4670 steps), 12.3 x real time", and a line more where steps missed a tolerance; what is
 /// not exact goes to stderr.
 void printReport(const recorder::ReplayReport& report);
+
+/// Adds `--junit`, `--skip-other-versions` and `--force`.
+void addJunitOptions(CLI::App& command, std::string& file, bool& skipUndecided, bool& force);
 
 nlohmann::json reportJson(const recorder::ReplayReport& report);
 

@@ -6,7 +6,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
+#include "apps/calot/results.h"
 #include "recorder/errors.h"
 #include "recorder/words.h"
 
@@ -38,7 +40,7 @@ void printJson(const FinishedRun& run, double seconds) {
     out["arenas_grown"] = r.arenasGrown;
     out["force_disagreements"] = r.disagreements;
   }
-  std::cout << out.dump(2) << '\n';
+  printResult("record", out);
 }
 
 void printText(const FinishedRun& run, double seconds) {
@@ -63,6 +65,7 @@ void printText(const FinishedRun& run, double seconds) {
 }  // namespace
 
 int tell(const FinishedRun& run, bool json) {
+  Progress::erase();
   const double seconds = static_cast<double>(run.report.steps) * run.stepSeconds;
   if (json) {
     printJson(run, seconds);

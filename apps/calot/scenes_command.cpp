@@ -10,6 +10,7 @@
 #include "analytics/report/text_table.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
@@ -64,7 +65,7 @@ void addCounts(const Model& model, json& row) {
   for (std::size_t i = 0; i < model.fat().size(); ++i) {
     const FatModel& body = *model.fat()[i];
     fat.push_back({{"name", model.scene().fat[i].name},
-                   {"cellSize", body.lattice().cell()},
+                   {"cell_size_m", body.lattice().cell()},
                    {"hexahedra", body.solid().cubes().size()}});
   }
   row["fat"] = fat;
@@ -81,14 +82,14 @@ void printJson(std::vector<recorder::LoadedScene> scenes) {
     json row = {{"name", scene.description.name},
                 {"version", versionOf(scene.description)},
                 {"summary", scene.summary},
-                {"ticksPerStep", scene.description.ticksPerStep}};
+                {"ticks_per_step", scene.description.ticksPerStep}};
     const std::string name = scene.description.name;
     const Model::Built built = Model::build(std::move(scene.description));
     if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", name, built.error));
     addCounts(*built.model, row);
     list.push_back(std::move(row));
   }
-  fmt::print("{}\n", json{{"scenes", list}}.dump(2));
+  printResult("scenes", {{"scenes", list}});
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/shards/shard.h"
+#include "apps/calot/environment.h"
+#include "apps/calot/results.h"
 #include "apps/common/advice.h"
 
 namespace calot::apps {
@@ -54,7 +56,7 @@ void printPlan(const std::vector<analytics::PlannedShare>& plan, bool json) {
     out["shares"] = ordered_json::array();
     for (const analytics::PlannedShare& s : plan)
       out["shares"].push_back({{"shard", s.shard.number}, {"recordings", s.recordings}, {"seconds", s.seconds}});
-    std::cout << out.dump(2) << '\n';
+    printResult("plan", out);
     return;
   }
   const auto fewer = [](const auto& a, const auto& b) { return a.recordings < b.recordings; };
@@ -69,6 +71,7 @@ void printPlan(const std::vector<analytics::PlannedShare>& plan, bool json) {
 }
 
 void printShare(const ShareOptions& o, const analytics::ComputedShare& share, bool json) {
+  Progress::erase();
   const analytics::Shard shard = analytics::shardNamed(o.shard);
   if (json) {
     const ordered_json out = {{"values", o.valuesTo},
@@ -78,7 +81,7 @@ void printShare(const ShareOptions& o, const analytics::ComputedShare& share, bo
                               {"before", share.before},
                               {"missing", share.missing},
                               {"resimulation_seconds", share.resimulation}};
-    std::cout << out.dump(2) << '\n';
+    printResult("shard", out);
     return;
   }
   std::string text =

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/calot/stop_request.h"
+#include "apps/calot/wrong_word.h"
 #include "recorder/sources/devices/force/force_server.h"
 
 namespace calot::apps {
@@ -55,7 +56,7 @@ CLI::App* addSimulateDevice(CLI::App& devices, Run& run) {
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
   command->add_option("--hands", o->hands, "left, right or both")
-      ->check(CLI::IsMember({"left", "right", "both"}))
+      ->check(oneOf({"left", "right", "both"}))
       ->capture_default_str();
   command->add_option("--delay", o->delayMilliseconds, "before a force is shown, ms")
       ->check(CLI::Range(0.0, 50.0))

@@ -6,6 +6,7 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 #include "recorder/engine/state_fields.h"
 #include "recorder/errors.h"
@@ -96,7 +97,7 @@ int diff(const DiffOptions& o) {
       json["first"] = difference->first;
       json["second"] = difference->second;
     }
-    std::cout << json.dump(2) << '\n';
+    printResult("diff", json);
   } else if (difference) {
     fmt::print("{} index {}: {} and {}\n", difference->field, difference->index, difference->first, difference->second);
   } else {

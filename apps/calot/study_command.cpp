@@ -17,6 +17,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/design_options.h"
 #include "apps/calot/report_files.h"
+#include "apps/calot/results.h"
 #include "apps/calot/study_options.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
@@ -81,7 +82,7 @@ int runTwoGroups(ParsedStudyOptions& options) {
   writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
   if (options.json) {
-    std::cout << analytics::studyJson(study) << '\n';
+    printResult("study", nlohmann::ordered_json::parse(analytics::studyJson(study)));
   } else {
     print(study, options.all);
   }
@@ -96,7 +97,7 @@ int runDesign(ParsedStudyOptions& options) {
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);
   if (options.json) {
-    std::cout << analytics::designJson(report) << '\n';
+    printResult("design", nlohmann::ordered_json::parse(analytics::designJson(report)));
   } else {
     analytics::printDesign(report, std::cout);
   }

@@ -3,7 +3,9 @@
 
 #include <optional>
 
+#include "apps/calot/cohort_option.h"
 #include "apps/calot/environment.h"
+#include "apps/calot/wrong_word.h"
 #include "recorder/errors.h"
 
 namespace calot::apps {
@@ -11,7 +13,7 @@ namespace {
 
 void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
   std::vector<CLI::Option*> added;
-  added.push_back(command.add_option("cohort", options.database, "Cohort database"));
+  added.push_back(addCohortOption(command, options.database));
   CLI::Option* protocol = command.add_option(
       "--protocol", options.protocol,
       "The study's protocol, a file or the name of one that comes with the program; it makes the choices");
@@ -20,7 +22,7 @@ void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& tabl
   added.push_back(command
                       .add_option("--group-by", options.groupBy,
                                   "What makes the groups: the participants' group or the performers' profile")
-                      ->check(CLI::IsMember({"performer", "group"}))
+                      ->check(oneOf({"performer", "group"}))
                       ->capture_default_str());
   added.push_back(command.add_flag("--include-synthetic", options.cohort.includeSynthetic,
                                    "Take in what performers made (watermarked)"));
@@ -115,7 +117,7 @@ void addStudySource(CLI::App& command, StudySource& source) {
   command
       .add_option("--attempt-rule", source.attemptRule,
                   "One value of a participant's several attempts: the first, or the mean")
-      ->check(CLI::IsMember({"first", "mean"}));
+      ->check(oneOf({"first", "mean"}));
   command
       .add_option("--family", source.choices.family, "Rows whose p values are adjusted for each other (default: all)")
       ->delimiter(',')

@@ -14,6 +14,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/key_fault.h"
 #include "apps/calot/replay_report.h"
+#include "apps/calot/results.h"
 #include "apps/calot/share_options.h"
 #include "apps/calot/stop_request.h"
 #include "apps/common/advice.h"
@@ -87,7 +88,7 @@ void tellItem(const IntakeItem& item, const VerifyOptions& o) {
     if (item.fault) row["message"] = faultText(item);
     if (item.how == TakenIn::failed) row["retry_in_seconds"] = item.retryIn;
     if (!keyFault.empty()) row["key"] = keyFault;
-    fmt::print("{}\n", row.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    printResultLine("verify", row);
   } else {
     fmt::print("{}: {}{}{}\n", item.file, textOf(item), keyFault.empty() ? "" : "; warning: ", keyFault);
   }

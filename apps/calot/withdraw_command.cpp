@@ -14,6 +14,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/withdrawal_files.h"
 #include "apps/calot/passphrase.h"
+#include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 
@@ -127,7 +128,7 @@ void addWithdraw(CLI::App& participant, Run& run) {
   command->add_option("participant", o->pseudonym, "Pseudonym")->required();
   command->add_option("--cohort", o->cohort, "Cohort database")->required();
   command->add_option("--scope", o->scope, "research: all but training goes, the participant stays; all: everything")
-      ->check(CLI::IsMember({"research", "all"}))
+      ->check(oneOf({"research", "all"}))
       ->required();
   command->add_option("--recordings", o->folders, "Folder with recordings and films; may be repeated")
       ->allow_extra_args(false);

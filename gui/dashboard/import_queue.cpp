@@ -45,7 +45,7 @@ ImportResult importResultOf(const AssessProgram& program, const QString& file, i
     result.text = "the program that assesses it ended without an answer";
     return result;
   }
-  const QJsonObject row = QJsonDocument::fromJson(output).array().at(0).toObject();
+  const QJsonObject row = QJsonDocument::fromJson(output).object()["recordings"].toArray().at(0).toObject();
   if (row.isEmpty()) {
     result.text = lastLine(errors);
     if (result.text.isEmpty()) result.text = QString("no answer (exit code %1)").arg(exitCode);

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string_view>
 
 #include "recorder/errors.h"
+#include "recorder/formats/json_faults.h"
+#include "recorder/formats/nearest_word.h"
 
 namespace calot::recorder {
 namespace {
@@ -101,6 +104,29 @@ void JsonPlace::fail(const std::string& fault) const {
   throw Error(ErrorKind::damaged, Where{file_, pointer_.empty() ? "/" : pointer_}, fault);
 }
 
+namespace {
+
+thread_local JsonFaults* noting = nullptr;
+
+}  // namespace
+
+JsonFaults::JsonFaults() : outer_(noting) { noting = this; }
+
+JsonFaults::~JsonFaults() { noting = outer_; }
+
+void JsonFaults::note(const Error& fault) {
+  const bool known = std::any_of(found_.begin(), found_.end(),
+                                 [&](const Error& e) { return std::string_view(e.what()) == fault.what(); });
+  if (!known) found_.push_back(fault);
+}
+
+std::size_t JsonFaults::count() { return noting == nullptr ? 0 : noting->found_.size(); }
+
+void JsonFaults::report(const Error& fault) {
+  if (noting == nullptr) throw fault;
+  noting->note(fault);
+}
+
 JsonObject JsonPlace::object(const ObjectRule& rule) const { return {*this, rule}; }
 
 std::vector<JsonPlace> JsonPlace::list(std::size_t least, std::size_t most) const {
@@ -157,12 +183,17 @@ JsonObject::JsonObject(const JsonPlace& place, const ObjectRule& rule) : place_(
     if (!known) {
       std::string names;
       for (const KeyRule& k : rule.keys) names += (names.empty() ? "" : ", ") + k.key;
-      JsonPlace(value, place_.file_, place_.pointer_ + "/" + escaped(entry.key()))
-          .fail("unknown key; known are " + names);
+      std::vector<std::string> keys;
+      for (const KeyRule& k : rule.keys) keys.push_back(k.key);
+      JsonFaults::part([&] {
+        JsonPlace(value, place_.file_, place_.pointer_ + "/" + escaped(entry.key()))
+            .fail(fmt::format("unknown key{}; known are {}", didYouMean(entry.key(), keys), names));
+      });
     }
   }
   for (const KeyRule& k : rule.keys) {
-    if (k.required && !value.contains(k.key)) place_.fail(fmt::format("the key \"{}\" is missing", k.key));
+    if (k.required && !value.contains(k.key))
+      JsonFaults::part([&] { place_.fail(fmt::format("the key \"{}\" is missing", k.key)); });
   }
 }
 
@@ -180,23 +211,24 @@ bool JsonObject::has(const std::string& key) const {
 
 JsonPlace JsonObject::at(const std::string& key) const {
   static_cast<void>(ruleOf(key));
+  if (!place_.value_->contains(key)) place_.fail(fmt::format("the key \"{}\" is missing", key));
   return {place_.value_->at(key), place_.file_, place_.pointer_ + "/" + key};
 }
 
 void JsonObject::read(const std::string& key, double& out) const {
-  if (has(key)) out = at(key).number(ruleOf(key));
+  if (has(key)) JsonFaults::part([&] { out = at(key).number(ruleOf(key)); });
 }
 void JsonObject::read(const std::string& key, std::uint32_t& out) const {
-  if (has(key)) out = at(key).integer(ruleOf(key));
+  if (has(key)) JsonFaults::part([&] { out = at(key).integer(ruleOf(key)); });
 }
 void JsonObject::read(const std::string& key, bool& out) const {
-  if (has(key)) out = at(key).boolean();
+  if (has(key)) JsonFaults::part([&] { out = at(key).boolean(); });
 }
 void JsonObject::read(const std::string& key, Vec3& out) const {
-  if (has(key)) out = at(key).vector(ruleOf(key));
+  if (has(key)) JsonFaults::part([&] { out = at(key).vector(ruleOf(key)); });
 }
 void JsonObject::read(const std::string& key, std::string& out, std::size_t longest) const {
-  if (has(key)) out = at(key).text(longest);
+  if (has(key)) JsonFaults::part([&] { out = at(key).text(longest); });
 }
 
 }  // namespace calot::recorder

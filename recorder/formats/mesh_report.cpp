@@ -45,14 +45,23 @@ nlohmann::ordered_json inputJson(const MeshReport& report) {
   return json;
 }
 
-}  // namespace
+nlohmann::ordered_json holesJson(const MeshReport& report) {
+  nlohmann::ordered_json holes = nlohmann::ordered_json::array();
+  for (const SurfaceHole& hole : report.holes) {
+    holes.push_back({{"edges", hole.vertex.size()},
+                     {"centre_m", list(hole.centre)},
+                     {"perimeter_m", hole.perimeter},
+                     {"filled", hole.area > 0.0},
+                     {"area_m2", hole.area}});
+    if (!hole.fault.empty()) holes.back()["fault"] = hole.fault;
+  }
+  return holes;
+}
 
-std::string meshReportJson(const MeshReport& report) {
-  const StuffedMesh& stuffed = report.stuffed;
+/// What stuffToCount() found; of a mesh that nobody asked for, nothing.
+void addStuffed(nlohmann::ordered_json& json, const StuffedMesh& stuffed) {
   const StuffingReport& r = stuffed.report;
-  nlohmann::ordered_json json;
-  json["ok"] = stuffed.ok();
-  if (!stuffed.ok()) json["error"] = stuffed.error;
+  if (r.requested == 0) return;
   json["requested"] = r.requested;
   json["tetrahedra"] = r.tetrahedra;
   json["vertices"] = stuffed.mesh.vertex.size();
@@ -74,9 +83,70 @@ std::string meshReportJson(const MeshReport& report) {
   json["lost_components"] = r.lostComponents;
   json["dropped_pieces"] = r.droppedPieces;
   json["dropped_volume_m3"] = r.droppedVolume;
+}
+
+}  // namespace
+
+std::string meshReportJson(const MeshReport& report) {
+  nlohmann::ordered_json json;
+  json["ok"] = report.faults.empty();
+  if (!report.faults.empty()) json["error"] = report.faults.front();
+  addStuffed(json, report.stuffed);
   if (!report.output.empty()) json["output"] = report.output;
+  if (!report.surfaceOutput.empty()) {
+    json["surface_output"] = report.surfaceOutput;
+    json["surface_output_triangles"] = report.surfaceTriangles;
+    json["surface_output_volume_m3"] = report.surfaceOutputVolume;
+  }
+  json["holes"] = holesJson(report);
+  json["self_crossing_pairs"] = report.crossing.pairs;
+  json["warnings"] = meshWarnings(report);
   json["input"] = inputJson(report);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string describe(const SurfaceHole& hole) {
+  const Vec3 at = 1000.0 * hole.centre;
+  return fmt::format("{} edges around ({:.1f}, {:.1f}, {:.1f}) mm", hole.vertex.size(), at[0], at[1], at[2]);
+}
+
+std::vector<std::string> meshWarnings(const MeshReport& report) {
+  std::vector<std::string> warnings;
+  std::size_t filled = 0;
+  double area = 0.0;
+  for (const SurfaceHole& hole : report.holes) {
+    filled += hole.area > 0.0 ? 1 : 0;
+    area += hole.area;
+  }
+  if (filled > 0) {
+    warnings.push_back(fmt::format("{} hole{} filled with {:.1f} mm^2 of surface that the file has not", filled,
+                                   filled == 1 ? " was" : "s were", 1e6 * area));
+  }
+  const SurfaceRepair& repair = report.repair;
+  if (const int dropped = repair.droppedDegenerate + repair.droppedDuplicates; dropped > 0)
+    warnings.push_back(fmt::format("{} triangles were dropped: {}", dropped, repairSummary(repair)));
+  if (report.crossing.pairs > 0) {
+    const Vec3 at = 1000.0 * report.crossing.where;
+    warnings.push_back(
+        fmt::format("the surface crosses itself at {} pairs of triangles, first at ({:.1f}, {:.1f}, {:.1f}) mm",
+                    report.crossing.pairs, at[0], at[1], at[2]));
+  }
+  const StuffingReport& r = report.stuffed.report;
+  if (r.droppedPieces > 0) {
+    warnings.push_back(fmt::format("{} loose piece{} of the mesh left out ({:.3f} mL)", r.droppedPieces,
+                                   r.droppedPieces == 1 ? " was" : "s were", 1e6 * r.droppedVolume));
+  }
+  if (r.lostComponents > 0)
+    warnings.push_back(fmt::format("{} of {} components of the surface are not in the mesh", r.lostComponents,
+                                   report.found.components));
+  if (r.lostParts > 0) {
+    const Vec3 at = 1000.0 * r.lostWhere;
+    warnings.push_back(fmt::format(
+        "{:.2f} % of the surface, in {} thin part{}, is farther than {:.2f} mm from the mesh; worst at "
+        "({:.1f}, {:.1f}, {:.1f}) mm",
+        100.0 * r.lostArea, r.lostParts, r.lostParts == 1 ? "" : "s", 1000.0 * r.lostDistance, at[0], at[1], at[2]));
+  }
+  return warnings;
 }
 
 std::string repairSummary(const SurfaceRepair& repair) {
@@ -117,6 +187,16 @@ std::string meshReportText(const MeshReport& report) {
                    in.degenerateTriangles, in.duplicateTriangles, in.coincidentVertices, in.unusedVertices);
   }
   if (report.repair.changed()) fmt::format_to(out, "put right          {}\n", repairSummary(report.repair));
+  for (const SurfaceHole& hole : report.holes) {
+    fmt::format_to(out, "hole               {}, {:.1f} mm round: {}\n", describe(hole), 1000.0 * hole.perimeter,
+                   hole.area > 0.0      ? fmt::format("filled with {:.1f} mm^2", 1e6 * hole.area)
+                   : hole.fault.empty() ? std::string("open")
+                                        : "not filled: " + hole.fault);
+  }
+  if (!report.surfaceOutput.empty()) {
+    fmt::format_to(out, "surface written    {}: {} triangles, {:.3f} mL, m\n", report.surfaceOutput,
+                   report.surfaceTriangles, 1e6 * report.surfaceOutputVolume);
+  }
   if (stuffed.mesh.tetrahedron.empty()) return text;
   fmt::format_to(out, "tetrahedra         {} of {} requested ({:+.1f} %)\n", r.tetrahedra, r.requested,
                  100.0 * (static_cast<double>(r.tetrahedra) / static_cast<double>(r.requested) - 1.0));

@@ -3,19 +3,28 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "sim/geometry/hole_filling.h"
 #include "sim/geometry/mesh_to_count.h"
+#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 
 namespace calot::recorder {
 
 struct MeshReport {
-  std::string input;     ///< the file's name
-  std::string unit;      ///< as given: m, cm, mm
-  std::string output;    ///< empty when nothing was written
-  SurfaceReport found;   ///< the surface as it was read
-  SurfaceRepair repair;  ///< repairs before meshing
-  StuffedMesh stuffed;   ///< the mesh, or why there is none
+  std::string input;                ///< the file's name
+  std::string unit;                 ///< as given: m, cm, mm
+  std::string output;               ///< empty when no mesh was written
+  SurfaceReport found;              ///< the surface as it was read
+  SurfaceRepair repair;             ///< repairs before meshing that invent nothing
+  std::vector<SurfaceHole> holes;   ///< of the repaired surface
+  SelfCrossing crossing;            ///< of the surface that is meshed
+  StuffedMesh stuffed;              ///< the mesh, or why there is none; without tetrahedra none was asked for
+  std::string surfaceOutput;        ///< empty when no surface was written
+  int surfaceTriangles = 0;         ///< of what was written
+  double surfaceOutputVolume = 0;   ///< m^3
+  std::vector<std::string> faults;  ///< why there is no mesh or surface
 };
 
 /// One JSON object (docs/reference/meshing.md lists its members), with a line break at the end.
@@ -26,5 +35,12 @@ std::string meshReportText(const MeshReport& report);
 
 /// Repairs of the surface, or empty: "12 vertices welded, 3 triangles turned".
 std::string repairSummary(const SurfaceRepair& repair);
+
+/// What the output lacks of the input, or has beyond it, each in a line: parts that were dropped or are too thin,
+/// holes that were filled, a surface that crosses itself.
+std::vector<std::string> meshWarnings(const MeshReport& report);
+
+/// "70 edges around (12.1, -3.4, 50.0) mm".
+std::string describe(const SurfaceHole& hole);
 
 }  // namespace calot::recorder

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "recorder/errors.h"
+#include "recorder/formats/json_faults.h"
 #include "recorder/formats/json_reader.h"
 #include "recorder/formats/scene_connective.h"
 #include "recorder/formats/scene_fat.h"
@@ -89,6 +90,56 @@ void checkStructureCount(const JsonObject& object) {
 
 }  // namespace
 
+namespace {
+
+/// What later tables name lies in earlier ones: where those have faults, these are not looked at.
+void readTissues(const JsonObject& object, const FetchAsset& fetch, LoadedScene& loaded) {
+  SceneDescription& scene = loaded.description;
+  const std::size_t before = JsonFaults::count();
+  JsonFaults::part([&] {
+    for (const JsonPlace& organ : object.at("organs").list(1, maxStructures))
+      JsonFaults::part([&] { scene.organs.push_back(readOrgan(organ, fetch)); });
+  });
+  if (JsonFaults::count() > before) return;
+  JsonFaults::part([&] { checkOrgans(object.at("organs"), scene.organs); });
+  JsonFaults::part([&] {
+    if (object.has("connective")) scene.connective = readConnective(object.at("connective"), scene.organs);
+  });
+  JsonFaults::part([&] {
+    if (object.has("retraction")) scene.retraction = readRetractions(object.at("retraction"), scene.organs);
+  });
+  const std::size_t beforeVessels = JsonFaults::count();
+  JsonFaults::part([&] {
+    if (object.has("vessels")) scene.vessels = readVessels(object.at("vessels"), scene.organs);
+  });
+  if (JsonFaults::count() > beforeVessels) return;
+  JsonFaults::part([&] {
+    if (object.has("fat")) {
+      scene.fat = readFat(object.at("fat"), scene.organs, scene.vessels, fetch, loaded.warnings);
+    }
+  });
+  if (JsonFaults::count() > before) return;
+  if (!statesRoles(object)) deriveRoles(scene);
+  JsonFaults::part([&] {
+    if (object.has("procedure")) scene.procedure = readProcedure(object.at("procedure"), scene);
+  });
+}
+
+void readSolver(const JsonObject& solver, SolverDescription& scene) {
+  solver.read("tolerance", scene.tolerance);
+  solver.read("speedTolerance", scene.speedTolerance);
+  solver.read("iterations", scene.iterations);
+  solver.read("responseTolerance", scene.responseTolerance);
+  solver.read("responseSpeedTolerance", scene.responseSpeedTolerance);
+  solver.read("contactTolerance", scene.contactTolerance);
+  solver.read("contactPasses", scene.contactPasses);
+  solver.read("gapTolerance", scene.gapTolerance);
+  solver.read("contactIterations", scene.contactIterations);
+  solver.read("sleeping", scene.sleeping);
+}
+
+}  // namespace
+
 LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   const FloatingPointScope environment;  // numbers are read and the camera is turned the same in every process
   const nlohmann::json json = parseStrictJson(file.bytes, file.name);
@@ -100,54 +151,44 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
 
   LoadedScene loaded;
   SceneDescription& scene = loaded.description;
-  scene.name = readName(object, "name");
-  const JsonObject version = object.at("version").object(sceneRule("version"));
-  version.read("major", scene.majorVersion);
-  version.read("minor", scene.minorVersion);
+  const auto part = [](auto&& work) { JsonFaults::part(work); };
+  part([&] { scene.name = readName(object, "name"); });
+  part([&] {
+    const JsonObject version = object.at("version").object(sceneRule("version"));
+    version.read("major", scene.majorVersion);
+    version.read("minor", scene.minorVersion);
+  });
   object.read("summary", loaded.summary, 500);
   object.read("ticksPerStep", scene.ticksPerStep);
   object.read("timeLimit", scene.timeLimit);
   object.read("gravity", scene.gravity);
 
-  const JsonObject workspace = object.at("workspace").object(sceneRule("workspace"));
-  workspace.read("lower", scene.workspace[0]);
-  workspace.read("upper", scene.workspace[1]);
-  if (!((scene.workspace[1] - scene.workspace[0]).array() >= 0.01).all()) {
-    workspace.at("upper").fail("every side of the workspace must be at least 0.01 m long");
-  }
-  scene.camera = readCamera(object.at("camera"), scene.verticalFieldOfView);
-  const JsonObject hands = object.at("hands").object(sceneRule("hands"));
-  for (std::size_t h = 0; h < handCount; ++h) scene.hands[h] = readHand(hands.at(handNames[h]), scene.workspace);
+  part([&] {
+    const JsonObject workspace = object.at("workspace").object(sceneRule("workspace"));
+    workspace.read("lower", scene.workspace[0]);
+    workspace.read("upper", scene.workspace[1]);
+    if (!((scene.workspace[1] - scene.workspace[0]).array() >= 0.01).all()) {
+      workspace.at("upper").fail("every side of the workspace must be at least 0.01 m long");
+    }
+  });
+  part([&] { scene.camera = readCamera(object.at("camera"), scene.verticalFieldOfView); });
+  part([&] {
+    const JsonObject hands = object.at("hands").object(sceneRule("hands"));
+    for (std::size_t h = 0; h < handCount; ++h)
+      part([&] { scene.hands[h] = readHand(hands.at(handNames[h]), scene.workspace); });
+  });
 
-  checkStructureCount(object);
-  for (const JsonPlace& organ : object.at("organs").list(1, maxStructures))
-    scene.organs.push_back(readOrgan(organ, fetch));
-  checkOrgans(object.at("organs"), scene.organs);
-  if (object.has("connective")) scene.connective = readConnective(object.at("connective"), scene.organs);
-  if (object.has("vessels")) scene.vessels = readVessels(object.at("vessels"), scene.organs);
-  if (object.has("fat")) {
-    scene.fat = readFat(object.at("fat"), scene.organs, scene.vessels, fetch, loaded.warnings);
-  }
-  if (!statesRoles(object)) deriveRoles(scene);
-
-  if (object.has("procedure")) scene.procedure = readProcedure(object.at("procedure"), scene);
-  if (object.has("retraction")) scene.retraction = readRetractions(object.at("retraction"), scene.organs);
-  if (object.has("clip")) scene.clip = readClip(object.at("clip"));
-  if (object.has("cautery")) scene.cautery = readCautery(object.at("cautery"));
-
-  if (object.has("solver")) {
-    const JsonObject solver = object.at("solver").object(sceneRule("solver"));
-    solver.read("tolerance", scene.solver.tolerance);
-    solver.read("speedTolerance", scene.solver.speedTolerance);
-    solver.read("iterations", scene.solver.iterations);
-    solver.read("responseTolerance", scene.solver.responseTolerance);
-    solver.read("responseSpeedTolerance", scene.solver.responseSpeedTolerance);
-    solver.read("contactTolerance", scene.solver.contactTolerance);
-    solver.read("contactPasses", scene.solver.contactPasses);
-    solver.read("gapTolerance", scene.solver.gapTolerance);
-    solver.read("contactIterations", scene.solver.contactIterations);
-    solver.read("sleeping", scene.solver.sleeping);
-  }
+  part([&] { checkStructureCount(object); });
+  readTissues(object, fetch, loaded);
+  part([&] {
+    if (object.has("clip")) scene.clip = readClip(object.at("clip"));
+  });
+  part([&] {
+    if (object.has("cautery")) scene.cautery = readCautery(object.at("cautery"));
+  });
+  part([&] {
+    if (object.has("solver")) readSolver(object.at("solver").object(sceneRule("solver")), scene.solver);
+  });
   return loaded;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "recorder/errors.h"
+#include "recorder/formats/nearest_word.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::recorder {
@@ -31,13 +32,15 @@ fs::path findScene(const std::string& name, const std::vector<fs::path>& roots) 
     throw Error(ErrorKind::invalid, Where{name}, "there is no such scene file");
   }
   std::string known;
+  std::vector<std::string> names;
   for (const fs::path& file : listScenes(roots)) {
     if (file.stem() == name) return file;
-    known += (known.empty() ? "" : ", ") + file.stem().string();
+    names.push_back(file.stem().string());
+    known += (known.empty() ? "" : ", ") + names.back();
   }
   throw Error(
       ErrorKind::invalid,
-      fmt::format("there is no scene \"{}\"; {}", name,
+      fmt::format("there is no scene \"{}\"{}; {}", name, didYouMean(name, names),
                   known.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)") : "there are " + known));
 }
 

@@ -4,8 +4,10 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "recorder/formats/json_reader.h"
+#include "recorder/formats/nearest_word.h"
 
 namespace calot::recorder {
 
@@ -24,8 +26,12 @@ Value readWord(const JsonObject& object, const std::string& key, const std::map<
   const std::string word = object.at(key).text(maxSceneName);
   if (const auto found = words.find(word); found != words.end()) return found->second;
   std::string known;
-  for (const auto& entry : words) known += (known.empty() ? "" : ", ") + entry.first;
-  object.at(key).fail("unknown word; known are " + known);
+  std::vector<std::string> names;
+  for (const auto& entry : words) {
+    known += (known.empty() ? "" : ", ") + entry.first;
+    names.push_back(entry.first);
+  }
+  object.at(key).fail("unknown word" + didYouMean(word, names) + "; known are " + known);
 }
 
 }  // namespace calot::recorder

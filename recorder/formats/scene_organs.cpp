@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "recorder/formats/json_faults.h"
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
@@ -34,15 +35,18 @@ AnchorDescription readAnchor(const JsonPlace& place) {
 OrganDescription readOrgan(const JsonPlace& place, const FetchAsset& fetch) {
   const JsonObject object = place.object(sceneRule("organ"));
   OrganDescription organ;
-  organ.name = readName(object, "name");
-  organ.appearance = readName(object, "appearance");
-  organ.role = readRole(object, {StructureRole::liver, StructureRole::gallbladder});
+  JsonFaults::part([&] { organ.name = readName(object, "name"); });
+  JsonFaults::part([&] { organ.appearance = readName(object, "appearance"); });
+  JsonFaults::part([&] { organ.role = readRole(object, {StructureRole::liver, StructureRole::gallbladder}); });
   object.read("tetrahedra", organ.tetrahedra);
   object.read("friction", organ.friction);
   object.read("burnThrough", organ.burnThrough);
-  organ.material = readMaterial(object.at("material"));
-  for (const JsonPlace& anchor : object.at("anchors").list(0, maxAnchors)) organ.anchors.push_back(readAnchor(anchor));
-  organ.surface = closedSurface(readMesh(object.at("mesh"), fetch), "an organ");
+  JsonFaults::part([&] { organ.material = readMaterial(object.at("material")); });
+  JsonFaults::part([&] {
+    for (const JsonPlace& anchor : object.at("anchors").list(0, maxAnchors))
+      JsonFaults::part([&] { organ.anchors.push_back(readAnchor(anchor)); });
+  });
+  JsonFaults::part([&] { organ.surface = closedSurface(readMesh(object.at("mesh"), fetch), "an organ"); });
   return organ;
 }
 

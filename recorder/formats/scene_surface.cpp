@@ -11,8 +11,31 @@
 #include "recorder/formats/scene_rules.h"
 #include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/surface_report.h"
+#include "sim/math/elementary.h"
 
 namespace calot::recorder {
+
+namespace {
+
+/// x' = scale R x + t, R by Rodrigues' formula from a rotation vector. Nothing is touched where nothing is asked for:
+/// scenes without these keys keep their bits.
+void placeMesh(const JsonObject& mesh, TriangleMesh& surface) {
+  if (!mesh.has("scale") && !mesh.has("rotation") && !mesh.has("translation")) return;
+  double scale = 1.0;
+  Vec3 rotation = Vec3::Zero(), translation = Vec3::Zero();
+  mesh.read("scale", scale);
+  mesh.read("rotation", rotation);
+  mesh.read("translation", translation);
+  const double angle = rotation.norm();
+  const Vec3 axis = angle > 0.0 ? Vec3(rotation / angle) : Vec3::UnitX();
+  const double c = cosine(angle), s = sine(angle);
+  for (Vec3& x : surface.vertex) {
+    const Vec3 turned = c * x + s * axis.cross(x) + (1.0 - c) * axis.dot(x) * axis;
+    x = scale * turned + translation;
+  }
+}
+
+}  // namespace
 
 NamedSurface readMesh(const JsonPlace& place, const FetchAsset& fetch) {
   const JsonObject mesh = place.object(sceneRule("mesh"));
@@ -21,7 +44,9 @@ NamedSurface readMesh(const JsonPlace& place, const FetchAsset& fetch) {
   const std::string name = readAssetName(mesh, "file");
   if (!isSurfaceName(name)) mesh.at("file").fail("surfaces are read from .obj, .stl and .ply files");
   const Asset& asset = fetch(name, mesh.at("file"));
-  return {parseSurface(asset.bytes, asset.name, unit), asset.name};
+  NamedSurface surface{parseSurface(asset.bytes, asset.name, unit), asset.name};
+  placeMesh(mesh, surface.mesh);
+  return surface;
 }
 
 SurfaceDescription closedSurface(NamedSurface surface, const char* what) {

@@ -9,6 +9,7 @@
 
 #include "recorder/errors.h"
 #include "recorder/formats/file_bytes.h"
+#include "recorder/formats/nearest_word.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
@@ -152,7 +153,7 @@ fs::path findPerformer(const std::string& name, const std::vector<fs::path>& roo
   for (const std::string& n : known) names += (names.empty() ? "" : ", ") + n;
   throw Error(
       ErrorKind::invalid,
-      fmt::format("there is no performer \"{}\"; {}", name,
+      fmt::format("there is no performer \"{}\"{}; {}", name, didYouMean(name, {known.begin(), known.end()}),
                   names.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)") : "there are " + names));
 }
 

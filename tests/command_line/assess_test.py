@@ -22,12 +22,12 @@ def attempts():
 class Assess(program.ProgramTest):
     def test_twice_is_once(self):
         cohort = self.path("c.db")
-        rows = json.loads(self.well("assess", "--json", *attempts(), "--cohort", cohort).out)
+        rows = json.loads(self.well("assess", "--json", *attempts(), "--cohort", cohort).out)["recordings"]
         self.assertEqual([r["stored"] for r in rows], ["added"] * 4)
         before = content(cohort)
         self.assertEqual(len(before["attempt"]), 4)
         self.assertGreater(len(before["checkpoint_value"]), 40)
-        rows = json.loads(self.well("assess", "--json", *reversed(attempts()), "--cohort", cohort).out)
+        rows = json.loads(self.well("assess", "--json", *reversed(attempts()), "--cohort", cohort).out)["recordings"]
         self.assertEqual([r["stored"] for r in rows], ["unchanged"] * 4)
         self.assertEqual(content(cohort), before)
 
@@ -42,7 +42,7 @@ class Assess(program.ProgramTest):
     def test_uncertainty_is_stored_once(self):
         cohort = self.path("c.db")
         r = program.skilled()
-        rows = json.loads(self.well("assess", "--json", "--uncertainty", r, "--cohort", cohort).out)
+        rows = json.loads(self.well("assess", "--json", "--uncertainty", r, "--cohort", cohort).out)["recordings"]
         values = {(c["name"], c["subject"]): c for c in rows[0]["checkpoints"] if c["value"] is not None}
         for value in values.values():
             interval = value["interval"]
@@ -55,11 +55,11 @@ class Assess(program.ProgramTest):
         self.assertNotEqual(force["step_effect"], 0.0)
         self.assertNotEqual(force["mesh_effect"], 0.0)
         before = content(cohort)
-        again = json.loads(self.well("assess", "--json", "--uncertainty", r, "--cohort", cohort).out)
+        again = json.loads(self.well("assess", "--json", "--uncertainty", r, "--cohort", cohort).out)["recordings"]
         self.assertEqual(again[0]["checkpoints"], rows[0]["checkpoints"])
         self.assertEqual(content(cohort), before)
         fresh = self.path("threads.db")
-        one = json.loads(self.well("assess", "--json", "--uncertainty", "--threads", 1, r, "--cohort", fresh).out)
+        one = json.loads(self.well("assess", "--json", "--uncertainty", "--threads", 1, r, "--cohort", fresh).out)["recordings"]
         self.assertEqual(one[0]["checkpoints"], rows[0]["checkpoints"], "at every thread count")
 
     def test_uncertainty_wants_a_cohort(self):
@@ -91,7 +91,7 @@ class Assess(program.ProgramTest):
         recording_file.flip_stored_byte(damaged, "/ticks/left/force", 0)
         answer = calot("assess", "--json", diverged, damaged, attempts()[2], "--cohort", cohort)
         self.assertEqual(answer.code, 4, answer)
-        self.assertEqual([r["stored"] for r in json.loads(answer.out)], ["added", "not stored", "added"])
+        self.assertEqual([r["stored"] for r in json.loads(answer.out)["recordings"]], ["added", "not stored", "added"])
         self.assertEqual(query(cohort, "SELECT file_name, verdict FROM recording JOIN verification USING (attempt) ORDER BY 1"),
                          [("diverged.h5", 1), (attempts()[2].name, 0)])
         self.assertEqual(query(cohort, "SELECT count(*) FROM checkpoint_value JOIN recording USING (attempt) "

@@ -89,7 +89,7 @@ class Protocols(Assessment):
         self.well("protocol", "register", protocol, self.database, "--by", "test")
         self.refused(3, "protocol", "register", self.write("p2.json", {**PROTOCOL, "level": 0.01}), self.database, "--by", "test",
                      names=("a changed protocol has a higher version",))
-        self.assertEqual(len(json.loads(self.well("protocol", "list", self.database, "--json").out)), 1)
+        self.assertEqual(len(json.loads(self.well("protocol", "list", self.database, "--json").out)["protocols"]), 1)
         said = " ".join(self.well("protocol", "check", "cholecystectomy-2014-table2").out.split())
         # .05 over eight; 2 / C(10, 5) is .0079, 2 / C(12, 6) is .0022.
         self.assertIn("needs p <= 0.00625 (0.05, Holm over 8). Groups of 6 and 6 are the smallest", said)
@@ -135,14 +135,14 @@ class Ratings(Assessment):
         for i, attempt in enumerate(self.attempts()):
             for r, rater in enumerate(("R1", "R2")):
                 self.well(*self.rate(attempt, rater, [1 + (i + r) % 5] * 5))
-        said = json.loads(self.well("rate", self.database, "--json").out)
+        said = json.loads(self.well("rate", self.database, "--json").out)["forms"]
         self.assertEqual((said[0]["form"], said[0]["filled"]), ("goals", 8))
         # Subjects 1 to 4 and 2 to 5: the raters differ by one throughout. S = 10/3, R = 2, E = 0:
         # ICC(2,1) = S / (S + 2 R / 4) = 10/13, of which the residual's rounding leaves nothing.
         self.assertAlmostEqual(said[0]["agreement"][0]["icc_2_1"]["value"], 10 / 13, 9)
         self.refused(3, *self.rate(self.attempts()[0], "R1", [3] * 5), names=("--force replaces",))
         self.well(*self.rate(self.attempts()[0], "R1", ["-", 3, 3, 3, 3], "--force"))
-        said = json.loads(self.well("rate", self.database, "--json").out)
+        said = json.loads(self.well("rate", self.database, "--json").out)["forms"]
         self.assertEqual(said[0]["incomplete"], 1)
         shown = self.well("rate", self.database).out
         self.assertIn("Agreement between raters on goals", shown)
@@ -152,7 +152,7 @@ class Ratings(Assessment):
         attempt = self.attempts()[0]
         answers = ",".join(f"{item}={score}" for item, score in zip(GOALS, (1, 2, 3, 4, "-")))
         self.well("rate", self.database, "--form", "goals", "--attempt", attempt, "--rater", "R1", "--answer", answers)
-        items = json.loads(self.well("rate", self.database, "--json").out)[0]["items"]
+        items = json.loads(self.well("rate", self.database, "--json").out)["forms"][0]["items"]
         given = [(sum(g["n"] for g in i["groups"]), sum(g["blank"] for g in i["groups"])) for i in items]
         self.assertEqual(given, [(1, 0)] * 4 + [(0, 1)])
 
@@ -166,7 +166,7 @@ class Ratings(Assessment):
                      self.write("a.json", [1, 2]), names=("a.json",))
         self.refused(2, "rate", self.database, "--rater", "R1", names=("--form",))
         self.refused(4, "rate", self.path("none.db"), names=("none.db",))
-        self.assertEqual(len(json.loads(self.well("rate", "--forms", "--json").out)), 4)
+        self.assertEqual(len(json.loads(self.well("rate", "--forms", "--json").out)["forms"]), 4)
 
 
 class Grades(Assessment):
@@ -223,7 +223,7 @@ class Grades(Assessment):
     def test_evidence_and_versions(self):
         self.well(*self.make())
         self.well(*self.make("--seed", 2))
-        self.assertEqual(len(json.loads(self.well("norm", "list", self.database, "--json").out)), 2)
+        self.assertEqual(len(json.loads(self.well("norm", "list", self.database, "--json").out)["norms"]), 2)
         document = self.path("v.txt")
         document.write_text("shown")
         self.well("norm", "evidence", self.database, "pipeline", "--file", document, "--statement", "Agrees with raters", "--by", "test")
@@ -252,7 +252,7 @@ class Grades(Assessment):
         self.refused(3, "grade", self.database, "--attempt", "z\nz", names=("no attempt z",))
         self.refused(4, "norm", "evidence", self.database, "pipeline", "--file", self.path("none"), "--statement", "x", "--by", "t",
                      names=("none",))
-        self.assertEqual(len(json.loads(self.well("norm", "list", self.database, "--json").out)), 1)
+        self.assertEqual(len(json.loads(self.well("norm", "list", self.database, "--json").out)["norms"]), 1)
 
 
 if __name__ == "__main__":

@@ -114,7 +114,7 @@ class Films(ProgramTest):
         with h5py.File(recording, "r") as a, h5py.File(again, "r") as b:
             for hand in ("left", "right"):
                 self.assertEqual(a[f"/ticks/{hand}/position"][:].tobytes(), b[f"/ticks/{hand}/position"][:].tobytes())
-        (row,) = json.loads(self.well("assess", "--json", recording, "--cohort", self.path("c.db")).out)
+        (row,) = json.loads(self.well("assess", "--json", recording, "--cohort", self.path("c.db")).out)["recordings"]
         self.assertEqual(row["stored"], "added")
 
         # Outside its bounds: practice alone.

@@ -31,7 +31,7 @@ class Attempts(program.ProgramTest):
         cohort = self.path("c.db")
         runs = [recording(f"{who}-{seed}", "--performer", who, "--seed", seed, "--seconds", 1, "--mode", "assessment", "--purpose", "study")
                 for who in ("skilled", "unskilled") for seed in (1, 2)]
-        rows = json.loads(self.well("assess", *runs, "--cohort", cohort, "--json").out)
+        rows = json.loads(self.well("assess", *runs, "--cohort", cohort, "--json").out)["recordings"]
         uuid = rows[0]["attempt"]
         decide = ("--cohort", cohort, "--reason", "fire alarm", "--by", "instructor 2")
         self.well("attempt", "exclude", uuid[:8], *decide)

@@ -80,7 +80,7 @@ class Engine(program.ProgramTest):
         empty.mkdir()
         self.environment(CALOT_ASSETS=empty, CALOT_ENGINES=empty)
         self.refused(5, "replay", file, names=["version 12", "installed", "calot engine list"])
-        report = json.loads(program.calot("replay", "--json", file).out)[0]
+        report = json.loads(program.calot("replay", "--json", file).out)["recordings"][0]
         self.assertEqual(report["verdict"], "undecided")
         self.assertIn("no other engine", self.well("engine", "list").out)
 

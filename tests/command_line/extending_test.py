@@ -21,7 +21,7 @@ class Extending(program.ProgramTest):
     def test_a_scene_with_its_own_organ_and_a_metric(self):
         recording = self.press()
         self.assertIn("bit-exact", self.well("replay", recording).out)
-        said = json.loads(self.well("assess", recording, "--cohort", self.path("c.db"), "--metric", EXAMPLES / "tremor.py", "--json").out)[0]
+        said = json.loads(self.well("assess", recording, "--cohort", self.path("c.db"), "--metric", EXAMPLES / "tremor.py", "--json").out)["recordings"][0]
         values = {(v["name"], v.get("subject", "")): v["value"] for v in said["checkpoints"]}
         self.assertGreater(values["contact-time-union", "cyst"], 0.5)
         self.assertGreater(values["force-maximum", "right"], 0.05)

@@ -176,7 +176,7 @@ def content(path):
 
 class Figures(program.ProgramTest):
     def compare(self, path, cutoff=6):
-        rows = json.loads(self.well("import", path, "--cutoff", cutoff, "--json").out)
+        rows = json.loads(self.well("import", path, "--cutoff", cutoff, "--json").out)["files"]
         values = values_of(rows[0]["checkpoints"])
         references = [Reference(*hand, cutoff=cutoff) for hand in read_text(path)]
         for hand, reference in zip(HANDS, references):
@@ -242,8 +242,8 @@ class Figures(program.ProgramTest):
             "delimiter": ";", "time": {"column": "ms", "unit": "ms"},
             **{hand: {"position": [f"{h}x", f"{h}y", f"{h}z"], "quaternion": [f"{h}qw", f"{h}qx", f"{h}qy", f"{h}qz"], "axis": "-y"}
                for hand, h in zip(HANDS, "LR")}}))
-        one = values_of(json.loads(self.well("import", text, "--cutoff", 6, "--json").out)[0]["checkpoints"])
-        two = values_of(json.loads(self.well("import", table, "--columns", columns, "--cutoff", 6, "--json").out)[0]["checkpoints"])
+        one = values_of(json.loads(self.well("import", text, "--cutoff", 6, "--json").out)["files"][0]["checkpoints"])
+        two = values_of(json.loads(self.well("import", table, "--columns", columns, "--cutoff", 6, "--json").out)["files"][0]["checkpoints"])
         self.assertEqual(one.keys(), two.keys())
         for key, value in one.items():
             with self.subTest(key):
@@ -279,7 +279,7 @@ class Exported(program.ProgramTest):
     def test_motion_of_a_file(self):
         path = self.path("k.txt")
         path.write_text(text_of(synthetic(20.0, program.seeded("import"))))
-        values = values_of(json.loads(self.well("import", path, "--cutoff", 6, "--json").out)[0]["checkpoints"])
+        values = values_of(json.loads(self.well("import", path, "--cutoff", 6, "--json").out)["files"][0]["checkpoints"])
         said = self.well("export", path, "--motion", self.path("out")).out.split()
         self.assertEqual(sorted(said), sorted(str(file) for file in self.path("out").iterdir()))
         self.assertGives(self.path("out"), values)
@@ -288,7 +288,7 @@ class Exported(program.ProgramTest):
 
     def test_motion_of_a_recording(self):
         recording = program.skilled()
-        values = values_of(json.loads(self.well("assess", recording, "--cutoff", 6, "--json").out)[0]["checkpoints"])
+        values = values_of(json.loads(self.well("assess", recording, "--cutoff", 6, "--json").out)["recordings"][0]["checkpoints"])
         self.well("export", recording, "--motion", self.path("out"))
         self.assertGives(self.path("out"), values)
         self.refused(2, "export", recording, names=("--csv", "--motion"))
@@ -301,8 +301,8 @@ class Held(program.ProgramTest):
         text, recording = self.path("k.txt"), self.path("r.h5")
         text.write_text(text_of(synthetic(12.0, program.seeded("import"))))
         program.calot("record", "--scene", program.SCENE, "--device", f"scripted:{text}", "-o", recording)
-        one = values_of(json.loads(self.well("import", text, "--cutoff", 6, "--json").out)[0]["checkpoints"])
-        two = values_of(json.loads(self.well("assess", recording, "--cutoff", 6, "--json").out)[0]["checkpoints"])
+        one = values_of(json.loads(self.well("import", text, "--cutoff", 6, "--json").out)["files"][0]["checkpoints"])
+        two = values_of(json.loads(self.well("assess", recording, "--cutoff", 6, "--json").out)["recordings"][0]["checkpoints"])
         for hand in HANDS:
             self.assertAlmostEqual(two["motion-rate", hand], 30.0, delta=0.05)
             self.assertAlmostEqual(two["path-length", hand] / one["path-length", hand], 1.0, delta=0.015)
@@ -319,7 +319,7 @@ class Identity(program.ProgramTest):
         self.motion.write_text(text_of(synthetic(6.0, program.seeded("import"))))
 
     def stored(self, *arguments):
-        return json.loads(self.well("import", *arguments, "--cohort", self.cohort, "--json").out)
+        return json.loads(self.well("import", *arguments, "--cohort", self.cohort, "--json").out)["files"]
 
     def test_twice_is_once(self):
         first = self.stored(self.motion, "--task", "knots", "--participant", "P1", "--mode", "assessment", "--outcome", "completed")
@@ -471,7 +471,7 @@ class BadFiles(program.ProgramTest):
         answer = calot("import", bad, good, "--cohort", self.cohort, "--json")
         self.assertEqual(answer.code, 4, answer)
         self.assertOneLine(answer, "bad.txt", "line 1")
-        self.assertEqual([row["stored"] for row in json.loads(answer.out)], ["not stored", "added"])
+        self.assertEqual([row["stored"] for row in json.loads(answer.out)["files"]], ["not stored", "added"])
 
     def test_wrong_usage(self):
         good, table = self.path("good.txt"), self.path("good.csv")

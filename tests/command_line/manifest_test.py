@@ -227,7 +227,7 @@ class Ratings(Manifest):
             self.assertEqual([scores.get((uuid, row["rater"], i), "NA") for i in ITEMS], [row[i] for i in ITEMS])
         self.assertIn("8 unchanged", self.well(*self.rate()).out)
         self.assertEqual(self.ratings(), stored)
-        self.assertEqual(json.loads(self.well("rate", self.cohort, "--json").out)[0]["filled"], 8)
+        self.assertEqual(json.loads(self.well("rate", self.cohort, "--json").out)["forms"][0]["filled"], 8)
         self.rows[3]["autonomy"] = 6 - self.rows[3]["autonomy"] + (self.rows[3]["autonomy"] == 3)
         self.write(self.rows)
         self.refused(3, *self.rate(), names=(self.table, "line 5", "--force"))

@@ -56,7 +56,7 @@ class Metric(program.ProgramTest):
         self.well("assess", short(), "--cohort", self.path("c.db"))
         self.well("regrade", self.path("c.db"), short().parent)
         self.assertEqual(self.rows(), [row])
-        said = json.loads(self.well(*self.assess(script), "--json").out)[0]["checkpoints"][-1]
+        said = json.loads(self.well(*self.assess(script), "--json").out)["recordings"][0]["checkpoints"][-1]
         self.assertEqual((said["name"], said["origin"], said["sha256"], said["value"]), ("mean-left-force", "external", row[4], row[6]))
         self.well("cohort", "export", self.path("c.db"), "-o", self.path("out"))
         book = json.loads((self.path("out") / "codebook.json").read_text(encoding="utf-8"))["variables"]
@@ -145,7 +145,7 @@ def compute(attempt):
         self.assertEqual(content(self.path("c.db")), before)
         self.well(*self.assess(self.script(changed.replace("VERSION = 1", "VERSION = 2"))))
         self.assertEqual([row[1] for row in self.rows()], [1, 2])
-        shown = json.loads(self.well(*self.assess(self.script(changed.replace("VERSION = 1", "VERSION = 2"))), "--json").out)[0]["checkpoints"]
+        shown = json.loads(self.well(*self.assess(self.script(changed.replace("VERSION = 1", "VERSION = 2"))), "--json").out)["recordings"][0]["checkpoints"]
         self.assertEqual([(v["version"]) for v in shown if v["name"] == "mean-left-force"], [2])
         self.refused(3, *self.assess(self.script(GOOD)), names=("my.py", "version 2 already"))
 

@@ -41,13 +41,13 @@ class Misses(program.ProgramTest):
         self.assertIn(self.line, self.said.out)
         self.assertIn(f"{self.recording}: {self.line}\n", self.well("replay", self.recording).out)
         counts = {"steps": self.any, "solver": self.solver, "contact": self.contact, "held_back": 0}
-        self.assertEqual(json.loads(self.well("replay", "--json", self.recording).out)[0]["missed_tolerance"], counts)
+        self.assertEqual(json.loads(self.well("replay", "--json", self.recording).out)["recordings"][0]["missed_tolerance"], counts)
         inspected = json.loads(self.well("inspect", "--json", self.recording).out)
         self.assertEqual([inspected[f"steps_{k}"] for k in ("missed_tolerance", "missed_by_solver", "missed_by_contact", "held_back")],
                          [self.any, self.solver, self.contact, 0])
 
         cohort = self.path("c.db")
-        assessed = json.loads(self.well("assess", "--json", self.recording, "--cohort", cohort).out)[0]
+        assessed = json.loads(self.well("assess", "--json", self.recording, "--cohort", cohort).out)["recordings"][0]
         self.assertEqual(assessed["missed_tolerance"], counts)
         value = next(v for v in assessed["checkpoints"] if v["name"] == "steps-missed")
         self.assertAlmostEqual(value["value"], self.any / self.steps)

@@ -24,7 +24,7 @@ class Scenes(program.ProgramTest):
         for vessel in scene["vessels"]:
             self.assertGreaterEqual(vessel["beams"], 40, vessel["name"])
         for fat in scene["fat"]:
-            self.assertLessEqual(fat["cellSize"], 0.75e-3)
+            self.assertLessEqual(fat["cell_size_m"], 0.75e-3)
             # Of 3 mm; with 845 of 2.25 mm every figure is as near to its limit (docs/explanation/mesh-and-step.md).
             self.assertGreaterEqual(fat["hexahedra"], 400)
         self.assertEqual(len(scene["fat"]), 1)

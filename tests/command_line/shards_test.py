@@ -247,7 +247,7 @@ class AssessShards(program.ProgramTest):
         self.assertEqual((here.code, taken.code), (4, 4))
 
         def rows(answer):
-            out = json.loads(answer.out)
+            out = json.loads(answer.out)["recordings"]
             for row in out:
                 row.pop("wall_seconds")
             return out
@@ -255,7 +255,7 @@ class AssessShards(program.ProgramTest):
         self.assertEqual(content(together), content(alone))
         self.assertEqual(query(together, "SELECT id, uuid FROM attempt"), query(alone, "SELECT id, uuid FROM attempt"))
         self.assertEqual(query(together, "SELECT count(*) FROM recording_signature"), [(1,)])
-        again = json.loads(calot("assess", "--cohort", together, "--take", *shards, "--json").out)
+        again = json.loads(calot("assess", "--cohort", together, "--take", *shards, "--json").out)["recordings"]
         self.assertEqual({row["stored"] for row in again}, {"unchanged", "not stored"})
         self.assertEqual(content(together), content(alone))
         answer = calot("assess", "--cohort", together, "--take", *shards[:2])

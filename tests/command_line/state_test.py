@@ -21,7 +21,7 @@ class States(program.ProgramTest):
     def test_equal(self):
         a, b = self.state("a.h5", skilled(), 250), self.state("b.h5", skilled(), 250)
         self.assertRegex(self.well("diff", a, b).out, r"^equal: \d+ fields of step 250\n$")
-        self.assertEqual(json.loads(self.well("diff", "--json", a, b).out), {"equal": True})
+        self.assertEqual(json.loads(self.well("diff", "--json", a, b).out), {"schema": "calot-diff", "version": 1, "equal": True})
 
     def test_from_a_keyframe_as_from_the_start(self):
         # A step after the last keyframe, reached from it; and in a recording that ends before the first keyframe, from the start.

@@ -32,7 +32,7 @@ class Assess(program.ProgramTest):
     def test_values_are_the_command_lines(self):
         for file in attempts()[:2]:
             for cutoff in (6, 10):
-                said = json.loads(self.well("assess", "--json", "--cutoff", cutoff, file).out)[0]
+                said = json.loads(self.well("assess", "--json", "--cutoff", cutoff, file).out)["recordings"][0]
                 assessed = calot.assess(file, cutoff=cutoff)
                 self.assertEqual(len(assessed), len(said["checkpoints"]))
                 self.assertGreater(sum(v.value is not None for v in assessed), 40)

@@ -36,7 +36,7 @@ class Record(program.ProgramTest):
     def test_command_line_says_bit_exact(self):
         env, observations = driven(self.path("a.h5"), participant="P1", version="2", purpose="study", handedness="left")
         answer = self.well("replay", "--json", self.path("a.h5"))
-        self.assertEqual([(r["verdict"], r["steps"], r["complete"]) for r in json.loads(answer.out)], [("bit-exact", 120, True)])
+        self.assertEqual([(r["verdict"], r["steps"], r["complete"]) for r in json.loads(answer.out)["recordings"]], [("bit-exact", 120, True)])
         with h5py.File(self.path("a.h5"), "r") as file:
             said = {n: (v.decode() if isinstance(v, bytes) else v) for n, v in file.attrs.items()}
         self.assertEqual([said[n] for n in ("operator_kind", "performer_profile", "performer_version", "participant", "purpose", "handedness", "mode", "seed")],

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "recorder/errors.h"
+#include "recorder/formats/nearest_word.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/combined_device.h"
 #include "recorder/sources/devices/force/force_device.h"
@@ -58,7 +59,12 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
   const DeviceRequest request{name, colon == std::string::npos ? "" : name.substr(colon + 1), tools, calibration, hand};
   if (colon != std::string::npos && request.argument.empty()) request.refuse("something is missing behind the colon");
   const DeviceKind* const kind = findDeviceKind(name);
-  if (kind == nullptr) request.refuse(fmt::format("no such device; there are {}", deviceUsage("and")));
+  if (kind == nullptr) {
+    std::vector<std::string> known;
+    for (const DeviceKind* each : kinds) known.emplace_back(each->name);
+    request.refuse(
+        fmt::format("no such device{}; there are {}", didYouMean(name.substr(0, colon), known), deviceUsage("and")));
+  }
   return kind->open(request);
 }
 

@@ -21,9 +21,9 @@ using Kind = ImportResult::Kind;
 
 TEST(ImportResult, OfAVerifiedRecordingSaysWhetherItIsNew) {
   const auto textOf = [](const QByteArray& stored) {
-    const ImportResult result =
-        importResultOf(apps::assessProgram(), "a.h5", 0, false,
-                       "[{\"verdict\": \"bit-exact\", \"message\": \"\", \"stored\": \"" + stored + "\"}]", "");
+    const ImportResult result = importResultOf(
+        apps::assessProgram(), "a.h5", 0, false,
+        "{\"recordings\": [{\"verdict\": \"bit-exact\", \"message\": \"\", \"stored\": \"" + stored + "\"}]}", "");
     EXPECT_EQ(result.kind, Kind::stored);
     return result.text;
   };
@@ -33,17 +33,17 @@ TEST(ImportResult, OfAVerifiedRecordingSaysWhetherItIsNew) {
 }
 
 TEST(ImportResult, OfADivergedOneSaysWhatWasFound) {
-  const ImportResult result =
-      importResultOf(apps::assessProgram(), "a.h5", 3, false,
-                     R"([{"verdict": "diverged", "message": "diverged at step 13", "stored": "added"}])", "");
+  const ImportResult result = importResultOf(
+      apps::assessProgram(), "a.h5", 3, false,
+      R"({"recordings": [{"verdict": "diverged", "message": "diverged at step 13", "stored": "added"}]})", "");
   EXPECT_EQ(result.kind, Kind::stored) << "it is an attempt of the cohort all the same";
   EXPECT_EQ(result.text, QString::fromUtf8("≠ diverged: diverged at step 13; new in the cohort"));
 }
 
 TEST(ImportResult, OfADamagedOneIsRefused) {
-  const ImportResult result =
-      importResultOf(apps::assessProgram(), "a.h5", 4, false,
-                     R"([{"verdict": "damaged", "message": "no recording", "stored": "not stored"}])", "");
+  const ImportResult result = importResultOf(
+      apps::assessProgram(), "a.h5", 4, false,
+      R"({"recordings": [{"verdict": "damaged", "message": "no recording", "stored": "not stored"}]})", "");
   EXPECT_EQ(result.kind, Kind::refused);
   EXPECT_EQ(result.text, QString::fromUtf8("✕ damaged: no recording; not stored"));
 }
@@ -53,7 +53,8 @@ TEST(ImportResult, WithoutAReportIsTheLastLineOfTheErrors) {
       importResultOf(apps::assessProgram(), "a.h5", 4, false, "", "calot: warning: slow\ncalot: c.db: corrupt\n");
   EXPECT_EQ(refused.kind, Kind::refused);
   EXPECT_EQ(refused.text, "calot: c.db: corrupt");
-  for (const QByteArray output : {"", "[]", "{}", "[1]", "no JSON", "[{\"verdict\": "}) {
+  for (const QByteArray output :
+       {"", "[]", "{}", "[1]", "{\"recordings\": 1}", "{\"recordings\": []}", "no JSON", "[{\"verdict\": "}) {
     const ImportResult failed = importResultOf(apps::assessProgram(), "a.h5", 1, false, output, "");
     EXPECT_EQ(failed.kind, Kind::failed);
     EXPECT_EQ(failed.text, "no answer (exit code 1)") << output.constData();
@@ -61,8 +62,9 @@ TEST(ImportResult, WithoutAReportIsTheLastLineOfTheErrors) {
 }
 
 TEST(ImportResult, OfACrashIsAFailureWhateverWasPrinted) {
-  const ImportResult result = importResultOf(apps::assessProgram(), "a.h5", 0, true,
-                                             R"([{"verdict": "bit-exact", "message": "", "stored": "added"}])", "");
+  const ImportResult result =
+      importResultOf(apps::assessProgram(), "a.h5", 0, true,
+                     R"({"recordings": [{"verdict": "bit-exact", "message": "", "stored": "added"}]})", "");
   EXPECT_EQ(result.kind, Kind::failed);
 }
 
@@ -98,10 +100,10 @@ class Import : public ::testing::Test {
 };
 
 TEST_F(Import, AFileThatKillsTheProgramHarmsNoOther) {
-  const std::vector<ImportResult> results =
-      run(program("case $2 in *hostile*) kill -SEGV $$;; esac\n"
-                  "echo '[{\"verdict\": \"bit-exact\", \"message\": \"\", \"stored\": \"added\"}]'\n"),
-          {"one.h5", "hostile.h5", "two.h5"});
+  const std::vector<ImportResult> results = run(
+      program("case $2 in *hostile*) kill -SEGV $$;; esac\n"
+              "echo '{\"recordings\": [{\"verdict\": \"bit-exact\", \"message\": \"\", \"stored\": \"added\"}]}'\n"),
+      {"one.h5", "hostile.h5", "two.h5"});
   ASSERT_EQ(results.size(), 3U);
   EXPECT_EQ(results[0].kind, Kind::stored);
   EXPECT_EQ(results[1].kind, Kind::failed);

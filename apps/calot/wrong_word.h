@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a command line that cannot be read should have said.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace calot::apps {
+
+/// For CLI::Option::check: one of these words. The fault names the nearest.
+CLI::Validator oneOf(std::vector<std::string> words);
+
+/// One line about the first word of a command line that is no command or option where it stands, with the nearest one;
+/// else the parser's own message. Ends with the help to look at.
+/// @param app after parse() threw `fault`. @param words the command line without the program's name
+std::string wrongWord(const CLI::App& app, const std::vector<std::string>& words, const CLI::ParseError& fault);
+
+}  // namespace calot::apps

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/formats/nearest_word.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace calot::recorder {
+namespace {
+
+const std::vector<std::string> commands{"record", "recover", "replay", "render", "regrade", "study", "participant"};
+
+TEST(NearestWord, DistancesCountEachMistakeOnce) {
+  EXPECT_EQ(wordDistance("", ""), 0U);
+  EXPECT_EQ(wordDistance("abc", ""), 3U);
+  EXPECT_EQ(wordDistance("record", "record"), 0U);
+  EXPECT_EQ(wordDistance("recrod", "record"), 1U);  // exchanged
+  EXPECT_EQ(wordDistance("recod", "record"), 1U);   // left out
+  EXPECT_EQ(wordDistance("recoord", "record"), 1U);
+  EXPECT_EQ(wordDistance("rekord", "record"), 1U);
+  EXPECT_EQ(wordDistance("kitten", "sitting"), 3U);
+  EXPECT_EQ(wordDistance("record", "recover"), wordDistance("recover", "record"));
+}
+
+TEST(NearestWord, IsTheOneThatWasMeant) {
+  EXPECT_EQ(nearestWord("recrod", commands), "record");
+  EXPECT_EQ(nearestWord("stduy", commands), "study");
+  EXPECT_EQ(nearestWord("STUDY", commands), "study");
+  EXPECT_EQ(nearestWord("partici", commands), "participant");  // its beginning
+}
+
+TEST(NearestWord, IsNoneWhereNothingIsNear) {
+  EXPECT_EQ(nearestWord("xyzzy", commands), "");
+  EXPECT_EQ(nearestWord("re", commands), "");  // the beginning of many
+  EXPECT_EQ(nearestWord("", commands), "");
+  EXPECT_EQ(nearestWord("study", commands), "");  // it is right
+  EXPECT_EQ(nearestWord(std::string(1000000, 'r'), commands), "");
+  EXPECT_EQ(nearestWord("study", {}), "");
+}
+
+TEST(NearestWord, IsAskedAfter) {
+  EXPECT_EQ(didYouMean("recrod", commands), " (did you mean \"record\"?)");
+  EXPECT_EQ(didYouMean("xyzzy", commands), "");
+}
+
+}  // namespace
+}  // namespace calot::recorder
