@@ -18,7 +18,13 @@ class AttemptBanner : public QWidget {
   void showAttempt(const analytics::AttemptRow& attempt);
   void showText(const QString& text);  ///< no attempt
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
+  void colourBadge();
+
+  analytics::Verdict verdict_ = analytics::Verdict::notChecked;
   QLabel* watermark_;
   QLabel* identity_;
   QLabel* badge_;

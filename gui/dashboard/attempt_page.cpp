@@ -13,6 +13,7 @@
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/open_recording.h"
 #include "gui/dashboard/settings.h"
+#include "gui/dashboard/summary_panel.h"
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/dashboard/transport_bar.h"
@@ -56,6 +57,8 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
   banner_ = new AttemptBanner;
   layout->addWidget(banner_);
+  summary_ = new SummaryPanel;
+  layout->addWidget(summary_);
   auto* upper = new QSplitter(Qt::Horizontal);
   upper->addWidget(figures_);
   upper->addWidget(buildReplay());
@@ -63,12 +66,22 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   upper->setStretchFactor(0, 3);
   upper->setStretchFactor(1, 2);
   upper->setChildrenCollapsible(false);
-  layout->addWidget(upper, 1);
   timeline_ = new TimelineBar;
   force_ = new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed");
   speed_ = new TraceChart("speed-trace", "Speed of the tip (mm/s)");
+  auto* traces = new QWidget;
+  auto* traceLayout = new QVBoxLayout(traces);
+  traceLayout->setContentsMargins(0, 0, 0, 0);
+  traceLayout->setSpacing(2);
   for (QWidget* row : {static_cast<QWidget*>(timeline_), static_cast<QWidget*>(force_), static_cast<QWidget*>(speed_)})
-    layout->addWidget(row);
+    traceLayout->addWidget(row);
+  auto* parts = new QSplitter(Qt::Vertical);
+  parts->addWidget(upper);
+  parts->addWidget(traces);
+  parts->setStretchFactor(0, 1);
+  parts->setChildrenCollapsible(false);
+  layout->addWidget(parts, 1);
+  setFocusProxy(figures_);
   connectParts();
   clear();
 }
@@ -80,7 +93,7 @@ AttemptPage::~AttemptPage() {
 }
 
 QWidget* AttemptPage::buildReplay() {
-  find_ = new QPushButton("&Find the recording …");
+  find_ = new QPushButton("Find the &recording …");
   find_->setObjectName("find-recording");
   auto* made = new QWidget;
   auto* layout = new QVBoxLayout(made);
@@ -93,6 +106,7 @@ QWidget* AttemptPage::buildReplay() {
 
 void AttemptPage::connectParts() {
   connect(find_, &QPushButton::clicked, this, &AttemptPage::askForRecording);
+  connect(figures_, &FigurePanel::summaryChanged, this, [this] { summary_->showSummary(figures_->summary()); });
   connect(figures_, &FigurePanel::problem, this, &AttemptPage::problem);
   connect(figures_, &FigurePanel::timeChosen, replay_.get(), &Replay::seek);
   connect(figures_, &FigurePanel::windowsChosen, timeline_, &TimelineBar::setMarked);
@@ -150,6 +164,7 @@ void AttemptPage::clear() {
   reader_->stop();
   replay_->close();
   banner_->showText("Choose an attempt on the page Attempts: double-click it, or press Enter.");
+  summary_->clear();
   figures_->clear();
   picture_->showText("No attempt is chosen.");
   find_->hide();

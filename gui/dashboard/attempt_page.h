@@ -16,11 +16,13 @@ namespace calot::gui {
 class AttemptBanner;
 class FigurePanel;
 class ScenePictureWidget;
+class SummaryPanel;
 class TimelineBar;
 class TraceChart;
 class TransportBar;
 
-/// One attempt: its checkpoints within a norm, timeline, traces and replay. A click on a figure, an event or a trace
+/// One attempt: what an instructor wants to know first, in words; its checkpoints within a norm, timeline, traces and
+/// replay. A click on a figure, an event or a trace
 /// shows that moment.
 class AttemptPage : public QWidget {
   Q_OBJECT
@@ -64,6 +66,7 @@ class AttemptPage : public QWidget {
   std::filesystem::path file_;
 
   AttemptBanner* banner_ = nullptr;
+  SummaryPanel* summary_ = nullptr;
   FigurePanel* figures_ = nullptr;
   ScenePictureWidget* picture_ = nullptr;
   QPushButton* find_ = nullptr;

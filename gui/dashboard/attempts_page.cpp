@@ -39,6 +39,7 @@ AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
   table_->sortByColumn(AttemptTableModel::startColumn, Qt::DescendingOrder);
   setWidths(*table_, {90, 180, 110, 130, 95, 130, 150, 150, 90});
   upperLayout->addWidget(table_);
+  setFocusProxy(table_);
 
   auto* lower = new QWidget;
   auto* lowerLayout = new QVBoxLayout(lower);
@@ -83,7 +84,7 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
     row->addWidget(field, stretch);
   };
   add("&Search", search_, 1);
-  add("&Verification", verdict_, 0);
+  add("Verifi&cation", verdict_, 0);
   add("&Made by", operators_, 0);
   row->addWidget(count_);
   layout.addLayout(row);

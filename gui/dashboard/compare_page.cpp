@@ -46,7 +46,9 @@ ComparePage::ComparePage(QWidget* parent) : QWidget(parent) {
   layout->addLayout(upper);
   layout->addLayout(lower);
   chart_ = new ComparisonChart;
+  connect(chart_, &DotChart::attemptChosen, this, &ComparePage::attemptActivated);
   layout->addWidget(chart_, 1);
+  setFocusProxy(figure_);
   caption_ = new QLabel;
   caption_->setObjectName("caption");
   caption_->setTextFormat(Qt::PlainText);

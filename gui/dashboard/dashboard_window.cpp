@@ -10,8 +10,11 @@
 #include <QFileInfo>
 #include <QLabel>
 #include <QMenuBar>
+#include <QMessageBox>
 #include <QMimeData>
+#include <QScreen>
 #include <QStackedWidget>
+#include <QTabBar>
 #include <QTabWidget>
 #include <QTimer>
 #include <QUndoStack>
@@ -25,10 +28,12 @@
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
+#include "gui/dashboard/keys_dialog.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/rating_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
+#include "gui/dashboard/theme.h"
 #include "gui/dashboard/trainee_page.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
@@ -65,14 +70,13 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
       undo_(new QUndoStack(this)),
       imports_(program) {
   setWindowTitle("Calot");
-  resize(1280, 860);
+  resize(theme::windowSizeFor(screen()->availableSize()));
   setAcceptDrops(true);
   problem_->setObjectName("problem");
   problem_->setTextFormat(Qt::PlainText);
   problem_->setWordWrap(true);
   problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  problem_->setStyleSheet(
-      "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
+  theme::setGround(*problem_, QColor(0xfb, 0xe3, 0xd6), QColor(0x5a, 0x1e, 0x00));
   problem_->hide();
   tabs_->addTab(attempts_, "Attempts");
   tabs_->addTab(attempt_, "Attempt");
@@ -136,12 +140,21 @@ void DashboardWindow::buildMenus() {
     view->addAction(QString("&%1 ").arg(page + 1) + tabs_->tabText(page),
                     QKeySequence(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_1 + page)), this,
                     [this, page] { tabs_->setCurrentIndex(page); });
-  view->addAction("&Find", QKeySequence(QKeySequence::Find), this, [this] {
+  view->addAction("&Search", QKeySequence(QKeySequence::Find), this, [this] {
     tabs_->setCurrentWidget(attempts_);
     attempts_->focusSearch();
   });
   view->addAction("&Reload", QKeySequence(Qt::Key_F5), this, [this] { reload(); });
   view->addAction(importDock_->toggleViewAction());
+  QMenu* const help = menuBar()->addMenu("&Help");
+  help->addAction("&Keys …", QKeySequence(QKeySequence::HelpContents), this,
+                  [this] { KeysDialog(keysOf(*menuBar()), this).exec(); });
+  help->addAction("&About Calot …", this, [this] {
+    QMessageBox::about(this, "Calot",
+                       "Calot " CALOT_VERSION
+                       "\nTraining of laparoscopic cholecystectomy: recorded, "
+                       "replayed bit for bit, assessed.\nGPL, version 3 or later.");
+  });
 }
 
 void DashboardWindow::connectPages() {
@@ -172,6 +185,11 @@ void DashboardWindow::connectPages() {
     attempt_->figures().goToFigure(checkpoint.toStdString(), subject.toStdString());
   });
   connect(trainee_, &TraineePage::attemptActivated, this, &DashboardWindow::openAttempt);
+  connect(compare_, &ComparePage::attemptActivated, this, &DashboardWindow::openAttempt);
+  // One begins where a page begins; who is going along the tabs stays there.
+  connect(tabs_, &QTabWidget::currentChanged, this, [this] {
+    if (!tabs_->tabBar()->hasFocus()) tabs_->currentWidget()->setFocus(Qt::OtherFocusReason);
+  });
 }
 
 void DashboardWindow::openAttempt(const QString& uuid) {
@@ -196,7 +214,9 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
     greeting_->explainEmptyDatabase(name);
     stack_->setCurrentWidget(greeting_);
   } else {
+    const bool first = stack_->currentWidget() != tabs_;
     stack_->setCurrentWidget(tabs_);
+    if (first) tabs_->currentWidget()->setFocus(Qt::OtherFocusReason);
   }
   if (!awaited_.isEmpty() && document_->attempt(awaited_.toStdString()) != nullptr)
     openAttempt(std::exchange(awaited_, QString()));

@@ -10,6 +10,8 @@
 #include <QPushButton>
 #include <QTimer>
 
+#include "gui/dashboard/theme.h"
+
 namespace calot::gui {
 
 ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
@@ -17,7 +19,7 @@ ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
       queue_(queue),
       text_(new QLabel),
       bar_(new QProgressBar),
-      stop_(new QPushButton("S&top importing")),
+      stop_(new QPushButton("Stop im&porting")),
       results_(new QListWidget),
       tick_(new QTimer(this)) {
   text_->setObjectName("import-text");
@@ -61,7 +63,7 @@ void ImportPanel::showProgress() {
 void ImportPanel::addResult(const ImportResult& result) {
   auto* item = new QListWidgetItem(QFileInfo(result.file).fileName() + ": " + result.text);
   item->setToolTip(result.file);
-  if (result.kind != ImportResult::Kind::stored) item->setForeground(QColor(0xa6, 0x49, 0x00));
+  if (result.kind != ImportResult::Kind::stored) item->setForeground(theme::trouble());
   results_->addItem(item);
   results_->scrollToItem(item);
 }

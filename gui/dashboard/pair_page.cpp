@@ -32,6 +32,7 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
   for (PairSide* const side : sides_) row->addWidget(side, 1);
   layout->addLayout(row, 1);
   layout->addWidget(buildTransport());
+  setFocusProxy(sides_[0]->choiceBox());
   tick_ = new QTimer(this);
   connect(tick_, &QTimer::timeout, this, [this] { onTick(); });
   connect(new QShortcut(Qt::Key_Space, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated,
@@ -57,7 +58,7 @@ QWidget* PairPage::buildTransport() {
   from_->setObjectName("align");
   from_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   from_->setMinimumContentsLength(13);
-  auto* label = new QLabel("In step &from");
+  auto* label = new QLabel("In &step from");
   label->setBuddy(from_);
   play_ = new QToolButton;
   play_->setObjectName("pair-play");

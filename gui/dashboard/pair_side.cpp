@@ -97,6 +97,7 @@ void PairSide::chooseAnother(int n) {
   if (uuid_.empty() && choice_->count() > n) choice_->setCurrentIndex(n);
 }
 
+QWidget* PairSide::choiceBox() const { return choice_; }
 bool PairSide::settled() const { return file_.empty() || (track_ && isOpen() && replay_->position().settled); }
 
 void PairSide::openChosen() {

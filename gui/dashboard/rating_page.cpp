@@ -77,6 +77,7 @@ RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
   lower->addWidget(store_);
   layout->addLayout(lower);
   connectParts();
+  setFocusProxy(choice_);
 }
 
 void RatingPage::connectParts() {

@@ -92,6 +92,7 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   splitter->setChildrenCollapsible(false);
   layout->addWidget(splitter, 1);
   connectParts();
+  setFocusProxy(groupBy_);
 }
 
 void StudyPage::buildChoices(QBoxLayout& layout) {
@@ -112,12 +113,12 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   groupBy_->addItem("study group", static_cast<int>(GroupBy::group));
   groupBy_->addItem("performer's profile", static_cast<int>(GroupBy::profile));
   first_ = add(*upper, "study-first", "C&ompare", 0);
-  second_ = add(*upper, "study-second", "wit&h", 0);
-  rule_ = add(*upper, "study-rule", "&Of several attempts", 0);
+  second_ = add(*upper, "study-second", "w&ith", 0);
+  rule_ = add(*upper, "study-rule", "Of several &attempts", 0);
   rule_->addItem("the first", static_cast<int>(analytics::AttemptRule::first));
   rule_->addItem("the mean", static_cast<int>(analytics::AttemptRule::mean));
   upper->addStretch(1);
-  csv_ = new QPushButton("Export CS&V …");
+  csv_ = new QPushButton("Export C&SV …");
   html_ = new QPushButton("Export HTM&L …");
   csv_->setObjectName("study-csv");
   html_->setObjectName("study-html");

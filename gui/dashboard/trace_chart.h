@@ -24,8 +24,8 @@ class TraceChart : public QWidget {
   void clear() { setTraces(0.0, 1.0, {}); }
   void setPosition(double time);
 
-  [[nodiscard]] QSize sizeHint() const override { return {600, 104}; }
-  [[nodiscard]] QSize minimumSizeHint() const override { return {200, 84}; }
+  [[nodiscard]] QSize sizeHint() const override { return {600, theme::inType(96)}; }
+  [[nodiscard]] QSize minimumSizeHint() const override { return {200, theme::inType(60)}; }
 
  signals:
   void timeChosen(double time);

@@ -85,6 +85,7 @@ TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
   caption_->setWordWrap(true);
   layout->addWidget(caption_);
   connectParts();
+  setFocusProxy(trainee_);
 }
 
 void TraineePage::connectParts() {
@@ -93,6 +94,7 @@ void TraineePage::connectParts() {
     redraw();
   });
   for (QComboBox* box : {figure_, key_}) connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
+  connect(chart_, &DotChart::attemptChosen, this, &TraineePage::attemptActivated);
   connect(table_, &QTableWidget::itemActivated, this, [this](const QTableWidgetItem* item) {
     emit attemptActivated(table_->item(item->row(), 0)->data(Qt::UserRole).toString());
   });
