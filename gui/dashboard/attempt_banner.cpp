@@ -23,8 +23,10 @@ AttemptBanner::AttemptBanner(QWidget* parent) : QWidget(parent) {
     layout->addWidget(made, stretch);
     return made;
   };
-  watermark_ = label("watermark", 2);
-  watermark_->setText("SYNTHETIC — made by a performer, says nothing about people");
+  watermark_ = label("watermark", 0);
+  watermark_->setText("SYNTHETIC — made by a performer");
+  watermark_->setWordWrap(false);
+  watermark_->setToolTip("It shows that the pipeline works and says nothing about people.");
   QFont bold = watermark_->font();
   bold.setBold(true);
   watermark_->setFont(bold);

@@ -17,6 +17,7 @@
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/dashboard/transport_bar.h"
+#include "gui/dashboard/work_strip.h"
 #include "gui/view/scene_picture_widget.h"
 
 namespace calot::gui {
@@ -82,6 +83,8 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   parts->setChildrenCollapsible(false);
   layout->addWidget(parts, 1);
   setFocusProxy(figures_);
+  strip_ = new WorkStrip(work_);
+  layout->addWidget(strip_);
   connectParts();
   clear();
 }
@@ -107,6 +110,10 @@ QWidget* AttemptPage::buildReplay() {
 void AttemptPage::connectParts() {
   connect(find_, &QPushButton::clicked, this, &AttemptPage::askForRecording);
   connect(figures_, &FigurePanel::summaryChanged, this, [this] { summary_->showSummary(figures_->summary()); });
+  connect(figures_, &FigurePanel::sheetRequested, this, [this] { askForSheet(false); });
+  connect(figures_, &FigurePanel::onePageRequested, this, [this] { askForSheet(true); });
+  connect(&work_, &LongWork::done, this, &AttemptPage::sheetWritten);
+  connect(&work_, &LongWork::failed, this, &AttemptPage::problem);
   connect(figures_, &FigurePanel::problem, this, &AttemptPage::problem);
   connect(figures_, &FigurePanel::timeChosen, replay_.get(), &Replay::seek);
   connect(figures_, &FigurePanel::windowsChosen, timeline_, &TimelineBar::setMarked);
@@ -227,6 +234,34 @@ void AttemptPage::askForRecording() {
   if (file.isEmpty()) return;
   settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   openRecording(file.toStdString());
+}
+
+void AttemptPage::askForSheet(bool onePage) {
+  const QString name =
+      QString("%1-%2.pdf").arg(onePage ? "attempt" : "grade").arg(QString::fromStdString(attempt_->uuid).left(8));
+  const QString file = QFileDialog::getSaveFileName(
+      this, onePage ? "Write the attempt on one page" : "Write the grade sheet",
+      QFileInfo(QString::fromStdString(document_->path())).absolutePath() + '/' + name, "PDF (*.pdf)");
+  if (!file.isEmpty()) writeSheet(file.toStdString(), onePage);
+}
+
+void AttemptPage::writeSheet(const std::filesystem::path& file, bool onePage) {
+  SheetRequest request;
+  request.database = document_->path();
+  request.attempt = *attempt_;
+  request.summary = figures_->summary();
+  request.events = figures_->events();
+  request.moments = figures_->worstMoments();
+  if (replay_->isOpen()) request.recording = file_;
+  request.file = file;
+  if (const analytics::Norm* norm = figures_->norm()) {
+    request.norm = norm->name;
+    request.normVersion = norm->version;
+  }
+  strip_->begin("Writing " + QString::fromStdString(file.filename().string()));
+  work_.start([request, onePage](LongWork::Control& control) {
+    return onePage ? writeOnePage(request, control) : writeGradeSheet(request, control);
+  });
 }
 
 void AttemptPage::showPosition() {

@@ -14,6 +14,7 @@
 #include <QMimeData>
 #include <QScreen>
 #include <QStackedWidget>
+#include <QStatusBar>
 #include <QTabBar>
 #include <QTabWidget>
 #include <QTimer>
@@ -29,6 +30,7 @@
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
 #include "gui/dashboard/keys_dialog.h"
+#include "gui/dashboard/open_recording.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/rating_page.h"
 #include "gui/dashboard/settings.h"
@@ -41,6 +43,7 @@
 namespace calot::gui {
 namespace {
 
+constexpr int noticeFor = 8000;     // ms
 constexpr int refreshEvery = 3000;  // ms, while an import runs
 
 QStringList localFiles(const QMimeData& data) {
@@ -135,6 +138,8 @@ void DashboardWindow::buildMenus() {
   exclude_ = edit->addAction("&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), this,
                              [this] { askForExclusion(); });
   exclude_->setEnabled(false);
+  edit->addAction("&Verify again", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_V), this, [this] { verifySelected(); });
+  edit->addAction("&Side by side", QKeySequence(Qt::CTRL | Qt::Key_B), this, [this] { pairSelected(); });
   QMenu* const view = menuBar()->addMenu("&View");
   for (int page = 0; page < tabs_->count(); ++page)
     view->addAction(QString("&%1 ").arg(page + 1) + tabs_->tabText(page),
@@ -163,9 +168,12 @@ void DashboardWindow::connectPages() {
   connect(greeting_, &GreetingPage::importRequested, this, [this] { askForRecordings(); });
   connect(attempts_, &AttemptsPage::problem, this, &DashboardWindow::showProblem);
   connect(attempt_, &AttemptPage::problem, this, &DashboardWindow::showProblem);
+  connect(attempt_, &AttemptPage::sheetWritten, this,
+          [this](const QString& text) { statusBar()->showMessage(text, noticeFor); });
   connect(compare_, &ComparePage::problem, this, &DashboardWindow::showProblem);
   connect(study_, &StudyPage::problem, this, &DashboardWindow::showProblem);
   connect(trainee_, &TraineePage::problem, this, &DashboardWindow::showProblem);
+  connect(rating_, &RatingPage::nextWanted, attempts_, &AttemptsPage::selectNext);
   connect(rating_, &RatingPage::problem, this, &DashboardWindow::showProblem);
   connect(attempts_, &AttemptsPage::selectionChanged, this, [this] {
     const analytics::AttemptRow* attempt = attempts_->selected();
@@ -296,16 +304,48 @@ void DashboardWindow::showRecording(const QString& file, const QString& uuid) {
 }
 
 void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {
-  const analytics::AttemptRow* attempt = attempts_->selected();
-  if (attempt == nullptr) return;
-  undo_->push(new ExclusionCommand({document_->path(), attempt->uuid, reason.toStdString(), by.toStdString(),
-                                    !attempt->excluded, attempt->exclusionReason},
-                                   [this](const QString& fault) {
-                                     if (fault.isEmpty())
-                                       reload();
-                                     else
-                                       showProblem(fault);
-                                   }));
+  const analytics::AttemptRow* current = attempts_->selected();
+  if (current == nullptr) return;
+  const bool exclude = !current->excluded;
+  std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
+  if (chosen.empty()) chosen.push_back(*current);
+  // Those that are so already stay as they are.
+  std::erase_if(chosen, [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
+  const bool several = chosen.size() > 1;
+  if (several) undo_->beginMacro(exclude ? "exclude attempts" : "include attempts");
+  for (const analytics::AttemptRow& attempt : chosen) {
+    undo_->push(new ExclusionCommand(
+        {document_->path(), attempt.uuid, reason.toStdString(), by.toStdString(), exclude, attempt.exclusionReason},
+        [this](const QString& fault) {
+          if (fault.isEmpty())
+            reload();
+          else
+            showProblem(fault);
+        }));
+  }
+  if (several) undo_->endMacro();
+}
+
+void DashboardWindow::verifySelected() {
+  if (!document_) return;
+  QStringList files, missing;
+  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) {
+    const std::filesystem::path file = findRecording(attempt, document_->path(), settings::recordingPlaces());
+    (file.empty() ? missing : files) += QString::fromStdString(file.empty() ? attempt.fileName : file.string());
+  }
+  if (!missing.isEmpty())
+    showProblem("Not found, so not verified: " + missing.join(", ") + ". Settings name the folders with recordings.");
+  if (!files.isEmpty()) importRecordings(files);
+}
+
+void DashboardWindow::pairSelected() {
+  const std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
+  if (chosen.size() != 2) {
+    showProblem("Select two attempts on the page Attempts (Ctrl and a click, or Shift and an arrow).");
+    return;
+  }
+  for (std::size_t side = 0; side < 2; ++side) pair_->setAttempt(side, chosen[side].uuid);
+  tabs_->setCurrentWidget(pair_);
 }
 
 void DashboardWindow::showProblem(const QString& message) {

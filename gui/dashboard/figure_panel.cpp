@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/figure_panel.h"
 
+#include <algorithm>
+#include <cmath>
 #include <QBoxLayout>
 #include <QComboBox>
 #include <QHeaderView>
@@ -12,9 +14,11 @@
 #include <QTreeView>
 #include <utility>
 
+#include "analytics/assessment/norm_rule.h"
 #include "gui/dashboard/band_delegate.h"
 #include "gui/dashboard/figure_standing.h"
 #include "gui/dashboard/table_view.h"
+#include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
@@ -32,6 +36,7 @@ FigurePanel::FigurePanel(QWidget* parent)
   figureTable_->header()->setSortIndicatorClearable(true);
   figureTable_->header()->setSortIndicator(-1, Qt::AscendingOrder);
   setWidths(*eventTable_, {360});
+  figureTable_->setMinimumHeight(8 * figureTable_->fontMetrics().height());
   auto* tabs = new QTabWidget;
   tabs->setObjectName("figure-tabs");
   tabs->addTab(figureTable_, "&Checkpoints");
@@ -87,6 +92,7 @@ QWidget* FigurePanel::buildNormRow() {
 }
 
 void FigurePanel::setEvents(const std::vector<TrackEvent>& events) {
+  trackEvents_ = events;
   events_.setEvents(events);
   eventTable_->expandAll();
   setWidths(*eventTable_, {360});
@@ -94,6 +100,30 @@ void FigurePanel::setEvents(const std::vector<TrackEvent>& events) {
 
 analytics::AttemptSummary FigurePanel::summary() const {
   return analytics::summaryOf(*attempt_, values_, standing_ && standing_->grade ? &*standing_->grade : nullptr);
+}
+
+std::vector<WorstMoment> FigurePanel::worstMoments() const {
+  constexpr double apart = 1.0;  // s: two pictures of one moment tell no more than one
+  std::vector<WorstMoment> worst;
+  for (const bool weak : {true, false}) {
+    for (int row = 0; row < figures_.rowCount() && worst.size() < maxWorstMoments; ++row) {
+      const analytics::FigureMoments* found = figures_.moments(row);
+      const analytics::CheckpointValue& value = figures_.value(row);
+      const FigureStanding* standing = figures_.standing(row);
+      const bool isWeak = standing != nullptr && standing->passed && !*standing->passed;
+      if (found == nullptr || found->moments.empty() || isWeak != weak) continue;
+      if (!weak && !analytics::countsByDefault(value.name)) continue;
+      const auto most = std::max_element(found->moments.begin(), found->moments.end(),
+                                         [](const auto& a, const auto& b) { return a.share < b.share; });
+      const double time = 0.5 * (most->begin + most->end);
+      if (std::any_of(worst.begin(), worst.end(),
+                      [&](const WorstMoment& w) { return std::abs(w.time - time) < apart; }))
+        continue;
+      worst.push_back({time, figureTitle(value.name, value.subject).toStdString()});
+    }
+  }
+  std::sort(worst.begin(), worst.end(), [](const WorstMoment& a, const WorstMoment& b) { return a.time < b.time; });
+  return worst;
 }
 
 const analytics::Norm* FigurePanel::norm() const {
@@ -105,6 +135,7 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
   attempt_ = attempt;
   wanted_.reset();
   cycle_.forget();
+  trackEvents_.clear();
   events_.setEvents({});
   try {
     values_ = document_->values(attempt.uuid);
@@ -133,6 +164,7 @@ void FigurePanel::clear() {
   values_.clear();
   intervals_.clear();
   figures_.setValues({});
+  trackEvents_.clear();
   events_.setEvents({});
   {
     const QSignalBlocker quiet(norm_);
@@ -156,7 +188,7 @@ void FigurePanel::showStanding() {
   figureTable_->setColumnHidden(CheckpointTableModel::normColumn, norms.empty());
   const int at = norm_->currentIndex();
   if (at < 0 || static_cast<std::size_t>(at) >= norms.size()) {
-    verdict_->setText("There is no norm for this task yet (calot norm create).");
+    verdict_->setText("No norm for this task yet (calot norm create).");
     standing_.reset();
     figures_.setStandings({});
   } else {

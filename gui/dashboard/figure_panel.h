@@ -6,6 +6,7 @@
 #include <QWidget>
 
 #include "analytics/assessment/attempt_summary.h"
+#include "gui/dashboard/attempt_sheet.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/event_tree_model.h"
@@ -36,8 +37,12 @@ class FigurePanel : public QWidget {
 
   [[nodiscard]] const std::vector<analytics::CheckpointValue>& values() const { return values_; }
   [[nodiscard]] analytics::AttemptSummary summary() const;  ///< @pre an attempt is shown
+  /// Moments worth a picture: of figures that fall short of the norm, then of those that count, apart in time.
+  [[nodiscard]] std::vector<WorstMoment> worstMoments() const;
+  [[nodiscard]] const std::vector<TrackEvent>& events() const { return trackEvents_; }
   /// What it is held against; null where there is none, or the attempt is not judged.
   [[nodiscard]] const analytics::Norm* norm() const;
+  [[nodiscard]] const CheckpointTableModel& figures() const { return figures_; }
   /// Goes to the moments of a figure as soon as they are known.
   void goToFigure(const std::string& checkpoint, const std::string& subject);
   /// Goes to the moments of the first figure that falls short of the norm, else of the first that has any.
@@ -66,6 +71,7 @@ class FigurePanel : public QWidget {
   CheckpointTableModel figures_;
   FamilyTreeModel families_{figures_};
   EventTreeModel events_;
+  std::vector<TrackEvent> trackEvents_;
   MomentCycle cycle_;
   QComboBox* norm_;
   QLabel* verdict_;

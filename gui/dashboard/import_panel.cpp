@@ -10,6 +10,7 @@
 #include <QPushButton>
 #include <QTimer>
 
+#include "gui/dashboard/long_work.h"
 #include "gui/dashboard/theme.h"
 
 namespace calot::gui {
@@ -44,14 +45,20 @@ ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
 
 void ImportPanel::showProgress() {
   const bool busy = queue_.busy();
+  if (busy && !clock_.isValid()) clock_.start();
+  if (!busy) clock_.invalidate();
+  double left = -1.0;
+  if (busy && queue_.done() > 0)
+    left = 1e-3 * static_cast<double>(clock_.elapsed()) / queue_.done() * (queue_.total() - queue_.done());
   stop_->setEnabled(busy);
   bar_->setRange(0, std::max(1, queue_.total()));
   bar_->setValue(queue_.done());
   const QString count = QString("%1 of %2 recordings").arg(queue_.done()).arg(queue_.total());
   if (!queue_.current().isEmpty())
-    text_->setText(QString("%1 done. Simulating %2 again, %3 s so far …")
+    text_->setText(QString("%1 done. Simulating %2 again, %3 s so far … %4")
                        .arg(count, QFileInfo(queue_.current()).fileName())
-                       .arg(queue_.seconds()));
+                       .arg(queue_.seconds())
+                       .arg(leftText(left)));
   else
     text_->setText(count + " done.");
   if (busy)

@@ -100,7 +100,7 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
     auto* box = new QComboBox;
     box->setObjectName(name);
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(10);
+    box->setMinimumContentsLength(6);
     auto* label = new QLabel(text);
     label->setBuddy(box);
     row.addWidget(label);
@@ -109,7 +109,7 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   };
   auto* upper = new QHBoxLayout;
   groupBy_ = add(*upper, "study-group-by", "&By", 0);
-  groupBy_->setMinimumContentsLength(16);
+  groupBy_->setMinimumContentsLength(8);
   groupBy_->addItem("study group", static_cast<int>(GroupBy::group));
   groupBy_->addItem("performer's profile", static_cast<int>(GroupBy::profile));
   first_ = add(*upper, "study-first", "C&ompare", 0);
@@ -127,7 +127,7 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   layout.addLayout(upper);
   auto* lower = new QHBoxLayout;
   protocol_ = add(*lower, "study-protocol", "Pro&tocol", 0);
-  protocol_->setMinimumContentsLength(20);
+  protocol_->setMinimumContentsLength(8);
   protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
   key_ = add(*lower, "study-key", "Comparable &within", 1);
   synthetic_ = new QCheckBox("S&ynthetic attempts");

@@ -17,9 +17,9 @@ namespace calot::gui {
 namespace {
 
 int phaseTop() { return 4; }
-int phaseHeight() { return theme::inType(24); }
+int phaseHeight() { return theme::inType(20); }
 int eventTop() { return phaseTop() + phaseHeight() + 6; }
-int eventHeight() { return theme::inType(22); }
+int eventHeight() { return theme::inType(18); }
 constexpr double reach = 5.0;  // pixels from an event that still count as on it
 
 void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<TrackEvent>& events) {

@@ -24,8 +24,8 @@ class TimelineBar : public QWidget {
   /// Windows to be marked: a figure's moments.
   void setMarked(std::vector<std::pair<double, double>> windows);
 
-  [[nodiscard]] QSize sizeHint() const override { return {600, theme::inType(62)}; }
-  [[nodiscard]] QSize minimumSizeHint() const override { return {200, theme::inType(62)}; }
+  [[nodiscard]] QSize sizeHint() const override { return {600, theme::inType(52)}; }
+  [[nodiscard]] QSize minimumSizeHint() const override { return {200, theme::inType(52)}; }
 
  signals:
   void timeChosen(double time);

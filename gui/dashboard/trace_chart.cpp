@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <QEvent>
 #include <QLocale>
 #include <QMouseEvent>
 #include <QPainter>
@@ -134,6 +135,11 @@ void TraceChart::paintEvent(QPaintEvent*) {
 }
 
 void TraceChart::resizeEvent(QResizeEvent*) { painted_ = {}; }
+
+void TraceChart::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange) painted_ = {};
+}
 
 void TraceChart::mousePressEvent(QMouseEvent* event) {
   if (seconds_ > 0.0 && event->button() == Qt::LeftButton) emit timeChosen(scale().time(event->position().x()));
