@@ -52,6 +52,11 @@ void AttemptBanner::showAttempt(const analytics::AttemptRow& attempt) {
   watermark_->setVisible(attempt.synthetic);
 }
 
+void AttemptBanner::makeNarrow() {
+  watermark_->setText("SYNTHETIC");
+  badge_->hide();  // the choice above says it
+}
+
 void AttemptBanner::colourBadge() {
   QPalette own = QApplication::palette();
   own.setColor(QPalette::WindowText, theme::ofVerdict(verdict_));

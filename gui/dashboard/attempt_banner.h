@@ -16,6 +16,8 @@ class AttemptBanner : public QWidget {
  public:
   explicit AttemptBanner(QWidget* parent = nullptr);
   void showAttempt(const analytics::AttemptRow& attempt);
+  /// For half a window: the mark of performers in one word.
+  void makeNarrow();
   void showText(const QString& text);  ///< no attempt
 
  protected:

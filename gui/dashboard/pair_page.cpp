@@ -15,6 +15,7 @@
 #include <QToolButton>
 #include <utility>
 
+#include "gui/dashboard/theme.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/words/event_words.h"
 
@@ -33,6 +34,7 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
   for (PairSide* const side : sides_) row->addWidget(side, 1);
   layout->addLayout(row, 1);
   traces_ = new TraceChart("pair-traces", "Both attempts: left solid, right dashed");
+  traces_->setMinimumHeight(theme::inType(96));
   layout->addWidget(traces_);
   connect(traces_, &TraceChart::timeChosen, this, [this](double time) {
     if (alignment_) goTo(alignment_->begin() + time);
@@ -71,7 +73,7 @@ QWidget* PairPage::buildTransport() {
   play_->setObjectName("pair-play");
   play_->setAccessibleName("Play or pause both");
   play_->setToolTip("Play or pause both (Space)");
-  play_->setIcon(style()->standardIcon(QStyle::SP_MediaPlay));
+  play_->setIcon(theme::buttonIcon(QStyle::SP_MediaPlay));
   play_->setFocusPolicy(Qt::TabFocus);
   scrub_ = new QSlider(Qt::Horizontal);
   scrub_->setObjectName("pair-scrub");
@@ -268,7 +270,7 @@ void PairPage::onTick() {
 }
 
 void PairPage::showTime() {
-  play_->setIcon(style()->standardIcon(playing_ ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
+  play_->setIcon(theme::buttonIcon(playing_ ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
   for (QWidget* widget : {static_cast<QWidget*>(play_), static_cast<QWidget*>(scrub_), static_cast<QWidget*>(from_),
                           static_cast<QWidget*>(speed_)})
     widget->setEnabled(alignment_.has_value());

@@ -63,7 +63,11 @@ QWidget* RatingPage::buildReplay() {
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(picture_, 1);
   layout->addWidget(new TransportBar(*replay_));
-  connect(replay_.get(), &Replay::failed, picture_, &ScenePictureWidget::showText);
+  connect(replay_.get(), &Replay::opened, this, [this] { opening_ = false; });
+  connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
+    opening_ = false;
+    picture_->showText(reason);
+  });
   return made;
 }
 
@@ -177,7 +181,7 @@ void RatingPage::hideEvent(QHideEvent* event) {
 
 quint64 RatingPage::replayShown() const { return picture_->shown(); }
 bool RatingPage::settled() const {
-  return !replay_->isOpen() || (replay_->position().settled && picture_->shown() > 0);
+  return !opening_ && (!replay_->isOpen() || (replay_->position().settled && !picture_->picture().isNull()));
 }
 
 void RatingPage::openReplay() {
@@ -190,6 +194,7 @@ void RatingPage::openReplay() {
     return;
   }
   picture_->showText("Opening the recording …");
+  opening_ = true;
   replay_->open(file, attempt_->uuid);
 }
 

@@ -86,7 +86,8 @@ class RatingPage : public QWidget {
   QCheckBox* reveal_ = nullptr;
   QWidget* replayPart_ = nullptr;
   ScenePictureWidget* picture_ = nullptr;
-  std::string shown_;  ///< uuid whose replay was opened
+  bool opening_ = false;  ///< the replay
+  std::string shown_;     ///< uuid whose replay was opened
   std::unique_ptr<Replay> replay_;
 };
 

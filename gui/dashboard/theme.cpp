@@ -7,6 +7,8 @@
 #include <QApplication>
 #include <QFontMetricsF>
 #include <QLabel>
+#include <QPainter>
+#include <QPixmap>
 #include <QStyle>
 #include <QStyleFactory>
 #include <utility>
@@ -137,6 +139,11 @@ void apply(Choice choice, int type) {
   // Styles of desktops have colours of their own.
   if (choice != Choice::system) QApplication::setStyle(QStyleFactory::create("Fusion"));
   QApplication::setPalette(made);
+  // Rings and boxes to be ticked are drawn in Base, which is no lighter than what is around it.
+  QPalette ticked = made;
+  if (luminance(made.color(QPalette::Base)) < luminance(made.color(QPalette::Text)))
+    ticked.setColor(QPalette::Base, QColor(0x7a, 0x80, 0x86));
+  for (const char* kind : {"QRadioButton", "QCheckBox"}) QApplication::setPalette(ticked, kind);
   QFont font = usual;
   const double factor = 0.01 * std::clamp(type, usualType / 2, largestType);
   if (font.pointSizeF() > 0.0)
@@ -181,6 +188,23 @@ QColor ofVerdict(Verdict verdict) {
       break;
   }
   return muted();
+}
+
+QIcon buttonIcon(QStyle::StandardPixmap picture) {
+  const QIcon usual = QApplication::style()->standardIcon(picture);
+  const QPalette now = QApplication::palette();
+  QIcon made;
+  for (const auto& [mode, group] :
+       {std::pair{QIcon::Normal, QPalette::Active}, {QIcon::Disabled, QPalette::Disabled}}) {
+    constexpr int side = 24;
+    QPixmap pixmap = usual.pixmap(side, side);
+    QPainter painter(&pixmap);
+    painter.setCompositionMode(QPainter::CompositionMode_SourceIn);
+    painter.fillRect(pixmap.rect(), now.color(group, QPalette::ButtonText));
+    painter.end();
+    made.addPixmap(pixmap, mode);
+  }
+  return made;
 }
 
 void setGround(QLabel& label, const QColor& ground, const QColor& ink) {

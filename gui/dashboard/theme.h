@@ -4,9 +4,11 @@
 #pragma once
 
 #include <QColor>
+#include <QIcon>
 #include <QPalette>
 #include <QSize>
 #include <QString>
+#include <QStyle>
 
 #include "analytics/cohort/cohort_database.h"
 
@@ -45,6 +47,8 @@ inline constexpr double leastContrast = 4.5;
 [[nodiscard]] QColor trouble();  ///< text of what went wrong
 [[nodiscard]] QColor ofVerdict(analytics::Verdict verdict);
 
+/// A standard picture of the style in the colour of letters on buttons.
+[[nodiscard]] QIcon buttonIcon(QStyle::StandardPixmap picture);
 /// A label that stands out on a ground of its own, with this text on it.
 void setGround(QLabel& label, const QColor& ground, const QColor& ink);
 

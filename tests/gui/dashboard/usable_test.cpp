@@ -107,7 +107,9 @@ TEST_F(Usable, ContrastOfEveryTextIsThatOfLevelAA) {
   EXPECT_NEAR(theme::contrast(QColor(0x77, 0x77, 0x77), Qt::white), 4.48, 0.005) << "as the W3C's tables have it";
   for (const theme::Choice choice : {theme::Choice::system, theme::Choice::light, theme::Choice::dark}) {
     theme::apply(choice, theme::usualType);
-    if (choice != theme::Choice::system) EXPECT_EQ(theme::dark(), choice == theme::Choice::dark);
+    if (choice != theme::Choice::system) {
+      EXPECT_EQ(theme::dark(), choice == theme::Choice::dark);
+    }
     const std::string name = theme::wordOf(choice).toStdString();
     for (const QColor& colour : {theme::text(), theme::muted(), theme::first(), theme::second(), theme::trouble()})
       EXPECT_GE(theme::contrast(colour, theme::surface()), theme::leastContrast)
@@ -210,14 +212,17 @@ TEST_F(Usable, NoTwoLettersClash) {
     std::set<QChar> inMenu;
     for (const QAction* action : menu->menu()->actions()) {
       const QChar letter = mnemonicOf(action->text());
-      if (!letter.isNull())
+      if (!letter.isNull()) {
         EXPECT_TRUE(inMenu.insert(letter).second) << menu->text().toStdString() << ": " << action->text().toStdString();
+      }
     }
   }
   const auto clashes = [&](const std::string& where, QWidget& content, std::set<QChar> letters) {
     const auto take = [&](const QString& text) {
       const QChar letter = mnemonicOf(text);
-      if (!letter.isNull()) EXPECT_TRUE(letters.insert(letter).second) << where << ": " << text.toStdString();
+      if (!letter.isNull()) {
+        EXPECT_TRUE(letters.insert(letter).second) << where << ": " << text.toStdString();
+      }
     };
     for (const QWidget* widget : shown(content)) {
       if (const auto* label = qobject_cast<const QLabel*>(widget); label != nullptr && label->buddy() != nullptr)
