@@ -12,6 +12,7 @@
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/open_recording.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/summary_panel.h"
 #include "gui/dashboard/timeline_bar.h"
@@ -82,7 +83,7 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   parts->setStretchFactor(0, 1);
   parts->setChildrenCollapsible(false);
   layout->addWidget(parts, 1);
-  setFocusProxy(figures_);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(figures_->findChild<QWidget*>("attempt-checkpoints")));
   strip_ = new WorkStrip(work_);
   layout->addWidget(strip_);
   connectParts();

@@ -16,6 +16,7 @@
 #include <QTableView>
 
 #include "gui/dashboard/attempt_banner.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/table_view.h"
 #include "gui/dashboard/words.h"
@@ -47,7 +48,7 @@ AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
                             hidden.contains(attempts_.headerData(column, Qt::Horizontal, Qt::DisplayRole).toString()));
   setWidths(*table_, {90, 180, 110, 130, 95, 130, 150, 150, 90});
   upperLayout->addWidget(table_);
-  setFocusProxy(table_);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(table_));
 
   auto* lower = new QWidget;
   auto* lowerLayout = new QVBoxLayout(lower);

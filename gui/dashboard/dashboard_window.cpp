@@ -31,6 +31,7 @@
 #include "gui/dashboard/import_panel.h"
 #include "gui/dashboard/keys_dialog.h"
 #include "gui/dashboard/open_recording.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/rating_page.h"
 #include "gui/dashboard/settings.h"
@@ -196,7 +197,7 @@ void DashboardWindow::connectPages() {
   connect(compare_, &ComparePage::attemptActivated, this, &DashboardWindow::openAttempt);
   // One begins where a page begins; who is going along the tabs stays there.
   connect(tabs_, &QTabWidget::currentChanged, this, [this] {
-    if (!tabs_->tabBar()->hasFocus()) tabs_->currentWidget()->setFocus(Qt::OtherFocusReason);
+    if (!tabs_->tabBar()->hasFocus()) focusBegin(*tabs_->currentWidget());
   });
 }
 
@@ -224,7 +225,7 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   } else {
     const bool first = stack_->currentWidget() != tabs_;
     stack_->setCurrentWidget(tabs_);
-    if (first) tabs_->currentWidget()->setFocus(Qt::OtherFocusReason);
+    if (first) focusBegin(*tabs_->currentWidget());
   }
   if (!awaited_.isEmpty() && document_->attempt(awaited_.toStdString()) != nullptr)
     openAttempt(std::exchange(awaited_, QString()));

@@ -46,7 +46,6 @@ FigurePanel::FigurePanel(QWidget* parent)
   layout->addWidget(buildNormRow());
   layout->addWidget(tabs, 1);
 
-  setFocusProxy(figureTable_);
   connect(&families_, &QAbstractItemModel::modelReset, figureTable_, &QTreeView::expandAll);
   connect(norm_, &QComboBox::currentIndexChanged, this, [this] { showStanding(); });
   const auto figureAt = [this](const QModelIndex& at) {
@@ -72,7 +71,7 @@ QWidget* FigurePanel::buildNormRow() {
   verdict_->setTextFormat(Qt::PlainText);
   auto* label = new QLabel("&Norm");
   label->setBuddy(norm_);
-  sheet_ = new QPushButton("&Grade sheet …");
+  sheet_ = new QPushButton("Gr&ade sheet …");
   sheet_->setObjectName("grade-sheet");
   sheet_->setToolTip("Write the attempt against this norm as a PDF");
   onePage_ = new QPushButton("&One page …");
@@ -105,14 +104,15 @@ analytics::AttemptSummary FigurePanel::summary() const {
 std::vector<WorstMoment> FigurePanel::worstMoments() const {
   constexpr double apart = 1.0;  // s: two pictures of one moment tell no more than one
   std::vector<WorstMoment> worst;
-  for (const bool weak : {true, false}) {
+  enum class Tier { weak, counts, any };
+  for (const Tier tier : {Tier::weak, Tier::counts, Tier::any}) {
     for (int row = 0; row < figures_.rowCount() && worst.size() < maxWorstMoments; ++row) {
       const analytics::FigureMoments* found = figures_.moments(row);
       const analytics::CheckpointValue& value = figures_.value(row);
       const FigureStanding* standing = figures_.standing(row);
       const bool isWeak = standing != nullptr && standing->passed && !*standing->passed;
-      if (found == nullptr || found->moments.empty() || isWeak != weak) continue;
-      if (!weak && !analytics::countsByDefault(value.name)) continue;
+      if (found == nullptr || found->moments.empty() || (tier == Tier::weak && !isWeak)) continue;
+      if (tier == Tier::counts && !analytics::countsByDefault(value.name)) continue;
       const auto most = std::max_element(found->moments.begin(), found->moments.end(),
                                          [](const auto& a, const auto& b) { return a.share < b.share; });
       const double time = 0.5 * (most->begin + most->end);

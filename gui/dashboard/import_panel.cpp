@@ -20,7 +20,7 @@ ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
       queue_(queue),
       text_(new QLabel),
       bar_(new QProgressBar),
-      stop_(new QPushButton("Stop im&porting")),
+      stop_(new QPushButton("Stop importin&g")),
       results_(new QListWidget),
       tick_(new QTimer(this)) {
   text_->setObjectName("import-text");

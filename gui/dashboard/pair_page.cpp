@@ -15,6 +15,7 @@
 #include <QToolButton>
 #include <utility>
 
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/theme.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/words/event_words.h"
@@ -40,7 +41,7 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
     if (alignment_) goTo(alignment_->begin() + time);
   });
   layout->addWidget(buildTransport());
-  setFocusProxy(sides_[0]->choiceBox());
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(sides_[0]->choiceBox()));
   tick_ = new QTimer(this);
   connect(tick_, &QTimer::timeout, this, [this] { onTick(); });
   connect(new QShortcut(Qt::Key_Space, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated,

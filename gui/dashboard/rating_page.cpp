@@ -18,6 +18,7 @@
 
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/open_recording.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/transport_bar.h"
 #include "gui/view/scene_picture_widget.h"
@@ -49,7 +50,7 @@ RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(parts, 1);
   connectParts();
-  setFocusProxy(choice_);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(choice_));
 }
 
 RatingPage::~RatingPage() { replay_.reset(); }  // its thread uses the picture

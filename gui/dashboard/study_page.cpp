@@ -24,6 +24,7 @@
 
 #include "analytics/report/study_tables.h"
 #include "gui/dashboard/comparison_chart.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/roc_chart.h"
 #include "gui/dashboard/words.h"
 #include "gui/report/drawing_painter.h"
@@ -92,7 +93,7 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   splitter->setChildrenCollapsible(false);
   layout->addWidget(splitter, 1);
   connectParts();
-  setFocusProxy(groupBy_);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(groupBy_));
 }
 
 void StudyPage::buildChoices(QBoxLayout& layout) {

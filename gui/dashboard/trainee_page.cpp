@@ -14,6 +14,7 @@
 #include "analytics/assessment/attempt_summary.h"
 #include "gui/dashboard/figure_standing.h"
 #include "gui/dashboard/history_chart.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/theme.h"
 #include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
@@ -109,7 +110,7 @@ TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
   caption_->setWordWrap(true);
   layout->addWidget(caption_);
   connectParts();
-  setFocusProxy(trainee_);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(trainee_));
 }
 
 void TraineePage::connectParts() {

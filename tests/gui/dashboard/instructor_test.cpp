@@ -366,6 +366,8 @@ TEST_F(Instructor, RatesBlindedBesideTheReplayKeepsADraftAndGoesOnByKey) {
   for (const QString& item : items) child<QRadioButton>(page, qPrintable(item + "=4"))->click();
   const std::string first = window->findChild<AttemptsPage*>()->selected()->uuid;
   window->activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
+  ASSERT_TRUE(child<QPushButton>(page, "store-next")->isEnabled());
   child<QRadioButton>(page, "efficiency=4")->setFocus();
   QTest::keyClick(child<QRadioButton>(page, "efficiency=4"), Qt::Key_Return, Qt::ControlModifier);
   const auto ratings = analytics::AssessmentDatabase(file("c.db").toStdString(), Access::read).ratings();
