@@ -44,7 +44,9 @@ void AttemptBanner::showAttempt(const analytics::AttemptRow& attempt) {
   if (attempt.excluded) text += "\nExcluded from studies: " + QString::fromStdString(attempt.exclusionReason);
   identity_->setText(text);
   const Badge badge = badgeOf(attempt);
-  badge_->setText(badge.text);
+  const QString found = QString::fromStdString(attempt.verification.text);
+  badge_->setText(found.isEmpty() ? badge.text : badge.text + ": " + found);
+  badge_->setWordWrap(!found.isEmpty());
   badge_->setToolTip(badge.explanation + '\n' + QString::fromStdString(attempt.uuid) + '\n' +
                      QString::fromStdString(analytics::comparabilityWords(attempt.comparabilityKey)));
   verdict_ = attempt.verification.verdict;
