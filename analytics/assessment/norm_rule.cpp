@@ -50,7 +50,16 @@ FixedCut parseFixedCut(const std::string& text) {
               fmt::format("norm: fixed mark {}: a figure, <= or >=, and a number are wanted", recorder::shown(text)));
 }
 
-bool countsByDefault(std::string_view checkpoint) { return holds(harms, checkpoint) || holds(efforts, checkpoint); }
+bool countsByDefault(std::string_view checkpoint) { return holds(countingCheckpoints(), checkpoint); }
+
+const std::vector<std::string_view>& countingCheckpoints() {
+  static const std::vector<std::string_view> all = [] {
+    std::vector<std::string_view> joined(harms.begin(), harms.end());
+    joined.insert(joined.end(), efforts.begin(), efforts.end());
+    return joined;
+  }();
+  return all;
+}
 
 void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed) {
   for (const FixedCut& cut : fixed) {

@@ -23,6 +23,8 @@ FixedCut parseFixedCut(const std::string& text);
 /// Does a checkpoint count where the rule names none? Few do: how long it took, how far the tips went, and what harms
 /// the patient. The others describe; hundreds of them would decide by what competent people happen to differ in.
 bool countsByDefault(std::string_view checkpoint);
+/// The six of them, harm first. The dashboard shows the same.
+const std::vector<std::string_view>& countingCheckpoints();
 
 /// Puts an instructor's marks in the place of those of the members' spread; these figures are in the rule.
 /// @throws Error (invalid) where no figure is called so, or its better side is the other one

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "analytics/statistics/distributions.h"
 #include "analytics/statistics/least_squares.h"
 #include "analytics/statistics/samples.h"
 
@@ -103,6 +104,8 @@ Expected<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const doubl
     curve.gapError = errors[1];
     curve.residualSumOfSquares = fit->residualSumOfSquares;
     curve.sigma = fit->sigma;
+    curve.covariance = fit->sigma * fit->sigma * fit->unscaled[1];
+    curve.freedom = y.size() - parameters;
     return curve;
   }
   const Abscissa a = abscissa(shape, x);
@@ -140,6 +143,16 @@ Expected<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const doubl
   curve.gapError = error(1);
   curve.rateError = error(2);
   return curve;
+}
+
+Expected<Interval> bandOf(const LearningCurve& curve, double x, double level) {
+  if (curve.shape != CurveShape::inverse || curve.freedom == 0)
+    return Expected<Interval>::none("the band is of the curve a - b / x alone");
+  const double variance =
+      curve.plateauError * curve.plateauError - 2.0 * curve.covariance / x + curve.gapError * curve.gapError / (x * x);
+  const double half =
+      studentQuantile(0.5 + 0.5 * level, static_cast<double>(curve.freedom)) * std::sqrt(std::max(0.0, variance));
+  return Interval{curve.at(x) - half, curve.at(x) + half, level, "Student's t of a linear fit, pointwise"};
 }
 
 }  // namespace calot::analytics

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "analytics/statistics/expected.h"
+#include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
 
@@ -25,7 +26,9 @@ struct LearningCurve {
   double plateauError = 0.0, gapError = 0.0;  ///< standard errors, from s^2 (J'J)^-1 at the minimum
   std::optional<double> rateError;            ///< none for inverse
   double residualSumOfSquares = 0.0;
-  double sigma = 0.0;  ///< sqrt(residualSumOfSquares / (values - parameters))
+  double sigma = 0.0;       ///< sqrt(residualSumOfSquares / (values - parameters))
+  double covariance = 0.0;  ///< of plateau and gap; of `inverse` alone
+  std::size_t freedom = 0;  ///< values - parameters
 
   [[nodiscard]] double at(double x) const;
 };
@@ -37,5 +40,10 @@ struct LearningCurve {
 /// grid: no plateau in sight (c to 0: a straight line, or for the power a logarithm) or all change over after the first
 /// attempt (c to infinity).
 Expected<LearningCurve> fitLearningCurve(CurveShape shape, std::span<const double> x, std::span<const double> y);
+
+/// Where the curve itself lies at x, by Student's t: a - b / x is linear in a and b, so its variance is
+/// Var a - 2 Cov(a, b) / x + Var b / x^2 (Draper and Smith 1998, 1.4). None for the other shapes.
+/// @pre x > 0, 0 < level < 1
+Expected<Interval> bandOf(const LearningCurve& curve, double x, double level = 0.95);
 
 }  // namespace calot::analytics

@@ -1,45 +1,73 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/attempt_banner.h"
 
+#include <QApplication>
 #include <QBoxLayout>
+#include <QEvent>
 #include <QLabel>
 
+#include "gui/dashboard/theme.h"
 #include "gui/dashboard/words.h"
 
 namespace calot::gui {
 
 AttemptBanner::AttemptBanner(QWidget* parent) : QWidget(parent) {
-  auto* layout = new QVBoxLayout(this);
+  auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(3);
-  const auto label = [&](const char* name) {
+  const auto label = [&](const char* name, int stretch) {
     auto* made = new QLabel;
     made->setObjectName(name);
     made->setWordWrap(true);
     made->setTextFormat(Qt::PlainText);
-    made->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-    layout->addWidget(made);
+    made->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    layout->addWidget(made, stretch);
     return made;
   };
-  watermark_ = label("watermark");
-  watermark_->setText(
-      "SYNTHETIC — made by a performer. It shows that the pipeline works and says nothing about people.");
-  watermark_->setStyleSheet("QLabel { background: #f0e442; color: #000000; font-weight: bold; padding: 4px; }");
+  watermark_ = label("watermark", 0);
+  watermark_->setText("SYNTHETIC — made by a performer");
+  watermark_->setWordWrap(false);
+  watermark_->setToolTip("It shows that the pipeline works and says nothing about people.");
+  QFont bold = watermark_->font();
+  bold.setBold(true);
+  watermark_->setFont(bold);
+  theme::setGround(*watermark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   watermark_->hide();
-  identity_ = label("identity");
-  badge_ = label("badge");
+  identity_ = label("identity", 3);
+  badge_ = label("badge", 0);
+  badge_->setWordWrap(false);
 }
 
 void AttemptBanner::showAttempt(const analytics::AttemptRow& attempt) {
-  QString text = QString("Attempt %1 · %2 · %3 · %4\n%5")
-                     .arg(QString::fromStdString(attempt.uuid), operatorText(attempt), startText(attempt.startUtc),
-                          outcomeText(attempt.outcome), QString::fromStdString(attempt.comparabilityKey));
+  QString text = QString("%1 · %2 · %3 · %4 · attempt %5")
+                     .arg(operatorText(attempt), QString::fromStdString(attempt.scene), startText(attempt.startUtc),
+                          outcomeText(attempt.outcome), QString::fromStdString(attempt.uuid).left(8));
   if (attempt.excluded) text += "\nExcluded from studies: " + QString::fromStdString(attempt.exclusionReason);
   identity_->setText(text);
   const Badge badge = badgeOf(attempt);
-  badge_->setText(badge.text + ". " + QString(badge.explanation).replace('\n', ' '));
-  badge_->setStyleSheet("QLabel { color: " + badge.colour.name() + "; }");
+  const QString found = QString::fromStdString(attempt.verification.text);
+  badge_->setText(found.isEmpty() ? badge.text : badge.text + ": " + found);
+  badge_->setWordWrap(!found.isEmpty());
+  badge_->setToolTip(badge.explanation + '\n' + QString::fromStdString(attempt.uuid) + '\n' +
+                     QString::fromStdString(analytics::comparabilityWords(attempt.comparabilityKey)));
+  verdict_ = attempt.verification.verdict;
+  colourBadge();
   watermark_->setVisible(attempt.synthetic);
+}
+
+void AttemptBanner::makeNarrow() {
+  watermark_->setText("SYNTHETIC");
+  badge_->hide();  // the choice above says it
+}
+
+void AttemptBanner::colourBadge() {
+  QPalette own = QApplication::palette();
+  own.setColor(QPalette::WindowText, theme::ofVerdict(verdict_));
+  badge_->setPalette(own);
+}
+
+void AttemptBanner::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange) colourBadge();
 }
 
 void AttemptBanner::showText(const QString& text) {

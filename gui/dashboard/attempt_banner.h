@@ -16,9 +16,17 @@ class AttemptBanner : public QWidget {
  public:
   explicit AttemptBanner(QWidget* parent = nullptr);
   void showAttempt(const analytics::AttemptRow& attempt);
+  /// For half a window: the mark of performers in one word.
+  void makeNarrow();
   void showText(const QString& text);  ///< no attempt
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
+  void colourBadge();
+
+  analytics::Verdict verdict_ = analytics::Verdict::notChecked;
   QLabel* watermark_;
   QLabel* identity_;
   QLabel* badge_;

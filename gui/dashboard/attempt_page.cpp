@@ -12,10 +12,13 @@
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/open_recording.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/settings.h"
+#include "gui/dashboard/summary_panel.h"
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/dashboard/transport_bar.h"
+#include "gui/dashboard/work_strip.h"
 #include "gui/view/scene_picture_widget.h"
 
 namespace calot::gui {
@@ -56,6 +59,8 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
   banner_ = new AttemptBanner;
   layout->addWidget(banner_);
+  summary_ = new SummaryPanel;
+  layout->addWidget(summary_);
   auto* upper = new QSplitter(Qt::Horizontal);
   upper->addWidget(figures_);
   upper->addWidget(buildReplay());
@@ -63,12 +68,24 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   upper->setStretchFactor(0, 3);
   upper->setStretchFactor(1, 2);
   upper->setChildrenCollapsible(false);
-  layout->addWidget(upper, 1);
   timeline_ = new TimelineBar;
   force_ = new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed");
   speed_ = new TraceChart("speed-trace", "Speed of the tip (mm/s)");
+  auto* traces = new QWidget;
+  auto* traceLayout = new QVBoxLayout(traces);
+  traceLayout->setContentsMargins(0, 0, 0, 0);
+  traceLayout->setSpacing(2);
   for (QWidget* row : {static_cast<QWidget*>(timeline_), static_cast<QWidget*>(force_), static_cast<QWidget*>(speed_)})
-    layout->addWidget(row);
+    traceLayout->addWidget(row);
+  auto* parts = new QSplitter(Qt::Vertical);
+  parts->addWidget(upper);
+  parts->addWidget(traces);
+  parts->setStretchFactor(0, 1);
+  parts->setChildrenCollapsible(false);
+  layout->addWidget(parts, 1);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(figures_->findChild<QWidget*>("attempt-checkpoints")));
+  strip_ = new WorkStrip(work_);
+  layout->addWidget(strip_);
   connectParts();
   clear();
 }
@@ -80,7 +97,7 @@ AttemptPage::~AttemptPage() {
 }
 
 QWidget* AttemptPage::buildReplay() {
-  find_ = new QPushButton("&Find the recording …");
+  find_ = new QPushButton("Find the &recording …");
   find_->setObjectName("find-recording");
   auto* made = new QWidget;
   auto* layout = new QVBoxLayout(made);
@@ -93,6 +110,11 @@ QWidget* AttemptPage::buildReplay() {
 
 void AttemptPage::connectParts() {
   connect(find_, &QPushButton::clicked, this, &AttemptPage::askForRecording);
+  connect(figures_, &FigurePanel::summaryChanged, this, [this] { summary_->showSummary(figures_->summary()); });
+  connect(figures_, &FigurePanel::sheetRequested, this, [this] { askForSheet(false); });
+  connect(figures_, &FigurePanel::onePageRequested, this, [this] { askForSheet(true); });
+  connect(&work_, &LongWork::done, this, &AttemptPage::sheetWritten);
+  connect(&work_, &LongWork::failed, this, &AttemptPage::problem);
   connect(figures_, &FigurePanel::problem, this, &AttemptPage::problem);
   connect(figures_, &FigurePanel::timeChosen, replay_.get(), &Replay::seek);
   connect(figures_, &FigurePanel::windowsChosen, timeline_, &TimelineBar::setMarked);
@@ -150,6 +172,7 @@ void AttemptPage::clear() {
   reader_->stop();
   replay_->close();
   banner_->showText("Choose an attempt on the page Attempts: double-click it, or press Enter.");
+  summary_->clear();
   figures_->clear();
   picture_->showText("No attempt is chosen.");
   find_->hide();
@@ -212,6 +235,34 @@ void AttemptPage::askForRecording() {
   if (file.isEmpty()) return;
   settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   openRecording(file.toStdString());
+}
+
+void AttemptPage::askForSheet(bool onePage) {
+  const QString name =
+      QString("%1-%2.pdf").arg(onePage ? "attempt" : "grade").arg(QString::fromStdString(attempt_->uuid).left(8));
+  const QString file = QFileDialog::getSaveFileName(
+      this, onePage ? "Write the attempt on one page" : "Write the grade sheet",
+      QFileInfo(QString::fromStdString(document_->path())).absolutePath() + '/' + name, "PDF (*.pdf)");
+  if (!file.isEmpty()) writeSheet(file.toStdString(), onePage);
+}
+
+void AttemptPage::writeSheet(const std::filesystem::path& file, bool onePage) {
+  SheetRequest request;
+  request.database = document_->path();
+  request.attempt = *attempt_;
+  request.summary = figures_->summary();
+  request.events = figures_->events();
+  request.moments = figures_->worstMoments();
+  if (replay_->isOpen()) request.recording = file_;
+  request.file = file;
+  if (const analytics::Norm* norm = figures_->norm()) {
+    request.norm = norm->name;
+    request.normVersion = norm->version;
+  }
+  strip_->begin("Writing " + QString::fromStdString(file.filename().string()));
+  work_.start([request, onePage](LongWork::Control& control) {
+    return onePage ? writeOnePage(request, control) : writeGradeSheet(request, control);
+  });
 }
 
 void AttemptPage::showPosition() {

@@ -6,6 +6,7 @@
 #include <QWidget>
 
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/long_work.h"
 #include "gui/dashboard/recording_reader.h"
 #include "gui/dashboard/replay.h"
 
@@ -16,11 +17,14 @@ namespace calot::gui {
 class AttemptBanner;
 class FigurePanel;
 class ScenePictureWidget;
+class SummaryPanel;
 class TimelineBar;
 class TraceChart;
 class TransportBar;
+class WorkStrip;
 
-/// One attempt: its checkpoints within a norm, timeline, traces and replay. A click on a figure, an event or a trace
+/// One attempt: what an instructor wants to know first, in words; its checkpoints within a norm, timeline, traces and
+/// replay. A click on a figure, an event or a trace
 /// shows that moment.
 class AttemptPage : public QWidget {
   Q_OBJECT
@@ -35,6 +39,9 @@ class AttemptPage : public QWidget {
   /// Whether all that can be read of the attempt was read, and the replay stands where it was sent to.
   [[nodiscard]] bool settled() const;
   [[nodiscard]] Replay& replay() { return *replay_; }
+  /// Writes the attempt on one page, or against its norm, on a thread of its own. @pre an attempt is shown
+  void writeSheet(const std::filesystem::path& file, bool onePage);
+  [[nodiscard]] LongWork& work() { return work_; }
 
  public slots:
   /// Asks where the recording is.
@@ -42,6 +49,7 @@ class AttemptPage : public QWidget {
 
  signals:
   void problem(const QString& message);
+  void sheetWritten(const QString& text);
 
  protected:
   void showEvent(QShowEvent* event) override;
@@ -50,6 +58,7 @@ class AttemptPage : public QWidget {
  private:
   QWidget* buildReplay();
   void connectParts();
+  void askForSheet(bool onePage);
   void load();
   void openRecording(const std::filesystem::path& file);
   void showMissingRecording();
@@ -63,7 +72,10 @@ class AttemptPage : public QWidget {
   bool loaded_ = false;
   std::filesystem::path file_;
 
+  LongWork work_;
+  WorkStrip* strip_ = nullptr;
   AttemptBanner* banner_ = nullptr;
+  SummaryPanel* summary_ = nullptr;
   FigurePanel* figures_ = nullptr;
   ScenePictureWidget* picture_ = nullptr;
   QPushButton* find_ = nullptr;

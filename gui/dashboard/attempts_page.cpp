@@ -9,11 +9,15 @@
 #include <QItemSelectionModel>
 #include <QLabel>
 #include <QLineEdit>
+#include <QMenu>
+#include <QPushButton>
 #include <QSignalBlocker>
 #include <QSplitter>
 #include <QTableView>
 
 #include "gui/dashboard/attempt_banner.h"
+#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/settings.h"
 #include "gui/dashboard/table_view.h"
 #include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
@@ -35,10 +39,16 @@ AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
   upperLayout->setContentsMargins(0, 0, 0, 0);
   buildFilters(*upperLayout);
   table_ = makeTable(filter_, "attempts", "Attempts");
+  table_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   table_->setSortingEnabled(true);
   table_->sortByColumn(AttemptTableModel::startColumn, Qt::DescendingOrder);
+  const QStringList hidden = settings::hiddenColumns();
+  for (int column = AttemptTableModel::operatorColumn; column < AttemptTableModel::columnTotal; ++column)
+    table_->setColumnHidden(column,
+                            hidden.contains(attempts_.headerData(column, Qt::Horizontal, Qt::DisplayRole).toString()));
   setWidths(*table_, {90, 180, 110, 130, 95, 130, 150, 150, 90});
   upperLayout->addWidget(table_);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(table_));
 
   auto* lower = new QWidget;
   auto* lowerLayout = new QVBoxLayout(lower);
@@ -55,6 +65,7 @@ AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
   layout->addWidget(splitter);
 
   connect(table_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this] { showSelected(); });
+  connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { showCount(); });
   connect(table_, &QTableView::activated, this, &AttemptsPage::attemptActivated);
 }
 
@@ -83,9 +94,10 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
     row->addWidget(field, stretch);
   };
   add("&Search", search_, 1);
-  add("&Verification", verdict_, 0);
+  add("Verifi&cation", verdict_, 0);
   add("&Made by", operators_, 0);
   row->addWidget(count_);
+  buildColumns(*row);
   layout.addLayout(row);
 
   connect(search_, &QLineEdit::textChanged, this, [this](const QString& text) {
@@ -100,6 +112,31 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
     filter_.setOperators(static_cast<AttemptFilter::Operators>(index));
     showCount();
   });
+}
+
+void AttemptsPage::buildColumns(QBoxLayout& layout) {
+  auto* button = new QPushButton("Co&lumns");
+  button->setObjectName("columns");
+  auto* menu = new QMenu(button);
+  // The table is made after its filters.
+  connect(menu, &QMenu::aboutToShow, this, [this, menu] {
+    menu->clear();
+    for (int column = AttemptTableModel::operatorColumn; column < AttemptTableModel::columnTotal; ++column) {
+      QAction* action = menu->addAction(attempts_.headerData(column, Qt::Horizontal, Qt::DisplayRole).toString());
+      action->setCheckable(true);
+      action->setChecked(!table_->isColumnHidden(column));
+      connect(action, &QAction::toggled, this, [this, column](bool shown) {
+        table_->setColumnHidden(column, !shown);
+        QStringList hidden;
+        for (int c = 0; c < AttemptTableModel::columnTotal; ++c) {
+          if (table_->isColumnHidden(c)) hidden += attempts_.headerData(c, Qt::Horizontal, Qt::DisplayRole).toString();
+        }
+        settings::setHiddenColumns(hidden);
+      });
+    }
+  });
+  button->setMenu(menu);
+  layout.addWidget(button);
 }
 
 void AttemptsPage::buildDetails(QBoxLayout& layout) {
@@ -162,7 +199,25 @@ void AttemptsPage::focusSearch() {
 }
 
 void AttemptsPage::showCount() {
-  count_->setText(QString("%1 of %2 attempts").arg(filter_.rowCount()).arg(attempts_.rowCount()));
+  QString text = QString("%1 of %2 attempts").arg(filter_.rowCount()).arg(attempts_.rowCount());
+  if (table_ != nullptr) {
+    const qsizetype chosen = table_->selectionModel()->selectedRows().size();
+    if (chosen > 1) text += QString(", %1 selected").arg(chosen);
+  }
+  count_->setText(text);
+}
+
+void AttemptsPage::selectNext() {
+  const int row = table_->currentIndex().row() + 1;
+  if (row < filter_.rowCount()) table_->selectRow(row);
+}
+
+std::vector<analytics::AttemptRow> AttemptsPage::selectedAll() const {
+  QModelIndexList rows = table_->selectionModel()->selectedRows();
+  std::sort(rows.begin(), rows.end());
+  std::vector<analytics::AttemptRow> chosen;
+  for (const QModelIndex& row : rows) chosen.push_back(attempts_.attempt(filter_.mapToSource(row).row()));
+  return chosen;
 }
 
 const analytics::AttemptRow* AttemptsPage::selected() const {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <QWidget>
+#include <vector>
 
 #include "gui/dashboard/attempt_filter.h"
 #include "gui/dashboard/attempt_table_model.h"
@@ -27,6 +28,9 @@ class AttemptsPage : public QWidget {
   /// Shows a document; the first attempt is selected. @pre not null
   void setDocument(std::shared_ptr<const CohortDocument> document);
   void focusSearch();
+  void selectNext();  ///< the row below
+  /// All that are selected, in the table's order.
+  [[nodiscard]] std::vector<analytics::AttemptRow> selectedAll() const;
   [[nodiscard]] const analytics::AttemptRow* selected() const;  ///< or null
   /// Selects an attempt; filters that hide it are taken away.
   void select(const QString& uuid);
@@ -43,6 +47,7 @@ class AttemptsPage : public QWidget {
  private:
   void buildFilters(QBoxLayout& layout);
   void buildDetails(QBoxLayout& layout);
+  void buildColumns(QBoxLayout& layout);
   void showCount();
   void showSelected();
   [[nodiscard]] int rowOf(const QString& uuid) const;  ///< in the filtered table; -1: not there

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "gui/dashboard/checkpoint_table_model.h"
-#include "gui/dashboard/palette.h"
+#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 namespace {
@@ -31,18 +31,18 @@ void paintBand(QPainter& painter, const QRectF& box, const FigureStanding& stand
   const auto bar = [&](double from, double to, double half, const QColor& colour) {
     painter.fillRect(QRectF(x(from), middle - half, std::max(1.0, x(to) - x(from)), 2.0 * half), colour);
   };
-  bar(band.p10, band.p90, 3.0, QColor(0xbf, 0xd9, 0xea));
-  bar(band.p25, band.p75, 5.0, QColor(0x7f, 0xb4, 0xd6));
-  painter.setPen(QPen(palette::darkText, 1.5));
+  bar(band.p10, band.p90, 3.0, theme::dark() ? QColor(0x2a, 0x4a, 0x60) : QColor(0xbf, 0xd9, 0xea));
+  bar(band.p25, band.p75, 5.0, theme::dark() ? QColor(0x3c, 0x70, 0x94) : QColor(0x7f, 0xb4, 0xd6));
+  painter.setPen(QPen(theme::text(), 1.5));
   painter.drawLine(QPointF(x(band.p50), middle - 6.0), QPointF(x(band.p50), middle + 6.0));
   if (standing.cut) {
-    painter.setPen(QPen(palette::darkText, 1.0, Qt::DashLine));
+    painter.setPen(QPen(theme::text(), 1.0, Qt::DashLine));
     painter.drawLine(QPointF(x(*standing.cut), box.top() + 1.0), QPointF(x(*standing.cut), box.bottom() - 1.0));
   }
   if (standing.value) {
     const double at = x(*standing.value);
-    painter.setPen(QPen(Qt::white, 1.0));
-    painter.setBrush(standing.passed.value_or(true) ? palette::blue : palette::vermillion);
+    painter.setPen(QPen(theme::surface(), 1.0));
+    painter.setBrush(standing.passed.value_or(true) ? theme::first() : theme::second());
     painter.drawPolygon(QPolygonF{
         {QPointF(at - 5.0, middle), QPointF(at, middle - 6.0), QPointF(at + 5.0, middle), QPointF(at, middle + 6.0)}});
   }

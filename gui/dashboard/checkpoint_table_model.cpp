@@ -7,7 +7,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "gui/dashboard/attempt_track.h"
-#include "gui/dashboard/palette.h"
+#include "gui/dashboard/theme.h"
 #include "gui/dashboard/words.h"
 
 namespace calot::gui {
@@ -177,7 +177,7 @@ QVariant CheckpointTableModel::data(const QModelIndex& index, int role) const {
         return QVariant::fromValue(Qt::Alignment(Qt::AlignVCenter | (missing ? Qt::AlignLeft : Qt::AlignRight)));
       return {};
     case Qt::ForegroundRole:
-      if (column == valueColumn && missing) return palette::mutedText;
+      if (column == valueColumn && missing) return theme::muted();
       return {};
     case standingRole:
       return column == normColumn ? QVariant::fromValue(static_cast<const void*>(standing(row))) : QVariant();

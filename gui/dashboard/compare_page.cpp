@@ -10,6 +10,7 @@
 #include <QSignalBlocker>
 
 #include "gui/dashboard/comparison_chart.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 
@@ -46,7 +47,9 @@ ComparePage::ComparePage(QWidget* parent) : QWidget(parent) {
   layout->addLayout(upper);
   layout->addLayout(lower);
   chart_ = new ComparisonChart;
+  connect(chart_, &DotChart::attemptChosen, this, &ComparePage::attemptActivated);
   layout->addWidget(chart_, 1);
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(figure_));
   caption_ = new QLabel;
   caption_->setObjectName("caption");
   caption_->setTextFormat(Qt::PlainText);

@@ -28,6 +28,7 @@ class ComparePage : public QWidget {
 
  signals:
   void problem(const QString& message);
+  void attemptActivated(const QString& uuid);
 
  protected:
   void showEvent(QShowEvent* event) override;

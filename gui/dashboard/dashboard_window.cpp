@@ -10,8 +10,12 @@
 #include <QFileInfo>
 #include <QLabel>
 #include <QMenuBar>
+#include <QMessageBox>
 #include <QMimeData>
+#include <QScreen>
 #include <QStackedWidget>
+#include <QStatusBar>
+#include <QTabBar>
 #include <QTabWidget>
 #include <QTimer>
 #include <QUndoStack>
@@ -25,10 +29,14 @@
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
+#include "gui/dashboard/keys_dialog.h"
+#include "gui/dashboard/open_recording.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/rating_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
+#include "gui/dashboard/theme.h"
 #include "gui/dashboard/trainee_page.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
@@ -36,6 +44,7 @@
 namespace calot::gui {
 namespace {
 
+constexpr int noticeFor = 8000;     // ms
 constexpr int refreshEvery = 3000;  // ms, while an import runs
 
 QStringList localFiles(const QMimeData& data) {
@@ -65,14 +74,13 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
       undo_(new QUndoStack(this)),
       imports_(program) {
   setWindowTitle("Calot");
-  resize(1280, 860);
+  resize(theme::windowSizeFor(screen()->availableSize()));
   setAcceptDrops(true);
   problem_->setObjectName("problem");
   problem_->setTextFormat(Qt::PlainText);
   problem_->setWordWrap(true);
   problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  problem_->setStyleSheet(
-      "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
+  theme::setGround(*problem_, QColor(0xfb, 0xe3, 0xd6), QColor(0x5a, 0x1e, 0x00));
   problem_->hide();
   tabs_->addTab(attempts_, "Attempts");
   tabs_->addTab(attempt_, "Attempt");
@@ -131,17 +139,28 @@ void DashboardWindow::buildMenus() {
   exclude_ = edit->addAction("&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), this,
                              [this] { askForExclusion(); });
   exclude_->setEnabled(false);
+  edit->addAction("&Verify again", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_V), this, [this] { verifySelected(); });
+  edit->addAction("&Side by side", QKeySequence(Qt::CTRL | Qt::Key_B), this, [this] { pairSelected(); });
   QMenu* const view = menuBar()->addMenu("&View");
   for (int page = 0; page < tabs_->count(); ++page)
     view->addAction(QString("&%1 ").arg(page + 1) + tabs_->tabText(page),
                     QKeySequence(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_1 + page)), this,
                     [this, page] { tabs_->setCurrentIndex(page); });
-  view->addAction("&Find", QKeySequence(QKeySequence::Find), this, [this] {
+  view->addAction("&Search", QKeySequence(QKeySequence::Find), this, [this] {
     tabs_->setCurrentWidget(attempts_);
     attempts_->focusSearch();
   });
   view->addAction("&Reload", QKeySequence(Qt::Key_F5), this, [this] { reload(); });
   view->addAction(importDock_->toggleViewAction());
+  QMenu* const help = menuBar()->addMenu("&Help");
+  help->addAction("&Keys …", QKeySequence(QKeySequence::HelpContents), this,
+                  [this] { KeysDialog(keysOf(*menuBar()), this).exec(); });
+  help->addAction("&About Calot …", this, [this] {
+    QMessageBox::about(this, "Calot",
+                       "Calot " CALOT_VERSION
+                       "\nTraining of laparoscopic cholecystectomy: recorded, "
+                       "replayed bit for bit, assessed.\nGPL, version 3 or later.");
+  });
 }
 
 void DashboardWindow::connectPages() {
@@ -150,9 +169,12 @@ void DashboardWindow::connectPages() {
   connect(greeting_, &GreetingPage::importRequested, this, [this] { askForRecordings(); });
   connect(attempts_, &AttemptsPage::problem, this, &DashboardWindow::showProblem);
   connect(attempt_, &AttemptPage::problem, this, &DashboardWindow::showProblem);
+  connect(attempt_, &AttemptPage::sheetWritten, this,
+          [this](const QString& text) { statusBar()->showMessage(text, noticeFor); });
   connect(compare_, &ComparePage::problem, this, &DashboardWindow::showProblem);
   connect(study_, &StudyPage::problem, this, &DashboardWindow::showProblem);
   connect(trainee_, &TraineePage::problem, this, &DashboardWindow::showProblem);
+  connect(rating_, &RatingPage::nextWanted, attempts_, &AttemptsPage::selectNext);
   connect(rating_, &RatingPage::problem, this, &DashboardWindow::showProblem);
   connect(attempts_, &AttemptsPage::selectionChanged, this, [this] {
     const analytics::AttemptRow* attempt = attempts_->selected();
@@ -172,6 +194,11 @@ void DashboardWindow::connectPages() {
     attempt_->figures().goToFigure(checkpoint.toStdString(), subject.toStdString());
   });
   connect(trainee_, &TraineePage::attemptActivated, this, &DashboardWindow::openAttempt);
+  connect(compare_, &ComparePage::attemptActivated, this, &DashboardWindow::openAttempt);
+  // One begins where a page begins; who is going along the tabs stays there.
+  connect(tabs_, &QTabWidget::currentChanged, this, [this] {
+    if (!tabs_->tabBar()->hasFocus()) focusBegin(*tabs_->currentWidget());
+  });
 }
 
 void DashboardWindow::openAttempt(const QString& uuid) {
@@ -196,7 +223,9 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
     greeting_->explainEmptyDatabase(name);
     stack_->setCurrentWidget(greeting_);
   } else {
+    const bool first = stack_->currentWidget() != tabs_;
     stack_->setCurrentWidget(tabs_);
+    if (first) focusBegin(*tabs_->currentWidget());
   }
   if (!awaited_.isEmpty() && document_->attempt(awaited_.toStdString()) != nullptr)
     openAttempt(std::exchange(awaited_, QString()));
@@ -276,16 +305,48 @@ void DashboardWindow::showRecording(const QString& file, const QString& uuid) {
 }
 
 void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {
-  const analytics::AttemptRow* attempt = attempts_->selected();
-  if (attempt == nullptr) return;
-  undo_->push(new ExclusionCommand({document_->path(), attempt->uuid, reason.toStdString(), by.toStdString(),
-                                    !attempt->excluded, attempt->exclusionReason},
-                                   [this](const QString& fault) {
-                                     if (fault.isEmpty())
-                                       reload();
-                                     else
-                                       showProblem(fault);
-                                   }));
+  const analytics::AttemptRow* current = attempts_->selected();
+  if (current == nullptr) return;
+  const bool exclude = !current->excluded;
+  std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
+  if (chosen.empty()) chosen.push_back(*current);
+  // Those that are so already stay as they are.
+  std::erase_if(chosen, [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
+  const bool several = chosen.size() > 1;
+  if (several) undo_->beginMacro(exclude ? "exclude attempts" : "include attempts");
+  for (const analytics::AttemptRow& attempt : chosen) {
+    undo_->push(new ExclusionCommand(
+        {document_->path(), attempt.uuid, reason.toStdString(), by.toStdString(), exclude, attempt.exclusionReason},
+        [this](const QString& fault) {
+          if (fault.isEmpty())
+            reload();
+          else
+            showProblem(fault);
+        }));
+  }
+  if (several) undo_->endMacro();
+}
+
+void DashboardWindow::verifySelected() {
+  if (!document_) return;
+  QStringList files, missing;
+  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) {
+    const std::filesystem::path file = findRecording(attempt, document_->path(), settings::recordingPlaces());
+    (file.empty() ? missing : files) += QString::fromStdString(file.empty() ? attempt.fileName : file.string());
+  }
+  if (!missing.isEmpty())
+    showProblem("Not found, so not verified: " + missing.join(", ") + ". Settings name the folders with recordings.");
+  if (!files.isEmpty()) importRecordings(files);
+}
+
+void DashboardWindow::pairSelected() {
+  const std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
+  if (chosen.size() != 2) {
+    showProblem("Select two attempts on the page Attempts (Ctrl and a click, or Shift and an arrow).");
+    return;
+  }
+  for (std::size_t side = 0; side < 2; ++side) pair_->setAttempt(side, chosen[side].uuid);
+  tabs_->setCurrentWidget(pair_);
 }
 
 void DashboardWindow::showProblem(const QString& message) {

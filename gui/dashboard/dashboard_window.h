@@ -54,8 +54,13 @@ class DashboardWindow : public QMainWindow {
   /// Shows an attempt as soon as the open database has it; imports its recording where it has not.
   /// @pre a database is open
   void showRecording(const QString& file, const QString& uuid);
-  /// Excludes the selected attempt from studies, or takes it in again where it is excluded. Can be undone.
+  /// Excludes the selected attempts from studies, or takes them in again where the current one is excluded. Can be
+  /// undone.
   void excludeOrInclude(const QString& reason, const QString& by);
+  /// Simulates the selected attempts' recordings again; progress as of an import.
+  void verifySelected();
+  /// Puts two selected attempts side by side.
+  void pairSelected();
 
   [[nodiscard]] ImportQueue& imports() { return imports_; }
   /// Writes a PNG of each page into a folder that exists, after what it shows has been read: attempts.png, attempt.png,

@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/figure_panel.h"
 
+#include <algorithm>
+#include <cmath>
 #include <QBoxLayout>
 #include <QComboBox>
+#include <QHeaderView>
 #include <QLabel>
+#include <QPushButton>
 #include <QShortcut>
 #include <QSignalBlocker>
-#include <QTableView>
 #include <QTabWidget>
+#include <QTreeView>
 #include <utility>
 
+#include "analytics/assessment/norm_rule.h"
 #include "gui/dashboard/band_delegate.h"
 #include "gui/dashboard/figure_standing.h"
 #include "gui/dashboard/table_view.h"
+#include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
@@ -22,16 +28,42 @@ FigurePanel::FigurePanel(QWidget* parent)
     : QWidget(parent),
       norm_(new QComboBox),
       verdict_(new QLabel),
-      figureTable_(makeTable(figures_, "attempt-checkpoints", "Checkpoints of the attempt")),
-      eventTable_(makeTable(events_, "events", "Events of the attempt")) {
+      figureTable_(makeTree(families_, "attempt-checkpoints", "Checkpoints of the attempt, by family")),
+      eventTable_(makeTree(events_, "events", "Events of the attempt, by kind")) {
   figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
-  setWidths(*figureTable_, {188, 76, 96, 130, 226, 110, 130, 460, 100, 60});
-  wrapWords(*figureTable_);
-  setWidths(*eventTable_, {80});
+  setWidths(*figureTable_, {268, 84, 110, 130, 226, 110, 130, 460, 100, 60});
+  figureTable_->setSortingEnabled(true);
+  figureTable_->header()->setSortIndicatorClearable(true);
+  figureTable_->header()->setSortIndicator(-1, Qt::AscendingOrder);
+  setWidths(*eventTable_, {360});
+  figureTable_->setMinimumHeight(8 * figureTable_->fontMetrics().height());
   auto* tabs = new QTabWidget;
+  tabs->setObjectName("figure-tabs");
   tabs->addTab(figureTable_, "&Checkpoints");
-  tabs->addTab(eventTable_, "E&vents");
+  tabs->addTab(eventTable_, "Even&ts");
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(buildNormRow());
+  layout->addWidget(tabs, 1);
 
+  connect(&families_, &QAbstractItemModel::modelReset, figureTable_, &QTreeView::expandAll);
+  connect(norm_, &QComboBox::currentIndexChanged, this, [this] { showStanding(); });
+  const auto figureAt = [this](const QModelIndex& at) {
+    if (const int row = families_.sourceRow(at); row >= 0) showFigure(row);
+  };
+  connect(figureTable_, &QTreeView::clicked, this, figureAt);
+  for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter}) {
+    connect(new QShortcut(key, figureTable_, nullptr, nullptr, Qt::WidgetShortcut), &QShortcut::activated, this,
+            [this, figureAt] { figureAt(figureTable_->currentIndex()); });
+  }
+  const auto showEvent = [this](const QModelIndex& at) {
+    emit timeChosen(at.data(EventTreeModel::secondsRole).toDouble());
+  };
+  connect(eventTable_, &QTreeView::clicked, this, showEvent);
+  connect(eventTable_, &QTreeView::activated, this, showEvent);
+}
+
+QWidget* FigurePanel::buildNormRow() {
   norm_->setObjectName("norm");
   norm_->setAccessibleName("Norm that the attempt is held against");
   verdict_->setObjectName("verdict-of-norm");
@@ -39,26 +71,63 @@ FigurePanel::FigurePanel(QWidget* parent)
   verdict_->setTextFormat(Qt::PlainText);
   auto* label = new QLabel("&Norm");
   label->setBuddy(norm_);
-  auto* row = new QHBoxLayout;
+  sheet_ = new QPushButton("Gr&ade sheet …");
+  sheet_->setObjectName("grade-sheet");
+  sheet_->setToolTip("Write the attempt against this norm as a PDF");
+  onePage_ = new QPushButton("&One page …");
+  onePage_->setObjectName("one-page");
+  onePage_->setToolTip("Write the attempt on one page, with pictures of its worst moments, as a PDF");
+  auto* made = new QWidget;
+  auto* row = new QHBoxLayout(made);
+  row->setContentsMargins(0, 0, 0, 0);
   row->addWidget(label);
   row->addWidget(norm_);
   row->addWidget(verdict_, 1);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(row);
-  layout->addWidget(tabs, 1);
+  row->addWidget(sheet_);
+  row->addWidget(onePage_);
+  connect(sheet_, &QPushButton::clicked, this, &FigurePanel::sheetRequested);
+  connect(onePage_, &QPushButton::clicked, this, &FigurePanel::onePageRequested);
+  return made;
+}
 
-  connect(norm_, &QComboBox::currentIndexChanged, this, [this] { showStanding(); });
-  connect(figureTable_, &QTableView::clicked, this, [this](const QModelIndex& at) { showFigure(at.row()); });
-  for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter}) {
-    connect(new QShortcut(key, figureTable_, nullptr, nullptr, Qt::WidgetShortcut), &QShortcut::activated, this,
-            [this] {
-              if (figureTable_->currentIndex().isValid()) showFigure(figureTable_->currentIndex().row());
-            });
+void FigurePanel::setEvents(const std::vector<TrackEvent>& events) {
+  trackEvents_ = events;
+  events_.setEvents(events);
+  eventTable_->expandAll();
+  setWidths(*eventTable_, {360});
+}
+
+analytics::AttemptSummary FigurePanel::summary() const {
+  return analytics::summaryOf(*attempt_, values_, standing_ && standing_->grade ? &*standing_->grade : nullptr);
+}
+
+std::vector<WorstMoment> FigurePanel::worstMoments() const {
+  constexpr double apart = 1.0;  // s: two pictures of one moment tell no more than one
+  std::vector<WorstMoment> worst;
+  enum class Tier { weak, counts, any };
+  for (const Tier tier : {Tier::weak, Tier::counts, Tier::any}) {
+    for (int row = 0; row < figures_.rowCount() && worst.size() < maxWorstMoments; ++row) {
+      const analytics::FigureMoments* found = figures_.moments(row);
+      const analytics::CheckpointValue& value = figures_.value(row);
+      const FigureStanding* standing = figures_.standing(row);
+      const bool isWeak = standing != nullptr && standing->passed && !*standing->passed;
+      if (found == nullptr || found->moments.empty() || (tier == Tier::weak && !isWeak)) continue;
+      if (tier == Tier::counts && !analytics::countsByDefault(value.name)) continue;
+      const auto most = std::max_element(found->moments.begin(), found->moments.end(),
+                                         [](const auto& a, const auto& b) { return a.share < b.share; });
+      const double time = 0.5 * (most->begin + most->end);
+      if (std::any_of(worst.begin(), worst.end(),
+                      [&](const WorstMoment& w) { return std::abs(w.time - time) < apart; }))
+        continue;
+      worst.push_back({time, figureTitle(value.name, value.subject).toStdString()});
+    }
   }
-  const auto showEvent = [this](const QModelIndex& at) { emit timeChosen(events_.at(at.row()).time); };
-  connect(eventTable_, &QTableView::clicked, this, showEvent);
-  connect(eventTable_, &QTableView::activated, this, showEvent);
+  std::sort(worst.begin(), worst.end(), [](const WorstMoment& a, const WorstMoment& b) { return a.time < b.time; });
+  return worst;
+}
+
+const analytics::Norm* FigurePanel::norm() const {
+  return standing_ && standing_->grade ? &standing_->grade->norm : nullptr;
 }
 
 void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt) {
@@ -66,6 +135,7 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
   attempt_ = attempt;
   wanted_.reset();
   cycle_.forget();
+  trackEvents_.clear();
   events_.setEvents({});
   try {
     values_ = document_->values(attempt.uuid);
@@ -94,6 +164,7 @@ void FigurePanel::clear() {
   values_.clear();
   intervals_.clear();
   figures_.setValues({});
+  trackEvents_.clear();
   events_.setEvents({});
   {
     const QSignalBlocker quiet(norm_);
@@ -101,6 +172,9 @@ void FigurePanel::clear() {
   }
   norm_->setEnabled(false);
   verdict_->clear();
+  standing_.reset();
+  sheet_->setEnabled(false);
+  onePage_->setEnabled(false);
 }
 
 void FigurePanel::setMoments(const std::vector<analytics::FigureMoments>& moments) {
@@ -114,13 +188,17 @@ void FigurePanel::showStanding() {
   figureTable_->setColumnHidden(CheckpointTableModel::normColumn, norms.empty());
   const int at = norm_->currentIndex();
   if (at < 0 || static_cast<std::size_t>(at) >= norms.size()) {
-    verdict_->setText("There is no norm for attempts of this kind (calot norm create).");
+    verdict_->setText("No norm for this task yet (calot norm create).");
+    standing_.reset();
     figures_.setStandings({});
-    return;
+  } else {
+    standing_ = standingOf(*attempt_, values_, *norms[static_cast<std::size_t>(at)], intervals_);
+    verdict_->setText(standing_->judged ? QString() : QString::fromStdString(standing_->verdict));
+    figures_.setStandings(standing_->figures);
   }
-  const AttemptStanding standing = standingOf(*attempt_, values_, *norms[static_cast<std::size_t>(at)], intervals_);
-  verdict_->setText(QString::fromStdString(standing.verdict));
-  figures_.setStandings(standing.figures);
+  sheet_->setEnabled(norm() != nullptr);
+  onePage_->setEnabled(attempt_.has_value());
+  if (attempt_) emit summaryChanged();
 }
 
 void FigurePanel::showFigure(int row) {
@@ -132,12 +210,18 @@ void FigurePanel::showFigure(int row) {
   if (const auto time = cycle_.next(*found)) emit timeChosen(*time);
 }
 
+void FigurePanel::selectFigure(int row) {
+  const QModelIndex at = families_.indexOf(row);
+  if (!at.isValid()) return;
+  figureTable_->setCurrentIndex(at);
+  figureTable_->scrollTo(at);
+}
+
 void FigurePanel::goToFigure(const std::string& checkpoint, const std::string& subject) {
   for (int row = 0; row < figures_.rowCount(); ++row) {
     const analytics::CheckpointValue& value = figures_.value(row);
     if (value.name != checkpoint || value.subject != subject) continue;
-    figureTable_->selectRow(row);
-    figureTable_->scrollTo(figures_.index(row, 0));
+    selectFigure(row);
     if (figures_.moments(row) != nullptr)
       showFigure(row);
     else
@@ -157,7 +241,7 @@ void FigurePanel::showWorst() {
     if (weak) break;
   }
   if (chosen < 0) return;
-  figureTable_->selectRow(chosen);
+  selectFigure(chosen);
   showFigure(chosen);
 }
 

@@ -5,18 +5,23 @@
 #include <optional>
 #include <QWidget>
 
+#include "analytics/assessment/attempt_summary.h"
+#include "gui/dashboard/attempt_sheet.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/event_table_model.h"
+#include "gui/dashboard/event_tree_model.h"
+#include "gui/dashboard/family_tree_model.h"
 #include "gui/dashboard/moment_cycle.h"
 
 class QComboBox;
 class QLabel;
-class QTableView;
+class QPushButton;
+class QTreeView;
 
 namespace calot::gui {
 
-/// The checkpoints of one attempt, held against a norm, and its events, as lists: choosing a row asks for its moment.
+/// The checkpoints of one attempt, held against a norm and folded by family, and its events, in groups: choosing a row
+/// asks for its moment.
 class FigurePanel : public QWidget {
   Q_OBJECT
  public:
@@ -25,12 +30,19 @@ class FigurePanel : public QWidget {
   /// Reads and shows the figures; their moments and the events are still to come. @pre not null
   void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);
   void clear();
-  void setEvents(std::vector<TrackEvent> events) { events_.setEvents(std::move(events)); }
+  void setEvents(const std::vector<TrackEvent>& events);
   /// In place of all moments, as long as there are none: "looking …".
   void setMomentsText(const QString& text) { figures_.setMomentsText(text); }
   void setMoments(const std::vector<analytics::FigureMoments>& moments);
 
   [[nodiscard]] const std::vector<analytics::CheckpointValue>& values() const { return values_; }
+  [[nodiscard]] analytics::AttemptSummary summary() const;  ///< @pre an attempt is shown
+  /// Moments worth a picture: of figures that fall short of the norm, then of those that count, apart in time.
+  [[nodiscard]] std::vector<WorstMoment> worstMoments() const;
+  [[nodiscard]] const std::vector<TrackEvent>& events() const { return trackEvents_; }
+  /// What it is held against; null where there is none, or the attempt is not judged.
+  [[nodiscard]] const analytics::Norm* norm() const;
+  [[nodiscard]] const CheckpointTableModel& figures() const { return figures_; }
   /// Goes to the moments of a figure as soon as they are known.
   void goToFigure(const std::string& checkpoint, const std::string& subject);
   /// Goes to the moments of the first figure that falls short of the norm, else of the first that has any.
@@ -39,12 +51,17 @@ class FigurePanel : public QWidget {
  signals:
   void problem(const QString& message);
   void timeChosen(double seconds);
+  void summaryChanged();
+  void sheetRequested();    ///< the attempt against the norm that is chosen
+  void onePageRequested();  ///< the attempt on one page
   /// Where a figure arose: beginnings and ends (s).
   void windowsChosen(const std::vector<std::pair<double, double>>& windows);
 
  private:
   void showStanding();
   void showFigure(int row);
+  void selectFigure(int row);
+  QWidget* buildNormRow();
 
   std::shared_ptr<const CohortDocument> document_;
   std::optional<analytics::AttemptRow> attempt_;
@@ -52,12 +69,17 @@ class FigurePanel : public QWidget {
   std::vector<analytics::ValueInterval> intervals_;
   std::optional<std::pair<std::string, std::string>> wanted_;  ///< figure to go to when its moments are known
   CheckpointTableModel figures_;
-  EventTableModel events_;
+  FamilyTreeModel families_{figures_};
+  EventTreeModel events_;
+  std::vector<TrackEvent> trackEvents_;
   MomentCycle cycle_;
   QComboBox* norm_;
   QLabel* verdict_;
-  QTableView* figureTable_;
-  QTableView* eventTable_;
+  QPushButton* sheet_ = nullptr;
+  QPushButton* onePage_ = nullptr;
+  std::optional<AttemptStanding> standing_;
+  QTreeView* figureTable_;
+  QTreeView* eventTable_;
 };
 
 }  // namespace calot::gui

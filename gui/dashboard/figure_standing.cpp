@@ -69,7 +69,7 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
                            const analytics::Norm& norm, const std::vector<analytics::ValueInterval>& intervals) {
   AttemptStanding standing;
   standing.norm = fmt::format("{} version {}", norm.name, norm.version);
-  std::optional<analytics::Grade> grade;
+  std::optional<analytics::Grade>& grade = standing.grade;
   try {
     // Alone: how the participant's attempts went over time is the trainee page's.
     std::vector<analytics::AttemptValue> own;

@@ -31,6 +31,7 @@ struct AttemptStanding {
   std::string norm;     ///< "residents version 2"
   std::string verdict;  ///< one sentence; or why there is no judgement
   bool judged = false;
+  std::optional<analytics::Grade> grade;  ///< where it is judged; alone, without the participant's other attempts
   std::vector<FigureStanding> figures;
 };
 

@@ -10,6 +10,9 @@
 #include <QPushButton>
 #include <QTimer>
 
+#include "gui/dashboard/long_work.h"
+#include "gui/dashboard/theme.h"
+
 namespace calot::gui {
 
 ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
@@ -17,7 +20,7 @@ ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
       queue_(queue),
       text_(new QLabel),
       bar_(new QProgressBar),
-      stop_(new QPushButton("S&top importing")),
+      stop_(new QPushButton("Stop importin&g")),
       results_(new QListWidget),
       tick_(new QTimer(this)) {
   text_->setObjectName("import-text");
@@ -42,14 +45,20 @@ ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
 
 void ImportPanel::showProgress() {
   const bool busy = queue_.busy();
+  if (busy && !clock_.isValid()) clock_.start();
+  if (!busy) clock_.invalidate();
+  double left = -1.0;
+  if (busy && queue_.done() > 0)
+    left = 1e-3 * static_cast<double>(clock_.elapsed()) / queue_.done() * (queue_.total() - queue_.done());
   stop_->setEnabled(busy);
   bar_->setRange(0, std::max(1, queue_.total()));
   bar_->setValue(queue_.done());
   const QString count = QString("%1 of %2 recordings").arg(queue_.done()).arg(queue_.total());
   if (!queue_.current().isEmpty())
-    text_->setText(QString("%1 done. Simulating %2 again, %3 s so far …")
+    text_->setText(QString("%1 done. Simulating %2 again, %3 s so far … %4")
                        .arg(count, QFileInfo(queue_.current()).fileName())
-                       .arg(queue_.seconds()));
+                       .arg(queue_.seconds())
+                       .arg(leftText(left)));
   else
     text_->setText(count + " done.");
   if (busy)
@@ -61,7 +70,7 @@ void ImportPanel::showProgress() {
 void ImportPanel::addResult(const ImportResult& result) {
   auto* item = new QListWidgetItem(QFileInfo(result.file).fileName() + ": " + result.text);
   item->setToolTip(result.file);
-  if (result.kind != ImportResult::Kind::stored) item->setForeground(QColor(0xa6, 0x49, 0x00));
+  if (result.kind != ImportResult::Kind::stored) item->setForeground(theme::trouble());
   results_->addItem(item);
   results_->scrollToItem(item);
 }

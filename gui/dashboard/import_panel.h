@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <QElapsedTimer>
 #include <QWidget>
 
 #include "gui/dashboard/import_queue.h"
@@ -30,6 +31,7 @@ class ImportPanel : public QWidget {
   QPushButton* stop_;
   QListWidget* results_;
   QTimer* tick_;
+  QElapsedTimer clock_;  ///< since the queue last began
 };
 
 }  // namespace calot::gui

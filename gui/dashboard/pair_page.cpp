@@ -15,6 +15,9 @@
 #include <QToolButton>
 #include <utility>
 
+#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/theme.h"
+#include "gui/dashboard/trace_chart.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {
@@ -31,7 +34,14 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
   auto* row = new QHBoxLayout;
   for (PairSide* const side : sides_) row->addWidget(side, 1);
   layout->addLayout(row, 1);
+  traces_ = new TraceChart("pair-traces", "Both attempts: left solid, right dashed");
+  traces_->setMinimumHeight(theme::inType(96));
+  layout->addWidget(traces_);
+  connect(traces_, &TraceChart::timeChosen, this, [this](double time) {
+    if (alignment_) goTo(alignment_->begin() + time);
+  });
   layout->addWidget(buildTransport());
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(sides_[0]->choiceBox()));
   tick_ = new QTimer(this);
   connect(tick_, &QTimer::timeout, this, [this] { onTick(); });
   connect(new QShortcut(Qt::Key_Space, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated,
@@ -40,6 +50,7 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
     connect(sides_[which], &PairSide::changing, this, [this] {
       play(false);
       alignment_.reset();
+      traces_->clear();
       showTime();
     });
     connect(sides_[which], &PairSide::ready, this, [this] { fillAlignments(); });
@@ -57,13 +68,13 @@ QWidget* PairPage::buildTransport() {
   from_->setObjectName("align");
   from_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   from_->setMinimumContentsLength(13);
-  auto* label = new QLabel("In step &from");
+  auto* label = new QLabel("In &step from");
   label->setBuddy(from_);
   play_ = new QToolButton;
   play_->setObjectName("pair-play");
   play_->setAccessibleName("Play or pause both");
   play_->setToolTip("Play or pause both (Space)");
-  play_->setIcon(style()->standardIcon(QStyle::SP_MediaPlay));
+  play_->setIcon(theme::buttonIcon(QStyle::SP_MediaPlay));
   play_->setFocusPolicy(Qt::TabFocus);
   scrub_ = new QSlider(Qt::Horizontal);
   scrub_->setObjectName("pair-scrub");
@@ -77,6 +88,17 @@ QWidget* PairPage::buildTransport() {
   for (const double speed : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0})
     speed_->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
   speed_->setCurrentIndex(3);
+  trace_ = new QComboBox;
+  trace_->setObjectName("pair-trace");
+  trace_->addItems(
+      {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
+  trace_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  trace_->setMinimumContentsLength(10);
+  auto* traceLabel = new QLabel("&Trace");
+  traceLabel->setBuddy(trace_);
+  connect(trace_, &QComboBox::currentIndexChanged, this, [this] { showTraces(); });
+  layout->addWidget(traceLabel);
+  layout->addWidget(trace_);
   layout->addWidget(label);
   layout->addWidget(from_);
   layout->addWidget(play_);
@@ -158,7 +180,34 @@ void PairPage::align() {
       offsets[which] = firstOf(*sides_[which]->track(), phase).value_or(0.0);
   }
   alignment_.emplace(std::array{sides_[0]->seconds(), sides_[1]->seconds()}, offsets);
+  showTraces();
   goTo(0.0);
+}
+
+void PairPage::showTraces() {
+  if (!alignment_ || !sides_[0]->track() || !sides_[1]->track()) return;
+  const double length = alignment_->end() - alignment_->begin();
+  const int which = trace_->currentIndex();
+  const auto hand = static_cast<std::size_t>(which % 2);
+  const bool speed = which >= 2;
+  constexpr double millimetresOfMetre = 1000.0;
+  const double bin = length / static_cast<double>(maxBins);
+  std::array<std::vector<double>, 2> lines;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const AttemptTrack& track = *sides_[side]->track();
+    const std::vector<double>& values = speed ? track.hand[hand].speed : track.hand[hand].force;
+    for (std::uint64_t i = 0; i < maxBins; ++i) {
+      const double common = alignment_->begin() + (static_cast<double>(i) + 0.5) * bin;
+      double value = 0.0;  // before its begin and behind its end
+      if (alignment_->runs(side, common) && track.bin > 0.0) {
+        const auto at = static_cast<std::size_t>(alignment_->own(side, common) / track.bin);
+        if (at < values.size()) value = values[at] * (speed ? millimetresOfMetre : 1.0);
+      }
+      lines[side].push_back(value);
+    }
+  }
+  traces_->setTraces(length, bin, std::move(lines));
+  traces_->setPosition(common_ - alignment_->begin());
 }
 
 void PairPage::goTo(double common) {
@@ -222,7 +271,7 @@ void PairPage::onTick() {
 }
 
 void PairPage::showTime() {
-  play_->setIcon(style()->standardIcon(playing_ ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
+  play_->setIcon(theme::buttonIcon(playing_ ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
   for (QWidget* widget : {static_cast<QWidget*>(play_), static_cast<QWidget*>(scrub_), static_cast<QWidget*>(from_),
                           static_cast<QWidget*>(speed_)})
     widget->setEnabled(alignment_.has_value());
@@ -235,6 +284,7 @@ void PairPage::showTime() {
     const QSignalBlocker quiet(scrub_);
     scrub_->setValue(length > 0.0 ? static_cast<int>((common_ - alignment_->begin()) / length * scrubSteps) : 0);
   }
+  traces_->setPosition(common_ - alignment_->begin());
   const QString sign = common_ < 0.0 ? QString::fromUtf8("−") : QString();
   time_->setText(sign + QString::fromStdString(timeText(std::abs(common_)) + " / " + timeText(alignment_->end())));
 }

@@ -19,6 +19,8 @@ class QToolButton;
 
 namespace calot::gui {
 
+class TraceChart;
+
 /// Two recordings side by side in step: an expert's beside a trainee's, from their starts or from a phase on.
 class PairPage : public QWidget {
   Q_OBJECT
@@ -47,6 +49,7 @@ class PairPage : public QWidget {
   void goTo(double common);
   void play(bool playing);
   void onTick();
+  void showTraces();
   void showTime();
   [[nodiscard]] bool bothOpen() const { return sides_[0]->isOpen() && sides_[1]->isOpen(); }
 
@@ -59,6 +62,8 @@ class PairPage : public QWidget {
   double clockCommon_ = 0.0;
   bool filled_ = false;
 
+  TraceChart* traces_ = nullptr;
+  QComboBox* trace_ = nullptr;
   QComboBox* from_ = nullptr;
   QComboBox* speed_ = nullptr;
   QToolButton* play_ = nullptr;

@@ -43,6 +43,7 @@ PairSide::PairSide(const QString& name, QWidget* parent)
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(choice_);
+  banner_->makeNarrow();
   layout->addWidget(banner_);
   layout->addWidget(picture_, 1);
   layout->addWidget(timeline_);
@@ -97,7 +98,10 @@ void PairSide::chooseAnother(int n) {
   if (uuid_.empty() && choice_->count() > n) choice_->setCurrentIndex(n);
 }
 
-bool PairSide::settled() const { return file_.empty() || (track_ && isOpen() && replay_->position().settled); }
+QWidget* PairSide::choiceBox() const { return choice_; }
+bool PairSide::settled() const {
+  return file_.empty() || (track_ && isOpen() && replay_->position().settled && !picture_->picture().isNull());
+}
 
 void PairSide::openChosen() {
   const std::string uuid = choice_->currentData().toString().toStdString();

@@ -38,6 +38,7 @@ class PairSide : public QWidget {
   [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
   [[nodiscard]] double seconds() const { return seconds_; }  ///< length of the recording, once it is open
   [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }
+  [[nodiscard]] QWidget* choiceBox() const;
   [[nodiscard]] bool settled() const;
 
  signals:

@@ -29,6 +29,7 @@ class RatingDraft {
   void answer(const std::string& item, std::optional<int> score) { answers_[item] = score; }
   [[nodiscard]] std::size_t answered() const { return answers_.size(); }
   [[nodiscard]] bool complete() const { return answers_.size() == form_.items().size(); }
+  [[nodiscard]] const std::map<std::string, std::optional<int>>& answers() const { return answers_; }
   [[nodiscard]] const analytics::RatingForm& form() const { return form_; }
 
   /// Stores it as `calot rate` does. @param attempt, rater of a form about attempts; @param participant of the others

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <QBoxLayout>
 #include <QButtonGroup>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QGroupBox>
 #include <QLabel>
@@ -11,10 +12,16 @@
 #include <QPushButton>
 #include <QRadioButton>
 #include <QScrollArea>
+#include <QShortcut>
 #include <QSignalBlocker>
+#include <QSplitter>
 
 #include "gui/dashboard/attempt_banner.h"
+#include "gui/dashboard/open_recording.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/settings.h"
+#include "gui/dashboard/transport_bar.h"
+#include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
@@ -33,7 +40,42 @@ QString scoreText(const analytics::RatingForm& form, int score) {
 }  // namespace
 
 RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
+  replayPart_ = buildReplay();
+  auto* parts = new QSplitter(Qt::Horizontal);
+  parts->addWidget(replayPart_);
+  parts->addWidget(buildForm());
+  parts->setStretchFactor(0, 1);
+  parts->setStretchFactor(1, 1);
+  parts->setChildrenCollapsible(false);
   auto* layout = new QVBoxLayout(this);
+  layout->addWidget(parts, 1);
+  connectParts();
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(choice_));
+}
+
+RatingPage::~RatingPage() { replay_.reset(); }  // its thread uses the picture
+
+QWidget* RatingPage::buildReplay() {
+  picture_ = new ScenePictureWidget;
+  replay_ = std::make_unique<Replay>(
+      [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
+  auto* made = new QWidget;
+  auto* layout = new QVBoxLayout(made);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(picture_, 1);
+  layout->addWidget(new TransportBar(*replay_));
+  connect(replay_.get(), &Replay::opened, this, [this] { opening_ = false; });
+  connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
+    opening_ = false;
+    picture_->showText(reason);
+  });
+  return made;
+}
+
+QWidget* RatingPage::buildForm() {
+  auto* made = new QWidget;
+  auto* layout = new QVBoxLayout(made);
+  layout->setContentsMargins(0, 0, 0, 0);
   auto* row = new QHBoxLayout;
   const auto add = [&](QLabel* label, QWidget* field, int stretch) {
     label->setBuddy(field);
@@ -43,7 +85,7 @@ RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
   choice_ = new QComboBox;
   choice_->setObjectName("form");
   choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  choice_->setMinimumContentsLength(24);
+  choice_->setMinimumContentsLength(12);
   add(new QLabel("Fo&rm"), choice_, 2);
   rater_ = new QLineEdit;
   rater_->setObjectName("rater");
@@ -56,6 +98,10 @@ RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
   participantLabel_ = new QLabel("Part&icipant");
   add(participantLabel_, participant_, 1);
   layout->addLayout(row);
+  reveal_ = new QCheckBox("Sho&w who it was");
+  reveal_->setObjectName("reveal");
+  reveal_->setToolTip("Who rates blinded judges what was done, not who did it");
+  layout->addWidget(reveal_);
   banner_ = new AttemptBanner;
   layout->addWidget(banner_);
   source_ = new QLabel;
@@ -73,10 +119,14 @@ RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
   state_->setWordWrap(true);
   store_ = new QPushButton("&Store");
   store_->setObjectName("store-rating");
+  next_ = new QPushButton("Store, &next");
+  next_->setObjectName("store-next");
+  next_->setToolTip("Store it and go to the next attempt (Ctrl+Return)");
   lower->addWidget(state_, 1);
   lower->addWidget(store_);
+  lower->addWidget(next_);
   layout->addLayout(lower);
-  connectParts();
+  return made;
 }
 
 void RatingPage::connectParts() {
@@ -87,6 +137,18 @@ void RatingPage::connectParts() {
     showEarlier();
   });
   connect(store_, &QPushButton::clicked, this, [this] { store(); });
+  const auto storeAndGo = [this] {
+    if (store_->isEnabled() && store()) emit nextWanted();
+  };
+  connect(next_, &QPushButton::clicked, this, storeAndGo);
+  connect(reveal_, &QCheckBox::toggled, this, [this] { showSubject(); });
+  const auto key = [this](const QKeySequence& keys, auto action) {
+    connect(new QShortcut(keys, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated, this,
+            action);
+  };
+  key(Qt::CTRL | Qt::Key_Return, storeAndGo);
+  key(Qt::Key_Comma, [this] { replay_->stepBy(-1); });
+  key(Qt::Key_Period, [this] { replay_->stepBy(1); });
 }
 
 void RatingPage::setForms(KnownForms forms) {
@@ -110,6 +172,41 @@ void RatingPage::setDocument(std::shared_ptr<const CohortDocument> document) {
 void RatingPage::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
   if (!read_ && document_) readPeople();
+  openReplay();
+}
+
+void RatingPage::hideEvent(QHideEvent* event) {
+  QWidget::hideEvent(event);
+  replay_->pause();
+}
+
+quint64 RatingPage::replayShown() const { return picture_->shown(); }
+bool RatingPage::settled() const {
+  return !opening_ && (!replay_->isOpen() || (replay_->position().settled && !picture_->picture().isNull()));
+}
+
+void RatingPage::openReplay() {
+  if (!document_ || !attempt_ || !isVisible() || shown_ == attempt_->uuid) return;
+  shown_ = attempt_->uuid;
+  replay_->close();
+  const std::filesystem::path file = findRecording(*attempt_, document_->path(), settings::recordingPlaces());
+  if (file.empty()) {
+    picture_->showText("The recording was not found. Open the attempt on its own page to say where it is.");
+    return;
+  }
+  picture_->showText("Opening the recording …");
+  opening_ = true;
+  replay_->open(file, attempt_->uuid);
+}
+
+DraftSubject RatingPage::draftSubject() const {
+  const analytics::RatingForm& shown = *form();
+  return {document_ ? document_->path() : std::string(),
+          shown.name,
+          shown.version,
+          shown.ofAttempts && attempt_ ? attempt_->uuid : std::string(),
+          shown.ofAttempts ? rater_->text().toStdString() : std::string(),
+          shown.ofAttempts ? std::string() : participant_->currentText().toStdString()};
 }
 
 void RatingPage::readPeople() {
@@ -134,6 +231,7 @@ void RatingPage::setAttempt(const analytics::AttemptRow& attempt) {
   attempt_ = attempt;
   showSubject();
   if (another && isVisible()) showEarlier();
+  openReplay();
   if (another) read_ = read_ && isVisible();
 }
 
@@ -149,8 +247,9 @@ const analytics::RatingForm* RatingPage::form() const {
 void RatingPage::showSubject() {
   const bool ofAttempts = form() == nullptr || form()->ofAttempts;
   for (QWidget* widget :
-       {static_cast<QWidget*>(rater_), static_cast<QWidget*>(raterLabel_), static_cast<QWidget*>(banner_)})
+       {static_cast<QWidget*>(rater_), static_cast<QWidget*>(raterLabel_), static_cast<QWidget*>(reveal_), replayPart_})
     widget->setVisible(ofAttempts);
+  banner_->setVisible(ofAttempts && (reveal_->isChecked() || !attempt_));
   for (QWidget* widget : {static_cast<QWidget*>(participant_), static_cast<QWidget*>(participantLabel_)})
     widget->setVisible(!ofAttempts);
   if (!attempt_)
@@ -211,10 +310,23 @@ void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
   add(blank, "left blank", "Nothing can be said");
   row->addStretch(1);
   layout.addLayout(row);
+  QStringList anchors;
+  for (std::size_t i = 0; i < item.anchors.size(); ++i) {
+    if (!item.anchors[i].empty())
+      anchors += QString("%1: %2").arg(shown.least + static_cast<int>(i)).arg(QString::fromStdString(item.anchors[i]));
+  }
+  if (!anchors.isEmpty()) {
+    auto* words = new QLabel(anchors.join('\n'));
+    words->setObjectName(QString::fromStdString(item.key) + "-anchors");
+    words->setTextFormat(Qt::PlainText);
+    words->setWordWrap(true);
+    layout.addWidget(words);
+  }
   layout.addSpacing(6);
   groups_.emplace_back(item.key, buttons);
   connect(buttons, &QButtonGroup::idClicked, this, [this, key = item.key](int id) {
     draft_->answer(key, id == blank ? std::nullopt : std::optional(id));
+    keepDraft(draftSubject(), draft_->answers());
     showState();
   });
 }
@@ -237,22 +349,32 @@ void RatingPage::showEarlier() {
   }
   replaces_ = earlier.has_value();
   draft_.emplace(shown);
+  // What was begun and not stored is newer than what was stored.
+  DraftAnswers answers = keptDraft(draftSubject());
+  if (answers.empty() && earlier) {
+    for (const analytics::FormItem& item : shown.items()) {
+      const auto at = earlier->answers.find(item.key);
+      answers[item.key] = at == earlier->answers.end() ? std::nullopt : std::optional(at->second);
+    }
+  }
   for (const auto& [key, buttons] : groups_) {
     // A group without a choice: exclusive ones keep theirs.
     buttons->setExclusive(false);
     for (QAbstractButton* button : buttons->buttons()) button->setChecked(false);
     buttons->setExclusive(true);
-    if (!earlier) continue;
-    const auto at = earlier->answers.find(key);
-    const int id = at == earlier->answers.end() ? blank : at->second;
-    if (QAbstractButton* button = buttons->button(id)) button->setChecked(true);
-    draft_->answer(key, id == blank ? std::nullopt : std::optional(id));
+    const auto at = answers.find(key);
+    if (at == answers.end()) continue;
+    QAbstractButton* button = buttons->button(at->second.value_or(blank));
+    if (button == nullptr) continue;  // a score of another scale
+    button->setChecked(true);
+    draft_->answer(key, at->second);
   }
   showState();
 }
 
 void RatingPage::showState() {
   store_->setEnabled(draft_ && document_ && draft_->complete());
+  next_->setEnabled(store_->isEnabled());
   store_->setText(replaces_ ? "Replace what was &stored" : "&Store");
   if (!draft_) {
     state_->clear();
@@ -263,15 +385,18 @@ void RatingPage::showState() {
   state_->setText(text);
 }
 
-void RatingPage::store() {
+bool RatingPage::store() {
   try {
     draft_->store(document_->path(), attempt_ ? attempt_->uuid : std::string(), rater_->text().toStdString(),
                   participant_->currentText().toStdString(), replaces_);
+    dropDraft(draftSubject());
     replaces_ = true;
     showState();
     state_->setText("Stored. " + state_->text());
+    return true;
   } catch (const Error& error) {
     emit problem(QString::fromStdString(problemText(error)));
+    return false;
   }
 }
 

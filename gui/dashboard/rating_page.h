@@ -7,8 +7,11 @@
 
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/rating_draft.h"
+#include "gui/dashboard/rating_drafts.h"
+#include "gui/dashboard/replay.h"
 
 class QButtonGroup;
+class QCheckBox;
 class QComboBox;
 class QLabel;
 class QLineEdit;
@@ -19,13 +22,18 @@ class QVBoxLayout;
 namespace calot::gui {
 
 class AttemptBanner;
+class ScenePictureWidget;
 
-/// Forms to be filled in: raters judge the attempt that is selected, participants what they took part in. Nothing is
-/// stored before every item is answered or left blank on purpose.
+/// Forms to be filled in: raters judge the attempt that is selected, beside its replay, participants what they took
+/// part in. Who acted is hidden unless it is asked for. What is not stored yet is kept as a draft. Nothing is stored
+/// before every item is answered or left blank on purpose.
 class RatingPage : public QWidget {
   Q_OBJECT
  public:
   explicit RatingPage(QWidget* parent = nullptr);
+  ~RatingPage() override;
+  [[nodiscard]] quint64 replayShown() const;  ///< pictures so far
+  [[nodiscard]] bool settled() const;         ///< the replay stands where it was sent to, or there is none
   void setForms(KnownForms forms);
   void chooseForm(const QString& name);
   /// @pre not null
@@ -34,9 +42,12 @@ class RatingPage : public QWidget {
 
  signals:
   void problem(const QString& message);
+  /// The rating is stored: the next attempt is wanted.
+  void nextWanted();
 
  protected:
   void showEvent(QShowEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
 
  private:
   void connectParts();
@@ -46,7 +57,11 @@ class RatingPage : public QWidget {
   void showSubject();
   void showEarlier();
   void showState();
-  void store();
+  bool store();
+  QWidget* buildForm();
+  QWidget* buildReplay();
+  void openReplay();
+  [[nodiscard]] DraftSubject draftSubject() const;
   [[nodiscard]] const analytics::RatingForm* form() const;
 
   std::shared_ptr<const CohortDocument> document_;
@@ -67,6 +82,13 @@ class RatingPage : public QWidget {
   std::vector<std::pair<std::string, QButtonGroup*>> groups_;
   QLabel* state_ = nullptr;
   QPushButton* store_ = nullptr;
+  QPushButton* next_ = nullptr;
+  QCheckBox* reveal_ = nullptr;
+  QWidget* replayPart_ = nullptr;
+  ScenePictureWidget* picture_ = nullptr;
+  bool opening_ = false;  ///< the replay
+  std::string shown_;     ///< uuid whose replay was opened
+  std::unique_ptr<Replay> replay_;
 };
 
 }  // namespace calot::gui

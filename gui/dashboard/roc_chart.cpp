@@ -5,7 +5,9 @@
 #include <QtCharts/QLineSeries>
 #include <QtCharts/QValueAxis>
 
+#include "gui/dashboard/chart_dress.h"
 #include "gui/dashboard/palette.h"
+#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 
@@ -24,6 +26,7 @@ void RocChart::clear(const QString& title) {
     delete axis;
   }
   chart()->setTitle(title);
+  dress(*chart());
 }
 
 void RocChart::showCurve(const RocCurve& curve, const QString& title) {
@@ -50,7 +53,7 @@ void RocChart::showCurve(const RocCurve& curve, const QString& title) {
   QLineSeries* const chance = add(QPen(palette::grey, 1.2, Qt::DashLine));
   chance->append(0.0, 0.0);
   chance->append(1.0, 1.0);
-  QLineSeries* const line = add(QPen(palette::blue, 2.2));
+  QLineSeries* const line = add(QPen(theme::first(), 2.2));
   for (const RocPoint& point : curve.points) line->append(point.falsePositive, point.truePositive);
 }
 

@@ -7,6 +7,8 @@
 #include <QStringList>
 #include <vector>
 
+#include "gui/dashboard/theme.h"
+
 namespace calot::gui::settings {
 
 /// Folders in which recordings are looked for, beside the database's own; the newest first.
@@ -24,6 +26,16 @@ void setCalotProgram(const QString& file);   ///< empty: looked for as said
 /// Threads of an import's simulation: 1 to 64.
 [[nodiscard]] int importThreads();
 void setImportThreads(int threads);
+
+/// Light or dark, and how large letters are (per cent).
+[[nodiscard]] theme::Choice colours();
+void setColours(theme::Choice choice);
+[[nodiscard]] int type();
+void setType(int percent);
+
+/// Columns of the list of attempts that are not shown.
+[[nodiscard]] QStringList hiddenColumns();
+void setHiddenColumns(const QStringList& titles);
 
 /// Who rates, excludes and includes: a pseudonym, or empty.
 [[nodiscard]] QString person();

@@ -2,6 +2,7 @@
 #include "gui/dashboard/settings_dialog.h"
 
 #include <QBoxLayout>
+#include <QComboBox>
 #include <QDialogButtonBox>
 #include <QFileDialog>
 #include <QFormLayout>
@@ -10,8 +11,10 @@
 #include <QListWidget>
 #include <QPushButton>
 #include <QSpinBox>
+#include <utility>
 
 #include "gui/dashboard/settings.h"
+#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 
@@ -20,9 +23,11 @@ SettingsDialog::SettingsDialog(QWidget* parent)
       folders_(new QListWidget),
       program_(new QLineEdit),
       threads_(new QSpinBox),
-      person_(new QLineEdit) {
+      person_(new QLineEdit),
+      colours_(new QComboBox),
+      type_(new QSpinBox) {
   setWindowTitle("Settings");
-  resize(560, 360);
+  resize(theme::inType(560), theme::inType(400));
   folders_->setObjectName("settings-folders");
   folders_->addItems(settings::recordingFolders());
   auto* addFolder = new QPushButton("&Add …");
@@ -46,6 +51,18 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   person_->setMaxLength(64);
   person_->setText(settings::person());
   person_->setPlaceholderText("pseudonym of who rates and excludes");
+  colours_->setObjectName("settings-colours");
+  for (const auto& [text, choice] : {std::pair{"as the system has them", theme::Choice::system},
+                                     {"dark letters on light", theme::Choice::light},
+                                     {"light letters on dark", theme::Choice::dark}})
+    colours_->addItem(text, theme::wordOf(choice));
+  colours_->setCurrentIndex(colours_->findData(theme::wordOf(settings::colours())));
+  type_->setObjectName("settings-type");
+  type_->setRange(theme::usualType, theme::largestType);
+  type_->setSingleStep(25);
+  type_->setSuffix(" %");
+  type_->setValue(settings::type());
+  type_->setToolTip("From the next start on");
   auto* decision = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
   auto* form = new QFormLayout(this);
   // A row of several widgets has no buddy by itself.
@@ -55,6 +72,8 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   form->addRow("&Program that imports", program_);
   form->addRow("&Threads of an import", threads_);
   form->addRow("&You", person_);
+  form->addRow("Co&lours", colours_);
+  form->addRow("&Size of letters", type_);
   form->addRow(decision);
   connect(addFolder, &QPushButton::clicked, this, [this] {
     const QString folder = QFileDialog::getExistingDirectory(this, "A folder with recordings");
@@ -72,6 +91,12 @@ void SettingsDialog::accept() {
   settings::setCalotProgram(program_->text().trimmed());
   settings::setImportThreads(threads_->value());
   settings::setPerson(person_->text().trimmed());
+  const theme::Choice before = settings::colours();
+  settings::setColours(theme::choiceOf(colours_->currentData().toString()));
+  const int letters = settings::type();
+  settings::setType(type_->value());
+  // Widths of columns are chosen when the window is made: letters change with the next one.
+  if (settings::colours() != before) theme::apply(settings::colours(), letters);
   QDialog::accept();
 }
 

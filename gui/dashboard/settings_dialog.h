@@ -3,13 +3,15 @@
 
 #include <QDialog>
 
+class QComboBox;
 class QLineEdit;
 class QListWidget;
 class QSpinBox;
 
 namespace calot::gui {
 
-/// Where recordings are looked for, which program imports them and with how many threads, and who is at the desk.
+/// Where recordings are looked for, which program imports them and with how many threads, who is at the desk,
+/// and how the dashboard looks.
 class SettingsDialog : public QDialog {
   Q_OBJECT
  public:
@@ -21,6 +23,8 @@ class SettingsDialog : public QDialog {
   QLineEdit* program_;
   QSpinBox* threads_;
   QLineEdit* person_;
+  QComboBox* colours_;
+  QSpinBox* type_;
 };
 
 }  // namespace calot::gui

@@ -24,6 +24,7 @@
 
 #include "analytics/report/study_tables.h"
 #include "gui/dashboard/comparison_chart.h"
+#include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/roc_chart.h"
 #include "gui/dashboard/words.h"
 #include "gui/report/drawing_painter.h"
@@ -92,6 +93,7 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   splitter->setChildrenCollapsible(false);
   layout->addWidget(splitter, 1);
   connectParts();
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(groupBy_));
 }
 
 void StudyPage::buildChoices(QBoxLayout& layout) {
@@ -99,7 +101,7 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
     auto* box = new QComboBox;
     box->setObjectName(name);
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(10);
+    box->setMinimumContentsLength(6);
     auto* label = new QLabel(text);
     label->setBuddy(box);
     row.addWidget(label);
@@ -108,16 +110,16 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   };
   auto* upper = new QHBoxLayout;
   groupBy_ = add(*upper, "study-group-by", "&By", 0);
-  groupBy_->setMinimumContentsLength(16);
+  groupBy_->setMinimumContentsLength(8);
   groupBy_->addItem("study group", static_cast<int>(GroupBy::group));
   groupBy_->addItem("performer's profile", static_cast<int>(GroupBy::profile));
   first_ = add(*upper, "study-first", "C&ompare", 0);
-  second_ = add(*upper, "study-second", "wit&h", 0);
-  rule_ = add(*upper, "study-rule", "&Of several attempts", 0);
+  second_ = add(*upper, "study-second", "w&ith", 0);
+  rule_ = add(*upper, "study-rule", "Of several &attempts", 0);
   rule_->addItem("the first", static_cast<int>(analytics::AttemptRule::first));
   rule_->addItem("the mean", static_cast<int>(analytics::AttemptRule::mean));
   upper->addStretch(1);
-  csv_ = new QPushButton("Export CS&V …");
+  csv_ = new QPushButton("Export C&SV …");
   html_ = new QPushButton("Export HTM&L …");
   csv_->setObjectName("study-csv");
   html_->setObjectName("study-html");
@@ -126,7 +128,7 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   layout.addLayout(upper);
   auto* lower = new QHBoxLayout;
   protocol_ = add(*lower, "study-protocol", "Pro&tocol", 0);
-  protocol_->setMinimumContentsLength(20);
+  protocol_->setMinimumContentsLength(8);
   protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
   key_ = add(*lower, "study-key", "Comparable &within", 1);
   synthetic_ = new QCheckBox("S&ynthetic attempts");

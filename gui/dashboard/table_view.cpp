@@ -5,6 +5,9 @@
 #include <QHeaderView>
 #include <QTableView>
 #include <QTimer>
+#include <QTreeView>
+
+#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 
@@ -27,9 +30,28 @@ QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* s
   return table;
 }
 
+QTreeView* makeTree(QAbstractItemModel& model, const char* name, const char* spokenName) {
+  auto* tree = new QTreeView;
+  tree->setObjectName(name);
+  tree->setAccessibleName(spokenName);
+  tree->setModel(&model);
+  tree->setSelectionBehavior(QAbstractItemView::SelectRows);
+  tree->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  tree->setAlternatingRowColors(true);
+  tree->setUniformRowHeights(true);
+  tree->header()->setStretchLastSection(true);
+  tree->header()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
+  return tree;
+}
+
 void setWidths(QTableView& table, std::initializer_list<int> widths) {
   int column = 0;
-  for (const int width : widths) table.setColumnWidth(column++, width);
+  for (const int width : widths) table.setColumnWidth(column++, theme::inType(width));
+}
+
+void setWidths(QTreeView& tree, std::initializer_list<int> widths) {
+  int column = 0;
+  for (const int width : widths) tree.setColumnWidth(column++, theme::inType(width));
 }
 
 void wrapWords(QTableView& table) {

@@ -5,6 +5,7 @@
 
 class QAbstractItemModel;
 class QTableView;
+class QTreeView;
 
 namespace calot::gui {
 
@@ -13,8 +14,12 @@ namespace calot::gui {
 QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* spokenName);
 /// Widths of the first columns (pixels).
 void setWidths(QTableView& table, std::initializer_list<int> widths);
+void setWidths(QTreeView& tree, std::initializer_list<int> widths);
 /// Words that a column is too narrow for go on in the next line instead of being cut: rows are as high as they need,
 /// and stay so when the model is reset or a column gets another width.
 void wrapWords(QTableView& table);
+
+/// A tree whose rows are chosen whole.
+QTreeView* makeTree(QAbstractItemModel& model, const char* name, const char* spokenName);
 
 }  // namespace calot::gui

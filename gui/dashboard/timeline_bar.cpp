@@ -3,18 +3,23 @@
 
 #include <cmath>
 #include <QHelpEvent>
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QToolTip>
 #include <utility>
 
 #include "gui/dashboard/palette.h"
+#include "gui/dashboard/theme.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {
 namespace {
 
-constexpr int phaseTop = 4, phaseHeight = 24, eventTop = 34, eventHeight = 22;
+int phaseTop() { return 4; }
+int phaseHeight() { return theme::inType(20); }
+int eventTop() { return phaseTop() + phaseHeight() + 6; }
+int eventHeight() { return theme::inType(18); }
 constexpr double reach = 5.0;  // pixels from an event that still count as on it
 
 void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<TrackEvent>& events) {
@@ -24,14 +29,14 @@ void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<Tr
       if (event.error != errors) continue;
       const double x = scale.x(event.time);
       if (errors) {
-        painter.setPen(QPen(Qt::white, 0.8));
-        painter.setBrush(palette::vermillion);
+        painter.setPen(QPen(theme::surface(), 0.8));
+        painter.setBrush(theme::second());
         const QPolygonF triangle{
-            {QPointF(x, eventTop + 2), QPointF(x - 6, eventTop + 15), QPointF(x + 6, eventTop + 15)}};
+            {QPointF(x, eventTop() + 2), QPointF(x - 6, eventTop() + 15), QPointF(x + 6, eventTop() + 15)}};
         painter.drawPolygon(triangle);
       } else {
-        painter.setPen(QPen(palette::blue, 2.0));
-        painter.drawLine(QPointF(x, eventTop + 4), QPointF(x, eventTop + 15));
+        painter.setPen(QPen(theme::first(), 2.0));
+        painter.drawLine(QPointF(x, eventTop() + 4), QPointF(x, eventTop() + 15));
       }
     }
   }
@@ -44,6 +49,8 @@ TimelineBar::TimelineBar(QWidget* parent) : QWidget(parent) {
   setAccessibleName("Timeline of phases and events");
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   setMouseTracking(true);
+  setFocusPolicy(Qt::StrongFocus);
+  setToolTip("Left and Right go from event to event");
 }
 
 void TimelineBar::setTrack(AttemptTrack track) {
@@ -76,36 +83,58 @@ void TimelineBar::paintEvent(QPaintEvent*) {
   painter.fillRect(rect(), QWidget::palette().color(QPalette::Base));
   const TimeScale s = scale();
   for (const TrackPhase& phase : track_.phases) {
-    const QRectF box(s.x(phase.begin), phaseTop, s.x(phase.end) - s.x(phase.begin), phaseHeight);
+    const QRectF box(s.x(phase.begin), phaseTop(), s.x(phase.end) - s.x(phase.begin), phaseHeight());
     painter.fillRect(box, palette::ofPhase(phase.phase));
     const QString name = QString::fromStdString(wordFor(phase.phase));
     painter.setPen(palette::darkText);
     if (painter.fontMetrics().horizontalAdvance(name) + 6 < box.width()) painter.drawText(box, Qt::AlignCenter, name);
-    painter.setPen(QPen(Qt::white, 1.0));
+    painter.setPen(QPen(theme::surface(), 1.0));
     painter.drawLine(box.topRight(), box.bottomRight());
   }
   if (!text_.isEmpty()) {
-    painter.setPen(palette::mutedText);
+    painter.setPen(theme::muted());
     painter.drawText(rect().adjusted(12, 0, -12, 0), Qt::AlignCenter | Qt::TextWordWrap, text_);
     return;
   }
   if (track_.seconds <= 0.0) return;
-  painter.setPen(palette::mutedText);
-  painter.drawText(QRectF(4, phaseTop, TimeScale::leftMargin - 10, phaseHeight), Qt::AlignVCenter | Qt::AlignRight,
-                   "Phases");
-  painter.drawText(QRectF(4, eventTop, TimeScale::leftMargin - 10, eventHeight - 4), Qt::AlignVCenter | Qt::AlignRight,
-                   "Events");
+  painter.setPen(theme::muted());
+  painter.drawText(QRectF(4, phaseTop(), TimeScale::leftMargin() - 10, phaseHeight()),
+                   Qt::AlignVCenter | Qt::AlignRight, "Phases");
+  painter.drawText(QRectF(4, eventTop(), TimeScale::leftMargin() - 10, eventHeight() - 4),
+                   Qt::AlignVCenter | Qt::AlignRight, "Events");
   for (const auto& [begin, end] : marked_) {
-    painter.fillRect(QRectF(s.x(begin), eventTop - 4, std::max(3.0, s.x(end) - s.x(begin)), eventHeight + 4),
+    painter.fillRect(QRectF(s.x(begin), eventTop() - 4, std::max(3.0, s.x(end) - s.x(begin)), eventHeight() + 4),
                      QColor(0xcc, 0x79, 0xa7, 120));
   }
   paintEvents(painter, s, track_.events);
-  painter.setPen(QPen(Qt::black, 1.5));
+  painter.setPen(QPen(theme::text(), 1.5));
   painter.drawLine(QPointF(s.x(position_), 0), QPointF(s.x(position_), height()));
+  if (hasFocus()) {
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(QWidget::palette().color(QPalette::Highlight), 2.0));
+    painter.drawRect(rect().adjusted(1, 1, -1, -1));
+  }
+}
+
+void TimelineBar::keyPressEvent(QKeyEvent* event) {
+  const bool forward = event->key() == Qt::Key_Right;
+  if (track_.seconds <= 0.0 || (!forward && event->key() != Qt::Key_Left)) {
+    QWidget::keyPressEvent(event);
+    return;
+  }
+  constexpr double apart = 0.05;  // s: pictures stand at ends of steps
+  const TrackEvent* next = nullptr;
+  for (const TrackEvent& e : track_.events) {
+    if (forward ? e.time <= position_ + apart : e.time >= position_ - apart) continue;
+    if (next == nullptr || (forward ? e.time < next->time : e.time > next->time)) next = &e;
+  }
+  if (next == nullptr) return;
+  setAccessibleDescription(QString::fromStdString(timeText(next->time) + "  " + next->text));
+  emit timeChosen(next->time);
 }
 
 const TrackEvent* TimelineBar::eventAt(const QPoint& at) const {
-  if (at.y() < eventTop - 4) return nullptr;
+  if (at.y() < eventTop() - 4) return nullptr;
   const TimeScale s = scale();
   const TrackEvent* best = nullptr;
   double nearest = reach + 1.0;

@@ -24,14 +24,15 @@ class TimelineBar : public QWidget {
   /// Windows to be marked: a figure's moments.
   void setMarked(std::vector<std::pair<double, double>> windows);
 
-  [[nodiscard]] QSize sizeHint() const override { return {600, 62}; }
-  [[nodiscard]] QSize minimumSizeHint() const override { return {200, 62}; }
+  [[nodiscard]] QSize sizeHint() const override { return {600, theme::inType(52)}; }
+  [[nodiscard]] QSize minimumSizeHint() const override { return {200, theme::inType(52)}; }
 
  signals:
   void timeChosen(double time);
 
  protected:
   void paintEvent(QPaintEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   bool event(QEvent* event) override;

@@ -3,17 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <QEvent>
 #include <QLocale>
 #include <QMouseEvent>
 #include <QPainter>
 #include <utility>
 
-#include "gui/dashboard/palette.h"
+#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 namespace {
 
-constexpr double topMargin = 22.0, bottomMargin = 20.0;
+double topMargin() { return theme::inType(18); }
+double bottomMargin() { return theme::inType(16); }
 constexpr double headroom = 1.15;  // of the highest number, so that a line along it is seen
 
 double timeInterval(double seconds) {
@@ -38,7 +40,7 @@ TraceChart::TraceChart(const QString& name, QString title, QWidget* parent)
   setObjectName(name);
   setAccessibleName(title_);
   setAttribute(Qt::WA_OpaquePaintEvent);
-  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   QFont small = font();
   small.setPointSizeF(0.85 * small.pointSizeF());
   setFont(small);
@@ -65,20 +67,21 @@ void TraceChart::setPosition(double time) {
 
 QRectF TraceChart::plot() const {
   // Its bottom is the middle of a row of pixels: a hand at rest is one clear line.
-  return {TimeScale::leftMargin, topMargin, scale().span(), std::max(10.0, height() - topMargin - bottomMargin - 0.5)};
+  return {TimeScale::leftMargin(), topMargin(), scale().span(),
+          std::max(10.0, height() - topMargin() - bottomMargin() - 0.5)};
 }
 
 void TraceChart::paintAxes(QPainter& painter) const {
   const QRectF box = plot();
-  painter.setPen(palette::darkText);
-  painter.drawText(QRectF(0, 0, width(), topMargin), Qt::AlignCenter, title_);
-  const QPen grid(QColor(0xe4, 0xe4, 0xe4), 1.0);
+  painter.setPen(theme::text());
+  painter.drawText(QRectF(0, 0, width(), topMargin()), Qt::AlignCenter, title_);
+  const QPen grid(theme::grid(), 1.0);
   const int decimals = top_ < 1.0 ? 2 : top_ < 10.0 ? 1 : 0;
   for (const double share : {0.0, 0.5, 1.0}) {
     const double y = box.bottom() - share / headroom * box.height();
     painter.setPen(grid);
     painter.drawLine(QPointF(box.left(), y), QPointF(box.right(), y));
-    painter.setPen(palette::darkText);
+    painter.setPen(theme::text());
     painter.drawText(QRectF(0, y - 10.0, box.left() - 6.0, 20.0), Qt::AlignRight | Qt::AlignVCenter,
                      QLocale().toString(share * top_, 'f', decimals));
   }
@@ -88,8 +91,8 @@ void TraceChart::paintAxes(QPainter& painter) const {
     const double x = scale().x(n * interval);
     painter.setPen(grid);
     painter.drawLine(QPointF(x, box.top()), QPointF(x, box.bottom()));
-    painter.setPen(palette::darkText);
-    painter.drawText(QRectF(x - 40.0, box.bottom(), 80.0, bottomMargin), Qt::AlignCenter,
+    painter.setPen(theme::text());
+    painter.drawText(QRectF(x - 40.0, box.bottom(), 80.0, bottomMargin()), Qt::AlignCenter,
                      QLocale().toString(n * interval, 'f', 0));
   }
 }
@@ -103,7 +106,7 @@ void TraceChart::paintTrace(QPainter& painter, std::size_t hand) const {
     line.append({scale().x(time), box.bottom() - values_[hand][i] / (headroom * top_) * box.height()});
   }
   // Qt strokes lines of a pixel twenty times as fast as wider ones.
-  QPen pen(hand == 0 ? palette::blue : palette::vermillion, 1.0);
+  QPen pen(hand == 0 ? theme::first() : theme::second(), 1.0);
   pen.setCosmetic(true);
   if (hand == 1) pen.setStyle(Qt::DashLine);
   painter.setPen(pen);
@@ -115,7 +118,7 @@ void TraceChart::paintEvent(QPaintEvent*) {
     const double ratio = devicePixelRatioF();
     painted_ = QPixmap((QSizeF(size()) * ratio).toSize());
     painted_.setDevicePixelRatio(ratio);
-    painted_.fill(Qt::white);
+    painted_.fill(theme::surface());
     QPainter painter(&painted_);
     painter.setFont(font());
     paintAxes(painter);
@@ -126,12 +129,17 @@ void TraceChart::paintEvent(QPaintEvent*) {
   painter.drawPixmap(0, 0, painted_);
   if (seconds_ <= 0.0) return;
   painter.setRenderHint(QPainter::Antialiasing);
-  painter.setPen(QPen(Qt::black, 1.5));
+  painter.setPen(QPen(theme::text(), 1.5));
   const double x = std::floor(scale().x(position_)) + 0.5;  // one black column, not two grey ones
   painter.drawLine(QPointF(x, plot().top()), QPointF(x, plot().bottom()));
 }
 
 void TraceChart::resizeEvent(QResizeEvent*) { painted_ = {}; }
+
+void TraceChart::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange) painted_ = {};
+}
 
 void TraceChart::mousePressEvent(QMouseEvent* event) {
   if (seconds_ > 0.0 && event->button() == Qt::LeftButton) emit timeChosen(scale().time(event->position().x()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <QPixmap>
 #include <QWidget>
@@ -24,8 +25,9 @@ class TraceChart : public QWidget {
   void clear() { setTraces(0.0, 1.0, {}); }
   void setPosition(double time);
 
-  [[nodiscard]] QSize sizeHint() const override { return {600, 104}; }
-  [[nodiscard]] QSize minimumSizeHint() const override { return {200, 84}; }
+  [[nodiscard]] const std::array<std::vector<double>, handCount>& values() const { return values_; }
+  [[nodiscard]] QSize sizeHint() const override { return {600, std::min(104, theme::inType(96))}; }
+  [[nodiscard]] QSize minimumSizeHint() const override { return {200, theme::inType(46)}; }
 
  signals:
   void timeChosen(double time);
@@ -33,6 +35,7 @@ class TraceChart : public QWidget {
  protected:
   void paintEvent(QPaintEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
+  void changeEvent(QEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
 

@@ -11,7 +11,11 @@
 #include <QSplitter>
 #include <QTableWidget>
 
+#include "analytics/assessment/attempt_summary.h"
+#include "gui/dashboard/figure_standing.h"
 #include "gui/dashboard/history_chart.h"
+#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/theme.h"
 #include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
@@ -55,6 +59,26 @@ TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
   key_ = add(lower, "trainee-key", "Comparable &within", 3);
   layout->addLayout(upper);
   layout->addLayout(lower);
+  goal_ = new QLabel;
+  goal_->setObjectName("trainee-goal");
+  goal_->setTextFormat(Qt::PlainText);
+  goal_->setWordWrap(true);
+  QFont bold = goal_->font();
+  bold.setBold(true);
+  goal_->setFont(bold);
+  layout->addWidget(goal_);
+  tasks_ = new QTableWidget(0, 5);
+  tasks_->setObjectName("trainee-tasks");
+  tasks_->setAccessibleName("Tasks of the trainee");
+  tasks_->setHorizontalHeaderLabels({"Task", "Attempts", "First", "Last", "Last started"});
+  tasks_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  tasks_->setSelectionBehavior(QAbstractItemView::SelectRows);
+  tasks_->setTabKeyNavigation(false);
+  tasks_->setToolTip("Double-click, or press Enter, to see a task's history");
+  tasks_->verticalHeader()->hide();
+  tasks_->verticalHeader()->setDefaultSectionSize(tasks_->fontMetrics().height() + 9);
+  tasks_->horizontalHeader()->setStretchLastSection(true);
+  tasks_->setColumnWidth(0, theme::inType(560));
   chart_ = new HistoryChart;
   table_ = new QTableWidget(0, 6);
   table_->setObjectName("trainee-attempts");
@@ -70,11 +94,12 @@ TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
   table_->horizontalHeader()->setStretchLastSection(true);
   table_->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
   int column = 0;
-  for (const int width : {50, 170, 130, 130, 170}) table_->setColumnWidth(column++, width);
+  for (const int width : {50, 170, 130, 130, 170}) table_->setColumnWidth(column++, theme::inType(width));
   auto* splitter = new QSplitter(Qt::Vertical);
   splitter->addWidget(chart_);
+  splitter->addWidget(tasks_);
   splitter->addWidget(table_);
-  splitter->setSizes({460, 220});
+  splitter->setSizes({400, 110, 180});
   splitter->setStretchFactor(0, 3);
   splitter->setStretchFactor(1, 2);
   splitter->setChildrenCollapsible(false);
@@ -85,6 +110,7 @@ TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
   caption_->setWordWrap(true);
   layout->addWidget(caption_);
   connectParts();
+  setProperty(beginProperty, QVariant::fromValue<QObject*>(trainee_));
 }
 
 void TraineePage::connectParts() {
@@ -93,6 +119,10 @@ void TraineePage::connectParts() {
     redraw();
   });
   for (QComboBox* box : {figure_, key_}) connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
+  connect(tasks_, &QTableWidget::itemActivated, this, [this](const QTableWidgetItem* item) {
+    key_->setCurrentIndex(key_->findText(tasks_->item(item->row(), 0)->data(Qt::UserRole).toString()));
+  });
+  connect(chart_, &DotChart::attemptChosen, this, &TraineePage::attemptActivated);
   connect(table_, &QTableWidget::itemActivated, this, [this](const QTableWidgetItem* item) {
     emit attemptActivated(table_->item(item->row(), 0)->data(Qt::UserRole).toString());
   });
@@ -163,6 +193,8 @@ void TraineePage::redraw() {
     chart_->showHistory({}, "No attempts");
     caption_->setText("No attempt has a participant or a profile yet.");
     table_->setRowCount(0);
+    tasks_->setRowCount(0);
+    goal_->clear();
     return;
   }
   std::vector<analytics::Norm> none;
@@ -179,6 +211,46 @@ void TraineePage::redraw() {
   chart_->showHistory(history, trainee_->currentText() + ": " + figureTitle(shown.name, shown.subject));
   caption_->setText(curveText(history));
   fillTable(history);
+  fillTasks(trainees_[static_cast<std::size_t>(trainee)], shown, *norms);
+  showGoal(history, *norms);
+}
+
+void TraineePage::fillTasks(const Trainee& trainee, const Figure& figure, const std::vector<analytics::Norm>& norms) {
+  const std::vector<std::string> keys = keysOf(document_->attempts(), trainee);
+  tasks_->setRowCount(static_cast<int>(keys.size()));
+  for (int row = 0; row < tasks_->rowCount(); ++row) {
+    const std::string& key = keys[static_cast<std::size_t>(row)];
+    const TraineeHistory history = historyOf(document_->attempts(), values_, norms, trainee, figure, key);
+    QString first = "none", last = "none";
+    for (const HistoryAttempt& entry : history.attempts) {
+      if (!entry.value) continue;
+      const QString text = (numberText(*entry.value) + ' ' + QString::fromStdString(history.unit)).trimmed();
+      if (first == "none") first = text;
+      last = text;
+    }
+    const QStringList texts{
+        QString::fromStdString(analytics::comparabilityWords(key)), QString::number(history.attempts.size()), first,
+        last, history.attempts.empty() ? QString() : startText(history.attempts.back().attempt->startUtc)};
+    for (int column = 0; column < texts.size(); ++column)
+      tasks_->setItem(row, column, new QTableWidgetItem(texts[column]));
+    tasks_->item(row, 0)->setData(Qt::UserRole, QString::fromStdString(key));
+    tasks_->item(row, 0)->setToolTip(texts[0]);
+  }
+}
+
+void TraineePage::showGoal(const TraineeHistory& history, const std::vector<analytics::Norm>& norms) {
+  goal_->setText("No goal: there is no norm for this task yet.");
+  if (history.attempts.empty()) return;
+  const analytics::AttemptRow& newest = *history.attempts.back().attempt;
+  const std::vector<const analytics::Norm*> fitting = normsFor(newest, norms);
+  if (fitting.empty()) return;
+  std::vector<analytics::CheckpointValue> own;
+  for (const analytics::AttemptValue& value : values_) {
+    if (value.attempt == newest.uuid) own.push_back(value.value);
+  }
+  const AttemptStanding standing = standingOf(newest, own, *fitting.front());
+  goal_->setText(standing.grade ? "Next goal: " + QString::fromStdString(analytics::nextGoal(*standing.grade).text)
+                                : "No goal: " + QString::fromStdString(standing.verdict));
 }
 
 void TraineePage::fillTable(const TraineeHistory& history) {

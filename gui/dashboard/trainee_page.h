@@ -38,6 +38,8 @@ class TraineePage : public QWidget {
   void fillKeys();
   void redraw();
   void fillTable(const TraineeHistory& history);
+  void fillTasks(const Trainee& trainee, const Figure& figure, const std::vector<analytics::Norm>& norms);
+  void showGoal(const TraineeHistory& history, const std::vector<analytics::Norm>& norms);
 
   std::shared_ptr<const CohortDocument> document_;
   bool read_ = false, ready_ = false;
@@ -50,6 +52,8 @@ class TraineePage : public QWidget {
   QComboBox* figure_ = nullptr;
   QComboBox* key_ = nullptr;
   HistoryChart* chart_ = nullptr;
+  QLabel* goal_ = nullptr;
+  QTableWidget* tasks_ = nullptr;
   QLabel* caption_ = nullptr;
   QTableWidget* table_ = nullptr;
 };

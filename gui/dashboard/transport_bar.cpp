@@ -13,6 +13,7 @@
 #include <QToolButton>
 
 #include "gui/dashboard/attempt_track.h"
+#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 namespace {
@@ -31,7 +32,7 @@ TransportBar::TransportBar(Replay& replay, QWidget* parent) : QWidget(parent), r
     made->setObjectName(name);
     made->setAccessibleName(what);
     made->setToolTip(what);
-    made->setIcon(style()->standardIcon(icon));
+    made->setIcon(theme::buttonIcon(icon));
     made->setFocusPolicy(Qt::TabFocus);
     layout->addWidget(made);
     return made;
@@ -79,7 +80,7 @@ void TransportBar::setReady(bool ready) {
 }
 
 void TransportBar::show(const PlayerPosition& position) {
-  play_->setIcon(style()->standardIcon(position.playing ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
+  play_->setIcon(theme::buttonIcon(position.playing ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
   if (!scrub_->isSliderDown()) {
     const QSignalBlocker quiet(scrub_);
     const double share = position.seconds > 0.0 ? position.time / position.seconds : 0.0;

@@ -8,6 +8,8 @@
 #include <QSize>
 #include <QTransform>
 
+#include "gui/dashboard/theme.h"
+
 namespace calot::gui {
 namespace {
 
@@ -21,14 +23,18 @@ Watermark::Watermark(QGraphicsScene& scene) : item_(new QGraphicsSimpleTextItem(
   font.setBold(true);
   font.setPixelSize(84);
   item_->setFont(font);
-  item_->setBrush(QColor(0, 0, 0, 34));
   item_->setRotation(slant);
   item_->setZValue(100.0);
   item_->setVisible(false);
   scene.addItem(item_);
 }
 
-void Watermark::setVisible(bool visible) { item_->setVisible(visible); }
+void Watermark::setVisible(bool visible) {
+  QColor ink = theme::text();
+  ink.setAlpha(34);
+  item_->setBrush(ink);
+  item_->setVisible(visible);
+}
 bool Watermark::isVisible() const { return item_->isVisible(); }
 
 void Watermark::place(const QSize& chart) {

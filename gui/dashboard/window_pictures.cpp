@@ -75,7 +75,7 @@ void DashboardWindow::savePictures(const QString& folder) {
   pair_->showMiddle();
   save(pair_, "pair.png", [this] { return pair_->settled(); });
   rating_->chooseForm("goals");
-  save(rating_, "ratings.png", atOnce);
+  save(rating_, "ratings.png", [this] { return rating_->settled(); });
   SettingsDialog settings(this);
   settings.show();
   waitFor(atOnce);

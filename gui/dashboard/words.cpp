@@ -8,6 +8,7 @@
 #include <QTimeZone>
 
 #include "analytics/checkpoints/registry.h"
+#include "gui/dashboard/theme.h"
 #include "recorder/words.h"
 
 namespace calot::gui {
@@ -38,25 +39,21 @@ QString badgeText(Verdict verdict) {
 Badge badgeOf(const analytics::AttemptRow& attempt) {
   Badge badge;
   badge.text = badgeText(attempt.verification.verdict);
+  badge.colour = theme::ofVerdict(attempt.verification.verdict);
   switch (attempt.verification.verdict) {
     case Verdict::verified:
-      badge.colour = QColor(0x00, 0x5a, 0x8e);
       badge.explanation = "The recording was simulated again and every digest and force was equal, bit for bit.";
       break;
     case Verdict::diverged:
-      badge.colour = QColor(0xa6, 0x49, 0x00);
       badge.explanation = "The recording and its re-simulation differ. This says what was found, not who caused it.";
       break;
     case Verdict::damaged:
-      badge.colour = QColor(0x8b, 0x2a, 0x5e);
       badge.explanation = "The recording cannot be read in full.";
       break;
     case Verdict::notCheckableHere:
-      badge.colour = QColor(0x50, 0x50, 0x50);
       badge.explanation = "The recording was made by another simulation version, which this version cannot repeat.";
       break;
     case Verdict::notChecked:
-      badge.colour = QColor(0x50, 0x50, 0x50);
       badge.explanation = "Nobody has simulated this recording again yet.";
       break;
   }

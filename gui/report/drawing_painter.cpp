@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <QFont>
 #include <QFontMetricsF>
-#include <QGuiApplication>
 #include <QPen>
 #include <QString>
+
+#include "gui/report/offscreen_application.h"
 
 namespace calot::gui {
 namespace {
@@ -25,7 +26,7 @@ struct ShapePainter {
   void operator()(const analytics::DrawnBox& b) const { painter.drawRect(QRectF(b.x, b.y, b.width, b.height)); }
   void operator()(const analytics::DrawnPoint& p) const { painter.drawEllipse(QPointF(p.x, p.y), p.radius, p.radius); }
   void operator()(const analytics::DrawnText& t) const {
-    QFont font = QGuiApplication::font();
+    QFont font = reportFont();
     font.setPixelSize(static_cast<int>(style.letters * fine));
     font.setBold(style.bold);
     const QString text = QString::fromStdString(t.text);

@@ -4,7 +4,6 @@
 #include <QAbstractTextDocumentLayout>
 #include <QBuffer>
 #include <QFont>
-#include <QGuiApplication>
 #include <QPainter>
 #include <QPdfWriter>
 
@@ -61,7 +60,6 @@ std::string pdfReport(const analytics::ReportDocument& document, const std::stri
     writer.setCreator(QString::fromStdString(maker));
     const double footHeight = footMillimetres * dotsPerInch / 25.4;
     const QSizeF whole(writer.width(), writer.height()), page(whole.width(), whole.height() - footHeight);
-    QGuiApplication::setFont(font);
     ReportTextDocument text(document, &writer, page);
     const int pages = text.pageCount();
     QPainter painter(&writer);

@@ -12,7 +12,7 @@ namespace calot::gui {
 /// each page, figures as vectors, fonts embedded; across every page of a synthetic report its watermark. Needs no
 /// display, and leaves the process' locale as it was. The file holds the time at which it was made.
 /// @param maker what made it: "calot 0.1.0"
-/// @pre called in the thread that Qt's application runs in, where there is one already
+/// May be called in any thread where Qt's application is there already.
 /// @throws Error (failure) where no font is installed
 std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker);
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <QAbstractTextDocumentLayout>
 #include <QFontMetricsF>
-#include <QGuiApplication>
 #include <QTextBlock>
 #include <QTextCursor>
 #include <QTextFrame>
@@ -12,6 +11,7 @@
 #include <QTextTable>
 
 #include "gui/report/drawing_painter.h"
+#include "gui/report/offscreen_application.h"
 
 namespace calot::gui {
 namespace {
@@ -138,7 +138,7 @@ struct ReportTextDocument::Writer {
 
   /// As wide as their texts; where that is more than the page, the widest columns of words are cut down to one width.
   QVector<QTextLength> columnsOf(const analytics::ReportTable& table) const {
-    QFont font = QGuiApplication::font();
+    QFont font = document.defaultFont();
     font.setPointSizeF(tablePoints);
     font.setBold(true);
     const QFontMetricsF metrics(font, document.device_);
@@ -201,6 +201,7 @@ ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, 
                                        const QSizeF& page)
     : device_(device), page_(page) {
   setUndoRedoEnabled(false);
+  setDefaultFont(reportFont());
   setDocumentMargin(0.0);
   documentLayout()->setPaintDevice(device);
   documentLayout()->registerHandler(figureObject, this);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -28,6 +29,24 @@ TEST(LearningCurve, inverseAsRsLm) {
   EXPECT_NEAR(c->residualSumOfSquares, 59.69668700713602, 1e-11);
   EXPECT_FALSE(c->rateError);
   EXPECT_NEAR(c->at(4), 57.13794054820816 + 73.68004854679707 / 4, 1e-12);
+}
+
+TEST(LearningCurve, bandIsThatOfALinearFit) {
+  // numpy 1.24: s^2 (X'X)^-1 of X = [1, -1/x], Student's t of 10 degrees of freedom.
+  const auto c = fitLearningCurve(CurveShape::inverse, attempts, times);
+  ASSERT_TRUE(c);
+  const std::array<std::array<double, 3>, 3> expected{{{1.0, 125.93587674431294, 135.7001014456978},
+                                                       {4.0, 73.98549341588895, 77.13041195392603},
+                                                       {12.0, 61.36384925824786, 65.1920399293014}}};
+  for (const auto& [x, lower, upper] : expected) {
+    const auto band = bandOf(*c, x);
+    ASSERT_TRUE(band) << band.reason();
+    EXPECT_NEAR(band->lower, lower, 1e-8) << x;
+    EXPECT_NEAR(band->upper, upper, 1e-8) << x;
+  }
+  const auto power = fitLearningCurve(CurveShape::power, attempts, times);
+  ASSERT_TRUE(power);
+  EXPECT_FALSE(bandOf(*power, 4.0)) << "not linear in its rate";
 }
 
 TEST(LearningCurve, powerAndExponentialAsRsNls) {

@@ -181,6 +181,7 @@ TEST_F(Dashboard, SelectingAnAttemptShowsItsCheckpoints) {
 
 TEST_F(Dashboard, WordsThatAColumnIsTooNarrowForGoOnInTheNextLine) {
   DashboardWindow window(apps::assessProgram());
+  window.resize(1280, 860);  // wide enough for every other column
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
   QTableView& details = *child<QTableView>(window, "checkpoints");

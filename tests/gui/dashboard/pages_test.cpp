@@ -26,6 +26,7 @@
 #include <QTest>
 #include <QTextBrowser>
 #include <QToolButton>
+#include <QTreeView>
 #include <QUndoStack>
 #include <QUrl>
 
@@ -34,6 +35,7 @@
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
+#include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/moment_cycle.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/settings.h"
@@ -135,8 +137,9 @@ TEST_F(Pages, AClickOnAFigureShowsTheMomentThatMadeMostOfIt) {
   AttemptPage& page = openAttempt(window);
   ASSERT_TRUE(page.replay().isOpen());
   EXPECT_GT(child<ScenePictureWidget>(page, "scene")->shown(), 0U);
-  QTableView& table = *child<QTableView>(page, "attempt-checkpoints");
-  const auto& model = dynamic_cast<const CheckpointTableModel&>(*table.model());
+  QTreeView& table = *child<QTreeView>(page, "attempt-checkpoints");
+  const auto& tree = dynamic_cast<const FamilyTreeModel&>(*table.model());
+  const auto& model = page.figures().figures();
   int row = 0;
   while (row < model.rowCount() && (model.moments(row) == nullptr || model.moments(row)->moments.empty() ||
                                     model.moments(row)->moments[0].begin < 0.5))
@@ -146,8 +149,8 @@ TEST_F(Pages, AClickOnAFigureShowsTheMomentThatMadeMostOfIt) {
   for (const analytics::Moment& moment : model.moments(row)->moments) {
     if (moment.share > most->share) most = &moment;
   }
-  table.scrollTo(model.index(row, 0));
-  QTest::mouseClick(table.viewport(), Qt::LeftButton, {}, table.visualRect(model.index(row, 0)).center());
+  table.scrollTo(tree.indexOf(row));
+  QTest::mouseClick(table.viewport(), Qt::LeftButton, {}, table.visualRect(tree.indexOf(row)).center());
   const double wanted = most->begin - MomentCycle::leadIn;
   EXPECT_TRUE(QTest::qWaitFor(
       [&] {
@@ -191,7 +194,7 @@ TEST_F(Pages, ARecordingThatIsNotThereIsSaidAndAskedFor) {
   AttemptPage& page = openAttempt(window);
   EXPECT_FALSE(page.replay().isOpen());
   EXPECT_TRUE(child<QPushButton>(page, "find-recording")->isVisibleTo(&page));
-  EXPECT_GT(child<QTableView>(page, "attempt-checkpoints")->model()->rowCount(), 0) << "the checkpoints stand";
+  EXPECT_GT(child<QTreeView>(page, "attempt-checkpoints")->model()->rowCount(), 0) << "the checkpoints stand";
   // Once it is known where recordings are, it is found there.
   settings::rememberRecordingFolder(file("elsewhere"));
   DashboardWindow again(apps::assessProgram());

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/long_work.h"
+
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "gui/view/thread_rank.h"
+#include "gui/words/problem_words.h"
+
+namespace calot::gui {
+
+void LongWork::Control::progress(double share, const QString& what) {
+  if (broken_) throw Broken{};
+  back_->pass([&](LongWork& work) {
+    QMetaObject::invokeMethod(
+        &work, [back = back_, share, what] { back->pass([&](LongWork& w) { w.take(share, what); }); },
+        Qt::QueuedConnection);
+  });
+}
+
+LongWork::~LongWork() { end(); }
+
+void LongWork::end() {
+  if (!control_) return;
+  control_->broken_ = true;
+  control_->back_->cut();
+  control_.reset();
+}
+
+void LongWork::start(Work work) {
+  end();
+  share_ = 0.0;
+  clock_.start();
+  control_ = std::make_shared<Control>();
+  control_->back_ = std::make_shared<Link<LongWork>>(*this);
+  taskPool().start([control = control_, work = std::move(work)] {
+    stepBack(behindInterface);
+    QString text;
+    bool good = false;
+    try {
+      text = work(*control);
+      good = true;
+    } catch (const Broken&) {
+      return;
+    } catch (const std::exception& error) {
+      text = QString::fromStdString(problemText(error));
+    }
+    const auto back = control->back_;
+    back->pass([&](LongWork& object) {
+      QMetaObject::invokeMethod(
+          &object,
+          [back, &object, good, text] {
+            if (!back->stands()) return;
+            object.end();
+            if (good)
+              emit object.done(text);
+            else
+              emit object.failed(text);
+          },
+          Qt::QueuedConnection);
+    });
+  });
+}
+
+void LongWork::cancel() {
+  if (!control_) return;
+  end();
+  emit cancelled();
+}
+
+void LongWork::take(double share, const QString& what) {
+  share_ = share;
+  emit progressed(share, what);
+}
+
+double LongWork::secondsLeft() const {
+  constexpr double least = 0.02;
+  if (!busy() || share_ < least) return -1.0;
+  return 1e-3 * static_cast<double>(clock_.elapsed()) * (1.0 - share_) / share_;
+}
+
+QString leftText(double seconds) {
+  if (seconds < 0.0) return {};
+  if (seconds < 60.0) return QString("about %1 s left").arg(std::max(1L, std::lround(seconds)));
+  return QString("about %1 min left").arg(std::lround(seconds / 60.0));
+}
+
+}  // namespace calot::gui

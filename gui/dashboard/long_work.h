@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <QElapsedTimer>
+#include <QObject>
+#include <QString>
+
+#include "gui/dashboard/link.h"
+
+namespace calot::gui {
+
+/// Work that takes seconds, on a thread of its own: it reports how far it is, and can be broken off. One at a time.
+class LongWork : public QObject {
+  Q_OBJECT
+ public:
+  /// What the work sees of this; any thread.
+  class Control {
+   public:
+    /// @param share done, from 0 to 1 @throws Broken where it was broken off
+    void progress(double share, const QString& what);
+    [[nodiscard]] bool broken() const { return broken_; }
+
+   private:
+    friend class LongWork;
+    std::atomic<bool> broken_ = false;
+    std::shared_ptr<Link<LongWork>> back_;
+  };
+  struct Broken {};
+  /// Ends with what to say of it. @throws Error, or what Control throws
+  using Work = std::function<QString(Control&)>;
+
+  explicit LongWork(QObject* parent = nullptr) : QObject(parent) {}
+  /// Breaks off what is being done, without waiting for it.
+  ~LongWork() override;
+  /// Breaks off what is being done and begins anew.
+  void start(Work work);
+  void cancel();
+  [[nodiscard]] bool busy() const { return control_ != nullptr; }
+  /// Seconds till the end, by what is done so far; below 0: not known yet.
+  [[nodiscard]] double secondsLeft() const;
+  [[nodiscard]] double share() const { return share_; }
+
+ signals:
+  void progressed(double share, const QString& what);
+  void done(const QString& text);
+  void failed(const QString& reason);
+  void cancelled();
+
+ private:
+  void take(double share, const QString& what);
+  void end();
+
+  std::shared_ptr<Control> control_;
+  QElapsedTimer clock_;
+  double share_ = 0.0;
+};
+
+/// "12 s", "about 2 min": what is left, or nothing where it is not known.
+[[nodiscard]] QString leftText(double seconds);
+
+}  // namespace calot::gui

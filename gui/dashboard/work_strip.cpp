@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/work_strip.h"
+
+#include <QBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+
+namespace calot::gui {
+
+WorkStrip::WorkStrip(LongWork& work, QWidget* parent)
+    : QWidget(parent), text_(new QLabel), bar_(new QProgressBar), cancel_(new QPushButton("Cance&l")) {
+  text_->setObjectName("work-text");
+  text_->setTextFormat(Qt::PlainText);
+  bar_->setObjectName("work-progress");
+  bar_->setRange(0, 100);
+  bar_->setAccessibleName("Progress of the work");
+  cancel_->setObjectName("work-cancel");
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(text_, 1);
+  layout->addWidget(bar_, 1);
+  layout->addWidget(cancel_);
+  hide();
+  connect(cancel_, &QPushButton::clicked, &work, &LongWork::cancel);
+  connect(&work, &LongWork::progressed, this, [this, &work](double share, const QString& what) {
+    bar_->setValue(static_cast<int>(100.0 * share));
+    const QString left = leftText(work.secondsLeft());
+    text_->setText(left.isEmpty() ? what : what + ", " + left);
+  });
+  for (const auto ended : {&LongWork::done, &LongWork::failed}) connect(&work, ended, this, &QWidget::hide);
+  connect(&work, &LongWork::cancelled, this, &QWidget::hide);
+}
+
+void WorkStrip::begin(const QString& what) {
+  text_->setText(what);
+  bar_->setValue(0);
+  show();
+}
+
+}  // namespace calot::gui

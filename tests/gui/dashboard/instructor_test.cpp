@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What instructors do with the pages: read an attempt, write its sheet, choose several, follow a trainee, rate.
+#include <gtest/gtest.h>
+#include <cmath>
+#include <cstdlib>
+#include <QApplication>
+
+#include <filesystem>
+#include <fstream>
+#include <QAction>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QMenu>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QSignalSpy>
+#include <QSlider>
+#include <QTableView>
+#include <QTableWidget>
+#include <QTabWidget>
+#include <QtCharts/QValueAxis>
+#include <QTemporaryDir>
+#include <QTest>
+#include <QThread>
+#include <QTreeView>
+#include <QUndoStack>
+#include <sstream>
+
+#include "analytics/checkpoints/registry.h"
+#include "analytics/cohort/assessment_database.h"
+#include "apps/calot-dashboard/assess_program.h"
+#include "gui/dashboard/attempt_page.h"
+#include "gui/dashboard/attempts_page.h"
+#include "gui/dashboard/comparison_chart.h"
+#include "gui/dashboard/dashboard_window.h"
+#include "gui/dashboard/event_tree_model.h"
+#include "gui/dashboard/family_tree_model.h"
+#include "gui/dashboard/figure_panel.h"
+#include "gui/dashboard/history_chart.h"
+#include "gui/dashboard/long_work.h"
+#include "gui/dashboard/pair_page.h"
+#include "gui/dashboard/rating_page.h"
+#include "gui/dashboard/settings.h"
+#include "gui/dashboard/theme.h"
+#include "gui/dashboard/timeline_bar.h"
+#include "gui/dashboard/trace_chart.h"
+#include "gui/report/one_page_pdf.h"
+#include "recorder/errors.h"
+#include "tests/gui/dashboard/support/cohort.h"
+#include "tests/gui/dashboard/support/recorded.h"
+
+namespace calot::gui {
+namespace {
+
+namespace fs = std::filesystem;
+using Access = analytics::CohortDatabase::Access;
+constexpr int instructorPatience = 120000;  // ms
+
+/// Two assessed recordings for all tests; each has a copy.
+struct InstructorsCohort {
+  QTemporaryDir folder;
+  fs::path root = folder.path().toStdString();
+  InstructorsCohort() {
+    test::startApplication();
+    test::recordPerformer(root / "one.h5", 3.0, 3);
+    test::recordPerformer(root / "two.h5", 2.4, 5);
+    const std::string command = std::string(CALOT_PROGRAM) + " assess " + (root / "one.h5").string() + ' ' +
+                                (root / "two.h5").string() + " --cohort " + (root / "c.db").string() + " > /dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+  }
+};
+
+class Instructor : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static const InstructorsCohort cohort;
+    settings::setRecordingFolders({});
+    settings::setCalotProgram(CALOT_PROGRAM);
+    settings::setPerson("R1");
+    settings::setHiddenColumns({});
+    root_ = folder_.path().toStdString();
+    for (const char* name : {"one.h5", "two.h5", "c.db"}) fs::copy_file(cohort.root / name, root_ / name);
+  }
+  [[nodiscard]] QString file(const char* name) const { return folder_.filePath(name); }
+  [[nodiscard]] std::unique_ptr<DashboardWindow> opened() const {
+    auto window = std::make_unique<DashboardWindow>(apps::assessProgram(),
+                                                    std::vector<fs::path>{fs::path(CALOT_SOURCE_DIR) / "assets"});
+    window->resize(1366, 768);
+    window->show();
+    EXPECT_TRUE(window->openDatabase(file("c.db")));
+    return window;
+  }
+  void fillWithMany() const {
+    fs::remove(root_ / "c.db");
+    analytics::CohortDatabase database(file("c.db").toStdString(), Access::create);
+    for (int i = 0; i < 12; ++i) {
+      analytics::AttemptRecord attempt = test::attemptNumber(i);
+      attempt.participant = "P1";
+      if (i >= 10) {
+        attempt.scene = "clip-and-cut";
+        attempt.comparabilityKey = "clip-and-cut/1 device=- calibration=- simulation=1 results=1 mode=practice";
+      }
+      database.storeAttempt(attempt, {test::pathLength("left", 0.3 + 0.5 / (i + 1) + 0.01 * (i % 3))});
+    }
+  }
+  template <class T>
+  static T* child(const QWidget& window, const char* name) {
+    T* const found = window.findChild<T*>(name);
+    EXPECT_NE(found, nullptr) << name;
+    return found;
+  }
+  static void showPage(DashboardWindow& window, int number) {
+    window.findChild<QTabWidget*>()->setCurrentIndex(number - 1);
+  }
+  static AttemptPage& openAttempt(DashboardWindow& window) {
+    showPage(window, 2);
+    AttemptPage& page = *window.findChild<AttemptPage*>();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, instructorPatience));
+    return page;
+  }
+  static std::string bytesOf(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream all;
+    all << in.rdbuf();
+    return all.str();
+  }
+  QTemporaryDir folder_;
+  fs::path root_;
+};
+
+TEST_F(Instructor, ReadsAnAttemptInWordsFirst) {
+  const auto window = opened();
+  AttemptPage& page = openAttempt(*window);
+  const auto text = [&](const char* name) { return child<QLabel>(page, name)->text(); };
+  EXPECT_TRUE(text("summary-verdict").startsWith("The task was not completed: stopped."))
+      << text("summary-verdict").toStdString();
+  EXPECT_TRUE(text("summary-figures").contains("Path length of the instrument's tip: left "));
+  EXPECT_LT(child<QLabel>(page, "summary-verdict")->mapTo(window.get(), QPoint()).y(),
+            child<QTreeView>(page, "attempt-checkpoints")->mapTo(window.get(), QPoint()).y());
+  EXPECT_FALSE(child<QLabel>(page, "summary-critical-view")->isVisible()) << "this scene has none";
+}
+
+TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
+  const auto window = opened();
+  AttemptPage& page = openAttempt(*window);
+  QTreeView& tree = *child<QTreeView>(page, "attempt-checkpoints");
+  auto& model = dynamic_cast<FamilyTreeModel&>(*tree.model());
+  ASSERT_GT(model.rowCount(), 2);
+  EXPECT_GT(model.leftOut(), 0) << "the scene has no fat, no vessels and no procedure";
+  int shown = 0;
+  for (int f = 0; f < model.rowCount(); ++f) {
+    const QModelIndex family = model.index(f, 0);
+    EXPECT_TRUE(tree.isExpanded(family));
+    shown += model.rowCount(family);
+    for (int row = 0; row < model.rowCount(family); ++row) {
+      const QString value = model.index(row, CheckpointTableModel::valueColumn, family).data().toString();
+      EXPECT_FALSE(value.contains("the scene has no")) << value.toStdString();
+    }
+  }
+  EXPECT_EQ(shown + model.leftOut(), page.figures().figures().rowCount());
+  tree.setFocus();
+  tree.setCurrentIndex(model.index(0, 0));
+  QTest::keyClick(&tree, Qt::Key_Left);
+  EXPECT_FALSE(tree.isExpanded(model.index(0, 0))) << "folds by key";
+  for (const Qt::SortOrder order : {Qt::AscendingOrder, Qt::DescendingOrder}) {
+    tree.sortByColumn(CheckpointTableModel::valueColumn, order);
+    const QModelIndex family = model.index(1, 0);
+    double before = order == Qt::AscendingOrder ? -1e300 : 1e300;
+    for (int row = 0; row < model.rowCount(family); ++row) {
+      const auto& value = page.figures().figures().value(model.sourceRow(model.index(row, 0, family)));
+      if (!value.value) continue;
+      const double now = *value.value * (analytics::definitionOf(value)->displayFactor);
+      EXPECT_TRUE(order == Qt::AscendingOrder ? before <= now : now <= before);
+      before = now;
+    }
+  }
+}
+
+TEST_F(Instructor, FindsEventsInGroupsThatSayWhich) {
+  test::startApplication();
+  EventTreeModel model;
+  model.setEvents({{1.0, EventKind::clipSet, "cystic duct: clip set (right hand)", false},
+                   {2.0, EventKind::clipDropped, "clip dropped (right hand)", true},
+                   {3.0, EventKind::clipSet, "cystic artery: clip set (right hand)", false}});
+  ASSERT_EQ(model.rowCount(), 2);
+  EXPECT_EQ(model.index(0, 0).data().toString(), QString::fromUtf8("▲ Clip dropped (1)")) << "errors first";
+  const QModelIndex set = model.index(1, 0);
+  EXPECT_EQ(set.data().toString(), "Clip set (2)");
+  EXPECT_EQ(model.index(1, 0, set).data().toString(), "cystic artery: clip set (right hand)");
+  EXPECT_EQ(model.index(1, 0, set).data(EventTreeModel::secondsRole).toDouble(), 3.0);
+}
+
+TEST_F(Instructor, WritesAnAttemptOnOnePageWithPicturesOffTheWindowsThread) {
+  const auto window = opened();
+  AttemptPage& page = openAttempt(*window);
+  ASSERT_FALSE(page.figures().worstMoments().empty());
+  QSignalSpy written(&page, &AttemptPage::sheetWritten);
+  double most = 0.0;
+  QObject::connect(&page.work(), &LongWork::progressed, &page, [&](double share) { most = std::max(most, share); });
+  page.writeSheet(root_ / "page.pdf", true);
+  EXPECT_TRUE(page.work().busy()) << "returns at once";
+  EXPECT_TRUE(child<QPushButton>(page, "work-cancel")->isVisible());
+  ASSERT_TRUE(written.wait(instructorPatience)) << child<QLabel>(*window, "problem")->text().toStdString();
+  EXPECT_GE(most, 0.9);
+  const std::string pdf = bytesOf(root_ / "page.pdf");
+  EXPECT_EQ(pdf.rfind("%PDF-", 0), 0U);
+  EXPECT_NE(pdf.find("/Count 1\n"), std::string::npos) << "one page";
+  EXPECT_NE(pdf.find("/Subtype /Image"), std::string::npos) << "with a picture";
+}
+
+TEST_F(Instructor, BreaksOffLongWorkAndSeesWhatIsLeft) {
+  test::startApplication();
+  LongWork work;
+  QThread* const windows = QThread::currentThread();
+  std::atomic<bool> elsewhere = false, ended = false;
+  QSignalSpy cancelled(&work, &LongWork::cancelled), done(&work, &LongWork::done);
+  work.start([&](LongWork::Control& control) {
+    elsewhere = QThread::currentThread() != windows;
+    try {
+      for (int i = 0;; ++i) {
+        control.progress(std::min(0.9, 0.1 * i), "going on");
+        QThread::msleep(5);
+      }
+    } catch (const LongWork::Broken&) {
+      ended = true;
+      throw;
+    }
+    return QString();
+  });
+  ASSERT_TRUE(QTest::qWaitFor([&] { return work.share() > 0.5; }, instructorPatience));
+  EXPECT_GT(work.secondsLeft(), 0.0);
+  work.cancel();
+  EXPECT_EQ(cancelled.count(), 1);
+  EXPECT_FALSE(work.busy());
+  EXPECT_TRUE(QTest::qWaitFor([&] { return ended.load(); }, instructorPatience));
+  EXPECT_TRUE(elsewhere);
+  EXPECT_EQ(done.count(), 0);
+  EXPECT_EQ(leftText(12.4), "about 12 s left");
+  EXPECT_EQ(leftText(130.0), "about 2 min left");
+  EXPECT_EQ(leftText(-1.0), "");
+}
+
+TEST_F(Instructor, ChoosesColumnsAndSeveralAttemptsAtOnce) {
+  fillWithMany();
+  {
+    const auto window = opened();
+    QTableView& table = *child<QTableView>(*window, "attempts");
+    QMenu* const menu = child<QPushButton>(*window, "columns")->menu();
+    emit menu->aboutToShow();
+    for (QAction* action : menu->actions()) {
+      if (action->text() == "Mode") action->toggle();
+    }
+    EXPECT_TRUE(table.isColumnHidden(AttemptTableModel::modeColumn));
+    table.selectRow(0);
+    table.selectionModel()->select(QItemSelection(table.model()->index(0, 0), table.model()->index(2, 0)),
+                                   QItemSelectionModel::Select | QItemSelectionModel::Rows);
+    EXPECT_EQ(window->findChild<AttemptsPage*>()->selectedAll().size(), 3U);
+    EXPECT_TRUE(child<QLabel>(*window, "count")->text().contains("3 selected"));
+    window->excludeOrInclude("the light failed", "R1");
+    const auto excluded = [&] {
+      int count = 0;
+      for (const analytics::AttemptRow& a :
+           analytics::CohortDatabase(file("c.db").toStdString(), Access::read).listAttempts())
+        count += a.excluded ? 1 : 0;
+      return count;
+    };
+    EXPECT_EQ(excluded(), 3);
+    window->findChild<QUndoStack*>()->undo();
+    EXPECT_EQ(excluded(), 0) << "in one go";
+  }
+  EXPECT_TRUE(child<QTableView>(*opened(), "attempts")->isColumnHidden(AttemptTableModel::modeColumn)) << "remembered";
+}
+
+TEST_F(Instructor, OpensAnAttemptByItsDotOnAxesThatStartWhereDataDo) {
+  fillWithMany();
+  const auto window = opened();
+  showPage(*window, 3);
+  auto& chart = *window->findChild<ComparisonChart*>("comparison-chart");
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !chart.dots().empty(); }, instructorPatience));
+  const auto* axis = qobject_cast<QValueAxis*>(chart.chart()->axes(Qt::Vertical).front());
+  double least = 1e300, most = -1e300;
+  for (const DotChart::Dot& dot : chart.dots()) {
+    least = std::min(least, dot.at.y());
+    most = std::max(most, dot.at.y());
+  }
+  EXPECT_GT(axis->min(), 0.0);
+  EXPECT_LT(least - axis->min(), 0.1 * (most - least));
+  EXPECT_LT(axis->max() - most, 0.1 * (most - least));
+  // By key, then by mouse.
+  QSignalSpy chosen(&chart, &DotChart::attemptChosen);
+  chart.setFocus();
+  QTest::keyClick(&chart, Qt::Key_Right);
+  QTest::keyClick(&chart, Qt::Key_Return);
+  ASSERT_EQ(chosen.count(), 1);
+  EXPECT_EQ(chosen[0][0].toString(), chart.dots()[0].attempt);
+  EXPECT_EQ(window->findChild<QTabWidget*>()->currentIndex(), 1) << "the page Attempt";
+  showPage(*window, 3);
+  QTest::qWait(200);
+  const DotChart::Dot& dot = chart.dots()[4];
+  QTest::mouseClick(chart.viewport(), Qt::LeftButton, {}, chart.placeOf(dot).toPoint());
+  ASSERT_EQ(chosen.count(), 2);
+  EXPECT_EQ(chosen[1][0].toString(), dot.attempt);
+  EXPECT_EQ(axisSpan(0.0, 10.0).from, 0.0) << "nothing lies below zero";
+  EXPECT_GT(axisSpan(5.0, 5.0).to, 5.0);
+}
+
+TEST_F(Instructor, FollowsATraineeOverTasksWithACurveItsBandAndAGoal) {
+  fillWithMany();
+  const auto window = opened();
+  showPage(*window, 5);
+  auto& chart = *window->findChild<HistoryChart*>();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return chart.dots().size() == 10; }, instructorPatience));
+  const auto names = [&] {
+    QStringList all;
+    for (const QAbstractSeries* series : chart.chart()->series()) all += series->name();
+    return all;
+  };
+  EXPECT_TRUE(names().contains("95 % band of the curve")) << names().join(", ").toStdString();
+  QTableWidget& tasks = *child<QTableWidget>(*window, "trainee-tasks");
+  ASSERT_EQ(tasks.rowCount(), 2);
+  EXPECT_EQ(tasks.item(1, 1)->text(), "2");
+  EXPECT_EQ(child<QLabel>(*window, "trainee-goal")->text(), "No goal: there is no norm for this task yet.");
+  emit tasks.itemActivated(tasks.item(1, 0));
+  EXPECT_EQ(chart.dots().size(), 2U) << "the other task";
+}
+
+TEST_F(Instructor, SeesTwoAttemptsTracesOnOnePlot) {
+  const auto window = opened();
+  showPage(*window, 6);
+  PairPage& page = *window->findChild<PairPage*>();
+  page.chooseTwo();
+  child<QComboBox>(page, "left-attempt")->setCurrentIndex(1);
+  child<QComboBox>(page, "right-attempt")->setCurrentIndex(2);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return page.settled() && child<QSlider>(page, "pair-scrub")->isEnabled(); },
+                              instructorPatience));
+  auto& traces = *child<TraceChart>(page, "pair-traces");
+  ASSERT_TRUE(QTest::qWaitFor([&] { return traces.values()[0].size() > 100 && traces.values()[1].size() > 100; },
+                              instructorPatience));
+  child<QComboBox>(page, "pair-trace")->setCurrentIndex(2);
+  for (const auto& line : traces.values()) EXPECT_GT(*std::max_element(line.begin(), line.end()), 0.0);
+  EXPECT_NE(traces.values()[0], traces.values()[1]);
+}
+
+TEST_F(Instructor, RatesBlindedBesideTheReplayKeepsADraftAndGoesOnByKey) {
+  const QStringList items{"depth-perception", "bimanual-dexterity", "efficiency", "tissue-handling", "autonomy"};
+  const auto chooseGoals = [](DashboardWindow& window) {
+    showPage(window, 7);
+    QComboBox& form = *child<QComboBox>(window, "form");
+    form.setCurrentIndex(form.findText("goals", Qt::MatchStartsWith));
+  };
+  {
+    const auto window = opened();
+    chooseGoals(*window);
+    RatingPage& page = *window->findChild<RatingPage*>();
+    EXPECT_FALSE(child<QLabel>(page, "identity")->isVisible()) << "blinded";
+    child<QCheckBox>(page, "reveal")->click();
+    EXPECT_TRUE(child<QLabel>(page, "identity")->isVisible()) << "unless asked otherwise";
+    ASSERT_TRUE(QTest::qWaitFor([&] { return page.replayShown() > 0; }, instructorPatience)) << "beside the replay";
+    child<QRadioButton>(page, "efficiency=3")->click();
+  }
+  const auto window = opened();
+  chooseGoals(*window);
+  RatingPage& page = *window->findChild<RatingPage*>();
+  EXPECT_TRUE(child<QRadioButton>(page, "efficiency=3")->isChecked()) << "the draft was kept";
+  for (const QString& item : items) child<QRadioButton>(page, qPrintable(item + "=4"))->click();
+  const std::string first = window->findChild<AttemptsPage*>()->selected()->uuid;
+  window->activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
+  ASSERT_TRUE(child<QPushButton>(page, "store-next")->isEnabled());
+  child<QRadioButton>(page, "efficiency=4")->setFocus();
+  QTest::keyClick(child<QRadioButton>(page, "efficiency=4"), Qt::Key_Return, Qt::ControlModifier);
+  const auto ratings = analytics::AssessmentDatabase(file("c.db").toStdString(), Access::read).ratings();
+  ASSERT_EQ(ratings.size(), 1U);
+  EXPECT_EQ(ratings[0].attempt, first);
+  EXPECT_NE(window->findChild<AttemptsPage*>()->selected()->uuid, first) << "the next one";
+  EXPECT_FALSE(child<QRadioButton>(page, "efficiency=4")->isChecked());
+}
+
+}  // namespace
+}  // namespace calot::gui
