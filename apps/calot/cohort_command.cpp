@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
