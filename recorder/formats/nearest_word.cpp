@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "recorder/formats/text_words.h"
+
 namespace calot::recorder {
 namespace {
 
@@ -61,7 +63,7 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& k
 
 std::string didYouMean(std::string_view word, const std::vector<std::string>& known) {
   const std::string nearest = nearestWord(word, known);
-  return nearest.empty() ? nearest : fmt::format(" (did you mean \"{}\"?)", nearest);
+  return nearest.empty() ? nearest : fmt::format(" (did you mean \"{}\"?)", shown(nearest));
 }
 
 }  // namespace calot::recorder

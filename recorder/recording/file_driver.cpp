@@ -16,6 +16,8 @@ namespace calot::recorder::hdf5 {
 
 namespace {
 
+constexpr const char* driverName = "calot-recording";
+
 /// What the library holds of a file. Its own part comes first.
 struct OpenFile {
   H5FD_t library{};
@@ -32,7 +34,8 @@ const OpenFile& of(const H5FD_t* file) { return *reinterpret_cast<const OpenFile
 /// Puts the system's message on the library's stack of errors, in its own driver's words.
 herr_t failed(const char* what) {
   const int error = errno;
-  H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_IO, H5E_WRITEERROR,
+  // The name of the driver in the place of this file's, which would put the folder of the build into the program.
+  H5Epush2(H5E_DEFAULT, driverName, __func__, __LINE__, H5E_ERR_CLS, H5E_IO, H5E_WRITEERROR,
            "%s: errno = %d, error message = '%s'", what, error, std::strerror(error));
   return -1;
 }
@@ -149,8 +152,6 @@ herr_t calotFileUnlock(H5FD_t* file) {
 
 herr_t calotFileTerminate();
 }
-
-constexpr const char* driverName = "calot-recording";
 
 const H5FD_class_t& driver() {
   static const H5FD_class_t d = [] {

@@ -208,7 +208,7 @@ class Outputs(program.ProgramTest):
             "state": ["state", r, "--step", "3", "-o", out],
             "state --flat": ["state", r, "--step", "3", "--flat", "-o", out],
             "render": ["render", r, "--size", "64x48", "-o", f"{out}.png"],
-            "mesh": ["mesh", program.SOURCE / "assets/organs/gallbladder.obj", "--unit", "m", "--tetrahedra", "120", "-o", f"{out}.vtk"],
+            "mesh": ["mesh", program.SOURCE / "assets/organs/liver.obj", "--unit", "m", "--tetrahedra", "200", "-o", f"{out}.vtk"],
         }
 
     def test_existing_is_kept_without_force(self):

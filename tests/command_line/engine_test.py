@@ -107,7 +107,7 @@ class Engine(program.ProgramTest):
 
     def test_what_is_wrong_is_said(self):
         file = self.golden(12, "touch-liver.h5")
-        self.refused(2, "engine", names=["subcommand"])
+        self.refused(2, "engine", names=["list, check, build, transcript"])
         self.refused(2, "engine", "check", 99, names=["99", "calot engine list"])
         self.refused(2, "engine", "check", "twelve", names=["twelve"])
         self.refused(2, "engine", "build", 12, "-o", self.path("e"), "--source", self.folder, names=["clone"])
