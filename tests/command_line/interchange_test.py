@@ -3,11 +3,13 @@
 
 import json
 import os
+import pathlib
 import re
 import shutil
 import sqlite3
 import subprocess
 import sys
+import tempfile
 
 import program
 from program import calot, recording
@@ -31,9 +33,16 @@ def blocks(language):
 
 
 class Interchange(program.ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = pathlib.Path(tempfile.mkdtemp(prefix="calot-cli-"))
+        cls.addClassCleanup(shutil.rmtree, cls.made, ignore_errors=True)
+        cohort_at(cls.made)
+
     def setUp(self):
         super().setUp()
-        self.database = cohort_at(self.folder)
+        shutil.copytree(self.made, self.folder, dirs_exist_ok=True)
+        self.database = self.folder / "c.db"
         self.study = ("study", self.database, "--group-by", "performer", "--include-synthetic")
 
     def test_paper(self):
