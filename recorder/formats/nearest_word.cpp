@@ -52,7 +52,8 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& k
       begun = one;
       ++begins;
     }
-    if (const std::size_t distance = wordDistance(typed, there); distance < least) {
+    // A word of which no letter is left is another one.
+    if (const std::size_t distance = wordDistance(typed, there); distance < std::min(least, typed.size())) {
       least = distance;
       nearest = one;
     }

@@ -42,6 +42,8 @@ TEST(NearestWord, IsNoneWhereNothingIsNear) {
 TEST(NearestWord, IsAskedAfter) {
   EXPECT_EQ(didYouMean("recrod", commands), " (did you mean \"record\"?)");
   EXPECT_EQ(didYouMean("xyzzy", commands), "");
+  EXPECT_EQ(didYouMean("c", {"a", "b"}), "") << "every letter is another one";
+  EXPECT_EQ(didYouMean("ab", {"a\rb"}), " (did you mean \"a?b\"?)") << "as text";
 }
 
 }  // namespace
