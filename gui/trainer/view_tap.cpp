@@ -4,7 +4,7 @@
 namespace calot::gui {
 namespace {
 
-constexpr int maxUnderway = 2;
+constexpr int maxUnderway = 3;
 constexpr std::chrono::nanoseconds period(1'000'000'000 / 30);
 /// A window that is hidden shows nothing; it is tried again so often.
 constexpr std::chrono::milliseconds patience(500);

@@ -7,7 +7,7 @@
 namespace calot::gui {
 
 /// How large pictures are drawn so that they keep a rate: a share of width and height that falls where drawing is too
-/// slow and rises where time is left, in few steps, each of which is a mean over several pictures. What drawing costs
+/// slow and rises where time is left, in few steps, after a mean over several pictures each. What drawing costs
 /// beside its pixels is not known; a larger size is tried only where even all of the cost times the pixels would do, so
 /// that it does not swing. Keeps no clock. One thread at a time.
 class PictureScale {

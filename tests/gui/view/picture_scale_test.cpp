@@ -34,6 +34,11 @@ TEST(PictureScale, WhatIsTooSlowShrinksUntilItKeepsTheRate) {
   EXPECT_EQ(drawn(scale, 200, 0.03, 0.05).back(), 0.75) << "0.875 takes 68 ms, 0.75 takes 58";
 }
 
+TEST(PictureScale, WhatIsFarTooSlowShrinksAtOnce) {
+  PictureScale scale(30.0, 2);
+  EXPECT_EQ(drawn(scale, 13, 0.02, 0.12).back(), 0.625) << "14 a second: by 0.68";
+}
+
 TEST(PictureScale, NeverBelowHalf) {
   PictureScale scale(30.0, 1);
   EXPECT_EQ(drawn(scale, 500, 0.5, 0.5).back(), 0.5);
