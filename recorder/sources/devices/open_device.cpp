@@ -61,6 +61,7 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
   const DeviceKind* const kind = findDeviceKind(name);
   if (kind == nullptr) {
     std::vector<std::string> known;
+    known.reserve(std::size(kinds));
     for (const DeviceKind* each : kinds) known.emplace_back(each->name);
     request.refuse(
         fmt::format("no such device{}; there are {}", didYouMean(name.substr(0, colon), known), deviceUsage("and")));
