@@ -75,13 +75,11 @@ void DotChart::finishChart(bool synthetic) {
   chosenMark_->setMarkerSize(18.0);
   chosenMark_->setColor(Qt::transparent);
   chosenMark_->setBorderColor(theme::text());
-  if (across_ != nullptr) {
+  if (across_ != nullptr)
     addSeries(chosenMark_);
-    for (QLegendMarker* marker : chart()->legend()->markers(chosenMark_)) marker->setVisible(false);
-  } else {
+  else
     chart()->addSeries(chosenMark_);
-    for (QLegendMarker* marker : chart()->legend()->markers(chosenMark_)) marker->setVisible(false);
-  }
+  for (QLegendMarker* marker : chart()->legend()->markers(chosenMark_)) marker->setVisible(false);
   std::stable_sort(dots_.begin(), dots_.end(), [](const Dot& a, const Dot& b) {
     return a.at.x() != b.at.x() ? a.at.x() < b.at.x() : a.at.y() < b.at.y();
   });

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string_view>
 
 #include "recorder/errors.h"
 #include "recorder/formats/json_faults.h"
@@ -102,29 +101,6 @@ nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::stri
 
 void JsonPlace::fail(const std::string& fault) const {
   throw Error(ErrorKind::damaged, Where{file_, pointer_.empty() ? "/" : pointer_}, fault);
-}
-
-namespace {
-
-thread_local JsonFaults* noting = nullptr;
-
-}  // namespace
-
-JsonFaults::JsonFaults() : outer_(noting) { noting = this; }
-
-JsonFaults::~JsonFaults() { noting = outer_; }
-
-void JsonFaults::note(const Error& fault) {
-  const bool known = std::any_of(found_.begin(), found_.end(),
-                                 [&](const Error& e) { return std::string_view(e.what()) == fault.what(); });
-  if (!known) found_.push_back(fault);
-}
-
-std::size_t JsonFaults::count() { return noting == nullptr ? 0 : noting->found_.size(); }
-
-void JsonFaults::report(const Error& fault) {
-  if (noting == nullptr) throw fault;
-  noting->note(fault);
 }
 
 JsonObject JsonPlace::object(const ObjectRule& rule) const { return {*this, rule}; }

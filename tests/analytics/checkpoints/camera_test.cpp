@@ -36,13 +36,7 @@ class Filmed : public Operation {
   void stepWith(const CameraSample& camera) {
     std::vector<TickSamples> samples(10);
     for (TickSamples& tick : samples) tick.camera = camera;
-    const std::vector<recorder::TickOutcome> ticks(10);
-    const StateDigest digest;
-    now.step = next;
-    judged.events = now.events;
-    collector.take({next, samples, ticks, now, digest, 0.0F, {}, {}}, judged);
-    ++next;
-    now.events.clear();
+    step(samples);
   }
 };
 

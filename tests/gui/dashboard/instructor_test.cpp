@@ -2,7 +2,6 @@
 // What instructors do with the pages: read an attempt, write its sheet, choose several, follow a trainee, rate.
 #include <gtest/gtest.h>
 #include <cmath>
-#include <cstdlib>
 #include <QApplication>
 
 #include <filesystem>
@@ -20,7 +19,6 @@
 #include <QTableWidget>
 #include <QTabWidget>
 #include <QtCharts/QValueAxis>
-#include <QTemporaryDir>
 #include <QTest>
 #include <QThread>
 #include <QTreeView>
@@ -47,6 +45,7 @@
 #include "gui/dashboard/trace_chart.h"
 #include "gui/report/one_page_pdf.h"
 #include "recorder/errors.h"
+#include "tests/gui/dashboard/support/assessed.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
@@ -55,34 +54,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using Access = analytics::CohortDatabase::Access;
-constexpr int instructorPatience = 120000;  // ms
+using test::patience;
 
-/// Two assessed recordings for all tests; each has a copy.
-struct InstructorsCohort {
-  QTemporaryDir folder;
-  fs::path root = folder.path().toStdString();
-  InstructorsCohort() {
-    test::startApplication();
-    test::recordPerformer(root / "one.h5", 3.0, 3);
-    test::recordPerformer(root / "two.h5", 2.4, 5);
-    const std::string command = std::string(CALOT_PROGRAM) + " assess " + (root / "one.h5").string() + ' ' +
-                                (root / "two.h5").string() + " --cohort " + (root / "c.db").string() + " > /dev/null";
-    EXPECT_EQ(std::system(command.c_str()), 0);
-  }
-};
-
-class Instructor : public ::testing::Test {
+class Instructor : public test::AssessedCohort {
  protected:
   void SetUp() override {
-    static const InstructorsCohort cohort;
-    settings::setRecordingFolders({});
-    settings::setCalotProgram(CALOT_PROGRAM);
+    test::AssessedCohort::SetUp();
     settings::setPerson("R1");
-    settings::setHiddenColumns({});
-    root_ = folder_.path().toStdString();
-    for (const char* name : {"one.h5", "two.h5", "c.db"}) fs::copy_file(cohort.root / name, root_ / name);
   }
-  [[nodiscard]] QString file(const char* name) const { return folder_.filePath(name); }
   [[nodiscard]] std::unique_ptr<DashboardWindow> opened() const {
     auto window = std::make_unique<DashboardWindow>(apps::assessProgram(),
                                                     std::vector<fs::path>{fs::path(CALOT_SOURCE_DIR) / "assets"});
@@ -104,29 +83,12 @@ class Instructor : public ::testing::Test {
       database.storeAttempt(attempt, {test::pathLength("left", 0.3 + 0.5 / (i + 1) + 0.01 * (i % 3))});
     }
   }
-  template <class T>
-  static T* child(const QWidget& window, const char* name) {
-    T* const found = window.findChild<T*>(name);
-    EXPECT_NE(found, nullptr) << name;
-    return found;
-  }
-  static void showPage(DashboardWindow& window, int number) {
-    window.findChild<QTabWidget*>()->setCurrentIndex(number - 1);
-  }
-  static AttemptPage& openAttempt(DashboardWindow& window) {
-    showPage(window, 2);
-    AttemptPage& page = *window.findChild<AttemptPage*>();
-    EXPECT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, instructorPatience));
-    return page;
-  }
   static std::string bytesOf(const fs::path& path) {
     std::ifstream in(path, std::ios::binary);
     std::ostringstream all;
     all << in.rdbuf();
     return all.str();
   }
-  QTemporaryDir folder_;
-  fs::path root_;
 };
 
 TEST_F(Instructor, ReadsAnAttemptInWordsFirst) {
@@ -201,7 +163,7 @@ TEST_F(Instructor, WritesAnAttemptOnOnePageWithPicturesOffTheWindowsThread) {
   page.writeSheet(root_ / "page.pdf", true);
   EXPECT_TRUE(page.work().busy()) << "returns at once";
   EXPECT_TRUE(child<QPushButton>(page, "work-cancel")->isVisible());
-  ASSERT_TRUE(written.wait(instructorPatience)) << child<QLabel>(*window, "problem")->text().toStdString();
+  ASSERT_TRUE(written.wait(patience)) << child<QLabel>(*window, "problem")->text().toStdString();
   EXPECT_GE(most, 0.9);
   const std::string pdf = bytesOf(root_ / "page.pdf");
   EXPECT_EQ(pdf.rfind("%PDF-", 0), 0U);
@@ -228,12 +190,12 @@ TEST_F(Instructor, BreaksOffLongWorkAndSeesWhatIsLeft) {
     }
     return QString();
   });
-  ASSERT_TRUE(QTest::qWaitFor([&] { return work.share() > 0.5; }, instructorPatience));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return work.share() > 0.5; }, patience));
   EXPECT_GT(work.secondsLeft(), 0.0);
   work.cancel();
   EXPECT_EQ(cancelled.count(), 1);
   EXPECT_FALSE(work.busy());
-  EXPECT_TRUE(QTest::qWaitFor([&] { return ended.load(); }, instructorPatience));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return ended.load(); }, patience));
   EXPECT_TRUE(elsewhere);
   EXPECT_EQ(done.count(), 0);
   EXPECT_EQ(leftText(12.4), "about 12 s left");
@@ -277,7 +239,7 @@ TEST_F(Instructor, OpensAnAttemptByItsDotOnAxesThatStartWhereDataDo) {
   const auto window = opened();
   showPage(*window, 3);
   auto& chart = *window->findChild<ComparisonChart*>("comparison-chart");
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !chart.dots().empty(); }, instructorPatience));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !chart.dots().empty(); }, patience));
   const auto* axis = qobject_cast<QValueAxis*>(chart.chart()->axes(Qt::Vertical).front());
   double least = 1e300, most = -1e300;
   for (const DotChart::Dot& dot : chart.dots()) {
@@ -310,7 +272,7 @@ TEST_F(Instructor, FollowsATraineeOverTasksWithACurveItsBandAndAGoal) {
   const auto window = opened();
   showPage(*window, 5);
   auto& chart = *window->findChild<HistoryChart*>();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return chart.dots().size() == 10; }, instructorPatience));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return chart.dots().size() == 10; }, patience));
   const auto names = [&] {
     QStringList all;
     for (const QAbstractSeries* series : chart.chart()->series()) all += series->name();
@@ -332,11 +294,11 @@ TEST_F(Instructor, SeesTwoAttemptsTracesOnOnePlot) {
   page.chooseTwo();
   child<QComboBox>(page, "left-attempt")->setCurrentIndex(1);
   child<QComboBox>(page, "right-attempt")->setCurrentIndex(2);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return page.settled() && child<QSlider>(page, "pair-scrub")->isEnabled(); },
-                              instructorPatience));
+  ASSERT_TRUE(
+      QTest::qWaitFor([&] { return page.settled() && child<QSlider>(page, "pair-scrub")->isEnabled(); }, patience));
   auto& traces = *child<TraceChart>(page, "pair-traces");
-  ASSERT_TRUE(QTest::qWaitFor([&] { return traces.values()[0].size() > 100 && traces.values()[1].size() > 100; },
-                              instructorPatience));
+  ASSERT_TRUE(
+      QTest::qWaitFor([&] { return traces.values()[0].size() > 100 && traces.values()[1].size() > 100; }, patience));
   child<QComboBox>(page, "pair-trace")->setCurrentIndex(2);
   for (const auto& line : traces.values()) EXPECT_GT(*std::max_element(line.begin(), line.end()), 0.0);
   EXPECT_NE(traces.values()[0], traces.values()[1]);
@@ -356,7 +318,7 @@ TEST_F(Instructor, RatesBlindedBesideTheReplayKeepsADraftAndGoesOnByKey) {
     EXPECT_FALSE(child<QLabel>(page, "identity")->isVisible()) << "blinded";
     child<QCheckBox>(page, "reveal")->click();
     EXPECT_TRUE(child<QLabel>(page, "identity")->isVisible()) << "unless asked otherwise";
-    ASSERT_TRUE(QTest::qWaitFor([&] { return page.replayShown() > 0; }, instructorPatience)) << "beside the replay";
+    ASSERT_TRUE(QTest::qWaitFor([&] { return page.replayShown() > 0; }, patience)) << "beside the replay";
     child<QRadioButton>(page, "efficiency=3")->click();
   }
   const auto window = opened();

@@ -2,7 +2,6 @@
 // The pages as a user goes through them, with recordings and with the program that assesses them.
 #include <gtest/gtest.h>
 #include <cmath>
-#include <cstdlib>
 #include <QApplication>
 
 #include <filesystem>
@@ -21,8 +20,6 @@
 #include <QSignalSpy>
 #include <QSlider>
 #include <QTableView>
-#include <QTabWidget>
-#include <QTemporaryDir>
 #include <QTest>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -42,51 +39,18 @@
 #include "gui/dashboard/study_page.h"
 #include "gui/view/scene_picture_widget.h"
 #include "recorder/errors.h"
+#include "tests/gui/dashboard/support/assessed.h"
 #include "tests/gui/dashboard/support/cohort.h"
-#include "tests/gui/dashboard/support/recorded.h"
 
 namespace calot::gui {
 namespace {
 
 namespace fs = std::filesystem;
 using Access = analytics::CohortDatabase::Access;
-constexpr int patience = 120000;  // ms
+using test::patience;
 
-/// Two recordings of a performer, assessed into one cohort by the real program, for all tests; each test has a copy.
-struct Assessed {
-  QTemporaryDir folder;
-  fs::path root = folder.path().toStdString();
-  Assessed() {
-    test::startApplication();
-    test::recordPerformer(root / "one.h5", 3.0, 3);
-    test::recordPerformer(root / "two.h5", 2.4, 5);
-    const std::string command = std::string(CALOT_PROGRAM) + " assess " + (root / "one.h5").string() + ' ' +
-                                (root / "two.h5").string() + " --cohort " + (root / "c.db").string() + " > /dev/null";
-    EXPECT_EQ(std::system(command.c_str()), 0);
-  }
-};
-
-class Pages : public ::testing::Test {
+class Pages : public test::AssessedCohort {
  protected:
-  void SetUp() override {
-    static const Assessed assessed;
-    settings::setRecordingFolders({});
-    settings::setCalotProgram(CALOT_PROGRAM);
-    settings::setPerson({});
-    root_ = folder_.path().toStdString();
-    for (const char* name : {"one.h5", "two.h5", "c.db"}) fs::copy_file(assessed.root / name, root_ / name);
-  }
-
-  [[nodiscard]] QString file(const char* name) const { return folder_.filePath(name); }
-  template <class T>
-  static T* child(const QWidget& window, const char* name) {
-    T* const found = window.findChild<T*>(name);
-    EXPECT_NE(found, nullptr) << name;
-    return found;
-  }
-  static void showPage(DashboardWindow& window, int number) {
-    window.findChild<QTabWidget*>()->setCurrentIndex(number - 1);
-  }
   static void drop(DashboardWindow& window, const QStringList& files) {
     QMimeData data;
     QList<QUrl> urls;
@@ -97,15 +61,6 @@ class Pages : public ::testing::Test {
     QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(&window, &event);
   }
-  static AttemptPage& openAttempt(DashboardWindow& window) {
-    showPage(window, 2);
-    AttemptPage& page = *window.findChild<AttemptPage*>();
-    EXPECT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, patience));
-    return page;
-  }
-
-  QTemporaryDir folder_;
-  fs::path root_;
 };
 
 TEST_F(Pages, RecordingsThatAreDroppedAreAssessedAndShown) {

@@ -9,6 +9,7 @@
 
 #include "gui/render/clip_mesh.h"
 #include "gui/render/instrument_mesh.h"
+#include "recorder/sources/scope/picture_geometry.h"
 #include "sim/instruments/instruments.h"
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"
@@ -28,6 +29,12 @@ Vec3 pointIn(Random& random) {
 /// Where in the picture a point of C is: a share of the way from the middle to what is seen last. @pre z > 0
 bool seen(const Sight& sight, const Vec3& p) {
   return p.z() > 0.0 && std::abs(p.x()) <= sight.aside * p.z() && std::abs(p.y()) <= sight.up * p.z();
+}
+
+TEST(Sight, TheRoundFieldOfWidePicturesIsTheOneThatCheckpointsCount) {
+  const Sight sight = sightOf(1280, 720, 0.9, true);
+  EXPECT_NEAR(static_cast<double>(sight.rim), recorder::fieldRadius * 360.0, 1e-3);
+  EXPECT_NEAR(sight.aside, recorder::fieldRadius * std::tan(0.45), 0.03) << "with a margin of some pixels";
 }
 
 TEST(Sight, WhatIsBeyondOneSideIsNeitherSeenNorCastsAShadowThatIs) {

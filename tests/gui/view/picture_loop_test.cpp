@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <future>
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace calot::gui {
@@ -118,6 +120,44 @@ TEST(PictureLoop, AViewThatCannotBeDrawnIsToldAndTheNextOneIsDrawn) {
   held.loop().show(viewOfStep(4));
   held.awaitAnswers(2);
   EXPECT_EQ(held.shown(), std::vector<std::uint64_t>{4});
+}
+
+TEST(PictureLoop, DrawsSmallerWhereTheRateIsNotKeptAndWholeWhatStands) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<int> widths;
+  // A picture takes longer than the rate leaves it, whatever the machine.
+  PictureLoop loop(
+      [] {
+        return [](const SceneView&, int width, int height) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(30));
+          Image image;
+          image.width = width;
+          image.height = height;
+          return image;
+        };
+      },
+      {[&](ScenePicture picture) {
+         const std::lock_guard lock(mutex);
+         widths.push_back(picture.image.width);
+         changed.notify_all();
+       },
+       [](const std::string& fault) { ADD_FAILURE() << fault; }},
+      1, 50.0);
+  loop.resize(640, 480);
+  const auto newest = [&] { return widths.empty() ? 0 : widths.back(); };
+  std::uint64_t step = 0;
+  std::unique_lock lock(mutex);
+  while (newest() != 320) {  // half, which is as small as it gets
+    const std::size_t before = widths.size();
+    lock.unlock();
+    loop.show(viewOfStep(step++));
+    lock.lock();
+    changed.wait(lock, [&] { return widths.size() > before; });
+    ASSERT_LT(widths.size(), 500U);
+  }
+  EXPECT_EQ(widths.front(), 640);
+  changed.wait(lock, [&] { return newest() == 640; });  // no view comes any more
 }
 
 TEST(PictureLoop, WhatWasClearedIsNotDrawn) {

@@ -81,16 +81,17 @@ class Operation {
   /// One step as `now` is, judged as `judged` is; events are of this step alone.
   void step() { steps(1); }
   void steps(std::uint64_t count) {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const std::vector<TickSamples> samples(10);
-      const std::vector<recorder::TickOutcome> ticks(10);
-      const StateDigest digest;
-      now.step = next;
-      judged.events = now.events;
-      collector.take({next, samples, ticks, now, digest, 0.0F, {}, {}}, judged);
-      ++next;
-      now.events.clear();
-    }
+    for (std::uint64_t i = 0; i < count; ++i) step(std::vector<TickSamples>(10));
+  }
+  /// The same with these samples of hands and camera.
+  void step(const std::vector<TickSamples>& samples) {
+    const std::vector<recorder::TickOutcome> ticks(samples.size());
+    const StateDigest digest;
+    now.step = next;
+    judged.events = now.events;
+    collector.take({next, samples, ticks, now, digest, 0.0F, {}, {}}, judged);
+    ++next;
+    now.events.clear();
   }
   void tell(EventKind kind, std::uint8_t hand, std::uint16_t subject, double value = 0.0) {
     now.events.push_back({next, kind, hand, subject, Vec3::Zero(), value});
