@@ -5,7 +5,7 @@
 # and draws moments of the operation. All that it makes lies below demo/. Run again, it keeps what this build would make
 # again. What it prints fits one screen; the rest is in demo/*/demo.log.
 #   CALOT_SCENE    another scene (cholecystectomy)      CALOT_ATTEMPTS   of each performer (3)
-#   CALOT_PROGRAM  another calot: nothing is installed or built then
+#   CALOT_PROGRAM  another calot: nothing is installed or built then   CALOT_DEMO   another folder (demo)
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

@@ -32,10 +32,10 @@ OpenFile& of(H5FD_t* file) { return *reinterpret_cast<OpenFile*>(file); }
 const OpenFile& of(const H5FD_t* file) { return *reinterpret_cast<const OpenFile*>(file); }
 
 /// Puts the system's message on the library's stack of errors, in its own driver's words.
-herr_t failed(const char* what) {
+herr_t failed(const char* what, hid_t kind = H5E_WRITEERROR) {
   const int error = errno;
   // The name of the driver in the place of this file's, which would put the folder of the build into the program.
-  H5Epush2(H5E_DEFAULT, driverName, __func__, __LINE__, H5E_ERR_CLS, H5E_IO, H5E_WRITEERROR,
+  H5Epush2(H5E_DEFAULT, driverName, __func__, __LINE__, H5E_ERR_CLS, H5E_IO, kind,
            "%s: errno = %d, error message = '%s'", what, error, std::strerror(error));
   return -1;
 }
@@ -50,12 +50,12 @@ H5FD_t* calotFileOpen(const char* name, unsigned flags, hid_t /*fileAccess*/, ha
   auto file = std::make_unique<OpenFile>();
   file->descriptor = ::open(name, how | O_CLOEXEC, 0666);
   if (file->descriptor < 0) {
-    failed("cannot open");
+    failed("cannot open", H5E_CANTOPENFILE);
     return nullptr;
   }
   struct stat status {};
   if (::fstat(file->descriptor, &status) != 0) {
-    failed("cannot look at it");
+    failed("cannot look at it", H5E_CANTOPENFILE);
     ::close(file->descriptor);
     return nullptr;
   }
@@ -104,7 +104,7 @@ herr_t calotFileRead(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, hadd
   while (bytes > 0) {
     const ssize_t n = ::pread(of(file).descriptor, to, bytes, static_cast<off_t>(at));
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return failed("cannot read");
+    if (n < 0) return failed("cannot read", H5E_READERROR);
     if (n == 0) {
       std::memset(to, 0, bytes);
       break;
@@ -142,12 +142,12 @@ herr_t calotFileTruncate(H5FD_t* file, hid_t /*transfer*/, hbool_t /*closing*/) 
 
 herr_t calotFileLock(H5FD_t* file, hbool_t writing) {
   if (::flock(of(file).descriptor, (writing ? LOCK_EX : LOCK_SH) | LOCK_NB) == 0 || errno == ENOSYS) return 0;
-  return failed("cannot lock");
+  return failed("cannot lock", H5E_CANTLOCKFILE);
 }
 
 herr_t calotFileUnlock(H5FD_t* file) {
   if (::flock(of(file).descriptor, LOCK_UN) == 0 || errno == ENOSYS) return 0;
-  return failed("cannot unlock");
+  return failed("cannot unlock", H5E_CANTUNLOCKFILE);
 }
 
 herr_t calotFileTerminate();
