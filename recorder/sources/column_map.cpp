@@ -35,6 +35,9 @@ const ObjectRule rootRule{"",
 const ObjectRule timeRule{"time", {{"column"}, {"unit"}}};
 const ObjectRule handRule{"hand", {{"position"}, {"quaternion", false}, {"matrix", false}, {"axis", false}}};
 
+/// Motions of one length are equal in ranks whenever they began, which a difference of two times in binary is not.
+double toNanosecond(double seconds) { return std::round(seconds * 1e9) / 1e9; }
+
 std::vector<std::string> namesOf(const JsonPlace& place, std::size_t count) {
   std::vector<std::string> names;
   for (const JsonPlace& name : place.list(count, count)) names.push_back(name.text(maxName));
@@ -179,8 +182,8 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
   motion.frame = map.frame;
   motion.rate = map.rate;
   for (std::size_t i = 0; i < rows; ++i) {
-    const double time =
-        map.rate > 0.0 ? static_cast<double>(i) / map.rate : (reader.at(0, i) - reader.at(0, 0)) * map.seconds;
+    const double time = map.rate > 0.0 ? static_cast<double>(i) / map.rate
+                                       : toNanosecond((reader.at(0, i) - reader.at(0, 0)) * map.seconds);
     if (i > 0 && !(time > motion.time.back())) reader.fail(i, "its time is not after the row before");
     if (!(time <= maxMotion))
       reader.fail(i,

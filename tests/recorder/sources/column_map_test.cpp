@@ -77,6 +77,18 @@ TEST(CsvMotion, readsUnitsOrderAndAxis) {
   EXPECT_EQ(m.frame, "world");
 }
 
+TEST(CsvMotion, lengthDoesNotDependOnWhenItBegan) {
+  json map = validMap();
+  map["time"]["unit"] = "s";
+  const auto lengthFrom = [&](const char* first, const char* last) {
+    const std::string rest = ",10,20,30,1,0,0,0,-1,-2,-3\n";
+    return parseCsvMotion(bytesOf(names + "a," + first + rest + "b," + last + rest), "m.csv", mapOf(map)).time.back();
+  };
+  ASSERT_NE(23.4 - 11.7, 35.1 - 23.4);  // in binary
+  EXPECT_EQ(lengthFrom("11.7", "23.4"), 11.7);
+  EXPECT_EQ(lengthFrom("23.4", "35.1"), 11.7);
+}
+
 TEST(CsvMotion, everyAxisIsTurnedOntoZ) {
   const std::pair<const char*, Vec3> axes[] = {{"x", Vec3::UnitX()},   {"-x", -Vec3::UnitX()}, {"y", Vec3::UnitY()},
                                                {"-y", -Vec3::UnitY()}, {"z", Vec3::UnitZ()},   {"-z", -Vec3::UnitZ()}};
