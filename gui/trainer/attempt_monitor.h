@@ -33,6 +33,7 @@ struct AttemptFigures {
   std::array<Hand, handCount> hand;
   std::vector<Vessel> vessel;
   ProcedureStatus procedure;
+  bool touched = false;                                  ///< an instrument has touched, grasped or burned tissue so far
   double attached = 0.0;                                 ///< of the procedure's bed, as a share
   std::uint64_t ticks = 0;                               ///< of this run: a branch counts from its fork on
   std::uint64_t missedDeadlines = 0;                     ///< of those
@@ -59,7 +60,7 @@ class AttemptMonitor final : public recorder::Observer {
 
   /// The steps up to here were a parent's: deadlines count from now on. Simulation's thread.
   void beginRun();
-  /// Newest measured pose of each hand, and the camera. Simulation's thread.
+  /// Newest measured pose of each hand, with the instrument that it had last, and the camera. Simulation's thread.
   [[nodiscard]] const TickSamples& lastPose() const { return lastPose_; }
 
  private:

@@ -72,6 +72,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       phase_(plainLabel("phase")),
       score_(plainLabel("score")),
       hint_(plainLabel("hint")),
+      pointer_(plainLabel("pointer")),
       result_(plainLabel("result")),
       hand_{plainLabel("left"), plainLabel("right")},
       progress_(new QProgressBar),
@@ -130,6 +131,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   layout->addWidget(phase_);
   layout->addWidget(score_);
   layout->addWidget(hint_);
+  layout->addWidget(pointer_);
   layout->addWidget(result_);
   layout->addSpacing(6);
   for (QLabel* const hand : hand_) layout->addWidget(hand);
@@ -155,6 +157,7 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   say(phase_, text.phase);
   say(score_, text.score);
   say(hint_, text.hint);
+  say(pointer_, text.pointer);
   say(result_, text.result);
   for (std::size_t h = 0; h < handCount; ++h) say(hand_[h], text.hand[h]);
   progress_->setVisible(status.stage == Stage::takingParent);

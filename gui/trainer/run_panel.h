@@ -39,7 +39,7 @@ class RunPanel : public QWidget {
   void goBack();
 
   recorder::Mode mode_;
-  QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *result_;
+  QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *pointer_, *result_;
   std::array<QLabel*, handCount> hand_;
   QProgressBar* progress_;
   QStackedWidget* lower_;

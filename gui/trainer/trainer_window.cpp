@@ -13,7 +13,6 @@
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/trainer/scenes_page.h"
-#include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
@@ -58,6 +57,10 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   connect(view_, &OperationView::mountRequested, this, &TrainerWindow::mount);
   connect(view_, &OperationView::pauseRequested, this, &TrainerWindow::togglePause);
   connect(view_, &OperationView::handSwitched, this, &TrainerWindow::refresh);
+  connect(view_, &OperationView::pointerHeld, this, [this](bool held) {
+    if (held) windowLeft_ = false;
+    refresh();
+  });
   connect(view_, &ScenePictureWidget::pictureShown, this, [this](quint64 step) {
     if (!session_) return;
     const std::optional<double> delay = session_->shown(step);
@@ -161,11 +164,30 @@ std::vector<std::string> TrainerWindow::endAndReport() {
 
 void TrainerWindow::togglePause() {
   if (!session_) return;
+  windowLeft_ = false;
   if (session_->resume())
     view_->setFocus();
   else
     session_->pause();
   refresh();
+}
+
+/// Hands that nobody can reach any more are not to go on: practice pauses. An assessment has no pause; what is pressed
+/// is let go (OperationView), and the panel says so. Hands of another device are where they were.
+void TrainerWindow::changeEvent(QEvent* event) {
+  QMainWindow::changeEvent(event);
+  if (event->type() != QEvent::ActivationChange || isActiveWindow() || !setup_.mouse || !session_) return;
+  const Stage stage = session_->status().stage;
+  if (stage != Stage::running) return;
+  windowLeft_ = true;
+  session_->pause();
+  refresh();
+}
+
+Pointer TrainerWindow::pointer(const TrainingStatus& status) const {
+  if (!setup_.mouse || (status.stage != Stage::running && !windowLeft_)) return Pointer::elsewhere;
+  if (view_->holdsPointer()) return Pointer::held;
+  return windowLeft_ ? Pointer::windowLeft : Pointer::free;
 }
 
 void TrainerWindow::mount(InstrumentKind instrument, bool otherHand) {
@@ -188,7 +210,8 @@ void TrainerWindow::refresh() {
   rate_.setRunning(status.stage == Stage::running);
   const SceneDescription& scene = session_->scene();
   const std::optional<Hand> driven = setup_.mouse ? std::optional(setup_.mouse->hand()) : std::nullopt;
-  panel_->show(status, panelText(status, scene, session_->summary(), session_->mode(), driven),
+  view_->showOver(status.stage == Stage::countdown ? QString::number(status.countdown) : QString());
+  panel_->show(status, panelText(status, scene, session_->summary(), session_->mode(), driven, pointer(status)),
                tickLength * scene.ticksPerStep);
   if (QString::fromStdString(status.problem) != problem_->text() || status.problem.empty() == problem_->isVisible())
     showProblem(QString::fromStdString(status.problem));

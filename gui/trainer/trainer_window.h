@@ -9,6 +9,7 @@
 
 #include "gui/trainer/picture_rate.h"
 #include "gui/trainer/scene_choice.h"
+#include "gui/trainer/trainer_texts.h"
 #include "gui/trainer/training_session.h"
 #include "recorder/sources/devices/mouse_input.h"
 #include "recorder/sources/devices/scope_input.h"
@@ -61,9 +62,13 @@ class TrainerWindow : public QMainWindow {
  public slots:
   void refresh();
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
   void buildMenus();
   void togglePause();
+  [[nodiscard]] Pointer pointer(const TrainingStatus& status) const;
   void mount(InstrumentKind instrument, bool otherHand);
   void showProblem(const QString& message);
   void endSession();
@@ -77,7 +82,8 @@ class TrainerWindow : public QMainWindow {
   RunPanel* panel_;
   QAction *pauseAction_, *finishAction_, *restartAction_;
   QTimer timer_;
-  PictureRate rate_;  ///< of the scene
+  PictureRate rate_;         ///< of the scene
+  bool windowLeft_ = false;  ///< the keyboard went elsewhere in the middle of a run, and has not come back to it
   std::vector<std::string> recorded_;
   std::unique_ptr<TrainingSession> session_;
 };

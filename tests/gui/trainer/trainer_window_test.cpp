@@ -53,6 +53,8 @@ class Trainer : public ::testing::Test {
     setup.scope = scope;
     setup.settings.attempt.mode = mode;
     setup.settings.folder = folder_ / "";
+    setup.settings.countdown = std::chrono::milliseconds(1500);
+    setup.settings.exchange = std::chrono::milliseconds(500);
     setup.scenes = {{"touch-liver", "Touch the liver.", CALOT_SOURCE_DIR "/assets/scenes/touch-liver.json"},
                     {"gone", "Is not there.", "/nowhere/gone.json"}};
     if (device) {
@@ -157,7 +159,8 @@ TEST_F(Trainer, MouseAndKeysDriveTheHands) {
   ASSERT_TRUE(reaches(Stage::ended));
   const std::filesystem::path file = window.session()->status().file;
   EXPECT_TRUE(text("result").contains(QString::fromStdString(file.string())));
-  EXPECT_TRUE(text("result").startsWith("Outcome: completed")) << text("result").toStdString();
+  EXPECT_TRUE(text("result").startsWith("Outcome: abandoned")) << text("result").toStdString();
+  EXPECT_TRUE(text("result").contains("nothing was touched")) << text("result").toStdString();
   expectExact(file);
 
   recorder::Recording recording(file);
@@ -209,6 +212,11 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   beginSmall();
   OperationView& view = *window.view();
   QTest::keyClick(&view, Qt::Key_3);  // clip applier
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().exchange[1].has_value(); }, patience));
+  window.refresh();
+  EXPECT_TRUE(text("right").contains("gets the clip applier in 1 s")) << text("right").toStdString();
+  ASSERT_TRUE(QTest::qWaitFor(
+      [&] { return window.session()->status().figures.hand[1].instrument == InstrumentKind::clipApplier; }, patience));
   hold(Qt::Key_S, [&] { return jaw() > 0.5; });
   hold(Qt::Key_A, [&] { return !window.session()->status().figures.mistakes->empty(); });
   const TrainingStatus before = window.session()->status();
@@ -223,6 +231,9 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   QTest::mouseMove(&view, view.rect().center());
   QTest::mouseMove(&view, view.rect().center() + QPoint(60, 60));
   QTest::keyClick(mistakes, Qt::Key_Return);
+  ASSERT_TRUE(reaches(Stage::countdown));
+  EXPECT_EQ(text("stage"), QString::fromUtf8("Going on in %1 …").arg(text("over")));
+  EXPECT_TRUE(child<QLabel>("over")->isVisible());
   ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().parent == before.attempt; }, patience));
   ASSERT_TRUE(runs(window.session()->status().branchedAt + 0.2));
   EXPECT_TRUE(window.session()->status().figures.mistakes->empty()) << "it has not happened in the branch";
@@ -273,6 +284,77 @@ TEST_F(Trainer, LosingTheKeyboardLetsGoOfEverything) {
   const double jawThen = jaw();
   ASSERT_TRUE(runs(from + 0.6));
   EXPECT_EQ(jaw(), jawThen) << "a key that was down for a window without focus still opens the jaws";
+}
+
+TEST_F(Trainer, ThePictureHoldsThePointerUntilAKeyFreesIt) {
+  TrainerWindow& window = open(nullptr, recorder::Mode::assessment);
+  beginSmall();
+  OperationView& view = *window.view();
+  window.refresh();
+  ASSERT_TRUE(view.holdsPointer());
+  EXPECT_EQ(view.cursor().shape(), Qt::BlankCursor);
+  EXPECT_TRUE(text("pointer").contains("Escape frees it"));
+  // Farther than the picture is wide.
+  const double wide = 1.5 * view.width();
+  for (double x = 0.0; x < wide; x += 20.0) {
+    QTest::mouseMove(&view, view.mapFromGlobal(QCursor::pos()) + QPoint(20, 0));
+    QCoreApplication::processEvents();
+  }
+  QTest::keyClick(&view, Qt::Key_Escape);
+  EXPECT_EQ(window.session()->status().stage, Stage::running) << "an assessment has no pause";
+  EXPECT_FALSE(view.holdsPointer());
+  EXPECT_TRUE(text("pointer").contains("Click the picture"));
+  for (int i = 0; i < 5; ++i) QTest::mouseMove(&view, view.rect().center() + QPoint(0, 10 * i));
+  QTest::mouseClick(&view, Qt::LeftButton);
+  EXPECT_TRUE(view.holdsPointer());
+  ASSERT_TRUE(runs(window.session()->status().figures.time + 0.5));
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  EXPECT_FALSE(view.holdsPointer());
+  recorder::Recording recording(window.session()->status().file);
+  const SceneDescription& scene = window.session()->scene();
+  const TickSamples last = recording.step(recording.stepCount() - 1).samples.back();
+  const Vec3 moved = scene.camera.orientation.conjugate() * (last.hand[1].position - scene.hands[1].home);
+  EXPECT_GT(moved.x(), std::min(0.00015 * 0.9 * wide, 0.1)) << "the pointer came to an edge";
+  EXPECT_NEAR(moved.y(), 0.0, 1e-5) << "a free pointer moved the hand";
+  EXPECT_NEAR(last.hand[1].jaw, 0.0, 1e-4) << "the click that holds the pointer closes no jaws";
+}
+
+TEST_F(Trainer, PracticePausesWhereTheWindowLosesTheKeyboard) {
+  TrainerWindow& window = open();
+  beginSmall();
+  QWidget other;
+  other.show();
+  other.activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&other));
+  ASSERT_TRUE(reaches(Stage::paused));
+  EXPECT_TRUE(text("pointer").contains("lost the keyboard")) << text("pointer").toStdString();
+  EXPECT_FALSE(window.view()->holdsPointer());
+  window.activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&window));
+  EXPECT_EQ(window.session()->status().stage, Stage::paused) << "it goes on when the trainee says so";
+  QTest::keyClick(window.view(), Qt::Key_Escape);
+  ASSERT_TRUE(reaches(Stage::running));
+  EXPECT_FALSE(text("pointer").contains("lost the keyboard"));
+}
+
+TEST_F(Trainer, AnAssessmentSaysThatTheHandsAreLetGo) {
+  TrainerWindow& window = open(nullptr, recorder::Mode::assessment);
+  beginSmall();
+  QTest::keyPress(window.view(), Qt::Key_S);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return jaw() > 0.1; }, patience));
+  QWidget other;
+  other.show();
+  other.activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&other));
+  window.refresh();
+  EXPECT_EQ(window.session()->status().stage, Stage::running);
+  EXPECT_TRUE(text("pointer").contains("the clock runs on")) << text("pointer").toStdString();
+  const double from = window.session()->status().figures.time;
+  ASSERT_TRUE(runs(from + 0.3));
+  const double jawThen = jaw();
+  ASSERT_TRUE(runs(from + 0.6));
+  EXPECT_EQ(jaw(), jawThen);
 }
 
 TEST_F(Trainer, ThePictureIsSavedOrTheFolderNamed) {
