@@ -58,12 +58,19 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   const Judgement& judgement = judge_.observe(record.result);
   const bool added = list_.add(judgement.events);
 
+  const CameraSample& camera = record.samples.back().camera;
   const std::lock_guard lock(mutex_);
   figures_.time = static_cast<double>(record.step + 1) * model_.stepSeconds();
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandResult& hand = record.result.hand[h];
-    figures_.hand[h] = {hand.instrument, hand.jaw,     hand.grasping != 0,
-                        hand.clips,      hand.cautery, record.samples.back().hand[h].valid};
+    figures_.hand[h] = {hand.instrument,
+                        hand.jaw,
+                        hand.grasping != 0,
+                        hand.clips,
+                        hand.cautery,
+                        record.samples.back().hand[h].valid,
+                        camera.orientation.conjugate() * Vec3(hand.tipSimulated - camera.position),
+                        hand.orientation};
     figures_.touched = figures_.touched || hand.contacts() != 0 || hand.cautery == Cautery::onTissue;
   }
   for (std::size_t v = 0; v < record.result.vessel.size(); ++v)

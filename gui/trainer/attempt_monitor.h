@@ -23,7 +23,9 @@ struct AttemptFigures {
     bool holds = false;       ///< tissue is in its jaws
     std::uint32_t clips = 0;  ///< left in its clip applier
     Cautery cautery = Cautery::off;
-    bool measured = true;  ///< its device gives samples
+    bool measured = true;                 ///< its device gives samples
+    Vec3 tip = Vec3::Zero();              ///< p_CI, where contact lets it be: right, down, away from the endoscope (m)
+    Quat orientation = Quat::Identity();  ///< q_WI
   };
   struct Vessel {
     std::uint32_t clips = 0;     ///< on it

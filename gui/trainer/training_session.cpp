@@ -158,7 +158,8 @@ void TrainingSession::work() {
       problem = problemText(error);
     }
     const std::lock_guard lock(mutex_);
-    status_.stage = Stage::ended;
+    // Where something else is wanted already, nothing has come to an end.
+    if (!command_ || command_->quit) status_.stage = Stage::ended;
     if (!problem.empty()) status_.problem = problem;
   }
 }

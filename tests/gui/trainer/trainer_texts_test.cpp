@@ -155,7 +155,7 @@ TEST_F(Texts, ACountdownIsSaid) {
 
 TEST_F(Texts, SayWhatRuns) {
   TrainingStatus status = running();
-  status.figures.hand[1] = {InstrumentKind::clipApplier, 0.0, true, 1, Cautery::off, true};
+  status.figures.hand[1] = {InstrumentKind::clipApplier, 0.0, true, 1, Cautery::off};
   const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, Hand::right);
   EXPECT_EQ(text.stage, QString::fromUtf8("● Recording"));
   EXPECT_EQ(text.mode, "Practice");

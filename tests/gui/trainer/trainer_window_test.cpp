@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QAccessible>
 #include <QApplication>
 #include <QImage>
 #include <QLabel>
@@ -12,6 +13,8 @@
 #include <QPushButton>
 #include <QTest>
 
+#include "analytics/cohort/cohort_database.h"
+#include "gui/trainer/end_page.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/operation_view.h"
 #include "recorder/errors.h"
@@ -52,6 +55,9 @@ class Trainer : public ::testing::Test {
     TrainerSetup setup;
     setup.scope = scope;
     setup.settings.attempt.mode = mode;
+    setup.settings.attempt.participant = participant_;
+    setup.cohort = cohort_;
+    setup.demonstration = std::make_shared<trainertest::ScriptInput>(trainertest::swayingScript(20.0));
     setup.settings.folder = folder_ / "";
     setup.settings.countdown = std::chrono::milliseconds(1500);
     setup.settings.exchange = std::chrono::milliseconds(500);
@@ -110,6 +116,8 @@ class Trainer : public ::testing::Test {
   double jaw() { return window_->session()->status().figures.hand[1].jaw; }
 
   recorder::test::Folder folder_;
+  std::filesystem::path cohort_;  ///< of the next window; empty: none
+  std::string participant_;
   std::unique_ptr<TrainerWindow> window_;
 };
 
@@ -244,8 +252,10 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   EXPECT_TRUE(text("result").contains("A branch"));
   expectExact(before.file);
   expectExact(window.session()->status().file);
-  QTest::mouseClick(child<QPushButton>("restart"), Qt::LeftButton);
+  EXPECT_FALSE(child<QListWidget>("moments")->isVisible()) << "nothing went wrong in the branch";
+  QTest::mouseClick(child<QPushButton>("again"), Qt::LeftButton);
   ASSERT_TRUE(runs(0.1));
+  EXPECT_FALSE(window.endPage()->isVisible());
   // A busy machine draws late; two pictures after one another are a rate.
   const quint64 shown = view.shown();
   ASSERT_TRUE(QTest::qWaitFor([&] { return view.shown() >= shown + 3; }, patience));
@@ -254,6 +264,117 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   EXPECT_NE(lines[4].find("stopped"), std::string::npos);
   EXPECT_NE(lines[5].find(" forces late ("), std::string::npos);
   EXPECT_NE(lines[6].find(" pictures a second of "), std::string::npos);
+}
+
+TEST_F(Trainer, TheEndShowsFiguresMomentsAndTheReplayOfOne) {
+  TrainerWindow& window = open();
+  beginSmall();
+  OperationView& view = *window.view();
+  QTest::keyClick(&view, Qt::Key_3);
+  hold(Qt::Key_S, [&] { return jaw() > 0.5; });
+  hold(Qt::Key_A, [&] { return !window.session()->status().figures.mistakes->empty(); });
+  const double mistake = window.session()->status().figures.mistakes->front().time;
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  EndPage& end = *window.endPage();
+  EXPECT_TRUE(end.isVisible());
+  EXPECT_EQ(text("endOutcome"), text("result"));
+  auto* const moments = child<QListWidget>("moments");
+  ASSERT_EQ(moments->count(), 1);
+  EXPECT_TRUE(moments->hasFocus());
+  ASSERT_TRUE(QTest::qWaitFor([&] { return end.replay().isOpen() && end.settled(); }, patience));
+  EXPECT_TRUE(text("endFigures").contains("Elapsed time")) << text("endFigures").toStdString();
+  EXPECT_TRUE(text("endNorm").startsWith("No norm"));
+  EXPECT_FALSE(child<QPushButton>("store")->isVisible()) << "there is no cohort";
+  QTest::mouseClick(moments->viewport(), Qt::LeftButton, {}, moments->visualItemRect(moments->item(0)).center());
+  EXPECT_TRUE(QTest::qWaitFor([&] { return end.replay().position().time >= mistake; }, patience))
+      << "the replay goes to the moment and on";
+  QTest::mouseClick(child<QPushButton>("endScenes"), Qt::LeftButton);
+  EXPECT_EQ(window.session(), nullptr);
+  EXPECT_FALSE(end.replay().isOpen());
+}
+
+TEST_F(Trainer, OneButtonPutsTheAttemptIntoTheCohortVerified) {
+  cohort_ = folder_ / "c.db";
+  participant_ = "P7";
+  TrainerWindow& window = open();
+  const auto attempt = [&] {
+    const QString before = QString::fromStdString(window.session()->status().attempt);
+    window.session()->finish();
+    EXPECT_TRUE(reaches(Stage::ended));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return window.endPage()->settled(); }, patience));
+    return before.toStdString();
+  };
+  beginSmall();
+  const std::string first = attempt();
+  auto* const store = child<QPushButton>("store");
+  ASSERT_TRUE(store->isVisible());
+  QTest::mouseClick(store, Qt::LeftButton);
+  EXPECT_TRUE(window.endPage()->storing());
+  EXPECT_FALSE(store->isEnabled());
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window.endPage()->settled(); }, patience));
+  EXPECT_TRUE(text("storeText").contains("verified")) << text("storeText").toStdString();
+  EXPECT_FALSE(store->isEnabled()) << "it is in there";
+  {
+    const analytics::CohortDatabase cohort(cohort_.string(), analytics::CohortDatabase::Access::read);
+    const std::optional<analytics::AttemptRow> row = cohort.attempt(first);
+    ASSERT_TRUE(row);
+    EXPECT_EQ(row->participant, "P7");
+    EXPECT_EQ(row->verification.verdict, analytics::Verdict::verified);
+    EXPECT_GT(cohort.values(first).size(), 10U);
+  }
+  QTest::mouseClick(child<QPushButton>("again"), Qt::LeftButton);
+  ASSERT_TRUE(runs(0.2));
+  attempt();
+  EXPECT_TRUE(text("endPrevious").startsWith("Last time: ")) << text("endPrevious").toStdString();
+  EXPECT_TRUE(text("endFigures").contains("last time: "));
+  EXPECT_TRUE(store->isEnabled()) << "this one is not";
+  // The greeting counts it.
+  window.chooseScene();
+  EXPECT_TRUE(
+      QTest::qWaitFor([&] { return child<QListWidget>("scenes")->item(0)->text().contains("1 attempt"); }, patience))
+      << child<QListWidget>("scenes")->item(0)->text().toStdString();
+  EXPECT_EQ(child<QListWidget>("past")->count(), 1);
+}
+
+TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
+  TrainerWindow& window = open();
+  static QStringList alerts;
+  alerts.clear();
+  QAccessible::installUpdateHandler([](QAccessibleEvent* event) {
+    if (const auto* const label = qobject_cast<QLabel*>(event->object());
+        label != nullptr && event->type() == QAccessible::Alert)
+      alerts += label->text();
+  });
+  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
+  ASSERT_TRUE(runs(0.1));
+  window.refresh();
+  EXPECT_TRUE(text("hint").startsWith("Control 1 of 10")) << text("hint").toStdString();
+  hold(Qt::Key_Down, [&] { return text("hint").contains("Control 2 of 10"); });
+  EXPECT_TRUE(text("hint").startsWith(QString::fromUtf8("✓ Done: moving")));
+  QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
+  EXPECT_TRUE(text("hint").startsWith("Control 3 of 10")) << text("hint").toStdString();
+  hold(Qt::Key_S, [&] { return text("hint").contains("Control 4 of 10"); });
+  EXPECT_TRUE(alerts.filter("Control 1 of 10").size() == 1 && alerts.filter("Control 4 of 10").size() == 1)
+      << "a screen reader is told once each: " << alerts.join(" | ").toStdString();
+  QAccessible::installUpdateHandler(nullptr);
+}
+
+TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
+  cohort_ = folder_ / "c.db";
+  participant_ = "P7";
+  TrainerWindow& window = open();
+  window.chooseScene();
+  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::demonstration);
+  ASSERT_TRUE(runs(0.3));
+  window.refresh();
+  EXPECT_FALSE(window.view()->holdsPointer()) << "nothing is to be driven";
+  EXPECT_EQ(text("mode"), "Practice, synthetic");
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  EXPECT_TRUE(child<QLabel>("endSynthetic")->isVisible());
+  EXPECT_FALSE(child<QPushButton>("store")->isVisible());
+  EXPECT_EQ(recorder::Recording(window.session()->status().file).header().participant, "");
 }
 
 TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
@@ -271,6 +392,10 @@ TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
   QTest::mouseClick(child<QPushButton>("finish"), Qt::LeftButton);
   ASSERT_TRUE(reaches(Stage::ended));
   EXPECT_FALSE(child<QListWidget>("mistakes")->isVisible()) << "mistakes are a score";
+  EXPECT_TRUE(window.endPage()->isVisible());
+  EXPECT_FALSE(child<QListWidget>("moments")->isVisible());
+  EXPECT_FALSE(child<QLabel>("endFigures")->isVisible());
+  EXPECT_TRUE(text("endNorm").startsWith("An assessment shows neither"));
 }
 
 TEST_F(Trainer, LosingTheKeyboardLetsGoOfEverything) {
