@@ -37,7 +37,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
   const auto status = [&] { return window.session()->status(); };
   const auto runs = [&] {
     const quint64 shown = window.view()->shown();
-    return waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > shown + 10; }, 60);
+    return waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > shown + 10; }, 240);
   };
   window.begin(*scene, gui::TrainerWindow::Purpose::controls);
   wanted(runs(), "nothing is running");
@@ -55,7 +55,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
   window.session()->finish();
   wanted(waitFor([&] { return status().stage == gui::Stage::ended; }, 30), "the attempt does not end");
   window.refresh();
-  waitFor([&] { return window.endPage()->replay().isOpen() && window.endPage()->settled(); }, 60);
+  waitFor([&] { return window.endPage()->replay().isOpen() && window.endPage()->settled(); }, 240);
   save("end");
 }
 

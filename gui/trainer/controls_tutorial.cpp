@@ -32,7 +32,8 @@ double rotationAboutShaft(const Quat& from, const Quat& to) {
 std::vector<ControlsTutorial::Lesson> ControlsTutorial::lessonsFor(bool mouse) {
   using Hand = AttemptFigures::Hand;
   std::vector<Lesson> lessons{
-      {"moving", mouse ? "Move the mouse: the tip goes with it, to all four sides." : "Move a hand to the side.",
+      {"moving",
+       mouse ? "Move the mouse, or use the arrows: the tip goes to all four sides." : "Move a hand to the side.",
        [](const Begin& b, const TrainingStatus& s, std::optional<calot::Hand>) {
          return anyHand(b.figures.hand, s.figures.hand, [](const Hand& from, const Hand& to) {
            return (to.tip - from.tip).head<2>().norm() >= farEnough;
@@ -40,7 +41,7 @@ std::vector<ControlsTutorial::Lesson> ControlsTutorial::lessonsFor(bool mouse) {
        }},
       {"depth",
        mouse ? "Turn the wheel: the tip goes away from you or comes nearer, and stays where it is in the "
-               "picture."
+               "picture. (Page Up and Page Down push the shaft in and out.)"
              : "Move a hand away from you, or nearer.",
        [](const Begin& b, const TrainingStatus& s, std::optional<calot::Hand>) {
          return anyHand(b.figures.hand, s.figures.hand, [](const Hand& from, const Hand& to) {

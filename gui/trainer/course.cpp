@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "recorder/formats/file_bytes.h"
-#include "recorder/formats/json_reader.h"
 
 namespace calot::gui {
 namespace {
@@ -16,9 +15,6 @@ using recorder::ObjectRule;
 
 constexpr std::size_t maxCourseBytes = 1U << 16U;
 constexpr std::size_t maxTasks = 50, maxName = 60, maxTitle = 80, maxGoal = 300;
-
-const ObjectRule courseRule{"", {{"format"}, {"formatVersion", true, 1, 1}, {"name"}, {"title"}, {"tasks"}}};
-const ObjectRule taskRule{"task", {{"scene"}, {"title"}, {"goal"}}};
 
 /// The first of these files that is there, or empty.
 std::filesystem::path firstUnder(const std::vector<std::filesystem::path>& roots, const std::filesystem::path& name) {
@@ -31,11 +27,18 @@ std::filesystem::path firstUnder(const std::vector<std::filesystem::path>& roots
 
 }  // namespace
 
+const std::vector<ObjectRule>& courseRules() {
+  static const std::vector<ObjectRule> rules{
+      {"", {{"format"}, {"formatVersion", true, 1, 1}, {"name"}, {"title"}, {"tasks"}}},
+      {"task", {{"scene"}, {"title"}, {"goal"}}}};
+  return rules;
+}
+
 Course readCourse(const std::filesystem::path& file) {
   const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), maxCourseBytes);
   const nlohmann::json json = recorder::parseStrictJson(bytes, file.string());
   const JsonPlace top(json, file.string());
-  const JsonObject o = top.object(courseRule);
+  const JsonObject o = top.object(courseRules()[0]);
   static_cast<void>(o.at("format").word<bool>({{"calot-course", true}}));
   std::uint32_t version = 0;
   o.read("formatVersion", version);
@@ -44,7 +47,7 @@ Course readCourse(const std::filesystem::path& file) {
   o.read("title", course.title, maxTitle);
   std::set<std::string> scenes;
   for (const JsonPlace& place : o.at("tasks").list(1, maxTasks)) {
-    const JsonObject t = place.object(taskRule);
+    const JsonObject t = place.object(courseRules()[1]);
     CourseTask& task = course.tasks.emplace_back();
     t.read("scene", task.scene, maxName);
     t.read("title", task.title, maxTitle);

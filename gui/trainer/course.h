@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A course: tasks of rising difficulty, each on a scene (assets/curricula/*.json).
+// A course: tasks of rising difficulty, each on a scene (assets/curricula/*.json, schemas/course.schema.json).
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "recorder/formats/json_reader.h"
 
 namespace calot::gui {
 
@@ -18,6 +20,9 @@ struct Course {
   std::string name, title;
   std::vector<CourseTask> tasks;  ///< the easiest first
 };
+
+/// What the reader takes: schemas/course.schema.json says the same.
+const std::vector<recorder::ObjectRule>& courseRules();
 
 /// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
 Course readCourse(const std::filesystem::path& file);

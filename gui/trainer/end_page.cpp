@@ -113,8 +113,9 @@ EndPage::EndPage(Setup setup, QWidget* parent)
   connect(scenes_, &QPushButton::clicked, this, &EndPage::scenesRequested);
   connect(store_, &QPushButton::clicked, this, &EndPage::store);
   connect(&work_, &LongWork::done, this, [this](const QString& verdict) {
-    say(storeText_, verdict + ", in the cohort.");
-    inCohort_ = true;
+    const bool shown = storing_ == attempt_;  // meanwhile there may have been another attempt
+    say(storeText_, (shown ? QString() : QString("The attempt before this one: ")) + verdict + ", in the cohort.");
+    inCohort_ = inCohort_ || shown;
     showStoring();
     read();
     emit stored();
@@ -275,6 +276,7 @@ void EndPage::showStoring() {
 }
 
 void EndPage::store() {
+  storing_ = attempt_;
   strip_->begin("Putting the attempt into the cohort");
   work_.start([file = file_, cohort = setup_.cohort, threads = setup_.threads](LongWork::Control& control) {
     return putIntoCohort(file, cohort, threads, control);

@@ -67,7 +67,7 @@ class EndPage : public QWidget {
   Setup setup_;
   bool reading_ = false, synthetic_ = false, inCohort_ = false;
   std::filesystem::path file_;
-  std::string attempt_;
+  std::string attempt_, storing_;                ///< uuids
   std::optional<AttemptFacts> shown_, earlier_;  ///< of this window, the one before it
 
   QLabel *title_, *syntheticMark_, *outcome_, *verdict_, *norm_, *previous_, *figures_, *momentsTitle_, *storeText_;

@@ -5,13 +5,14 @@
 #include <QIcon>
 #include <QLabel>
 #include <QListWidget>
+#include <QPixmap>
 #include <QPushButton>
 #include <utility>
 
 namespace calot::gui {
 namespace {
 
-constexpr QSize pictureSize(192, 108);
+constexpr QSize pictureSize(160, 90);  // five of them on a screen of 768 lines, also in large letters
 
 /// "2. Carve (carve-fat)" and the goal; of a scene in no course its name and summary.
 QString titleOf(const SceneChoice& scene, std::size_t number) {
@@ -118,7 +119,11 @@ void ScenesPage::setScenes(const std::vector<SceneChoice>& scenes) {
   choices_ = scenes;
   for (const SceneChoice& scene : choices_) {
     auto* const item = new QListWidgetItem(list_);
-    if (!scene.picture.empty()) item->setIcon(QIcon(QString::fromStdString(scene.picture.string())));
+    if (scene.picture.empty()) continue;
+    const QPixmap picture(QString::fromStdString(scene.picture.string()));
+    QIcon icon(picture);
+    icon.addPixmap(picture, QIcon::Selected);  // not tinted
+    item->setIcon(icon);
   }
   showTexts();
   tutorial_->setEnabled(!choices_.empty());

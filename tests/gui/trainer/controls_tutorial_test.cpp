@@ -29,7 +29,7 @@ TEST(ControlsTutorial, GoesThroughAllControlsOfMouseAndKeyboard) {
     EXPECT_TRUE(tutorial.text().startsWith(QString::fromUtf8("✓ Done: ") + what)) << tutorial.text().toStdString();
   };
   const auto waits = [&] { EXPECT_FALSE(tutorial.observe(now, driven)) << tutorial.text().toStdString(); };
-  EXPECT_TRUE(tutorial.text().startsWith("Control 1 of 10: Move the mouse")) << tutorial.text().toStdString();
+  EXPECT_TRUE(tutorial.text().startsWith("Control 1 of 10: Move the mouse,")) << tutorial.text().toStdString();
   waits();
   right.tip = Vec3(0.01, 0.0, 0.05);  // deeper is not aside
   waits();

@@ -7,6 +7,7 @@
 
 #include "gui/trainer/scene_choice.h"
 #include "recorder/errors.h"
+#include "tests/analytics/assessment/support/schema_agreement.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui {
@@ -21,6 +22,8 @@ TEST(Course, LeadsFromTheFirstTouchToTheWholeOperation) {
   EXPECT_EQ(course.tasks.back().scene, "cholecystectomy");
   for (const CourseTask& task : course.tasks) EXPECT_FALSE(scenePicture(task.scene, assets).empty()) << task.scene;
 }
+
+TEST(Course, ReaderAndSchemaAgree) { analytics::support::expectAgreement(courseRules(), "schemas/course.schema.json"); }
 
 TEST(Course, OrdersTheScenes) {
   std::vector<std::string> faults;
