@@ -43,16 +43,6 @@ void say(QLabel* label, const QString& text) {
   label->setVisible(!text.isEmpty());
 }
 
-/// The same, read aloud by a screen reader when its words change; numbers alone that go on are not worth that.
-void announce(QLabel* label, const QString& text) {
-  static const QRegularExpression numbers("[0-9]+");
-  const bool news = !text.isEmpty() && QString(text).remove(numbers) != label->text().remove(numbers);
-  say(label, text);
-  if (!news) return;
-  QAccessibleEvent alert(label, QAccessible::Alert);
-  QAccessible::updateAccessibility(&alert);
-}
-
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   auto* const page = new QWidget;
   auto* const grid = new QGridLayout(page);
@@ -106,10 +96,10 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(new QListWidget),
-      back_(button("&Go back to 2 s before it", "back")),
+      back_(button("Go &back to 2 s before it", "back")),
       pause_(button("&Pause", "pause")),
       finish_(button("&End the attempt", "finish")),
-      restart_(button("Start a&gain", "restart")),
+      restart_(button("Sta&rt again", "restart")),
       scenes_(button("&Other scene", "otherScene")) {
   setMinimumWidth(theme::inType(270));
   setMaximumWidth(theme::inType(320));
@@ -200,6 +190,17 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   const bool looksBack = practice && (status.stage == Stage::paused || status.stage == Stage::ended);
   lower_->setCurrentWidget(looksBack ? mistakes_ : keys_);
   if (looksBack) showMistakes(status, stepSeconds);
+}
+
+/// Numbers alone that go on are not worth being read aloud.
+void RunPanel::announce(QLabel* label, const QString& text) {
+  static const QRegularExpression numbers("[0-9]+");
+  const bool news = !text.isEmpty() && QString(text).remove(numbers) != label->text().remove(numbers);
+  say(label, text);
+  if (!news) return;
+  QAccessibleEvent alert(label, QAccessible::Alert);
+  QAccessible::updateAccessibility(&alert);
+  emit announced(text);
 }
 
 void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {

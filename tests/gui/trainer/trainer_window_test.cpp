@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <QAccessible>
 #include <QApplication>
 #include <QImage>
 #include <QLabel>
 #include <QListWidget>
 #include <QLocale>
+#include <QMouseEvent>
 #include <QPushButton>
 #include <QTest>
 
@@ -17,6 +17,7 @@
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/operation_view.h"
+#include "gui/trainer/run_panel.h"
 #include "recorder/errors.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/devices/scope_keys.h"
@@ -339,13 +340,9 @@ TEST_F(Trainer, OneButtonPutsTheAttemptIntoTheCohortVerified) {
 
 TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   TrainerWindow& window = open();
-  static QStringList alerts;
-  alerts.clear();
-  QAccessible::installUpdateHandler([](QAccessibleEvent* event) {
-    if (const auto* const label = qobject_cast<QLabel*>(event->object());
-        label != nullptr && event->type() == QAccessible::Alert)
-      alerts += label->text();
-  });
+  QStringList alerts;
+  QObject::connect(window.findChild<RunPanel*>(), &RunPanel::announced, &window,
+                   [&](const QString& words) { alerts += words; });
   window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
   ASSERT_TRUE(runs(0.1));
   window.refresh();
@@ -357,7 +354,6 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   hold(Qt::Key_S, [&] { return text("hint").contains("Control 4 of 10"); });
   EXPECT_TRUE(alerts.filter("Control 1 of 10").size() == 1 && alerts.filter("Control 4 of 10").size() == 1)
       << "a screen reader is told once each: " << alerts.join(" | ").toStdString();
-  QAccessible::installUpdateHandler(nullptr);
 }
 
 TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
@@ -421,15 +417,26 @@ TEST_F(Trainer, ThePictureHoldsThePointerUntilAKeyFreesIt) {
   EXPECT_TRUE(text("pointer").contains("Escape frees it"));
   // Farther than the picture is wide.
   const double wide = 1.5 * view.width();
+  const auto pointTo = [&](const QPoint& there) {
+    QCursor::setPos(view.mapToGlobal(there));
+    QMouseEvent move(QEvent::MouseMove, there, view.mapToGlobal(there), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
+    QApplication::sendEvent(&view, &move);
+  };
+  pointTo(view.rect().center());
   for (double x = 0.0; x < wide; x += 20.0) {
-    QTest::mouseMove(&view, view.mapFromGlobal(QCursor::pos()) + QPoint(20, 0));
-    QCoreApplication::processEvents();
+    const QPoint to = view.mapFromGlobal(QCursor::pos()) + QPoint(20, 0);
+    pointTo(to);
+    // The window system says where it was put back to.
+    if (const QPoint now = view.mapFromGlobal(QCursor::pos()); now != to) pointTo(now);
+    EXPECT_TRUE(view.rect().contains(view.mapFromGlobal(QCursor::pos())));
   }
+  ASSERT_TRUE(runs(window.session()->status().figures.time + 0.6));
   QTest::keyClick(&view, Qt::Key_Escape);
   EXPECT_EQ(window.session()->status().stage, Stage::running) << "an assessment has no pause";
   EXPECT_FALSE(view.holdsPointer());
   EXPECT_TRUE(text("pointer").contains("Click the picture"));
-  for (int i = 0; i < 5; ++i) QTest::mouseMove(&view, view.rect().center() + QPoint(0, 10 * i));
+  for (int i = 0; i < 5; ++i) pointTo(view.rect().center() + QPoint(0, 10 * i));
+  QCoreApplication::processEvents();
   QTest::mouseClick(&view, Qt::LeftButton);
   EXPECT_TRUE(view.holdsPointer());
   ASSERT_TRUE(runs(window.session()->status().figures.time + 0.5));

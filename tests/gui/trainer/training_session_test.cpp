@@ -235,8 +235,7 @@ TEST(TrainingSession, AfterGoingBackTheHandsWaitForTheCountdown) {
   EXPECT_FALSE(session.finish());
   EXPECT_FALSE(session.mount(Hand::left, InstrumentKind::hook));
   session.start();  // another command ends it
-  ASSERT_TRUE(waitForTime(session, 0.1));
-  EXPECT_EQ(session.status().parent, "");
+  EXPECT_TRUE(waitFor([&] { return session.status().stage == Stage::running && session.status().parent.empty(); }));
 }
 
 TEST(TrainingSession, HoldingStillIsNotCompleted) {
