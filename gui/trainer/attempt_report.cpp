@@ -48,18 +48,20 @@ QString normWords(const FigureStanding& standing, const QString& unit) {
   return text;
 }
 
-QString beforeWords(const analytics::CheckpointValue& now, const analytics::CheckpointValue& before) {
+/// @param judges both attempts were completed: who did less of a task was not better at it
+QString beforeWords(const analytics::CheckpointValue& now, const analytics::CheckpointValue& before, bool judges) {
   if (!before.value) return {};
   const QString then = valueText(before);
   if (!now.value) return then;
   const DisplayedValue a = displayedValue(before), b = displayedValue(now);
   const double change = b.number - a.number;
-  // What is shown as the same is the same.
-  if (numberText(a.number) == numberText(b.number)) return then + ", the same";
+  constexpr double nothing = 1e-6;  // of what is shown: rounding, as of the path of a tip that stands still
+  if (numberText(a.number) == numberText(b.number) || std::abs(change) < nothing) return then + ", the same";
   const QString by = withUnit(std::abs(change), b.unit);
   const analytics::CheckpointDefinition* const definition = analytics::definitionOf(now);
   const auto direction = definition != nullptr ? definition->direction : analytics::Direction::none;
-  if (direction == analytics::Direction::none) return then + (change > 0.0 ? ", now more by " : ", now less by ") + by;
+  if (!judges || direction == analytics::Direction::none)
+    return then + (change > 0.0 ? ", now more by " : ", now less by ") + by;
   const bool better = (change < 0.0) == (direction == analytics::Direction::lower);
   return then + (better ? ", better by " : ", worse by ") + by;
 }
@@ -137,11 +139,13 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
   report.previous = previous ? "Last time: " + startText(previous->attempt.startUtc) + ", " +
                                    outcomeText(previous->attempt.outcome) + '.'
                              : QString("No earlier attempt at this task to compare with.");
+  const bool judges = now.attempt.outcome == recorder::Outcome::completed && previous &&
+                      previous->attempt.outcome == recorder::Outcome::completed;
   for (const analytics::KeyFigure& figure : report.summary.figures) {
     for (const analytics::CheckpointValue& value : figure.values) {
       FigureReport& line = report.figures.emplace_back();
       line.title = figureTitle(value.name, value.subject);
-      line.now = valueText(value);
+      line.now = value.value ? valueText(value) : QString::fromStdString(value.reason);
       if (standing) {
         const auto at = std::find_if(standing->figures.begin(), standing->figures.end(), [&](const FigureStanding& s) {
           return s.checkpoint == value.name && s.subject == value.subject;
@@ -149,7 +153,7 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
         if (at != standing->figures.end()) line.norm = normWords(*at, displayedValue(value).unit);
       }
       const analytics::CheckpointValue* const then = previous ? sameFigure(previous->values, value) : nullptr;
-      if (then != nullptr) line.before = beforeWords(value, *then);
+      if (then != nullptr) line.before = beforeWords(value, *then, judges);
     }
   }
   report.facts = std::move(now);

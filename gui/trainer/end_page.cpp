@@ -271,7 +271,7 @@ void EndPage::showStoring() {
   store_->setVisible(!setup_.cohort.empty() && !synthetic_);
   store_->setEnabled(!work_.busy() && !inCohort_);
   store_->setText(inCohort_ ? "Is in the cohort" : "&Put into the cohort");
-  if (storeText_->text().isEmpty() && setup_.cohort.empty())
+  if (storeText_->text().isEmpty() && setup_.cohort.empty() && !synthetic_)
     say(storeText_, "To keep figures and to hold them against a norm, name a cohort when the trainer starts.");
 }
 

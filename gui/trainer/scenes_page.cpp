@@ -47,12 +47,14 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
   list_->setAccessibleName("Scenes");
   list_->setWordWrap(true);
   list_->setIconSize(pictureSize);
+  list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);  // texts are wrapped
   list_->setStyleSheet("QListWidget::item { padding: 6px; }");
   past_->setObjectName("past");
   past_->setAccessibleName("Your attempts at this task");
   past_->setWordWrap(true);
   pastTitle_->setTextFormat(Qt::PlainText);
   pastTitle_->setWordWrap(true);
+  pastTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
   tutorial_->setObjectName("tutorial");
   tutorial_->setToolTip("Asks for one control after the other, on the first task's scene");
   demonstration_->setObjectName("demonstration");
@@ -153,6 +155,7 @@ void ScenesPage::showPast() {
   for (const PastAttempt& attempt : *history_) {
     if (attempt.scene == scene.name) past_->addItem(pastText(attempt));
   }
+  past_->setVisible(past_->count() > 0);
   pastTitle_->setText(past_->count() > 0 ? "Your attempts at it, from the cohort:"
                                          : "No attempt of yours at it is in the cohort.");
 }

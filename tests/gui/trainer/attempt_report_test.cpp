@@ -76,6 +76,14 @@ TEST_F(Report, WhatIsNotVerifiedIsHeldBesideTheNormAndNotJudged) {
   EXPECT_FALSE(report.figures[0].norm.contains("falls short"));
 }
 
+TEST_F(Report, AFigureWithoutANumberSaysWhy) {
+  AttemptFacts facts = factsOf('1', 80.0, "2026-02-03T10:00:00Z");
+  facts.values[0].value.reset();
+  facts.values[0].availability = analytics::Availability::notAvailable;
+  facts.values[0].reason = "not completed: abandoned at 5.540 s";
+  EXPECT_EQ(reportOf(facts, std::nullopt, {}).figures[0].now, "not completed: abandoned at 5.540 s");
+}
+
 TEST_F(Report, AnotherTasksNormIsNone) {
   analytics::Norm other = normWith(60.0);
   other.comparabilityKey = "another";
@@ -97,6 +105,17 @@ TEST_F(Report, AgainstTheLastTime) {
   const AttemptReport first = reportOf(factsOf('1', 40.0, "2026-02-03T10:00:00Z"), std::nullopt, {});
   EXPECT_EQ(first.figures[0].before, "");
   EXPECT_TRUE(first.previous.startsWith("No earlier attempt"));
+}
+
+TEST_F(Report, WhoDidNotCompleteTheTaskWasNotBetterAtIt) {
+  AttemptFacts now = factsOf('2', 40.0, "2026-02-04T10:00:00Z");
+  now.attempt.outcome = recorder::Outcome::abandoned;
+  const AttemptFacts then = factsOf('1', 52.5, "2026-02-03T10:00:00Z");
+  EXPECT_TRUE(reportOf(now, then, {}).figures[0].before.contains(", now less by 12.5"));
+  now.values[0].value = 1e-11;  // of rounding alone
+  AttemptFacts still = then;
+  still.values[0].value = 2e-11;
+  EXPECT_TRUE(reportOf(now, still, {}).figures[0].before.endsWith(", the same"));
 }
 
 /// A cohort with attempts of P1 and others.
