@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <QApplication>
@@ -11,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "analytics/cohort/cohort_database.h"
 #include "apps/calot-trainer/options_input.h"
 #include "apps/calot-trainer/pictures.h"
 #include "apps/calot/environment.h"
@@ -18,12 +20,15 @@
 #include "apps/calot/stop_request.h"
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
+#include "apps/window/look_options.h"
 #include "apps/window/start_checks.h"
+#include "gui/attempt/theme.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/trainer_window.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/errors.h"
 #include "recorder/formats/dates.h"
+#include "recorder/kept/engine_folders.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/sources/devices/mouse_device.h"
 
@@ -35,7 +40,8 @@ constexpr const char* programName = "calot-trainer";
 struct Options {
   SourceOptions source;
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
-  std::string mode = "practice", pictures, graphics = "auto";
+  std::string mode = "practice", pictures, graphics = "auto", cohort;
+  LookOptions look;
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
@@ -43,7 +49,7 @@ struct Options {
 
 void add(CLI::App& app, Options& o) {
   app.set_version_flag("--version", recorder::softwareName());
-  app.footer("Example:\n  calot-trainer --scene touch-liver --participant P1 -o recordings");
+  app.footer("Example:\n  calot-trainer --participant P1 --cohort c.db -o recordings");
   app.add_option("--scene", o.scene,
                  "name of a scene (calot scenes), or a scene file; without one, the window offers them");
   auto* const device =
@@ -76,6 +82,11 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--seconds", o.seconds, "end when an attempt has run so long, and print how smooth it was")
       ->check(positiveSeconds);
   app.add_option("-o,--output", o.folder, "folder for the recordings")->capture_default_str();
+  app.add_option(
+      "--cohort", o.cohort,
+      "cohort database that attempts are put into, and whose norms and earlier attempts they are held against; "
+      "made where it is not there");
+  addLook(app, o.look, "system, 100");
   addGraphics(app, o.graphics);
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
@@ -97,6 +108,24 @@ recorder::DeviceSourceSettings mouseSettings(const Options& o, recorder::Mode mo
   return settings;
 }
 
+/// A cohort that cannot be opened is told before there is a window; one that is not there is made when it is needed.
+std::filesystem::path cohortOf(const std::string& cohort) {
+  if (cohort.empty()) return {};
+  std::error_code ignored;
+  if (std::filesystem::exists(cohort, ignored))
+    static_cast<void>(analytics::CohortDatabase(cohort, analytics::CohortDatabase::Access::read));
+  else
+    requireFolder(std::filesystem::absolute(cohort).parent_path().string(), "the cohort");
+  return cohort;
+}
+
+/// A skilled performer, to be watched.
+std::shared_ptr<gui::AttemptInput> demonstrationOf(const Options& o) {
+  SourceOptions performer;
+  performer.performer = "skilled";
+  return std::make_shared<OptionsInput>(performer, o.seed);
+}
+
 /// Everything that can be wrong is told here, before there is a window.
 gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedScene>& scene) {
   requireFolder(o.folder, "recordings");
@@ -111,6 +140,8 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   attempt.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
   attempt.seed = o.seed;
   setup.settings.folder = o.folder;
+  setup.cohort = cohortOf(o.cohort);
+  setup.demonstration = demonstrationOf(o);
   setup.settings.threads = o.threads;
   SourceOptions who = o.source;
   refuseScope(who.scope);
@@ -158,6 +189,7 @@ int run(int argc, char** argv) {
   }
   stopOnSignals();
   recorder::useComplianceCache(recorder::userCacheFolder());
+  recorder::useEngines(enginePlaces());
   std::optional<recorder::LoadedScene> scene = sceneOf(o.scene);
   gui::TrainerSetup setup = setUp(o, scene);
   std::vector<std::string> faults;
@@ -165,12 +197,16 @@ int run(int argc, char** argv) {
   for (const std::string& fault : faults) fmt::print(stderr, "calot-trainer: {}\n", fault);
   if (!scene && setup.scenes.empty())
     throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
+  const QSize asked = windowSize(o.look);
   requireScreen();
   useGraphics(o.graphics);
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
+  gui::theme::apply(gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
+                    o.look.type == 0 ? gui::theme::usualType : o.look.type);
   gui::TrainerWindow window(std::move(setup));
+  if (!asked.isNull()) window.resize(asked);
   window.show();
   if (!o.pictures.empty()) {
     takePictures(window, std::move(scene), o.pictures);

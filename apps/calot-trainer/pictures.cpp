@@ -6,6 +6,7 @@
 #include <QDeadlineTimer>
 #include <utility>
 
+#include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "recorder/errors.h"
 
@@ -30,11 +31,19 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
     if (!there) throw Error(ErrorKind::failure, std::string("--pictures: ") + what);
   };
   window.chooseScene();
+  waitFor([] { return false; }, 1);  // the history is being read
   save("greeting");
   if (!scene) return;
-  window.begin(std::move(*scene));
   const auto status = [&] { return window.session()->status(); };
-  wanted(waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > 10; }, 60), "nothing is running");
+  const auto runs = [&] {
+    const quint64 shown = window.view()->shown();
+    return waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > shown + 10; }, 240);
+  };
+  window.begin(*scene, gui::TrainerWindow::Purpose::controls);
+  wanted(runs(), "nothing is running");
+  save("controls");
+  window.begin(std::move(*scene));
+  wanted(runs(), "nothing is running");
   save("running");
   waitFor([&] { return !status().figures.mistakes->empty(); }, 60);
   waitFor([] { return false; }, 1);  // what comes of it
@@ -45,6 +54,8 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
   }
   window.session()->finish();
   wanted(waitFor([&] { return status().stage == gui::Stage::ended; }, 30), "the attempt does not end");
+  window.refresh();
+  waitFor([&] { return window.endPage()->replay().isOpen() && window.endPage()->settled(); }, 240);
   save("end");
 }
 

@@ -6,8 +6,8 @@
 #include <QEvent>
 #include <QLabel>
 
-#include "gui/dashboard/theme.h"
-#include "gui/dashboard/words.h"
+#include "gui/attempt/theme.h"
+#include "gui/attempt/words.h"
 
 namespace calot::gui {
 

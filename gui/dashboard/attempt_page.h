@@ -5,10 +5,10 @@
 #include <optional>
 #include <QWidget>
 
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/replay.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/long_work.h"
 #include "gui/dashboard/recording_reader.h"
-#include "gui/dashboard/replay.h"
 
 class QPushButton;
 

@@ -9,8 +9,8 @@
 
 #include "analytics/assessment/attempt_summary.h"
 #include "analytics/report/report_document.h"
-#include "gui/dashboard/attempt_track.h"
-#include "gui/dashboard/long_work.h"
+#include "gui/attempt/attempt_track.h"
+#include "gui/attempt/long_work.h"
 #include "gui/render/image.h"
 
 namespace calot::gui {

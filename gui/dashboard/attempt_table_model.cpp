@@ -3,7 +3,7 @@
 
 #include <QFont>
 
-#include "gui/dashboard/words.h"
+#include "gui/attempt/words.h"
 
 namespace calot::gui {
 namespace {

@@ -15,11 +15,11 @@
 #include <QSplitter>
 #include <QTableView>
 
+#include "gui/attempt/words.h"
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/table_view.h"
-#include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 

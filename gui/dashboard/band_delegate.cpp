@@ -7,8 +7,8 @@
 #include <QStyle>
 #include <utility>
 
+#include "gui/attempt/theme.h"
 #include "gui/dashboard/checkpoint_table_model.h"
-#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 namespace {

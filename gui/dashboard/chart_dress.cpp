@@ -7,7 +7,7 @@
 #include <QtCharts/QAbstractAxis>
 #include <QtCharts/QLegend>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 

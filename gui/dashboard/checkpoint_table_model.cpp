@@ -6,9 +6,9 @@
 #include <QLocale>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/dashboard/attempt_track.h"
-#include "gui/dashboard/theme.h"
-#include "gui/dashboard/words.h"
+#include "gui/attempt/attempt_track.h"
+#include "gui/attempt/theme.h"
+#include "gui/attempt/words.h"
 
 namespace calot::gui {
 namespace {

@@ -7,7 +7,7 @@
 #include "analytics/assessment/moments.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/uncertainty/value_interval.h"
-#include "gui/dashboard/figure_standing.h"
+#include "gui/attempt/figure_standing.h"
 
 namespace calot::gui {
 

@@ -9,9 +9,9 @@
 #include <QLabel>
 #include <QSignalBlocker>
 
+#include "gui/attempt/words.h"
 #include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/page_begin.h"
-#include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 
 namespace calot::gui {

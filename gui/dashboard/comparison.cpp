@@ -5,7 +5,7 @@
 #include <map>
 
 #include "analytics/statistics/descriptive.h"
-#include "gui/dashboard/words.h"
+#include "gui/attempt/words.h"
 
 namespace calot::gui {
 

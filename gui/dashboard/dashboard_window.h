@@ -6,7 +6,7 @@
 #include <QMainWindow>
 #include <vector>
 
-#include "gui/dashboard/background.h"
+#include "gui/attempt/background.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/import_queue.h"
 

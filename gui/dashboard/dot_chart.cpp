@@ -9,7 +9,7 @@
 #include <QtCharts/QLegendMarker>
 #include <QToolTip>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {

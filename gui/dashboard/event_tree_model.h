@@ -4,7 +4,7 @@
 #include <QStandardItemModel>
 #include <vector>
 
-#include "gui/dashboard/attempt_track.h"
+#include "gui/attempt/attempt_track.h"
 
 namespace calot::gui {
 

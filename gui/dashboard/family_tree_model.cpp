@@ -7,7 +7,7 @@
 
 #include "analytics/assessment/attempt_summary.h"
 #include "analytics/checkpoints/registry.h"
-#include "gui/dashboard/words.h"
+#include "gui/attempt/words.h"
 
 namespace calot::gui {
 namespace {

@@ -15,10 +15,10 @@
 #include <utility>
 
 #include "analytics/assessment/norm_rule.h"
+#include "gui/attempt/figure_standing.h"
+#include "gui/attempt/words.h"
 #include "gui/dashboard/band_delegate.h"
-#include "gui/dashboard/figure_standing.h"
 #include "gui/dashboard/table_view.h"
-#include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 

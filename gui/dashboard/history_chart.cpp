@@ -6,8 +6,8 @@
 #include <QtCharts/QLineSeries>
 
 #include "analytics/statistics/interval.h"
-#include "gui/dashboard/theme.h"
-#include "gui/dashboard/words.h"
+#include "gui/attempt/theme.h"
+#include "gui/attempt/words.h"
 
 namespace calot::gui {
 namespace {

@@ -10,8 +10,8 @@
 #include <QPushButton>
 #include <QTimer>
 
-#include "gui/dashboard/long_work.h"
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 

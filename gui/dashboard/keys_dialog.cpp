@@ -9,7 +9,7 @@
 #include <QMenuBar>
 #include <QTableWidget>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 

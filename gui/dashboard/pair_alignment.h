@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "gui/dashboard/attempt_track.h"
+#include "gui/attempt/attempt_track.h"
 
 namespace calot::gui {
 

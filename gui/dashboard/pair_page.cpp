@@ -15,8 +15,8 @@
 #include <QToolButton>
 #include <utility>
 
+#include "gui/attempt/theme.h"
 #include "gui/dashboard/page_begin.h"
-#include "gui/dashboard/theme.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/words/event_words.h"
 

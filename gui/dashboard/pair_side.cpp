@@ -7,11 +7,11 @@
 #include <QSignalBlocker>
 #include <utility>
 
+#include "gui/attempt/open_recording.h"
+#include "gui/attempt/words.h"
 #include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/open_recording.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/timeline_bar.h"
-#include "gui/dashboard/words.h"
 #include "gui/view/scene_picture_widget.h"
 
 namespace calot::gui {

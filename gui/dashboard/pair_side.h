@@ -6,9 +6,9 @@
 #include <optional>
 #include <QWidget>
 
+#include "gui/attempt/replay.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/recording_reader.h"
-#include "gui/dashboard/replay.h"
 
 class QComboBox;
 

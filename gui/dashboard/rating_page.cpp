@@ -16,11 +16,11 @@
 #include <QSignalBlocker>
 #include <QSplitter>
 
+#include "gui/attempt/open_recording.h"
+#include "gui/attempt/transport_bar.h"
 #include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/open_recording.h"
 #include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/transport_bar.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"

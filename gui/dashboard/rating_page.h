@@ -5,10 +5,10 @@
 #include <optional>
 #include <QWidget>
 
+#include "gui/attempt/replay.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/rating_draft.h"
 #include "gui/dashboard/rating_drafts.h"
-#include "gui/dashboard/replay.h"
 
 class QButtonGroup;
 class QCheckBox;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analytics/assessment/moments.h"
-#include "gui/dashboard/attempt_track.h"
-#include "gui/dashboard/link.h"
+#include "gui/attempt/attempt_track.h"
+#include "gui/attempt/link.h"
 
 namespace calot::gui {
 

@@ -5,9 +5,9 @@
 #include <QtCharts/QLineSeries>
 #include <QtCharts/QValueAxis>
 
+#include "gui/attempt/theme.h"
 #include "gui/dashboard/chart_dress.h"
 #include "gui/dashboard/palette.h"
-#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 

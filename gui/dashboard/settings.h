@@ -7,7 +7,7 @@
 #include <QStringList>
 #include <vector>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui::settings {
 

@@ -13,8 +13,8 @@
 #include <QSpinBox>
 #include <utility>
 
+#include "gui/attempt/theme.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/theme.h"
 
 namespace calot::gui {
 

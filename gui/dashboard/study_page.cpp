@@ -23,10 +23,10 @@
 #include <QUrl>
 
 #include "analytics/report/study_tables.h"
+#include "gui/attempt/words.h"
 #include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/roc_chart.h"
-#include "gui/dashboard/words.h"
 #include "gui/report/drawing_painter.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <QWidget>
 
-#include "gui/dashboard/background.h"
+#include "gui/attempt/background.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/study_view.h"
 

@@ -7,7 +7,7 @@
 #include <QTimer>
 #include <QTreeView>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 

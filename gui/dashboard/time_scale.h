@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 

@@ -9,8 +9,8 @@
 #include <QToolTip>
 #include <utility>
 
+#include "gui/attempt/theme.h"
 #include "gui/dashboard/palette.h"
-#include "gui/dashboard/theme.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {

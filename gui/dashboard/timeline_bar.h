@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "gui/dashboard/attempt_track.h"
+#include "gui/attempt/attempt_track.h"
 #include "gui/dashboard/time_scale.h"
 
 namespace calot::gui {

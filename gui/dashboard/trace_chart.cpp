@@ -9,7 +9,7 @@
 #include <QPainter>
 #include <utility>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 namespace {

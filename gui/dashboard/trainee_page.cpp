@@ -12,11 +12,11 @@
 #include <QTableWidget>
 
 #include "analytics/assessment/attempt_summary.h"
-#include "gui/dashboard/figure_standing.h"
+#include "gui/attempt/figure_standing.h"
+#include "gui/attempt/theme.h"
+#include "gui/attempt/words.h"
 #include "gui/dashboard/history_chart.h"
 #include "gui/dashboard/page_begin.h"
-#include "gui/dashboard/theme.h"
-#include "gui/dashboard/words.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 

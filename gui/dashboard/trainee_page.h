@@ -4,7 +4,7 @@
 #include <memory>
 #include <QWidget>
 
-#include "gui/dashboard/background.h"
+#include "gui/attempt/background.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/trainee_history.h"
 

@@ -8,7 +8,7 @@
 #include <QSize>
 #include <QTransform>
 
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 namespace {

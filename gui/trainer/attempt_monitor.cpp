@@ -30,6 +30,7 @@ AttemptMonitor::AttemptMonitor(const Model& model)
       list_({structureNames(model), connectiveNames(model)}, model.stepSeconds()),
       bed_(bedOf(model.scene())) {
   for (std::size_t h = 0; h < handCount; ++h) {
+    lastPose_.hand[h].instrument = InstrumentKind::none;
     figures_.hand[h].instrument = model.scene().hands[h].instrument;
     figures_.hand[h].clips = model.scene().hands[h].clips;
   }
@@ -40,7 +41,11 @@ AttemptMonitor::AttemptMonitor(const Model& model)
 void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   for (const TickSamples& tick : record.samples) {
     for (std::size_t h = 0; h < handCount; ++h) {
-      if (tick.hand[h].valid) lastPose_.hand[h] = tick.hand[h];
+      if (!tick.hand[h].valid) continue;
+      const InstrumentKind had = lastPose_.hand[h].instrument;
+      lastPose_.hand[h] = tick.hand[h];
+      // On the way from one instrument to the next.
+      if (tick.hand[h].instrument == InstrumentKind::none) lastPose_.hand[h].instrument = had;
     }
     lastPose_.camera = tick.camera;
   }
@@ -53,12 +58,20 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   const Judgement& judgement = judge_.observe(record.result);
   const bool added = list_.add(judgement.events);
 
+  const CameraSample& camera = record.samples.back().camera;
   const std::lock_guard lock(mutex_);
   figures_.time = static_cast<double>(record.step + 1) * model_.stepSeconds();
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandResult& hand = record.result.hand[h];
-    figures_.hand[h] = {hand.instrument, hand.jaw,     hand.grasping != 0,
-                        hand.clips,      hand.cautery, record.samples.back().hand[h].valid};
+    figures_.hand[h] = {hand.instrument,
+                        hand.jaw,
+                        hand.grasping != 0,
+                        hand.clips,
+                        hand.cautery,
+                        record.samples.back().hand[h].valid,
+                        camera.orientation.conjugate() * Vec3(hand.tipSimulated - camera.position),
+                        hand.orientation};
+    figures_.touched = figures_.touched || hand.contacts() != 0 || hand.cautery == Cautery::onTissue;
   }
   for (std::size_t v = 0; v < record.result.vessel.size(); ++v)
     figures_.vessel[v] = {record.result.vessel[v].clips, record.result.vessel[v].partings};

@@ -23,7 +23,9 @@ struct AttemptFigures {
     bool holds = false;       ///< tissue is in its jaws
     std::uint32_t clips = 0;  ///< left in its clip applier
     Cautery cautery = Cautery::off;
-    bool measured = true;  ///< its device gives samples
+    bool measured = true;                 ///< its device gives samples
+    Vec3 tip = Vec3::Zero();              ///< p_CI, where contact lets it be: right, down, away from the endoscope (m)
+    Quat orientation = Quat::Identity();  ///< q_WI
   };
   struct Vessel {
     std::uint32_t clips = 0;     ///< on it
@@ -33,6 +35,7 @@ struct AttemptFigures {
   std::array<Hand, handCount> hand;
   std::vector<Vessel> vessel;
   ProcedureStatus procedure;
+  bool touched = false;                                  ///< an instrument has touched, grasped or burned tissue so far
   double attached = 0.0;                                 ///< of the procedure's bed, as a share
   std::uint64_t ticks = 0;                               ///< of this run: a branch counts from its fork on
   std::uint64_t missedDeadlines = 0;                     ///< of those
@@ -59,7 +62,7 @@ class AttemptMonitor final : public recorder::Observer {
 
   /// The steps up to here were a parent's: deadlines count from now on. Simulation's thread.
   void beginRun();
-  /// Newest measured pose of each hand, and the camera. Simulation's thread.
+  /// Newest measured pose of each hand, with the instrument that it had last, and the camera. Simulation's thread.
   [[nodiscard]] const TickSamples& lastPose() const { return lastPose_; }
 
  private:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "gui/words/event_words.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::gui {
@@ -64,8 +65,11 @@ std::string viewHint(const SceneDescription& scene, const AttemptFigures& figure
 
 }  // namespace
 
-bool isDone(const SceneDescription& scene, const AttemptFigures& figures) {
-  return scene.procedure.specimen.empty() || figures.procedure.phase == Phase::done;
+std::string whatIsUndone(const SceneDescription& scene, const AttemptFigures& figures) {
+  if (!figures.touched) return "nothing was touched";
+  if (scene.procedure.specimen.empty() || figures.procedure.phase == Phase::done) return {};
+  const std::string phase = wordFor(figures.procedure.phase);
+  return phase.empty() ? "the procedure is not done" : "the procedure was still at its phase " + phase;
 }
 
 std::string hintFor(const SceneDescription& scene, const std::string& summary, const AttemptFigures& figures) {

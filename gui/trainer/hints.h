@@ -14,7 +14,8 @@ namespace calot::gui {
 [[nodiscard]] std::string hintFor(const SceneDescription& scene, const std::string& summary,
                                   const AttemptFigures& figures);
 
-/// Is all done that the scene asks for? Always yes where it asks for nothing: then it is the trainee who says.
-[[nodiscard]] bool isDone(const SceneDescription& scene, const AttemptFigures& figures);
+/// What is still undone of what the scene asks for: "the procedure is at: clipping". Where it has no procedure, it is
+/// the trainee who says, but whoever touched nothing has done nothing. Empty: all is done.
+[[nodiscard]] std::string whatIsUndone(const SceneDescription& scene, const AttemptFigures& figures);
 
 }  // namespace calot::gui

@@ -124,7 +124,8 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
   std::vector<KeyHelp> out;
   if (mouse) {
     out = {{"Mouse, arrows", "move the tip"},
-           {"Wheel, Page Up/Down", "insert, draw back"},
+           {"Wheel", "deeper into the picture, nearer"},
+           {"Page Up, Down", "insert, draw back"},
            {"Left button, A", "close the jaws"},
            {"Right button, S", "open the jaws"},
            {"Q, W", "turn the shaft"},
@@ -147,7 +148,10 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
                                     {"V with the mouse", "move the endoscope"}};
     out.insert(out.end(), keys.begin(), keys.end());
   }
-  if (pauses) out.push_back({"Escape", "pause, go on"});
+  if (pauses)
+    out.push_back({"Escape", mouse ? "pause and free the mouse, go on" : "pause, go on"});
+  else if (mouse)
+    out.push_back({"Escape", "free the mouse, hold it again"});
   return out;
 }
 

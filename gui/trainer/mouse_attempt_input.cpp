@@ -13,12 +13,16 @@ namespace {
 
 constexpr double patience = 5.0;  // s
 
-/// Ports in D (the camera's axes), seen from where the tips begin.
-std::array<Vec3, handCount> portsFrom(const SceneDescription& scene, const std::array<Vec3, handCount>& tips) {
-  std::array<Vec3, handCount> out;
-  for (std::size_t h = 0; h < handCount; ++h)
-    out[h] = scene.camera.orientation.conjugate() * Vec3(scene.hands[h].port - tips[h]);
-  return out;
+/// Ports and the endoscope's eye in D (the scene's camera's axes), seen from where the tips begin.
+void setPlaces(recorder::MouseInput& mouse, const SceneDescription& scene, const CameraSample& camera,
+               const std::array<Vec3, handCount>& tips) {
+  std::array<Vec3, handCount> ports, eyes;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    ports[h] = scene.camera.orientation.conjugate() * Vec3(scene.hands[h].port - tips[h]);
+    eyes[h] = scene.camera.orientation.conjugate() * Vec3(camera.position - tips[h]);
+  }
+  mouse.setPorts(ports);
+  mouse.setEyes(eyes);
 }
 
 }  // namespace
@@ -29,7 +33,7 @@ MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse
 
 std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescription& scene) {
   mouse_->reset();
-  mouse_->setPorts(portsFrom(scene, {scene.hands[0].home, scene.hands[1].home}));
+  setPlaces(*mouse_, scene, scene.camera, {scene.hands[0].home, scene.hands[1].home});
   auto source =
       std::make_unique<recorder::DeviceSource>(std::make_unique<recorder::MouseDevice>(mouse_), scene, settings_);
   source->waitForFirst(patience);
@@ -39,7 +43,7 @@ std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescr
 
 void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& scene,
                                const TickSamples& start) {
-  mouse_->setPorts(portsFrom(scene, {start.hand[0].position, start.hand[1].position}));
+  setPlaces(*mouse_, scene, start.camera, {start.hand[0].position, start.hand[1].position});
   source.device()->setOutFrom(start);
   if (auto* const scope = source.scope(); scope != nullptr) scope->setOutFrom(start.camera);
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/operation_view.h"
 
+#include <cmath>
 #include <cstddef>
+#include <QCursor>
 #include <QKeyEvent>
+#include <QLabel>
 #include <QMouseEvent>
 #include <QWheelEvent>
 #include <utility>
@@ -19,20 +22,68 @@ constexpr double wantedRate = 30.0;       // pictures a second, as many as are h
 
 OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::shared_ptr<recorder::ScopeInput> scope,
                              QWidget* parent)
-    : ScenePictureWidget(parent, drawersAtOnce, wantedRate), mouse_(std::move(mouse)), scope_(std::move(scope)) {
+    : ScenePictureWidget(parent, drawersAtOnce, wantedRate),
+      mouse_(std::move(mouse)),
+      scope_(std::move(scope)),
+      over_(new QLabel(this)) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
-  setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape holds the run, Tab leaves.");
+  setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape frees the mouse, Tab leaves.");
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);
+  over_->setObjectName("over");
+  over_->setTextFormat(Qt::PlainText);
+  over_->setAlignment(Qt::AlignCenter);
+  over_->setAttribute(Qt::WA_TransparentForMouseEvents);
+  QFont large = font();
+  large.setPointSizeF(6.0 * large.pointSizeF());
+  large.setBold(true);
+  over_->setFont(large);
+  over_->setStyleSheet("QLabel { background: rgba(0, 0, 0, 120); color: #ffffff; }");
+  over_->hide();
+}
+
+OperationView::~OperationView() {
+  if (holds_) releaseMouse();
 }
 
 void OperationView::setActive(bool active) {
   if (active == active_) return;
   active_ = active;
-  last_.reset();
-  setCursor(active && mouse_ ? Qt::CrossCursor : Qt::ArrowCursor);
+  pointer_.begin();
   releaseAll();
+  holdPointer(active && hasFocus());
+}
+
+void OperationView::showOver(const QString& text) {
+  if (over_->text() == text) return;
+  over_->setText(text);
+  over_->setGeometry(rect());
+  over_->setVisible(!text.isEmpty());
+}
+
+void OperationView::holdPointer(bool hold) {
+  hold = hold && mouse_ != nullptr;
+  if (hold == holds_) return;
+  holds_ = hold;
+  pointer_.begin();
+  if (hold) {
+    setCursor(Qt::BlankCursor);
+    grabMouse();
+    putPointerBack();
+  } else {
+    releaseMouse();
+    setCursor(Qt::ArrowCursor);
+  }
+  emit pointerHeld(hold);
+}
+
+void OperationView::putPointerBack() {
+  const QPoint middle = rect().center();
+  const QPoint there = mapToGlobal(middle);
+  QCursor::setPos(there);
+  // Some window systems let no program move the pointer; there it stops at the screen's edge.
+  if (QCursor::pos() == there) pointer_.put(middle);
 }
 
 void OperationView::releaseAll() {
@@ -80,10 +131,14 @@ void OperationView::keyPressEvent(QKeyEvent* event) {
     return;
   }
   if (event->isAutoRepeat()) return;
-  if (action->kind == KeyAction::Kind::pause)
-    emit pauseRequested();
-  else if (active_)
-    press(*action);
+  if (action->kind != KeyAction::Kind::pause) {
+    if (active_) press(*action);
+    return;
+  }
+  emit pauseRequested();
+  if (!active_ || !mouse_) return;  // where there is no pause, the key is the pointer's alone
+  releaseAll();
+  holdPointer(!holds_);
 }
 
 void OperationView::keyReleaseEvent(QKeyEvent* event) {
@@ -102,46 +157,64 @@ void OperationView::holdButton(Qt::MouseButton button, bool held) {
 }
 
 void OperationView::mousePressEvent(QMouseEvent* event) {
-  if (active_) holdButton(event->button(), true);
+  if (!active_) return;
+  if (mouse_ && !holds_) {
+    holdPointer(true);  // the click does that alone
+    return;
+  }
+  holdButton(event->button(), true);
 }
 
 void OperationView::mouseReleaseEvent(QMouseEvent* event) { holdButton(event->button(), false); }
 
 void OperationView::mouseMoveEvent(QMouseEvent* event) {
   const QPointF now = event->position();
-  // A button keeps the pointer's events here beyond the border; the hand stays where the picture ends.
-  if (!active_ || !(mouse_ || scope_) || !rect().contains(now.toPoint()) ||
-      (event->modifiers() & Qt::ControlModifier) != 0) {
-    last_.reset();
+  if (!active_ || (mouse_ ? !holds_ : !scope_ || !rect().contains(now.toPoint()))) {
+    pointer_.begin();
     return;
   }
-  if (last_) {
-    const QPointF moved = now - *last_;
-    if (scope_ && scope_->pedal())
-      scope_->move(moved.x(), moved.y());
-    else if (mouse_)
-      mouse_->move(moved.x(), moved.y());
-  }
-  last_ = now;
+  const QPointF moved = pointer_.moved(now);
+  const QPointF fromMiddle = now - rect().center();
+  if (holds_ && !pointer_.isPutBack() &&
+      (4.0 * std::abs(fromMiddle.x()) > width() || 4.0 * std::abs(fromMiddle.y()) > height()))
+    putPointerBack();
+  if ((event->modifiers() & Qt::ControlModifier) != 0) return;
+  if (scope_ && scope_->pedal())
+    scope_->move(moved.x(), moved.y());
+  else if (mouse_)
+    mouse_->move(moved.x(), moved.y());
 }
 
 void OperationView::wheelEvent(QWheelEvent* event) {
   const double notches = static_cast<double>(event->angleDelta().y()) / notch;
   if (active_ && scope_ && scope_->pedal())
     scope_->turnWheel(notches);
-  else if (active_ && mouse_)
+  else if (active_ && mouse_ && holds_)
     mouse_->turnWheel(notches);
   event->accept();
 }
 
 void OperationView::leaveEvent(QEvent* event) {
-  last_.reset();
+  if (!holds_) pointer_.begin();
   ScenePictureWidget::leaveEvent(event);
+}
+
+void OperationView::focusInEvent(QFocusEvent* event) {
+  // A window that comes back does not take the mouse by itself: a click or Escape does.
+  if (active_ && event->reason() != Qt::ActiveWindowFocusReason && event->reason() != Qt::MouseFocusReason)
+    holdPointer(true);
+  ScenePictureWidget::focusInEvent(event);
 }
 
 void OperationView::focusOutEvent(QFocusEvent* event) {
   releaseAll();
+  holdPointer(false);
   ScenePictureWidget::focusOutEvent(event);
+}
+
+void OperationView::resizeEvent(QResizeEvent* event) {
+  ScenePictureWidget::resizeEvent(event);
+  over_->setGeometry(rect());
 }
 
 }  // namespace calot::gui

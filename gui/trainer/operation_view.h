@@ -2,19 +2,20 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <QPointF>
 
 #include "gui/trainer/key_bindings.h"
+#include "gui/trainer/pointer_track.h"
 #include "gui/view/scene_picture_widget.h"
 #include "recorder/sources/devices/mouse_input.h"
 #include "recorder/sources/devices/scope_input.h"
 
+class QLabel;
+
 namespace calot::gui {
 
 /// The picture of the operation, and the hands of whoever looks at it: what mouse and keyboard do over it goes to a
-/// MouseInput while it is active. The pointer moves a hand only while it is over the picture, so that leaving it and
-/// coming back elsewhere, or holding Ctrl, puts the mouse elsewhere without moving the hand.
+/// MouseInput while it is active. Where the mouse drives a hand, the picture holds the pointer: it is hidden, and comes
+/// to no edge. Escape, Tab, or whatever else takes the keyboard from the picture, frees it; a click holds it again.
 class OperationView : public ScenePictureWidget {
   Q_OBJECT
  public:
@@ -22,9 +23,14 @@ class OperationView : public ScenePictureWidget {
   /// @param scope null: the endoscope is fixed, or held by another
   explicit OperationView(std::shared_ptr<recorder::MouseInput> mouse,
                          std::shared_ptr<recorder::ScopeInput> scope = nullptr, QWidget* parent = nullptr);
+  ~OperationView() override;
 
   /// Whether a run is there to take what is done.
   void setActive(bool active);
+  /// Does the picture hold the pointer?
+  [[nodiscard]] bool holdsPointer() const { return holds_; }
+  /// Large, over the picture: "3". Empty: nothing.
+  void showOver(const QString& text);
 
   [[nodiscard]] QSize sizeHint() const override { return {1280, 720}; }
   [[nodiscard]] QSize minimumSizeHint() const override { return {480, 270}; }
@@ -33,6 +39,7 @@ class OperationView : public ScenePictureWidget {
   void mountRequested(calot::InstrumentKind instrument, bool otherHand);
   void pauseRequested();
   void handSwitched();
+  void pointerHeld(bool held);
 
  protected:
   void keyPressEvent(QKeyEvent* event) override;
@@ -43,18 +50,23 @@ class OperationView : public ScenePictureWidget {
   void mouseDoubleClickEvent(QMouseEvent* event) override { mousePressEvent(event); }
   void wheelEvent(QWheelEvent* event) override;
   void leaveEvent(QEvent* event) override;
+  void focusInEvent(QFocusEvent* event) override;
   void focusOutEvent(QFocusEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
 
  private:
   void press(const KeyAction& action);
   void release(const KeyAction& action);
   void releaseAll();
   void holdButton(Qt::MouseButton button, bool held);
+  void holdPointer(bool hold);
+  void putPointerBack();
 
   std::shared_ptr<recorder::MouseInput> mouse_;
   std::shared_ptr<recorder::ScopeInput> scope_;
-  bool active_ = false;
-  std::optional<QPointF> last_;  ///< of the pointer over the picture
+  bool active_ = false, holds_ = false;
+  PointerTrack pointer_;
+  QLabel* over_;
 };
 
 }  // namespace calot::gui

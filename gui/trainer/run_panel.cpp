@@ -2,19 +2,24 @@
 #include "gui/trainer/run_panel.h"
 
 #include <cmath>
+#include <QAccessible>
+#include <QApplication>
 #include <QBoxLayout>
 #include <QGridLayout>
 #include <QLabel>
 #include <QListWidget>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QRegularExpression>
+#include <QScrollArea>
 #include <QStackedWidget>
+
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 namespace {
 
-// Okabe and Ito's orange and blue, darkened for text on light ground: sign and word carry the meaning.
-constexpr const char* lateStyle = "QLabel { color: #8a3c00; font-weight: bold; }";
+// Okabe and Ito's blue on a ground of its own: the words carry the meaning.
 constexpr const char* hintStyle =
     "QLabel { background: #e3eef6; color: #10263a; border-left: 5px solid #0072b2; padding: 8px; }";
 
@@ -60,6 +65,16 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   return page;
 }
 
+/// Letters may be so large that not all keys fit.
+QWidget* scrolled(QWidget* page) {
+  auto* const scroll = new QScrollArea;
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setWidget(page);
+  return scroll;
+}
+
 }  // namespace
 
 RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
@@ -72,21 +87,22 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       phase_(plainLabel("phase")),
       score_(plainLabel("score")),
       hint_(plainLabel("hint")),
+      pointer_(plainLabel("pointer")),
       result_(plainLabel("result")),
       hand_{plainLabel("left"), plainLabel("right")},
       progress_(new QProgressBar),
       lower_(new QStackedWidget),
-      keys_(keyPage(mouse, scope, mode == recorder::Mode::practice)),
+      keys_(scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
       mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(new QListWidget),
-      back_(button("&Go back to 2 s before it", "back")),
+      back_(button("Go &back to 2 s before it", "back")),
       pause_(button("&Pause", "pause")),
       finish_(button("&End the attempt", "finish")),
-      restart_(button("Start a&gain", "restart")),
+      restart_(button("Sta&rt again", "restart")),
       scenes_(button("&Other scene", "otherScene")) {
-  setMinimumWidth(300);
-  setMaximumWidth(340);
+  setMinimumWidth(theme::inType(270));
+  setMaximumWidth(theme::inType(320));
   QFont bold = font();
   bold.setBold(true);
   stage_->setFont(bold);
@@ -130,6 +146,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   layout->addWidget(phase_);
   layout->addWidget(score_);
   layout->addWidget(hint_);
+  layout->addWidget(pointer_);
   layout->addWidget(result_);
   layout->addSpacing(6);
   for (QLabel* const hand : hand_) layout->addWidget(hand);
@@ -147,14 +164,17 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
 }
 
 void RunPanel::show(const TrainingStatus& status, const PanelText& text, double stepSeconds) {
-  say(stage_, text.stage);
+  announce(stage_, text.stage);
   say(modeLabel_, text.mode);
   say(time_, text.time);
   say(deadlines_, text.late ? QString::fromUtf8("⚠ ") + text.deadlines : text.deadlines);
-  deadlines_->setStyleSheet(text.late ? lateStyle : "");
+  QPalette late = QApplication::palette();
+  if (text.late) late.setColor(QPalette::WindowText, theme::trouble());
+  deadlines_->setPalette(late);
   say(phase_, text.phase);
   say(score_, text.score);
-  say(hint_, text.hint);
+  announce(hint_, text.hint);
+  announce(pointer_, text.pointer);
   say(result_, text.result);
   for (std::size_t h = 0; h < handCount; ++h) say(hand_[h], text.hand[h]);
   progress_->setVisible(status.stage == Stage::takingParent);
@@ -170,6 +190,17 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   const bool looksBack = practice && (status.stage == Stage::paused || status.stage == Stage::ended);
   lower_->setCurrentWidget(looksBack ? mistakes_ : keys_);
   if (looksBack) showMistakes(status, stepSeconds);
+}
+
+/// Numbers alone that go on are not worth being read aloud.
+void RunPanel::announce(QLabel* label, const QString& text) {
+  static const QRegularExpression numbers("[0-9]+");
+  const bool news = !text.isEmpty() && QString(text).remove(numbers) != label->text().remove(numbers);
+  say(label, text);
+  if (!news) return;
+  QAccessibleEvent alert(label, QAccessible::Alert);
+  QAccessible::updateAccessibility(&alert);
+  emit announced(text);
 }
 
 void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {

@@ -33,13 +33,15 @@ class RunPanel : public QWidget {
   void restartRequested();
   void scenesRequested();
   void backRequested(double time);
+  void announced(const QString& text);  ///< read aloud by a screen reader, where there is one
 
  private:
   void showMistakes(const TrainingStatus& status, double stepSeconds);
   void goBack();
+  void announce(QLabel* label, const QString& text);  ///< shows it; its words are read aloud when they change
 
   recorder::Mode mode_;
-  QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *result_;
+  QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *pointer_, *result_;
   std::array<QLabel*, handCount> hand_;
   QProgressBar* progress_;
   QStackedWidget* lower_;

@@ -2,64 +2,164 @@
 #include "gui/trainer/scenes_page.h"
 
 #include <QBoxLayout>
+#include <QIcon>
 #include <QLabel>
 #include <QListWidget>
+#include <QPixmap>
 #include <QPushButton>
+#include <utility>
 
 namespace calot::gui {
+namespace {
 
-ScenesPage::ScenesPage(QWidget* parent) : QWidget(parent), list_(new QListWidget), begin_(new QPushButton("&Begin")) {
+constexpr QSize pictureSize(160, 90);  // five of them on a screen of 768 lines, also in large letters
+
+/// "2. Carve (carve-fat)" and the goal; of a scene in no course its name and summary.
+QString titleOf(const SceneChoice& scene, std::size_t number) {
+  if (scene.title.empty()) return QString::fromStdString(scene.name + "\n" + scene.summary);
+  return QString("%1. %2 (%3)\n%4")
+      .arg(number)
+      .arg(QString::fromStdString(scene.title), QString::fromStdString(scene.name), QString::fromStdString(scene.goal));
+}
+
+}  // namespace
+
+ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
+    : QWidget(parent),
+      list_(new QListWidget),
+      past_(new QListWidget),
+      pastTitle_(new QLabel),
+      pastSide_(new QWidget),
+      begin_(new QPushButton("&Begin")),
+      tutorial_(new QPushButton("&Learn the controls")),
+      demonstration_(new QPushButton("&Watch a demonstration")) {
   auto* const title = new QLabel("Welcome to the trainer");
   QFont large = font();
-  large.setPointSizeF(1.8 * large.pointSizeF());
+  large.setPointSizeF(1.6 * large.pointSizeF());
   title->setFont(large);
   auto* const text = new QLabel(
-      "Choose what to practise. Every attempt is recorded; in practice you can pause, and go back to before a mistake "
-      "and try again.");
+      practice
+          ? "Choose what to practise; the tasks become harder from the top. Every attempt is recorded; you can pause, "
+            "and go back to before a mistake and try again."
+          : "Choose a task. Every attempt is recorded and can be assessed; there is no pause and no going back.");
   text->setWordWrap(true);
   list_->setObjectName("scenes");
   list_->setAccessibleName("Scenes");
   list_->setWordWrap(true);
-  list_->setStyleSheet("QListWidget::item { padding: 8px; }");
+  list_->setIconSize(pictureSize);
+  list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);  // texts are wrapped
+  list_->setStyleSheet("QListWidget::item { padding: 6px; }");
+  past_->setObjectName("past");
+  past_->setAccessibleName("Your attempts at this task");
+  past_->setWordWrap(true);
+  pastTitle_->setTextFormat(Qt::PlainText);
+  pastTitle_->setWordWrap(true);
+  pastTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
+  tutorial_->setObjectName("tutorial");
+  tutorial_->setToolTip("Asks for one control after the other, on the first task's scene");
+  demonstration_->setObjectName("demonstration");
+  demonstration_->setToolTip("A skilled performer does it: a program, no person; its recording is marked synthetic");
+  demonstration_->setVisible(demonstrates);
+  tutorial_->setVisible(practice);
   begin_->setObjectName("begin");
-  begin_->setEnabled(false);
-  begin_->setDefault(true);
+  for (QPushButton* const button : {begin_, tutorial_, demonstration_}) {
+    button->setEnabled(false);
+    button->setAutoDefault(true);  // Enter presses it
+  }
 
+  auto* const side = new QVBoxLayout(pastSide_);
+  side->setContentsMargins(0, 0, 0, 0);
+  side->addWidget(pastTitle_);
+  side->addWidget(past_, 1);
+  pastSide_->hide();
+  auto* const middle = new QHBoxLayout;
+  middle->addWidget(list_, 3);
+  middle->addWidget(pastSide_, 2);
+  auto* const buttons = new QHBoxLayout;
+  buttons->addWidget(tutorial_);
+  buttons->addStretch(1);
+  buttons->addWidget(demonstration_);
+  buttons->addWidget(begin_);
   auto* const column = new QWidget;
-  column->setMaximumWidth(900);
+  column->setMaximumWidth(1300);
   auto* const inner = new QVBoxLayout(column);
   inner->addWidget(title);
-  inner->addSpacing(6);
   inner->addWidget(text);
-  inner->addSpacing(12);
-  inner->addWidget(list_, 1);
   inner->addSpacing(6);
-  inner->addWidget(begin_, 0, Qt::AlignRight);
+  inner->addLayout(middle, 1);
+  inner->addLayout(buttons);
   auto* const outer = new QHBoxLayout(this);
-  outer->setContentsMargins(24, 32, 24, 32);
+  outer->setContentsMargins(16, 8, 16, 8);
   outer->addStretch(1);
-  outer->addWidget(column, 8);
+  outer->addWidget(column, 20);
   outer->addStretch(1);
 
-  connect(list_, &QListWidget::itemActivated, this, &ScenesPage::choose);
-  connect(list_, &QListWidget::currentRowChanged, this, [this](int row) { begin_->setEnabled(row >= 0); });
-  connect(begin_, &QPushButton::clicked, this, &ScenesPage::choose);
+  const auto choose = [this] {
+    if (const QString file = chosenFile(); !file.isEmpty()) emit chosen(file);
+  };
+  connect(list_, &QListWidget::itemActivated, this, choose);
+  connect(list_, &QListWidget::currentRowChanged, this, [this](int row) {
+    for (QPushButton* const button : {begin_, demonstration_}) button->setEnabled(row >= 0);
+    showPast();
+  });
+  connect(begin_, &QPushButton::clicked, this, choose);
+  connect(demonstration_, &QPushButton::clicked, this, [this] {
+    if (const QString file = chosenFile(); !file.isEmpty()) emit demonstrationRequested(file);
+  });
+  connect(tutorial_, &QPushButton::clicked, this, [this] {
+    if (!choices_.empty()) emit tutorialRequested(QString::fromStdString(choices_.front().file.string()));
+  });
+}
+
+QString ScenesPage::chosenFile() const {
+  const int row = list_->currentRow();
+  return row < 0 ? QString() : QString::fromStdString(choices_[static_cast<std::size_t>(row)].file.string());
 }
 
 void ScenesPage::setScenes(const std::vector<SceneChoice>& scenes) {
   list_->clear();
-  for (const SceneChoice& scene : scenes) {
-    auto* const item = new QListWidgetItem(QString::fromStdString(scene.name + "\n" + scene.summary), list_);
-    item->setData(Qt::UserRole, QString::fromStdString(scene.file.string()));
+  choices_ = scenes;
+  for (const SceneChoice& scene : choices_) {
+    auto* const item = new QListWidgetItem(list_);
+    if (scene.picture.empty()) continue;
+    const QPixmap picture(QString::fromStdString(scene.picture.string()));
+    QIcon icon(picture);
+    icon.addPixmap(picture, QIcon::Selected);  // not tinted
+    item->setIcon(icon);
   }
-  if (!scenes.empty()) list_->setCurrentRow(0);
+  showTexts();
+  tutorial_->setEnabled(!choices_.empty());
+  if (!choices_.empty()) list_->setCurrentRow(0);
+}
+
+void ScenesPage::showTexts() {
+  for (std::size_t i = 0; i < choices_.size(); ++i) {
+    QString text = titleOf(choices_[i], i + 1);
+    if (history_) text += '\n' + progressText(*history_, choices_[i].name);
+    list_->item(static_cast<int>(i))->setText(text);
+  }
+}
+
+void ScenesPage::setHistory(std::optional<std::vector<PastAttempt>> history) {
+  history_ = std::move(history);
+  showTexts();
+  showPast();
+}
+
+void ScenesPage::showPast() {
+  const int row = list_->currentRow();
+  pastSide_->setVisible(history_.has_value() && row >= 0);
+  if (!history_ || row < 0) return;
+  const SceneChoice& scene = choices_[static_cast<std::size_t>(row)];
+  past_->clear();
+  for (const PastAttempt& attempt : *history_) {
+    if (attempt.scene == scene.name) past_->addItem(pastText(attempt));
+  }
+  past_->setVisible(past_->count() > 0);
+  pastTitle_->setText(past_->count() > 0 ? "Your attempts at it, from the cohort:"
+                                         : "No attempt of yours at it is in the cohort.");
 }
 
 void ScenesPage::focusList() { list_->setFocus(); }
-
-void ScenesPage::choose() {
-  if (const QListWidgetItem* const item = list_->currentItem(); item != nullptr)
-    emit chosen(item->data(Qt::UserRole).toString());
-}
 
 }  // namespace calot::gui

@@ -17,6 +17,8 @@ QString stageText(const TrainingStatus& status) {
       return "Getting ready …";
     case Stage::takingParent:
       return QString("Going back: %1 %").arg(QLocale().toString(std::floor(100.0 * status.progress), 'f', 0));
+    case Stage::countdown:
+      return QString("Going on in %1 …").arg(QLocale().toString(status.countdown));
     case Stage::running:
       return status.waiting ? QString("Waiting for the device …") : QString::fromUtf8("● Recording");
     case Stage::paused:
@@ -39,9 +41,17 @@ QString deadlineText(const AttemptFigures& figures) {
   return text;
 }
 
-QString handText(const AttemptFigures::Hand& hand, std::size_t which, bool driven) {
+using Exchange = recorder::ControlledSource::Exchange;
+
+QString handText(const AttemptFigures::Hand& hand, const std::optional<Exchange>& exchange, std::size_t which,
+                 bool driven) {
   QString text = driven ? QString::fromUtf8("▶ ") : QString();
   text += which == 0 ? "Left: " : "Right: ";
+  if (exchange) {
+    const double seconds = std::ceil(tickLength * exchange->ticks);
+    return text +
+           QString("gets the %1 in %2 s").arg(instrumentOf(exchange->coming).word, QLocale().toString(seconds, 'f', 0));
+  }
   const InstrumentDefinition& instrument = instrumentOf(hand.instrument);
   text += instrument.word;
   if (instrument.action == InstrumentAction::clip)
@@ -72,9 +82,31 @@ QString scoreText(const SceneDescription& scene, const AttemptFigures& figures) 
 QString resultText(const TrainingStatus& status) {
   if (status.stage != Stage::ended || status.file.empty()) return {};
   QString text =
-      QString("Outcome: %1, after %2.").arg(recorder::wordFor(status.report.outcome), clockText(status.figures.time));
+      QString("Outcome: %1, after %2").arg(recorder::wordFor(status.report.outcome), clockText(status.figures.time));
+  const bool why = status.report.outcome == recorder::Outcome::abandoned && !status.undone.empty();
+  text += why ? ": " + QString::fromStdString(status.undone) + '.' : QString('.');
   if (!status.parent.empty()) text += QString("\nA branch, from %1 on.").arg(clockText(status.branchedAt));
   return text + "\nRecorded in " + QString::fromStdString(status.file.string());
+}
+
+QString pointerText(const TrainingStatus& status, recorder::Mode mode, Pointer pointer) {
+  const bool practice = mode == recorder::Mode::practice;
+  if (status.stage == Stage::paused && pointer == Pointer::windowLeft)
+    return "Paused because the window lost the keyboard. Escape goes on.";
+  if (status.stage != Stage::running) return {};
+  switch (pointer) {
+    case Pointer::elsewhere:
+      break;
+    case Pointer::held:
+      return practice ? "The picture has the mouse: Escape pauses and frees it."
+                      : "The picture has the mouse: Escape frees it.";
+    case Pointer::free:
+      return "The mouse is free and moves no hand. Click the picture to drive again.";
+    case Pointer::windowLeft:
+      return "The window lost the keyboard: all keys are let go, the hands hold still, the clock runs on. "
+             "Click the picture to drive again.";
+  }
+  return {};
 }
 
 }  // namespace
@@ -94,7 +126,7 @@ QString mistakeText(const Mistake& mistake) {
 }
 
 PanelText panelText(const TrainingStatus& status, const SceneDescription& scene, const std::string& summary,
-                    recorder::Mode mode, std::optional<Hand> driven) {
+                    recorder::Mode mode, std::optional<Hand> driven, Pointer pointer) {
   PanelText out;
   out.stage = stageText(status);
   out.mode = mode == recorder::Mode::practice ? "Practice" : "Assessment";
@@ -110,7 +142,8 @@ PanelText panelText(const TrainingStatus& status, const SceneDescription& scene,
   if (practice) out.score = scoreText(scene, figures);
   if (practice && status.stage == Stage::running) out.hint = QString::fromStdString(hintFor(scene, summary, figures));
   for (std::size_t h = 0; h < handCount; ++h)
-    out.hand[h] = handText(figures.hand[h], h, driven && static_cast<std::size_t>(*driven) == h);
+    out.hand[h] = handText(figures.hand[h], status.exchange[h], h, driven && static_cast<std::size_t>(*driven) == h);
+  out.pointer = pointerText(status, mode, pointer);
   out.result = resultText(status);
   return out;
 }

@@ -19,15 +19,25 @@ struct PanelText {
   QString deadlines;
   bool late = false;  ///< deadlines were missed within the last second
   QString phase;
-  QString score;  ///< critical view and errors; practice only
-  QString hint;   ///< practice only
+  QString score;    ///< critical view and errors; practice only
+  QString hint;     ///< practice only
+  QString pointer;  ///< who has the mouse, and how that changes
   std::array<QString, handCount> hand;
   QString result;  ///< of an attempt that has ended: outcome and file
 };
 
+/// Where the mouse is, while it drives a hand.
+enum class Pointer {
+  elsewhere,   ///< another device drives, or nothing runs
+  held,        ///< the picture holds it
+  free,        ///< it runs and the picture does not hold it
+  windowLeft,  ///< likewise, and the window has lost the keyboard
+};
+
 /// @param driven the hand that mouse and keyboard drive, if they do
 [[nodiscard]] PanelText panelText(const TrainingStatus& status, const SceneDescription& scene,
-                                  const std::string& summary, recorder::Mode mode, std::optional<Hand> driven);
+                                  const std::string& summary, recorder::Mode mode, std::optional<Hand> driven,
+                                  Pointer pointer = Pointer::elsewhere);
 
 /// Minutes, seconds and tenths: "1:02.5".
 [[nodiscard]] QString clockText(double seconds);

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/trainer_window.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iterator>
 #include <QBoxLayout>
 #include <QCoreApplication>
+#include <QEvent>
 #include <QLabel>
-#include <QMenuBar>
 #include <QStackedWidget>
 #include <utility>
 
+#include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/trainer/scenes_page.h"
-#include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
@@ -27,10 +28,13 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
       setup_(std::move(setup)),
       problem_(new QLabel),
       stack_(new QStackedWidget),
-      scenes_(new ScenesPage),
+      scenes_(
+          new ScenesPage(setup_.settings.attempt.mode == recorder::Mode::practice,
+                         setup_.settings.attempt.mode == recorder::Mode::practice && setup_.demonstration != nullptr)),
       operation_(new QWidget),
       view_(new OperationView(setup_.mouse, setup_.scope)),
-      panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr, setup_.scope != nullptr)) {
+      panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr, setup_.scope != nullptr)),
+      end_(new EndPage({setup_.settings.attempt.mode, setup_.cohort, setup_.settings.threads})) {
   setWindowTitle("Calot trainer");
   problem_->setObjectName("problem");
   problem_->setTextFormat(Qt::PlainText);
@@ -43,8 +47,8 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   row->setContentsMargins(0, 0, 0, 0);
   row->addWidget(view_, 1);
   row->addWidget(panel_);
-  stack_->addWidget(scenes_);
-  stack_->addWidget(operation_);
+  for (QWidget* const page : {static_cast<QWidget*>(scenes_), operation_, static_cast<QWidget*>(end_)})
+    stack_->addWidget(page);
   auto* const centre = new QWidget;
   auto* const layout = new QVBoxLayout(centre);
   layout->addWidget(problem_);
@@ -53,11 +57,28 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   buildMenus();
   resize(sizeHint());  // not what a small screen would make of it: the picture has 1280 by 720
   scenes_->setScenes(setup_.scenes);
+  connectPages();
+  connect(&timer_, &QTimer::timeout, this, &TrainerWindow::refresh);
+  timer_.setInterval(refreshPeriod);
+  readHistory();
+  refresh();
+}
 
-  connect(scenes_, &ScenesPage::chosen, this, &TrainerWindow::openScene);
+TrainerWindow::~TrainerWindow() { endSession(); }
+
+void TrainerWindow::connectPages() {
+  connect(scenes_, &ScenesPage::chosen, this, [this](const QString& file) { openScene(file); });
+  connect(scenes_, &ScenesPage::tutorialRequested, this,
+          [this](const QString& file) { openScene(file, Purpose::controls); });
+  connect(scenes_, &ScenesPage::demonstrationRequested, this,
+          [this](const QString& file) { openScene(file, Purpose::demonstration); });
   connect(view_, &OperationView::mountRequested, this, &TrainerWindow::mount);
   connect(view_, &OperationView::pauseRequested, this, &TrainerWindow::togglePause);
   connect(view_, &OperationView::handSwitched, this, &TrainerWindow::refresh);
+  connect(view_, &OperationView::pointerHeld, this, [this](bool held) {
+    if (held) windowLeft_ = false;
+    refresh();
+  });
   connect(view_, &ScenePictureWidget::pictureShown, this, [this](quint64 step) {
     if (!session_) return;
     const std::optional<double> delay = session_->shown(step);
@@ -65,53 +86,34 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   });
   connect(panel_, &RunPanel::pauseRequested, this, &TrainerWindow::togglePause);
   connect(panel_, &RunPanel::finishRequested, finishAction_, &QAction::trigger);
-  connect(panel_, &RunPanel::restartRequested, restartAction_, &QAction::trigger);
+  connect(panel_, &RunPanel::restartRequested, this, &TrainerWindow::restart);
   connect(panel_, &RunPanel::scenesRequested, this, &TrainerWindow::chooseScene);
-  connect(panel_, &RunPanel::backRequested, this, [this](double time) {
-    if (!session_ || !session_->goBack(time)) return;
-    refresh();
-    view_->setFocus();
-  });
-  connect(&timer_, &QTimer::timeout, this, &TrainerWindow::refresh);
-  timer_.setInterval(refreshPeriod);
-  refresh();
+  connect(panel_, &RunPanel::backRequested, this, &TrainerWindow::goBack);
+  connect(end_, &EndPage::againRequested, this, &TrainerWindow::restart);
+  connect(end_, &EndPage::nextRequested, this, &TrainerWindow::nextTask);
+  connect(end_, &EndPage::scenesRequested, this, &TrainerWindow::chooseScene);
+  connect(end_, &EndPage::backRequested, this, &TrainerWindow::goBack);
+  connect(end_, &EndPage::problem, this, &TrainerWindow::showProblem);
+  connect(end_, &EndPage::stored, this, &TrainerWindow::readHistory);
 }
 
-TrainerWindow::~TrainerWindow() { endSession(); }
-
-void TrainerWindow::buildMenus() {
-  QMenu* const attempt = menuBar()->addMenu("&Attempt");
-  pauseAction_ =
-      attempt->addAction("&Pause or go on", QKeySequence(Qt::CTRL | Qt::Key_P), this, [this] { togglePause(); });
-  pauseAction_->setVisible(setup_.settings.attempt.mode == recorder::Mode::practice);
-  finishAction_ = attempt->addAction("&End", QKeySequence(Qt::CTRL | Qt::Key_E), this, [this] {
-    if (session_) session_->finish();
-    refresh();
-  });
-  restartAction_ = attempt->addAction("Start a&gain", QKeySequence(Qt::CTRL | Qt::Key_R), this, [this] {
-    if (session_) session_->start();
-    refresh();
-    view_->setFocus();
-  });
-  attempt->addAction("&Other scene", QKeySequence(QKeySequence::Open), this, [this] { chooseScene(); });
-  attempt->addAction("&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), this, [this] { close(); });
-  QMenu* const look = menuBar()->addMenu("&View");
-  look->addAction("&Full screen", QKeySequence(Qt::Key_F11), this,
-                  [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
-  look->addAction("&Operation", QKeySequence(Qt::Key_F6), this, [this] { view_->setFocus(); });
-}
-
-void TrainerWindow::begin(recorder::LoadedScene scene) {
+void TrainerWindow::begin(recorder::LoadedScene scene, Purpose purpose) {
   endSession();
   problem_->hide();
   setWindowTitle(QString::fromStdString(scene.description.name) + QString::fromUtf8(" – Calot trainer"));
   TrainingSettings settings = setup_.settings;
   settings.scene = std::move(scene);
   settings.firstPicture = std::chrono::seconds(5);
+  purpose_ = purpose;
+  tutorial_.reset();
+  if (purpose != Purpose::own) settings.attempt.mode = recorder::Mode::practice;
+  if (purpose == Purpose::controls) tutorial_.emplace(setup_.mouse != nullptr);
+  if (purpose == Purpose::demonstration) settings.attempt.participant.clear();  // no attempt of theirs
   view_->showText("Getting ready …");
   rate_ = {};
+  ended_.clear();
   session_ = std::make_unique<TrainingSession>(
-      std::move(settings), setup_.input,
+      std::move(settings), purpose == Purpose::demonstration ? setup_.demonstration : setup_.input,
       [view = view_](std::shared_ptr<const SceneView> seen) { view->showView(std::move(seen)); });
   session_->start();
   stack_->setCurrentWidget(operation_);
@@ -120,9 +122,9 @@ void TrainerWindow::begin(recorder::LoadedScene scene) {
   refresh();
 }
 
-bool TrainerWindow::openScene(const QString& file) {
+bool TrainerWindow::openScene(const QString& file, Purpose purpose) {
   try {
-    begin(recorder::loadScene(file.toStdString()));
+    begin(recorder::loadScene(file.toStdString()), purpose);
     return true;
   } catch (const Error& error) {
     showProblem(QString::fromStdString(problemText(error)));
@@ -142,6 +144,7 @@ void TrainerWindow::chooseScene() {
 void TrainerWindow::endSession() {
   timer_.stop();
   view_->setActive(false);
+  end_->leave();
   if (!session_) return;
   // Its thread shows views: it ends before the picture is cleared. The last attempt is reported when it has ended.
   session_->stop();
@@ -159,8 +162,55 @@ std::vector<std::string> TrainerWindow::endAndReport() {
   return recorded_;
 }
 
+void TrainerWindow::restart() {
+  if (!session_) return;
+  session_->start();
+  if (tutorial_) tutorial_.emplace(setup_.mouse != nullptr);
+  stack_->setCurrentWidget(operation_);
+  end_->leave();
+  refresh();
+  view_->setFocus();
+}
+
+void TrainerWindow::goBack(double time) {
+  if (!session_ || !session_->goBack(time)) return;
+  stack_->setCurrentWidget(operation_);
+  end_->leave();
+  refresh();
+  view_->setFocus();
+}
+
+std::optional<std::size_t> TrainerWindow::taskAfterThis() const {
+  const auto at = std::find_if(setup_.scenes.begin(), setup_.scenes.end(),
+                               [&](const SceneChoice& scene) { return scene.name == session_->scene().name; });
+  if (at == setup_.scenes.end() || at->title.empty()) return std::nullopt;
+  // Whoever learnt the controls, or watched, does this task first.
+  const auto next = purpose_ == Purpose::own ? at + 1 : at;
+  if (next == setup_.scenes.end() || next->title.empty()) return std::nullopt;
+  return static_cast<std::size_t>(next - setup_.scenes.begin());
+}
+
+void TrainerWindow::nextTask() {
+  if (!session_) return;
+  if (const std::optional<std::size_t> next = taskAfterThis())
+    openScene(QString::fromStdString(setup_.scenes[*next].file.string()));
+}
+
+void TrainerWindow::readHistory() {
+  const std::string& participant = setup_.settings.attempt.participant;
+  if (setup_.cohort.empty() || participant.empty()) return;
+  background_.run([this, cohort = setup_.cohort, participant]() -> Background::Completion {
+    try {
+      return [this, history = historyIn(cohort, participant)]() mutable { scenes_->setHistory(std::move(history)); };
+    } catch (const std::exception& error) {
+      return [this, text = QString::fromStdString(problemText(error))] { showProblem(text); };
+    }
+  });
+}
+
 void TrainerWindow::togglePause() {
   if (!session_) return;
+  windowLeft_ = false;
   if (session_->resume())
     view_->setFocus();
   else
@@ -168,10 +218,32 @@ void TrainerWindow::togglePause() {
   refresh();
 }
 
+/// Hands that nobody can reach any more are not to go on: practice pauses. An assessment has no pause; what is pressed
+/// is let go (OperationView), and the panel says so. Hands of another device are where they were.
+void TrainerWindow::changeEvent(QEvent* event) {
+  QMainWindow::changeEvent(event);
+  if (event->type() != QEvent::ActivationChange || isActiveWindow() || !session_ || !driven()) return;
+  if (session_->status().stage != Stage::running) return;
+  windowLeft_ = true;
+  session_->pause();
+  refresh();
+}
+
+std::optional<Hand> TrainerWindow::driven() const {
+  if (!setup_.mouse || purpose_ == Purpose::demonstration) return std::nullopt;
+  return setup_.mouse->hand();
+}
+
+Pointer TrainerWindow::pointer(const TrainingStatus& status) const {
+  if (!driven() || (status.stage != Stage::running && !windowLeft_)) return Pointer::elsewhere;
+  if (view_->holdsPointer()) return Pointer::held;
+  return windowLeft_ ? Pointer::windowLeft : Pointer::free;
+}
+
 void TrainerWindow::mount(InstrumentKind instrument, bool otherHand) {
   if (!session_) return;
-  const Hand driven = setup_.mouse ? setup_.mouse->hand() : Hand::right;
-  session_->mount(otherHand ? (driven == Hand::right ? Hand::left : Hand::right) : driven, instrument);
+  const Hand own = driven().value_or(Hand::right);
+  session_->mount(otherHand ? (own == Hand::right ? Hand::left : Hand::right) : own, instrument);
 }
 
 void TrainerWindow::showProblem(const QString& message) {
@@ -182,16 +254,31 @@ void TrainerWindow::showProblem(const QString& message) {
 void TrainerWindow::refresh() {
   const bool open = session_ != nullptr;
   for (QAction* const action : {pauseAction_, finishAction_, restartAction_}) action->setEnabled(open);
+  skipAction_->setEnabled(open && tutorial_);
   if (!open) return;
   const TrainingStatus status = session_->status();
-  view_->setActive(status.stage == Stage::running);
+  view_->setActive(status.stage == Stage::running && purpose_ != Purpose::demonstration);
   rate_.setRunning(status.stage == Stage::running);
   const SceneDescription& scene = session_->scene();
-  const std::optional<Hand> driven = setup_.mouse ? std::optional(setup_.mouse->hand()) : std::nullopt;
-  panel_->show(status, panelText(status, scene, session_->summary(), session_->mode(), driven),
-               tickLength * scene.ticksPerStep);
-  if (QString::fromStdString(status.problem) != problem_->text() || status.problem.empty() == problem_->isVisible())
-    showProblem(QString::fromStdString(status.problem));
+  view_->showOver(status.stage == Stage::countdown ? QString::number(status.countdown) : QString());
+  PanelText text = panelText(status, scene, session_->summary(), session_->mode(), driven(), pointer(status));
+  if (tutorial_) {
+    tutorial_->observe(status, driven());
+    if (status.stage == Stage::running || status.stage == Stage::paused) text.hint = tutorial_->text();
+  }
+  panel_->show(status, text, tickLength * scene.ticksPerStep);
+  if (status.stage == Stage::ended && status.attempt != ended_) showEnd(status, text.result);
+  if (status.problem != "" || !end_->isVisible()) {
+    const QString problem = QString::fromStdString(status.problem);
+    if (problem != problem_->text() || problem.isEmpty() == problem_->isVisible()) showProblem(problem);
+  }
+}
+
+void TrainerWindow::showEnd(const TrainingStatus& status, const QString& result) {
+  ended_ = status.attempt;
+  if (status.figures.ticks == 0) return;
+  stack_->setCurrentWidget(end_);
+  end_->showAttempt(status, result, tickLength * session_->scene().ticksPerStep, taskAfterThis().has_value());
 }
 
 void TrainerWindow::savePicture(const QString& file) {

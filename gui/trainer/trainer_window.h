@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <QMainWindow>
 #include <QTimer>
 #include <string>
 #include <vector>
 
+#include "gui/attempt/background.h"
+#include "gui/trainer/controls_tutorial.h"
 #include "gui/trainer/picture_rate.h"
 #include "gui/trainer/scene_choice.h"
+#include "gui/trainer/trainer_texts.h"
 #include "gui/trainer/training_session.h"
 #include "recorder/sources/devices/mouse_input.h"
 #include "recorder/sources/devices/scope_input.h"
@@ -19,6 +24,7 @@ class QStackedWidget;
 
 namespace calot::gui {
 
+class EndPage;
 class OperationView;
 class RunPanel;
 class ScenesPage;
@@ -30,27 +36,37 @@ struct TrainerSetup {
   std::shared_ptr<recorder::MouseInput> mouse;  ///< what the input listens to; null: another device drives
   std::shared_ptr<recorder::ScopeInput> scope;  ///< what the endoscope listens to; null: it is fixed, or held otherwise
   std::vector<SceneChoice> scenes;
+  std::shared_ptr<AttemptInput> demonstration = {};  ///< a performer to be watched; null: there is none
+  std::filesystem::path cohort = {};                 ///< where attempts are kept; may not exist yet; empty: none
 };
 
-/// The trainer: a page to choose a scene, and the operation with its panel. It puts pages together and asks a
-/// TrainingSession twenty times a second; what may be done is decided there.
+/// The trainer: a page to choose a task, the operation with its panel, and how it went. It puts pages together and asks
+/// a TrainingSession twenty times a second; what may be done is decided there.
 class TrainerWindow : public QMainWindow {
   Q_OBJECT
  public:
+  /// What an attempt is for.
+  enum class Purpose {
+    own,            ///< the trainee's
+    controls,       ///< the trainee's, who is asked for one control after the other; in practice
+    demonstration,  ///< a performer's, to be watched: synthetic, without the trainee's pseudonym
+  };
+
   explicit TrainerWindow(TrainerSetup setup, QWidget* parent = nullptr);
   /// Ends what runs; its recording is whole.
   ~TrainerWindow() override;
 
   /// Begins with a scene: an attempt starts as soon as all is ready.
-  void begin(recorder::LoadedScene scene);
+  void begin(recorder::LoadedScene scene, Purpose purpose = Purpose::own);
   /// The same from a file. On failure says why in one line on the window, and returns false.
-  bool openScene(const QString& file);
+  bool openScene(const QString& file, Purpose purpose = Purpose::own);
   /// Back to the scenes; what runs ends.
   void chooseScene();
 
   /// The session of the scene that is open; null on the page of scenes.
   [[nodiscard]] TrainingSession* session() { return session_.get(); }
   [[nodiscard]] OperationView* view() { return view_; }
+  [[nodiscard]] EndPage* endPage() { return end_; }
   /// Recordings of all scenes so far, one line each for a terminal, and how many pictures a second each scene was shown
   /// in while it ran. Ends what runs.
   [[nodiscard]] std::vector<std::string> endAndReport();
@@ -61,9 +77,21 @@ class TrainerWindow : public QMainWindow {
  public slots:
   void refresh();
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
   void buildMenus();
+  void connectPages();
   void togglePause();
+  void restart();
+  void goBack(double time);
+  void nextTask();
+  void readHistory();
+  void showEnd(const TrainingStatus& status, const QString& result);
+  [[nodiscard]] Pointer pointer(const TrainingStatus& status) const;
+  [[nodiscard]] std::optional<Hand> driven() const;
+  [[nodiscard]] std::optional<std::size_t> taskAfterThis() const;
   void mount(InstrumentKind instrument, bool otherHand);
   void showProblem(const QString& message);
   void endSession();
@@ -75,11 +103,17 @@ class TrainerWindow : public QMainWindow {
   QWidget* operation_;
   OperationView* view_;
   RunPanel* panel_;
-  QAction *pauseAction_, *finishAction_, *restartAction_;
+  EndPage* end_;
+  QAction *pauseAction_, *finishAction_, *restartAction_, *skipAction_;
   QTimer timer_;
-  PictureRate rate_;  ///< of the scene
+  PictureRate rate_;         ///< of the scene
+  bool windowLeft_ = false;  ///< the keyboard went elsewhere in the middle of a run, and has not come back to it
+  Purpose purpose_ = Purpose::own;
+  std::optional<ControlsTutorial> tutorial_;
+  std::string ended_;  ///< the attempt that the end page shows
   std::vector<std::string> recorded_;
   std::unique_ptr<TrainingSession> session_;
+  Background background_;  ///< reads the trainee's history
 };
 
 }  // namespace calot::gui

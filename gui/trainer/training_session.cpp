@@ -105,14 +105,15 @@ bool TrainingSession::resume() {
 bool TrainingSession::finish() {
   const std::lock_guard lock(mutex_);
   if (controlled_ == nullptr) return false;
-  controlled_->finish(isDone(scene(), monitor_->figures()) ? Outcome::completed : Outcome::abandoned);
+  status_.undone = whatIsUndone(scene(), monitor_->figures());
+  controlled_->finish(status_.undone.empty() ? Outcome::completed : Outcome::abandoned);
   return true;
 }
 
 bool TrainingSession::mount(Hand hand, InstrumentKind instrument) {
   const std::lock_guard lock(mutex_);
   if (controlled_ == nullptr || status_.stage != Stage::running) return false;
-  controlled_->mount(hand, instrument);
+  controlled_->exchange(hand, instrument, static_cast<std::uint32_t>(settings_.exchange.count()));
   return true;
 }
 
@@ -127,6 +128,9 @@ TrainingStatus TrainingSession::status() const {
   const std::lock_guard lock(mutex_);
   TrainingStatus out = status_;
   if (monitor_ != nullptr) out.figures = monitor_->figures();
+  for (const Hand hand : {Hand::left, Hand::right}) {
+    if (controlled_ != nullptr) out.exchange[static_cast<std::size_t>(hand)] = controlled_->exchanging(hand);
+  }
   out.waiting = out.stage == Stage::running && std::chrono::steady_clock::now() - out.figures.seen > longSilence;
   return out;
 }
@@ -154,7 +158,8 @@ void TrainingSession::work() {
       problem = problemText(error);
     }
     const std::lock_guard lock(mutex_);
-    status_.stage = Stage::ended;
+    // Where something else is wanted already, nothing has come to an end.
+    if (!command_ || command_->quit) status_.stage = Stage::ended;
     if (!problem.empty()) status_.problem = problem;
   }
 }
@@ -255,6 +260,7 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   tap_.follow(session);
   session.join(tap_);
   awaitPicture(session);
+  if (!header.parent.empty()) countDown(controlled);
   recorder::RunSettings run;
   run.live = true;
   run.progress = [&](std::uint64_t) {
@@ -273,6 +279,7 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
       status_.branchedAt = static_cast<double>(header.forkStep + 1) * prepared_->model().stepSeconds();
       status_.operatorKind = header.provenance.kind;
       status_.report = {};
+      status_.undone.clear();
     }
     ClockedSource clocked(controlled, motions_, session.steps(), scene().ticksPerStep);
     report = recorder::runAttempt(session, clocked, run);
@@ -293,6 +300,23 @@ void TrainingSession::awaitPicture(recorder::Session& session) {
       const std::lock_guard lock(mutex_);
       if (command_) return;
     }
+    std::this_thread::sleep_for(glance);
+  }
+}
+
+/// Who went back looks first and acts then. What the hands do meanwhile is forgotten.
+void TrainingSession::countDown(recorder::SampleSource& source) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds glance(10);
+  const Clock::time_point end = Clock::now() + settings_.countdown;
+  for (Clock::time_point now = Clock::now(); now < end; now = Clock::now()) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (command_) return;
+      status_.stage = Stage::countdown;
+      status_.countdown = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(end - now).count());
+    }
+    source.rest();
     std::this_thread::sleep_for(glance);
   }
 }

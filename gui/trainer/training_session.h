@@ -2,6 +2,7 @@
 // One trainee at one scene: attempts one after the other, each recorded as `calot record --live` records. No window.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
@@ -32,12 +33,15 @@ struct TrainingSettings {
   unsigned threads = 1;          ///< of the simulation
   /// How long an attempt waits for its first picture, at most: OpenGL's programs are compiled for it.
   std::chrono::milliseconds firstPicture{0};
+  std::chrono::milliseconds countdown{3000};  ///< after going back, until the hands take effect
+  std::chrono::milliseconds exchange{3000};   ///< an exchange of instruments takes so long of the attempt
 };
 
 /// What the session is at.
 enum class Stage : std::uint8_t {
   preparing,     ///< a scene is built, a device waited for
   takingParent,  ///< going back: the parent's steps are simulated again
+  countdown,     ///< gone back: the picture is there, the hands take effect in a moment
   running,
   paused,
   ended,  ///< nothing runs; what there was is recorded
@@ -46,6 +50,7 @@ enum class Stage : std::uint8_t {
 struct TrainingStatus {
   Stage stage = Stage::preparing;
   double progress = 0.0;        ///< of takingParent, from 0 to 1
+  int countdown = 0;            ///< of that stage: seconds still to go, the last one begun counts
   bool waiting = false;         ///< it runs and no step has come for half a second: the device is gone
   std::string problem;          ///< why it could not go on, in one line; or empty
   std::filesystem::path file;   ///< of the attempt; empty before there is one
@@ -53,6 +58,9 @@ struct TrainingStatus {
   double branchedAt = 0.0;      ///< where a branch left its parent (s)
   recorder::OperatorKind operatorKind = recorder::OperatorKind::human;
   recorder::RunReport report;  ///< of the attempt that ended
+  std::string undone;          ///< why an attempt that the trainee ended was abandoned; or empty
+  /// Of each hand: what it is given while it has nothing.
+  std::array<std::optional<recorder::ControlledSource::Exchange>, handCount> exchange;
   AttemptFigures figures;
 };
 
@@ -73,12 +81,13 @@ class TrainingSession {
   void start();
   bool pause();
   bool resume();
-  /// The trainee has done: completed where the procedure is, or where there is none; else abandoned.
+  /// The trainee has done: completed where the scene's procedure is, or where it has none and tissue was touched; else
+  /// abandoned (TrainingStatus::undone).
   bool finish();
   /// Ends what runs as stopped, and goes on from that moment of it in a branch.
   /// @param time of the attempt (s), not before its first step's end and not after its last step
   bool goBack(double time);
-  /// Hands an instrument over, from the next tick on.
+  /// Exchanges a hand's instrument, which takes TrainingSettings::exchange; meanwhile the hand has none.
   bool mount(Hand hand, InstrumentKind instrument);
   /// Ends what runs as stopped and waits for its recording; no command does anything any more.
   void stop();
@@ -111,6 +120,7 @@ class TrainingSession {
            recorder::RecordingWriter& writer, AttemptMonitor& monitor, const recorder::AttemptHeader& header,
            const std::filesystem::path& file);
   void awaitPicture(recorder::Session& session);
+  void countDown(recorder::SampleSource& source);
   void keepResult(const recorder::RunReport& report, const recorder::SampleSource& source);
   void enter(Stage stage);
   void giveWay() const;

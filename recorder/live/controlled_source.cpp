@@ -7,11 +7,35 @@ bool ControlledSource::next(std::uint64_t tick, TickSamples& out) {
   if (finished_ != Outcome::running) return false;
   if (!source_.next(tick, out)) return false;
   for (std::size_t h = 0; h < handCount; ++h) {
-    const std::int16_t mounted = mounted_[h];
+    const std::uint64_t wish = exchange_[h].wish.exchange(0);
     InstrumentKind& instrument = out.hand[h].instrument;
-    if (mounted != asGiven && instrument != InstrumentKind::none) instrument = static_cast<InstrumentKind>(mounted);
+    if (instrument == InstrumentKind::none) continue;
+    if (const std::int16_t mounted = mounted_[h]; mounted != asGiven) instrument = static_cast<InstrumentKind>(mounted);
+    std::uint32_t left = exchange_[h].left;
+    const auto wanted = static_cast<InstrumentKind>(wish >> 32U);
+    if (wish != 0 && (left > 0 || wanted != instrument)) {
+      mounted_[h] = static_cast<std::int16_t>(wanted);
+      instrument = wanted;
+      left = static_cast<std::uint32_t>(wish);
+    }
+    if (left > 0) {
+      instrument = InstrumentKind::none;
+      --left;
+    }
+    exchange_[h].left = left;
   }
   return true;
+}
+
+void ControlledSource::exchange(Hand hand, InstrumentKind instrument, std::uint32_t ticks) {
+  exchange_[static_cast<std::size_t>(hand)].wish = static_cast<std::uint64_t>(instrument) << 32U | ticks;
+}
+
+std::optional<ControlledSource::Exchange> ControlledSource::exchanging(Hand hand) const {
+  const auto h = static_cast<std::size_t>(hand);
+  const std::uint32_t left = exchange_[h].left;
+  if (left == 0) return std::nullopt;
+  return Exchange{static_cast<InstrumentKind>(mounted_[h].load()), left};
 }
 
 SourceStatus ControlledSource::status() {

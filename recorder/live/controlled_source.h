@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "recorder/sources/source.h"
@@ -14,7 +15,7 @@ namespace calot::recorder {
 /// attempt, with any device.
 ///
 /// Changes are made in the samples and are thus recorded: an exchanged instrument appears in the ticks,
-/// a pause produces none.
+/// a pause produces none. So they replay as they were, whatever the simulation makes of them.
 class ControlledSource final : public SampleSource {
  public:
   /// @param source outlives this
@@ -28,6 +29,16 @@ class ControlledSource final : public SampleSource {
   void mount(Hand hand, InstrumentKind instrument) {
     mounted_[static_cast<std::size_t>(hand)] = static_cast<std::int16_t>(instrument);
   }
+  /// The same as a person does it: the old instrument is drawn out through the port and the new one put in, and for so
+  /// long the hand has none. Nothing happens to a hand without any, or that has this one already; a newer wish on the
+  /// way begins anew. @param ticks how long it takes (ms)
+  void exchange(Hand hand, InstrumentKind instrument, std::uint32_t ticks);
+  /// An exchange that is under way.
+  struct Exchange {
+    InstrumentKind coming = InstrumentKind::none;
+    std::uint32_t ticks = 0;  ///< still to go
+  };
+  [[nodiscard]] std::optional<Exchange> exchanging(Hand hand) const;
   /// The source ends with the next tick. @pre outcome is not running
   void finish(Outcome outcome) { finished_ = outcome; }
 
@@ -45,7 +56,12 @@ class ControlledSource final : public SampleSource {
 
   SampleSource& source_;
   std::atomic<bool> held_{false};
+  struct Exchanging {
+    std::atomic<std::uint64_t> wish{0};  ///< kind in the upper half, ticks in the lower; 0: none
+    std::atomic<std::uint32_t> left{0};  ///< ticks
+  };
   std::array<std::atomic<std::int16_t>, handCount> mounted_{asGiven, asGiven};
+  std::array<Exchanging, handCount> exchange_;
   std::atomic<Outcome> finished_{Outcome::running};
 };
 

@@ -43,6 +43,11 @@ class Trainer(ProgramTest):
         for seconds in ("0", "-1", "nan", "inf", "1x", ""):
             self.assertIn("--seconds", self.declined(2, "--scene", SCENE, "--seconds", seconds, *out))
         self.declined(2, "--scene", SCENE, "--pictures", self.folder / "missing", *out)
+        for size in ("1366", "10x10", "1366x768x2", "axb"):
+            self.assertIn("--size", self.declined(2, "--scene", SCENE, "--size", size, *out))
+        self.assertIn("--type", self.declined(2, "--scene", SCENE, "--type", "50", *out))
+        self.assertIn("--colours", self.declined(2, "--scene", SCENE, "--colours", "pink", *out))
+        self.assertIn("/nowhere", self.declined(2, "--scene", SCENE, "--cohort", "/nowhere/c.db", *out))
         # Nobody makes files there, not even an administrator.
         self.assertIn("cannot be written", self.declined(1, "--scene", SCENE, "-o", "/proc"))
         self.declined(2, "--no-such-option")
@@ -51,6 +56,9 @@ class Trainer(ProgramTest):
         scene = self.folder / "bad.json"
         scene.write_text('{"format": "calot-scene"')
         self.assertIn("bad.json", self.declined(4, "--scene", scene, "-o", self.folder))
+        cohort = self.folder / "no.db"
+        cohort.write_text("not a database")
+        self.assertIn("no.db", self.declined(4, "--scene", SCENE, "--cohort", cohort, "-o", self.folder))
         script = self.folder / "script.json"
         script.write_text("[]")
         self.assertIn("script.json", self.declined(4, "--scene", SCENE, "--device", f"scripted:{script}", "-o", self.folder))
@@ -61,13 +69,15 @@ class Trainer(ProgramTest):
         self.assertIn("calot-trainer", answer.err)
 
     def test_it_ends_by_itself_after_so_many_seconds(self):
-        answer = trainer("--scene", SCENE, "--performer", "skilled", "--seconds", "0.5", "-o", self.folder)
+        answer = trainer("--scene", SCENE, "--performer", "skilled", "--seconds", "0.5", "--cohort", self.folder / "c.db", "--colours", "dark",
+                         "--type", "150", "--size", "1366x768", "-o", self.folder)
         self.assertEqual(answer.code, 0, answer)
         [file] = self.folder.glob("*.h5")
         seconds = float(re.search(r", (\d+\.\d+) s, stopped$", answer.out, re.MULTILINE).group(1))
         self.assertGreaterEqual(seconds, 0.5)
         self.assertRegex(answer.out, r"forces late \(\d+\.\d+ %\), at most by")
         self.well("replay", file)
+        self.assertFalse((self.folder / "c.db").exists(), "a cohort is made when something is put into it")
 
     def test_a_signal_ends_it_and_the_recording_is_whole(self):
         running = subprocess.Popen([str(TRAINER), "--scene", SCENE, "--device", "null", "-o", str(self.folder)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,

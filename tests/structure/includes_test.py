@@ -50,9 +50,10 @@ MAY_SEE = {
     "gui/words": ("sim", "recorder contracts", "analytics"),
     "gui/film": ("sim", "recorder", "analytics", "gui/render", "gui/words"),
     "gui/view": ("sim", "recorder contracts", "gui/render"),
-    "gui/dashboard": ("sim", "recorder", "analytics", "gui/render", "gui/report", "gui/view", "gui/words"),
+    "gui/attempt": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
+    "gui/dashboard": ("sim", "recorder", "analytics", "gui/attempt", "gui/render", "gui/report", "gui/view", "gui/words"),
     "gui/page": ("sim", "recorder", "gui/render", "gui/words"),
-    "gui/trainer": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
+    "gui/trainer": ("sim", "recorder", "analytics", "gui/attempt", "gui/render", "gui/view", "gui/words"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui", "apps/common"),
     "python": ("sim", "recorder", "analytics", "gui/render", "apps/common"),
@@ -77,7 +78,7 @@ BULLET = "BulletCollision/"  # that one folder sees Bullet
 
 # Foreign headers that only some rooms may see: prefix -> rooms.
 ONLY = {
-    "Q": ("gui/view", "gui/dashboard", "gui/trainer", "gui/report", "apps"),
+    "Q": ("gui/view", "gui/attempt", "gui/dashboard", "gui/trainer", "gui/report", "apps"),
     "hdf5": ("recorder/recording",),
     "H5": ("recorder/recording",),
     "SQLiteCpp/": ("analytics/cohort",),

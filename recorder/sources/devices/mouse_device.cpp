@@ -25,13 +25,26 @@ constexpr double fastest = 0.5;                     // m/s
 constexpr double rollSpeed = 1.5, jawSpeed = 1.8;
 constexpr double largestJaw = 1.2;  // rad
 constexpr double fineShare = 0.25;
-const Vec3 reach(0.2, 0.2, 0.2);  // m
+constexpr double leastInside = 0.01;     // m from the port to the tip
+constexpr double leastBeforeEye = 0.02;  // m from the endoscope's eye to the tip
+const Vec3 reach(0.2, 0.2, 0.2);         // m
 
 /// Takes from what is asked for as much as may be done now.
 double drawn(double& asked, double most) {
   const double now = std::clamp(asked, -most, most);
   asked -= now;
   return now;
+}
+
+/// Direction and distance of a point.
+struct Line {
+  Vec3 direction = Vec3::UnitZ();
+  double length = 0.0;
+};
+Line lineFrom(const Vec3& origin, const Vec3& to) {
+  const Vec3 way = to - origin;
+  const double length = way.norm();
+  return {length > 1e-6 ? Vec3(way / length) : Vec3::UnitZ(), length};
 }
 
 }  // namespace
@@ -59,16 +72,21 @@ void MouseDevice::advance(Pointer& p, const MouseInput::Wish& wish, double secon
   const double keys = share * keySpeed * seconds;
   p.right += share * pixel * wish.pixels[0] + keys * either(MouseControl::right, MouseControl::left);
   p.down += share * pixel * wish.pixels[1] + keys * either(MouseControl::down, MouseControl::up);
-  p.in += share * notch * wish.notches + keys * either(MouseControl::in, MouseControl::out);
+  p.in += keys * either(MouseControl::in, MouseControl::out);
+  p.away += share * notch * wish.notches;
   const double most = fastest * seconds;
-  const Vec3 along = p.position - wish.port[static_cast<std::size_t>(wish.hand)];
-  const double length = along.norm();
-  const Vec3 shaft = length > 1e-6 ? Vec3(along / length) : Vec3::UnitZ();
+  const Vec3& port = wish.port[static_cast<std::size_t>(wish.hand)];
+  const auto [shaft, length] = lineFrom(port, p.position);
   const double right = drawn(p.right, most);
   const double down = drawn(p.down, most);
-  // The tip stays a centimetre inside its port.
-  const double in = std::max(drawn(p.in, most), notPositive(0.01 - length));
+  const double in = std::max(drawn(p.in, most), notPositive(leastInside - length));
   p.position += Vec3(right, down, 0.0) + in * shaft;
+  const auto [sight, distance] = lineFrom(wish.eye[static_cast<std::size_t>(wish.hand)], p.position);
+  const double away = std::max(drawn(p.away, most), notPositive(leastBeforeEye - distance));
+  const Vec3 seen = p.position + away * sight;
+  // Towards the eye may be towards the port, too.
+  const double inside = (seen - port).norm();
+  if (inside >= leastInside || inside >= (p.position - port).norm()) p.position = seen;
   p.position = p.position.cwiseMax(-reach).cwiseMin(reach);
   p.roll += share * rollSpeed * seconds * either(MouseControl::rollRight, MouseControl::rollLeft);
   p.jaw =
@@ -111,7 +129,7 @@ void MouseDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
   const MouseInput::Wish wish = input_->take();
   const Hand other = wish.hand == Hand::right ? Hand::left : Hand::right;
   Pointer& resting = pointer_[static_cast<std::size_t>(other)];
-  resting.right = resting.down = resting.in = 0.0;
+  resting.right = resting.down = resting.in = resting.away = 0.0;
   advance(pointer_[static_cast<std::size_t>(wish.hand)], wish,
           std::min(maxStep, 1e-9 * static_cast<double>(now - last_)));
   std::uint8_t momentary = 0;

@@ -12,9 +12,10 @@ namespace calot::recorder {
 
 /// Mouse and keyboard of a window as one pointer that drives one hand at a time.
 ///
-/// D is x right, y down, z away. The pointer moves the tip right and down, 0.15 mm a pixel; the wheel along the shaft,
-/// 3 mm a notch. Keys do the same at 30 mm/s, roll at 1.5 rad/s, open and close the jaw at 1.8 rad/s. No motion is
-/// faster than 0.5 m/s: the tip catches up with the pointer later. `fine` divides all of it by four.
+/// D is x right, y down, z away. The pointer moves the tip right and down, 0.15 mm a pixel; the wheel along the line of
+/// sight, 3 mm a notch, so that the tip stays where it is in the picture. Keys move at 30 mm/s to the four sides and
+/// along the shaft, roll at 1.5 rad/s, open and close the jaw at 1.8 rad/s. No motion is faster than 0.5 m/s: the tip
+/// catches up with the pointer later. `fine` divides all of it by four.
 ///
 /// The hand that is driven gives 250 samples a second. The other one stays as it was left, without a pedal, and reports
 /// this 50 times a second, so that it counts as measured.
@@ -32,7 +33,7 @@ class MouseDevice final : public Device {
   struct Pointer {
     Vec3 position = Vec3::Zero();  ///< of the tip, from where it began, in D (m)
     double roll = 0.0, jaw = 0.0;
-    double right = 0.0, down = 0.0, in = 0.0;  ///< asked for and not yet done (m)
+    double right = 0.0, down = 0.0, in = 0.0, away = 0.0;  ///< asked for and not yet done (m)
     std::uint64_t sequence = 0;
   };
   void advance(Pointer& pointer, const MouseInput::Wish& wish, double seconds);

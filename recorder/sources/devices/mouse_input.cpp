@@ -48,14 +48,20 @@ Hand MouseInput::hand() const {
 
 void MouseInput::reset() {
   const Lock lock(mutex_);
-  const auto port = wish_.port;
-  wish_ = {};
-  wish_.port = port;
+  Wish fresh;
+  fresh.port = wish_.port;
+  fresh.eye = wish_.eye;
+  wish_ = fresh;
 }
 
 void MouseInput::setPorts(const std::array<Vec3, handCount>& ports) {
   const Lock lock(mutex_);
   wish_.port = ports;
+}
+
+void MouseInput::setEyes(const std::array<Vec3, handCount>& eyes) {
+  const Lock lock(mutex_);
+  wish_.eye = eyes;
 }
 
 MouseInput::Wish MouseInput::take() {

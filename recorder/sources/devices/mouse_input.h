@@ -34,7 +34,7 @@ class MouseInput {
  public:
   /// The pointer went by so many pixels.
   void move(double right, double down);
-  /// The wheel rotated by so many notches; positive: away from the hand, deeper.
+  /// The wheel rotated by so many notches; positive: away from the hand, deeper into the picture.
   void turnWheel(double notches);
   void hold(MouseControl control, bool held);
   /// Ratchet of the driven hand's grasper: locks, or lets go.
@@ -50,8 +50,12 @@ class MouseInput {
   /// A new attempt: the right hand, nothing held, nothing locked.
   void reset();
 
-  /// Where each hand's port lies in D, seen from where its tip began (m): the wheel moves along the line from there.
+  /// Where each hand's port lies in D, seen from where its tip began (m): `in` and `out` move along the line from
+  /// there.
   void setPorts(const std::array<Vec3, handCount>& ports);
+  /// Where the endoscope's eye lies in D, seen from where each tip began (m): the wheel moves along the line from
+  /// there.
+  void setEyes(const std::array<Vec3, handCount>& eyes);
 
   /// What the device takes at each of its samples.
   struct Wish {
@@ -61,6 +65,8 @@ class MouseInput {
     std::array<bool, mouseControls> held{};
     std::array<bool, handCount> locked{};
     std::array<Vec3, handCount> port{Vec3::Zero(), Vec3::Zero()};
+    /// Far behind: lines of sight are parallel to the camera's axis.
+    std::array<Vec3, handCount> eye{Vec3(0.0, 0.0, -1e3), Vec3(0.0, 0.0, -1e3)};
 
     [[nodiscard]] bool holds(MouseControl control) const { return held[static_cast<std::size_t>(control)]; }
   };

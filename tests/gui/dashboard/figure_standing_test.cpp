@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/figure_standing.h"
+#include "gui/attempt/figure_standing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/replay_player.h"
+#include "gui/attempt/replay_player.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "gui/dashboard/attempt_track.h"
-#include "gui/dashboard/open_recording.h"
+#include "gui/attempt/attempt_track.h"
+#include "gui/attempt/open_recording.h"
 #include "recorder/errors.h"
 #include "recorder/replay.h"
 #include "tests/gui/dashboard/support/recorded.h"

@@ -27,12 +27,12 @@
 #include <set>
 
 #include "apps/calot-dashboard/assess_program.h"
+#include "gui/attempt/theme.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/keys_dialog.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/settings_dialog.h"
-#include "gui/dashboard/theme.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 

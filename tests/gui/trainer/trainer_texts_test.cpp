@@ -111,17 +111,22 @@ TEST(Hints, FollowTheProcedure) {
   figures.attached = 0.25;
   EXPECT_EQ(hint(),
             "Take the gallbladder off its bed: pull it away and burn what is stretched. 25 % is still attached.");
-  EXPECT_FALSE(isDone(scene, figures));
+  EXPECT_EQ(whatIsUndone(scene, figures), "nothing was touched");
+  figures.touched = true;
+  EXPECT_EQ(whatIsUndone(scene, figures), "the procedure was still at its phase identification");
   figures.hand[1].cautery = Cautery::withoutContact;
   EXPECT_EQ(hint(), "The right hook burns in the air: press the pedal on tissue only.");
   figures.procedure.phase = Phase::done;
-  EXPECT_TRUE(isDone(scene, figures));
+  EXPECT_EQ(whatIsUndone(scene, figures), "");
   EXPECT_EQ(hint(), "All is done. End the attempt when you are content.");
 }
 
 TEST(Hints, AreTheSummaryWhereThereIsNoProcedure) {
   EXPECT_EQ(hintFor(SceneDescription{}, "Touch the liver.", AttemptFigures{}), "Touch the liver.");
-  EXPECT_TRUE(isDone(SceneDescription{}, AttemptFigures{}));
+  AttemptFigures figures;
+  EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "nothing was touched") << "holding still is no attempt";
+  figures.touched = true;
+  EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "");
 }
 
 class Texts : public ::testing::Test {
@@ -140,9 +145,17 @@ class Texts : public ::testing::Test {
   }
 };
 
+TEST_F(Texts, ACountdownIsSaid) {
+  TrainingStatus status = running();
+  status.stage = Stage::countdown;
+  status.countdown = 3;
+  EXPECT_EQ(panelText(status, operation(), "", recorder::Mode::practice, std::nullopt).stage,
+            QString::fromUtf8("Going on in 3 …"));
+}
+
 TEST_F(Texts, SayWhatRuns) {
   TrainingStatus status = running();
-  status.figures.hand[1] = {InstrumentKind::clipApplier, 0.0, true, 1, Cautery::off, true};
+  status.figures.hand[1] = {InstrumentKind::clipApplier, 0.0, true, 1, Cautery::off};
   const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, Hand::right);
   EXPECT_EQ(text.stage, QString::fromUtf8("● Recording"));
   EXPECT_EQ(text.mode, "Practice");
@@ -197,6 +210,39 @@ TEST_F(Texts, TheEndNamesOutcomeAndFile) {
   EXPECT_EQ(text.result,
             "Outcome: time limit, after 1:02.5.\nA branch, from 0:40.0 on.\nRecorded in /data/cholecystectomy.h5");
   EXPECT_EQ(text.hint, "");
+}
+
+TEST_F(Texts, AnAttemptThatWasAbandonedSaysWhy) {
+  TrainingStatus status = running();
+  status.stage = Stage::ended;
+  status.report.outcome = recorder::Outcome::abandoned;
+  status.undone = std::string("nothing was touched");
+  const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
+  EXPECT_TRUE(text.result.startsWith("Outcome: abandoned, after 1:02.5: nothing was touched.\n"))
+      << text.result.toStdString();
+}
+
+TEST_F(Texts, AnExchangeIsShownWhileItLasts) {
+  TrainingStatus status = running();
+  status.exchange[1] = {InstrumentKind::scissors, 1200};
+  const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, Hand::right);
+  EXPECT_EQ(text.hand[1], QString::fromUtf8("▶ Right: gets the scissors in 2 s"));
+  EXPECT_EQ(text.hand[0], "Left: grasper");
+}
+
+TEST_F(Texts, WhoHasTheMouseAndWhatChangesIt) {
+  TrainingStatus status = running();
+  const auto say = [&](recorder::Mode mode, Pointer pointer) {
+    return panelText(status, operation(), "", mode, Hand::right, pointer).pointer;
+  };
+  EXPECT_EQ(say(recorder::Mode::practice, Pointer::elsewhere), "");
+  EXPECT_TRUE(say(recorder::Mode::practice, Pointer::held).contains("Escape pauses and frees it"));
+  EXPECT_TRUE(say(recorder::Mode::assessment, Pointer::held).contains("Escape frees it"));
+  EXPECT_TRUE(say(recorder::Mode::assessment, Pointer::free).contains("Click the picture"));
+  EXPECT_TRUE(say(recorder::Mode::assessment, Pointer::windowLeft).contains("the clock runs on"));
+  status.stage = Stage::paused;
+  EXPECT_TRUE(say(recorder::Mode::practice, Pointer::windowLeft).contains("lost the keyboard"));
+  EXPECT_EQ(say(recorder::Mode::practice, Pointer::elsewhere), "");
 }
 
 TEST_F(Texts, NumbersFollowTheLocale) {

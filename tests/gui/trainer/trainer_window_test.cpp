@@ -9,11 +9,15 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QLocale>
+#include <QMouseEvent>
 #include <QPushButton>
 #include <QTest>
 
+#include "analytics/cohort/cohort_database.h"
+#include "gui/trainer/end_page.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/operation_view.h"
+#include "gui/trainer/run_panel.h"
 #include "recorder/errors.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/devices/scope_keys.h"
@@ -52,7 +56,12 @@ class Trainer : public ::testing::Test {
     TrainerSetup setup;
     setup.scope = scope;
     setup.settings.attempt.mode = mode;
+    setup.settings.attempt.participant = participant_;
+    setup.cohort = cohort_;
+    setup.demonstration = std::make_shared<trainertest::ScriptInput>(trainertest::swayingScript(20.0));
     setup.settings.folder = folder_ / "";
+    setup.settings.countdown = std::chrono::milliseconds(1500);
+    setup.settings.exchange = std::chrono::milliseconds(500);
     setup.scenes = {{"touch-liver", "Touch the liver.", CALOT_SOURCE_DIR "/assets/scenes/touch-liver.json"},
                     {"gone", "Is not there.", "/nowhere/gone.json"}};
     if (device) {
@@ -108,6 +117,8 @@ class Trainer : public ::testing::Test {
   double jaw() { return window_->session()->status().figures.hand[1].jaw; }
 
   recorder::test::Folder folder_;
+  std::filesystem::path cohort_;  ///< of the next window; empty: none
+  std::string participant_;
   std::unique_ptr<TrainerWindow> window_;
 };
 
@@ -157,7 +168,8 @@ TEST_F(Trainer, MouseAndKeysDriveTheHands) {
   ASSERT_TRUE(reaches(Stage::ended));
   const std::filesystem::path file = window.session()->status().file;
   EXPECT_TRUE(text("result").contains(QString::fromStdString(file.string())));
-  EXPECT_TRUE(text("result").startsWith("Outcome: completed")) << text("result").toStdString();
+  EXPECT_TRUE(text("result").startsWith("Outcome: abandoned")) << text("result").toStdString();
+  EXPECT_TRUE(text("result").contains("nothing was touched")) << text("result").toStdString();
   expectExact(file);
 
   recorder::Recording recording(file);
@@ -209,6 +221,11 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   beginSmall();
   OperationView& view = *window.view();
   QTest::keyClick(&view, Qt::Key_3);  // clip applier
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().exchange[1].has_value(); }, patience));
+  window.refresh();
+  EXPECT_TRUE(text("right").contains("gets the clip applier in 1 s")) << text("right").toStdString();
+  ASSERT_TRUE(QTest::qWaitFor(
+      [&] { return window.session()->status().figures.hand[1].instrument == InstrumentKind::clipApplier; }, patience));
   hold(Qt::Key_S, [&] { return jaw() > 0.5; });
   hold(Qt::Key_A, [&] { return !window.session()->status().figures.mistakes->empty(); });
   const TrainingStatus before = window.session()->status();
@@ -223,6 +240,9 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   QTest::mouseMove(&view, view.rect().center());
   QTest::mouseMove(&view, view.rect().center() + QPoint(60, 60));
   QTest::keyClick(mistakes, Qt::Key_Return);
+  ASSERT_TRUE(reaches(Stage::countdown));
+  EXPECT_EQ(text("stage"), QString::fromUtf8("Going on in %1 …").arg(text("over")));
+  EXPECT_TRUE(child<QLabel>("over")->isVisible());
   ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().parent == before.attempt; }, patience));
   ASSERT_TRUE(runs(window.session()->status().branchedAt + 0.2));
   EXPECT_TRUE(window.session()->status().figures.mistakes->empty()) << "it has not happened in the branch";
@@ -233,8 +253,10 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   EXPECT_TRUE(text("result").contains("A branch"));
   expectExact(before.file);
   expectExact(window.session()->status().file);
-  QTest::mouseClick(child<QPushButton>("restart"), Qt::LeftButton);
+  EXPECT_FALSE(child<QListWidget>("moments")->isVisible()) << "nothing went wrong in the branch";
+  QTest::mouseClick(child<QPushButton>("again"), Qt::LeftButton);
   ASSERT_TRUE(runs(0.1));
+  EXPECT_FALSE(window.endPage()->isVisible());
   // A busy machine draws late; two pictures after one another are a rate.
   const quint64 shown = view.shown();
   ASSERT_TRUE(QTest::qWaitFor([&] { return view.shown() >= shown + 3; }, patience));
@@ -243,6 +265,112 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   EXPECT_NE(lines[4].find("stopped"), std::string::npos);
   EXPECT_NE(lines[5].find(" forces late ("), std::string::npos);
   EXPECT_NE(lines[6].find(" pictures a second of "), std::string::npos);
+}
+
+TEST_F(Trainer, TheEndShowsFiguresMomentsAndTheReplayOfOne) {
+  TrainerWindow& window = open();
+  beginSmall();
+  OperationView& view = *window.view();
+  QTest::keyClick(&view, Qt::Key_3);
+  hold(Qt::Key_S, [&] { return jaw() > 0.5; });
+  hold(Qt::Key_A, [&] { return !window.session()->status().figures.mistakes->empty(); });
+  const double mistake = window.session()->status().figures.mistakes->front().time;
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  EndPage& end = *window.endPage();
+  EXPECT_TRUE(end.isVisible());
+  EXPECT_EQ(text("endOutcome"), text("result"));
+  auto* const moments = child<QListWidget>("moments");
+  ASSERT_EQ(moments->count(), 1);
+  EXPECT_TRUE(moments->hasFocus());
+  ASSERT_TRUE(QTest::qWaitFor([&] { return end.replay().isOpen() && end.settled(); }, patience));
+  EXPECT_TRUE(text("endFigures").contains("Elapsed time")) << text("endFigures").toStdString();
+  EXPECT_TRUE(text("endNorm").startsWith("No norm"));
+  EXPECT_FALSE(child<QPushButton>("store")->isVisible()) << "there is no cohort";
+  QTest::mouseClick(moments->viewport(), Qt::LeftButton, {}, moments->visualItemRect(moments->item(0)).center());
+  EXPECT_TRUE(QTest::qWaitFor([&] { return end.replay().position().time >= mistake; }, patience))
+      << "the replay goes to the moment and on";
+  QTest::mouseClick(child<QPushButton>("endScenes"), Qt::LeftButton);
+  EXPECT_EQ(window.session(), nullptr);
+  EXPECT_FALSE(end.replay().isOpen());
+}
+
+TEST_F(Trainer, OneButtonPutsTheAttemptIntoTheCohortVerified) {
+  cohort_ = folder_ / "c.db";
+  participant_ = "P7";
+  TrainerWindow& window = open();
+  const auto attempt = [&] {
+    const QString before = QString::fromStdString(window.session()->status().attempt);
+    window.session()->finish();
+    EXPECT_TRUE(reaches(Stage::ended));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return window.endPage()->settled(); }, patience));
+    return before.toStdString();
+  };
+  beginSmall();
+  const std::string first = attempt();
+  auto* const store = child<QPushButton>("store");
+  ASSERT_TRUE(store->isVisible());
+  QTest::mouseClick(store, Qt::LeftButton);
+  EXPECT_TRUE(window.endPage()->storing());
+  EXPECT_FALSE(store->isEnabled());
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window.endPage()->settled(); }, patience));
+  EXPECT_TRUE(text("storeText").contains("verified")) << text("storeText").toStdString();
+  EXPECT_FALSE(store->isEnabled()) << "it is in there";
+  {
+    const analytics::CohortDatabase cohort(cohort_.string(), analytics::CohortDatabase::Access::read);
+    const std::optional<analytics::AttemptRow> row = cohort.attempt(first);
+    ASSERT_TRUE(row);
+    EXPECT_EQ(row->participant, "P7");
+    EXPECT_EQ(row->verification.verdict, analytics::Verdict::verified);
+    EXPECT_GT(cohort.values(first).size(), 10U);
+  }
+  QTest::mouseClick(child<QPushButton>("again"), Qt::LeftButton);
+  ASSERT_TRUE(runs(0.2));
+  attempt();
+  EXPECT_TRUE(text("endPrevious").startsWith("Last time: ")) << text("endPrevious").toStdString();
+  EXPECT_TRUE(text("endFigures").contains("last time: "));
+  EXPECT_TRUE(store->isEnabled()) << "this one is not";
+  // The greeting counts it.
+  window.chooseScene();
+  EXPECT_TRUE(
+      QTest::qWaitFor([&] { return child<QListWidget>("scenes")->item(0)->text().contains("1 attempt"); }, patience))
+      << child<QListWidget>("scenes")->item(0)->text().toStdString();
+  EXPECT_EQ(child<QListWidget>("past")->count(), 1);
+}
+
+TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
+  TrainerWindow& window = open();
+  QStringList alerts;
+  QObject::connect(window.findChild<RunPanel*>(), &RunPanel::announced, &window,
+                   [&](const QString& words) { alerts += words; });
+  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
+  ASSERT_TRUE(runs(0.1));
+  window.refresh();
+  EXPECT_TRUE(text("hint").startsWith("Control 1 of 10")) << text("hint").toStdString();
+  hold(Qt::Key_Down, [&] { return text("hint").contains("Control 2 of 10"); });
+  EXPECT_TRUE(text("hint").startsWith(QString::fromUtf8("✓ Done: moving")));
+  QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
+  EXPECT_TRUE(text("hint").startsWith("Control 3 of 10")) << text("hint").toStdString();
+  hold(Qt::Key_S, [&] { return text("hint").contains("Control 4 of 10"); });
+  EXPECT_TRUE(alerts.filter("Control 1 of 10").size() == 1 && alerts.filter("Control 4 of 10").size() == 1)
+      << "a screen reader is told once each: " << alerts.join(" | ").toStdString();
+}
+
+TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
+  cohort_ = folder_ / "c.db";
+  participant_ = "P7";
+  TrainerWindow& window = open();
+  window.chooseScene();
+  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::demonstration);
+  ASSERT_TRUE(runs(0.3));
+  window.refresh();
+  EXPECT_FALSE(window.view()->holdsPointer()) << "nothing is to be driven";
+  EXPECT_EQ(text("mode"), "Practice, synthetic");
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  EXPECT_TRUE(child<QLabel>("endSynthetic")->isVisible());
+  EXPECT_FALSE(child<QPushButton>("store")->isVisible());
+  EXPECT_EQ(recorder::Recording(window.session()->status().file).header().participant, "");
 }
 
 TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
@@ -260,6 +388,10 @@ TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
   QTest::mouseClick(child<QPushButton>("finish"), Qt::LeftButton);
   ASSERT_TRUE(reaches(Stage::ended));
   EXPECT_FALSE(child<QListWidget>("mistakes")->isVisible()) << "mistakes are a score";
+  EXPECT_TRUE(window.endPage()->isVisible());
+  EXPECT_FALSE(child<QListWidget>("moments")->isVisible());
+  EXPECT_FALSE(child<QLabel>("endFigures")->isVisible());
+  EXPECT_TRUE(text("endNorm").startsWith("An assessment shows neither"));
 }
 
 TEST_F(Trainer, LosingTheKeyboardLetsGoOfEverything) {
@@ -273,6 +405,88 @@ TEST_F(Trainer, LosingTheKeyboardLetsGoOfEverything) {
   const double jawThen = jaw();
   ASSERT_TRUE(runs(from + 0.6));
   EXPECT_EQ(jaw(), jawThen) << "a key that was down for a window without focus still opens the jaws";
+}
+
+TEST_F(Trainer, ThePictureHoldsThePointerUntilAKeyFreesIt) {
+  TrainerWindow& window = open(nullptr, recorder::Mode::assessment);
+  beginSmall();
+  OperationView& view = *window.view();
+  window.refresh();
+  ASSERT_TRUE(view.holdsPointer());
+  EXPECT_EQ(view.cursor().shape(), Qt::BlankCursor);
+  EXPECT_TRUE(text("pointer").contains("Escape frees it"));
+  // Farther than the picture is wide.
+  const double wide = 1.5 * view.width();
+  const auto pointTo = [&](const QPoint& there) {
+    QCursor::setPos(view.mapToGlobal(there));
+    QMouseEvent move(QEvent::MouseMove, there, view.mapToGlobal(there), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
+    QApplication::sendEvent(&view, &move);
+  };
+  pointTo(view.rect().center());
+  for (double x = 0.0; x < wide; x += 20.0) {
+    const QPoint to = view.mapFromGlobal(QCursor::pos()) + QPoint(20, 0);
+    pointTo(to);
+    // The window system says where it was put back to.
+    if (const QPoint now = view.mapFromGlobal(QCursor::pos()); now != to) pointTo(now);
+    EXPECT_TRUE(view.rect().contains(view.mapFromGlobal(QCursor::pos())));
+  }
+  ASSERT_TRUE(runs(window.session()->status().figures.time + 0.6));
+  QTest::keyClick(&view, Qt::Key_Escape);
+  EXPECT_EQ(window.session()->status().stage, Stage::running) << "an assessment has no pause";
+  EXPECT_FALSE(view.holdsPointer());
+  EXPECT_TRUE(text("pointer").contains("Click the picture"));
+  for (int i = 0; i < 5; ++i) pointTo(view.rect().center() + QPoint(0, 10 * i));
+  QCoreApplication::processEvents();
+  QTest::mouseClick(&view, Qt::LeftButton);
+  EXPECT_TRUE(view.holdsPointer());
+  ASSERT_TRUE(runs(window.session()->status().figures.time + 0.5));
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  EXPECT_FALSE(view.holdsPointer());
+  recorder::Recording recording(window.session()->status().file);
+  const SceneDescription& scene = window.session()->scene();
+  const TickSamples last = recording.step(recording.stepCount() - 1).samples.back();
+  const Vec3 moved = scene.camera.orientation.conjugate() * (last.hand[1].position - scene.hands[1].home);
+  EXPECT_GT(moved.x(), std::min(0.00015 * 0.9 * wide, 0.1)) << "the pointer came to an edge";
+  EXPECT_NEAR(moved.y(), 0.0, 1e-5) << "a free pointer moved the hand";
+  EXPECT_NEAR(last.hand[1].jaw, 0.0, 1e-4) << "the click that holds the pointer closes no jaws";
+}
+
+TEST_F(Trainer, PracticePausesWhereTheWindowLosesTheKeyboard) {
+  TrainerWindow& window = open();
+  beginSmall();
+  QWidget other;
+  other.show();
+  other.activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&other));
+  ASSERT_TRUE(reaches(Stage::paused));
+  EXPECT_TRUE(text("pointer").contains("lost the keyboard")) << text("pointer").toStdString();
+  EXPECT_FALSE(window.view()->holdsPointer());
+  window.activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&window));
+  EXPECT_EQ(window.session()->status().stage, Stage::paused) << "it goes on when the trainee says so";
+  QTest::keyClick(window.view(), Qt::Key_Escape);
+  ASSERT_TRUE(reaches(Stage::running));
+  EXPECT_FALSE(text("pointer").contains("lost the keyboard"));
+}
+
+TEST_F(Trainer, AnAssessmentSaysThatTheHandsAreLetGo) {
+  TrainerWindow& window = open(nullptr, recorder::Mode::assessment);
+  beginSmall();
+  QTest::keyPress(window.view(), Qt::Key_S);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return jaw() > 0.1; }, patience));
+  QWidget other;
+  other.show();
+  other.activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&other));
+  window.refresh();
+  EXPECT_EQ(window.session()->status().stage, Stage::running);
+  EXPECT_TRUE(text("pointer").contains("the clock runs on")) << text("pointer").toStdString();
+  const double from = window.session()->status().figures.time;
+  ASSERT_TRUE(runs(from + 0.3));
+  const double jawThen = jaw();
+  ASSERT_TRUE(runs(from + 0.6));
+  EXPECT_EQ(jaw(), jawThen);
 }
 
 TEST_F(Trainer, ThePictureIsSavedOrTheFolderNamed) {

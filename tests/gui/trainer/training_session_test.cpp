@@ -150,7 +150,7 @@ TEST(TrainingSession, GoesBackAndBranches) {
   ASSERT_TRUE(rig.session->finish());
   ASSERT_TRUE(rig.ended());
   const TrainingStatus twig = rig.session->status();
-  EXPECT_EQ(twig.report.outcome, Outcome::completed) << "the scene has no procedure: whoever ends it has done";
+  EXPECT_EQ(twig.report.outcome, twig.figures.touched ? Outcome::completed : Outcome::abandoned);
   ASSERT_TRUE(rig.session->goBack(0.7));  // of an attempt that has ended
   ASSERT_TRUE(waitFor([&] { return rig.session->status().parent == twig.attempt; }));
   ASSERT_TRUE(waitForTime(*rig.session, 0.75));
@@ -172,6 +172,81 @@ TEST(TrainingSession, GoesBackAndBranches) {
     EXPECT_LT((after.hand[h].position - before.hand[h].position).norm(), 1e-4) << h;
   EXPECT_EQ(before.hand[1].instrument, InstrumentKind::scissors);
   EXPECT_EQ(after.hand[1].instrument, InstrumentKind::scissors);
+}
+
+TEST(TrainingSession, AnExchangeOfInstrumentsTakesItsTimeAndReplays) {
+  Rig rig(30.0);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.2));
+  ASSERT_TRUE(rig.session->mount(Hand::left, InstrumentKind::hook));
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().exchange[0].has_value(); }));
+  EXPECT_EQ(rig.session->status().exchange[0]->coming, InstrumentKind::hook);
+  EXPECT_FALSE(rig.session->status().exchange[1]);
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().figures.hand[0].instrument == InstrumentKind::hook; }));
+  rig.session->stop();
+  const TrainingStatus status = rig.session->status();
+  expectExact(status.file);
+  recorder::Recording recording(status.file);
+  std::uint64_t empty = 0;
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    for (const TickSamples& tick : recording.step(n).samples) {
+      empty += tick.hand[0].instrument == InstrumentKind::none;
+      EXPECT_EQ(tick.hand[1].instrument, InstrumentKind::grasper);
+    }
+  }
+  EXPECT_EQ(empty, 200U) << "ticks";
+}
+
+TEST(TrainingSession, GoingBackIntoAnExchangeGoesOnWithTheOldInstrument) {
+  Rig rig(30.0);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.3));
+  ASSERT_TRUE(rig.session->mount(Hand::right, InstrumentKind::hook));
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().exchange[1].has_value(); }));
+  const double within = rig.session->status().figures.time + 0.1;
+  ASSERT_TRUE(waitForTime(*rig.session, within + 0.3));
+  const TrainingStatus parent = rig.session->status();
+  ASSERT_TRUE(rig.session->goBack(within));
+  ASSERT_TRUE(waitFor([&] { return rig.session->status().parent == parent.attempt; }));
+  ASSERT_TRUE(waitForTime(*rig.session, within + 0.1));
+  rig.session->stop();
+  const TrainingStatus branch = rig.session->status();
+  expectExact(branch.file);
+  recorder::Recording recording(branch.file);
+  const auto fork = static_cast<std::uint64_t>(recording.header().forkStep);
+  const InstrumentSample before = recording.step(fork).samples.back().hand[1];
+  const InstrumentSample after = recording.step(fork + 1).samples.front().hand[1];
+  EXPECT_EQ(before.instrument, InstrumentKind::none);
+  EXPECT_EQ(after.instrument, InstrumentKind::grasper);
+  EXPECT_LT((after.position - before.position).norm(), 1e-4);
+}
+
+TEST(TrainingSession, AfterGoingBackTheHandsWaitForTheCountdown) {
+  recorder::test::Folder folder;
+  const auto input = std::make_shared<ScriptInput>(trainertest::swayingScript(30.0));
+  TrainingSettings settings = trainertest::smallSettings(folder);
+  settings.countdown = std::chrono::minutes(5);
+  TrainingSession session(std::move(settings), input, [](const auto& /*view*/) {});
+  session.start();
+  ASSERT_TRUE(waitForTime(session, 0.5)) << "a new attempt has no countdown";
+  ASSERT_TRUE(session.goBack(0.3));
+  ASSERT_TRUE(waitFor([&] { return session.status().stage == Stage::countdown; }));
+  EXPECT_GE(session.status().countdown, 299);
+  EXPECT_FALSE(session.finish());
+  EXPECT_FALSE(session.mount(Hand::left, InstrumentKind::hook));
+  session.start();  // another command ends it
+  EXPECT_TRUE(waitFor([&] { return session.status().stage == Stage::running && session.status().parent.empty(); }));
+}
+
+TEST(TrainingSession, HoldingStillIsNotCompleted) {
+  Rig rig(30.0);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.1));
+  ASSERT_FALSE(rig.session->status().figures.touched);
+  ASSERT_TRUE(rig.session->finish());
+  ASSERT_TRUE(rig.ended());
+  EXPECT_EQ(rig.session->status().undone, "nothing was touched");
+  EXPECT_EQ(recorder::Recording(rig.session->status().file).outcome(), Outcome::abandoned);
 }
 
 TEST(TrainingSession, AnAssessmentIsNeitherPausedNorBranched) {

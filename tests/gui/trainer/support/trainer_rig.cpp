@@ -60,6 +60,8 @@ TrainingSettings smallSettings(const recorder::test::Folder& folder) {
   settings.attempt.participant = "P7";
   settings.attempt.seed = 3;
   settings.folder = folder / "";
+  settings.exchange = std::chrono::milliseconds(200);
+  settings.countdown = std::chrono::milliseconds(100);
   return settings;
 }
 

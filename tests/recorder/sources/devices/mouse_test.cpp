@@ -52,19 +52,54 @@ TEST(Mouse, PointerMovesTheTipByPixelsAndNeverTooFast) {
   EXPECT_NEAR((before->position - Vec3(0.105, -0.006, 0)).norm(), 0.0, 1e-12);
 }
 
-TEST(Mouse, WheelGoesAlongTheShaft) {
+TEST(Mouse, KeysGoAlongTheShaft) {
   Rig rig;
   const Vec3 port(0.03, -0.04, -0.12);  // 130 mm from the tip
   rig.mouse->setPorts({Vec3::Zero(), port});
   rig.run(20);
-  rig.mouse->turnWheel(4.0);
   const Vec3 shaft = -port / 0.13;
-  EXPECT_NEAR((rig.run(200).position - 0.012 * shaft).norm(), 0.0, 1e-12);
-  rig.mouse->turnWheel(-4.0);
-  EXPECT_NEAR(rig.run(200).position.norm(), 0.0, 1e-12);
+  rig.mouse->hold(MouseControl::in, true);
+  const Vec3 in = rig.run(400).position;
+  EXPECT_NEAR(in.dot(shaft), 0.012, 2e-4);
+  EXPECT_NEAR(in.cross(shaft).norm(), 0.0, 1e-12);
+  rig.mouse->hold(MouseControl::in, false);
   // It is not drawn out of its port.
+  rig.mouse->hold(MouseControl::out, true);
+  EXPECT_NEAR((rig.run(8000).position - port).norm(), 0.01, 1e-9);
+}
+
+// The shaft comes from the side: along it, depth would carry the tip across the picture.
+TEST(Mouse, TheWheelLeavesTheTipWhereItIsInThePicture) {
+  Rig rig;
+  const Vec3 port(0.12, -0.04, -0.03), eye(-0.03, 0.02, -0.1);
+  rig.mouse->setPorts({Vec3::Zero(), port});
+  rig.mouse->setEyes({Vec3::Zero(), eye});
+  rig.run(20);
+  const auto inPicture = [&](const Vec3& tip) {
+    const Vec3 seen = tip - eye;
+    return Vec3(seen / seen.z());
+  };
+  rig.mouse->move(60.0, -30.0);
+  const Vec3 before = rig.run(200).position;
+  rig.mouse->turnWheel(4.0);
+  const Vec3 after = rig.run(200).position;
+  EXPECT_NEAR((after - before).norm(), 0.012, 1e-12);
+  EXPECT_GT(after.z(), before.z() + 0.01);
+  EXPECT_NEAR((inPicture(after) - inPicture(before)).norm(), 0.0, 1e-12);
+  rig.mouse->turnWheel(-4.0);
+  EXPECT_NEAR((rig.run(200).position - before).norm(), 0.0, 1e-12);
+  // It comes neither into the lens nor out of its port.
   rig.mouse->turnWheel(-400.0);
-  EXPECT_NEAR((rig.run(5000).position - port).norm(), 0.01, 1e-9);
+  EXPECT_NEAR((rig.run(5000).position - eye).norm(), 0.02, 1e-9);
+}
+
+TEST(Mouse, TheWheelDrawsNoTipOutOfItsPort) {
+  Rig rig;
+  const Vec3 port(0.0, 0.0, -0.05);  // on the line of sight
+  rig.mouse->setPorts({Vec3::Zero(), port});
+  rig.run(20);
+  rig.mouse->turnWheel(-400.0);
+  EXPECT_GE((rig.run(5000).position - port).norm(), 0.01);
 }
 
 TEST(Mouse, KeysRollJawAndPedals) {
@@ -223,6 +258,31 @@ TEST(ControlledSource, HoldsExchangesAndEnds) {
   EXPECT_EQ(controlled.status(), SourceStatus::ok) << "what is to end is held back";
   EXPECT_FALSE(controlled.next(rig.tick, rig.now));
   EXPECT_EQ(controlled.ending(), Outcome::abandoned);
+}
+
+TEST(ControlledSource, AnExchangeTakesItsTime) {
+  SourceRig rig;
+  rig.source->waitForFirst(1.0);
+  ControlledSource controlled(*rig.source);
+  rig.run(controlled, 10);
+  const InstrumentKind had = rig.now.hand[0].instrument;
+  EXPECT_FALSE(controlled.exchanging(Hand::left));
+  controlled.exchange(Hand::left, had, 300);
+  rig.run(controlled, 1);
+  EXPECT_EQ(rig.now.hand[0].instrument, had) << "it has that one already";
+  controlled.exchange(Hand::left, InstrumentKind::hook, 300);
+  rig.run(controlled, 100);
+  EXPECT_EQ(rig.now.hand[0].instrument, InstrumentKind::none);
+  EXPECT_NE(rig.now.hand[1].instrument, InstrumentKind::none) << "the other hand goes on";
+  ASSERT_TRUE(controlled.exchanging(Hand::left));
+  EXPECT_EQ(controlled.exchanging(Hand::left)->coming, InstrumentKind::hook);
+  EXPECT_EQ(controlled.exchanging(Hand::left)->ticks, 200U);
+  controlled.exchange(Hand::left, InstrumentKind::scissors, 300);  // thought better of
+  rig.run(controlled, 300);
+  EXPECT_EQ(rig.now.hand[0].instrument, InstrumentKind::none);
+  rig.run(controlled, 1);
+  EXPECT_EQ(rig.now.hand[0].instrument, InstrumentKind::scissors);
+  EXPECT_FALSE(controlled.exchanging(Hand::left));
 }
 
 }  // namespace

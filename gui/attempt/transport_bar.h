@@ -3,7 +3,7 @@
 
 #include <QWidget>
 
-#include "gui/dashboard/replay.h"
+#include "gui/attempt/replay.h"
 
 class QComboBox;
 class QLabel;

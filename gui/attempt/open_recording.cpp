@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/open_recording.h"
+#include "gui/attempt/open_recording.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/replay_plan.h"
+#include "gui/attempt/replay_plan.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/replay_player.h"
+#include "gui/attempt/replay_player.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <exception>
 
-#include "gui/dashboard/open_recording.h"
-#include "gui/dashboard/replay_plan.h"
+#include "gui/attempt/open_recording.h"
+#include "gui/attempt/replay_plan.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"

@@ -8,7 +8,7 @@
 #include <QObject>
 #include <QString>
 
-#include "gui/dashboard/link.h"
+#include "gui/attempt/link.h"
 
 namespace calot::gui {
 

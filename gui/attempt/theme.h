@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light and dark, and how large letters are. All colours of text on this dashboard keep WCAG 2.1's contrast of level AA
+// Light and dark, and how large letters are. All colours of text in these windows keep WCAG 2.1's contrast of level AA
 // to what is behind them.
 #pragma once
 

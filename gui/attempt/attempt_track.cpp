@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/attempt_track.h"
+#include "gui/attempt/attempt_track.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/background.h"
+#include "gui/attempt/background.h"
 
 #include <QMetaObject>
 #include <utility>

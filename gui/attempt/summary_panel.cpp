@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/summary_panel.h"
+#include "gui/attempt/summary_panel.h"
 
 #include <QBoxLayout>
 #include <QLabel>
 
-#include "gui/dashboard/words.h"
+#include "gui/attempt/words.h"
 
 namespace calot::gui {
 

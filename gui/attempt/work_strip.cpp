@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/work_strip.h"
+#include "gui/attempt/work_strip.h"
 
 #include <QBoxLayout>
 #include <QLabel>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/words.h"
+#include "gui/attempt/words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <QTimeZone>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 #include "recorder/words.h"
 
 namespace calot::gui {

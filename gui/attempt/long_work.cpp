@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/long_work.h"
+#include "gui/attempt/long_work.h"
 
 #include <cmath>
 #include <exception>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/theme.h"
 
 #include <algorithm>
 #include <array>

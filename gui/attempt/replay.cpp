@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/replay.h"
+#include "gui/attempt/replay.h"
 
 #include <QMetaObject>
 #include <utility>

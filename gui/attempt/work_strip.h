@@ -3,7 +3,7 @@
 
 #include <QWidget>
 
-#include "gui/dashboard/long_work.h"
+#include "gui/attempt/long_work.h"
 
 class QLabel;
 class QProgressBar;

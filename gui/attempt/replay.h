@@ -8,8 +8,8 @@
 #include <optional>
 #include <QObject>
 
-#include "gui/dashboard/link.h"
-#include "gui/dashboard/replay_player.h"
+#include "gui/attempt/link.h"
+#include "gui/attempt/replay_player.h"
 
 namespace calot::gui {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/transport_bar.h"
+#include "gui/attempt/transport_bar.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include <QStyle>
 #include <QToolButton>
 
-#include "gui/dashboard/attempt_track.h"
-#include "gui/dashboard/theme.h"
+#include "gui/attempt/attempt_track.h"
+#include "gui/attempt/theme.h"
 
 namespace calot::gui {
 namespace {

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/trainer/end_page.h"
+
+#include <QBoxLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QScrollArea>
+#include <utility>
+
+#include "analytics/assess.h"
+#include "gui/attempt/theme.h"
+#include "gui/attempt/transport_bar.h"
+#include "gui/attempt/words.h"
+#include "gui/attempt/work_strip.h"
+#include "gui/trainer/trainer_texts.h"
+#include "gui/view/scene_picture_widget.h"
+#include "gui/words/problem_words.h"
+#include "recorder/errors.h"
+
+namespace calot::gui {
+namespace {
+
+QLabel* words(const char* name) {
+  auto* const label = new QLabel;
+  label->setObjectName(name);
+  label->setTextFormat(Qt::PlainText);
+  label->setWordWrap(true);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+  return label;
+}
+
+QPushButton* press(const char* text, const char* name) {
+  auto* const made = new QPushButton(text);
+  made->setObjectName(name);
+  made->setAutoDefault(true);  // Enter presses it
+  return made;
+}
+
+void say(QLabel* label, const QString& text) {
+  label->setText(text);
+  label->setVisible(!text.isEmpty());
+}
+
+QString figureWords(const FigureReport& figure) {
+  QString text = figure.title + ": " + figure.now;
+  if (!figure.norm.isEmpty()) text += QString::fromUtf8("\n    norm: ") + figure.norm;
+  if (!figure.before.isEmpty()) text += QString::fromUtf8("\n    last time: ") + figure.before;
+  return text;
+}
+
+/// What is stored, or why nothing is.
+QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::path& cohort, unsigned threads,
+                      LongWork::Control& control) {
+  analytics::AssessSettings settings;
+  settings.threads = threads;
+  settings.progress = [&](std::uint64_t step, std::uint64_t of) {
+    control.progress(of == 0 ? 0.0 : static_cast<double>(step) / static_cast<double>(of), "Verifying");
+  };
+  const analytics::Assessment found = analytics::assessRecording(file.string(), settings);
+  if (!found.attempt) throw Error(ErrorKind::damaged, Where{file.string()}, found.report.message);
+  control.progress(1.0, "Storing");
+  analytics::CohortDatabase database(cohort.string(), analytics::CohortDatabase::Access::create);
+  analytics::store(database, *found.attempt);
+  return badgeText(found.attempt->verification.verdict);
+}
+
+}  // namespace
+
+EndPage::EndPage(Setup setup, QWidget* parent)
+    : QWidget(parent),
+      setup_(std::move(setup)),
+      title_(words("endTitle")),
+      syntheticMark_(words("endSynthetic")),
+      outcome_(words("endOutcome")),
+      verdict_(words("endVerdict")),
+      norm_(words("endNorm")),
+      previous_(words("endPrevious")),
+      figures_(words("endFigures")),
+      momentsTitle_(words("momentsTitle")),
+      storeText_(words("storeText")),
+      moments_(new QListWidget),
+      store_(press("&Put into the cohort", "store")),
+      back_(press("Go &back to 2 s before it", "endBack")),
+      again_(press("Sta&rt again", "again")),
+      next_(press("&Next task", "next")),
+      scenes_(press("&Other scene", "endScenes")),
+      picture_(new ScenePictureWidget),
+      strip_(new WorkStrip(work_)) {
+  replay_ = std::make_unique<Replay>(
+      [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
+  replaySide_ = buildReplay();
+  auto* const row = new QHBoxLayout;
+  row->addWidget(replaySide_, 3);
+  row->addWidget(buildWords(), 2);
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addLayout(row, 1);
+  layout->addWidget(strip_);
+  layout->addWidget(buildButtons());
+  replaySide_->setVisible(setup_.mode == recorder::Mode::practice);
+
+  connect(moments_, &QListWidget::itemClicked, this, &EndPage::replayMoment);
+  connect(moments_, &QListWidget::itemActivated, this, &EndPage::replayMoment);
+  connect(moments_, &QListWidget::currentRowChanged, this, [this](int at) { back_->setEnabled(at >= 0); });
+  connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) { picture_->showText(reason); });
+  connect(back_, &QPushButton::clicked, this, [this] {
+    if (const QListWidgetItem* const item = moments_->currentItem(); item != nullptr)
+      emit backRequested(item->data(Qt::UserRole).toDouble());
+  });
+  connect(again_, &QPushButton::clicked, this, &EndPage::againRequested);
+  connect(next_, &QPushButton::clicked, this, &EndPage::nextRequested);
+  connect(scenes_, &QPushButton::clicked, this, &EndPage::scenesRequested);
+  connect(store_, &QPushButton::clicked, this, &EndPage::store);
+  connect(&work_, &LongWork::done, this, [this](const QString& verdict) {
+    const bool shown = storing_ == attempt_;  // meanwhile there may have been another attempt
+    say(storeText_, (shown ? QString() : QString("The attempt before this one: ")) + verdict + ", in the cohort.");
+    inCohort_ = inCohort_ || shown;
+    showStoring();
+    read();
+    emit stored();
+  });
+  connect(&work_, &LongWork::failed, this, [this](const QString& reason) {
+    say(storeText_, "Not in the cohort: " + reason);
+    showStoring();
+    emit problem(reason);
+  });
+  connect(&work_, &LongWork::cancelled, this, [this] {
+    say(storeText_, "Broken off: the cohort is as it was.");
+    showStoring();
+  });
+}
+
+EndPage::~EndPage() { replay_.reset(); }  // its threads use the picture
+
+QWidget* EndPage::buildReplay() {
+  moments_->setObjectName("moments");
+  moments_->setAccessibleName("Moments to see again");
+  moments_->setWordWrap(true);
+  moments_->setToolTip("A click replays the moment, from two seconds before it");
+  auto* const made = new QWidget;
+  auto* const layout = new QVBoxLayout(made);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(picture_, 3);
+  layout->addWidget(new TransportBar(*replay_));
+  layout->addWidget(momentsTitle_);
+  layout->addWidget(moments_, 1);
+  return made;
+}
+
+QWidget* EndPage::buildWords() {
+  QFont large = font();
+  large.setPointSizeF(1.5 * large.pointSizeF());
+  title_->setFont(large);
+  QFont bold = font();
+  bold.setBold(true);
+  verdict_->setFont(bold);
+  syntheticMark_->setFont(bold);
+  syntheticMark_->setText("SYNTHETIC: made by a performer, no person's attempt");
+  theme::setGround(*syntheticMark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
+  figures_->setAccessibleName("Figures that count");
+  auto* const inside = new QWidget;
+  auto* const layout = new QVBoxLayout(inside);
+  for (QLabel* const label : {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_})
+    layout->addWidget(label);
+  layout->addStretch(1);
+  auto* const scroll = new QScrollArea;
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setWidget(inside);
+  return scroll;
+}
+
+QWidget* EndPage::buildButtons() {
+  store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
+  back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
+  auto* const made = new QWidget;
+  auto* const row = new QHBoxLayout(made);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->addWidget(store_);
+  row->addStretch(1);
+  for (QPushButton* const button : {back_, again_, next_, scenes_}) row->addWidget(button);
+  return made;
+}
+
+void EndPage::showAttempt(const TrainingStatus& status, const QString& result, double stepSeconds, bool next) {
+  const bool practice = setup_.mode == recorder::Mode::practice;
+  if (shown_ && shown_->attempt.parent.empty()) earlier_ = std::exchange(shown_, std::nullopt);
+  shown_.reset();
+  file_ = status.file;
+  attempt_ = status.attempt;
+  inCohort_ = false;
+  synthetic_ = status.operatorKind != recorder::OperatorKind::human;
+  title_->setText("The attempt has ended");
+  syntheticMark_->setVisible(synthetic_);
+  say(outcome_, result);
+  say(verdict_, {});
+  say(norm_, practice ? QString("Reading the figures …")
+                      : QString("An assessment shows neither figures nor mistakes here. Whoever instructs finds them "
+                                "in the dashboard, when the attempt is in the cohort."));
+  say(previous_, {});
+  say(figures_, {});
+  say(storeText_, {});
+  next_->setVisible(next);
+  back_->setVisible(practice && !synthetic_ && !status.figures.mistakes->empty());
+  showStoring();
+  if (!practice) {
+    again_->setFocus();
+    return;
+  }
+  showMistakes(status, stepSeconds);
+  picture_->showText("Opening the replay …");
+  replay_->open(file_, attempt_);
+  read();
+  (moments_->count() > 0 ? static_cast<QWidget*>(moments_) : again_)->setFocus();
+}
+
+void EndPage::showMistakes(const TrainingStatus& status, double stepSeconds) {
+  moments_->clear();
+  for (const Mistake& mistake : *status.figures.mistakes) {
+    auto* const item = new QListWidgetItem(mistakeText(mistake), moments_);
+    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
+  }
+  moments_->setVisible(moments_->count() > 0);
+  momentsTitle_->setText(moments_->count() > 0 ? "What went wrong: a click shows it again." : "Nothing went wrong.");
+  if (moments_->count() > 0) moments_->setCurrentRow(0);
+}
+
+void EndPage::replayMoment() {
+  if (const QListWidgetItem* const item = moments_->currentItem(); item != nullptr)
+    replay_->playFrom(item->data(Qt::UserRole).toDouble());
+}
+
+void EndPage::read() {
+  if (setup_.mode != recorder::Mode::practice) return;
+  reading_ = true;
+  background_.run([this, file = file_, cohort = setup_.cohort, earlier = earlier_]() -> Background::Completion {
+    try {
+      AttemptFacts facts = readFacts(file, cohort);
+      std::optional<AttemptFacts> before = previousInCohort(facts, cohort);
+      const bool comparable = earlier && earlier->attempt.comparabilityKey == facts.attempt.comparabilityKey &&
+                              earlier->attempt.synthetic == facts.attempt.synthetic;
+      if (comparable && (!before || before->attempt.startUtc < earlier->attempt.startUtc)) before = earlier;
+      return [this, report = reportOf(std::move(facts), before, normsOf(cohort))] { showReport(report); };
+    } catch (const std::exception& error) {
+      return [this, text = QString::fromStdString(problemText(error))] {
+        reading_ = false;
+        say(norm_, "No figures: " + text);
+      };
+    }
+  });
+}
+
+void EndPage::showReport(const AttemptReport& report) {
+  reading_ = false;
+  shown_ = report.facts;
+  inCohort_ = report.facts.inCohort;
+  QStringList verdict{QString::fromStdString(report.summary.errors)};
+  if (!report.summary.criticalView.empty()) verdict.prepend(QString::fromStdString(report.summary.criticalView));
+  say(verdict_, verdict.join('\n'));
+  say(norm_, report.norm);
+  say(previous_, report.previous);
+  QStringList figures;
+  for (const FigureReport& figure : report.figures) figures += figureWords(figure);
+  say(figures_, figures.join('\n'));
+  showStoring();
+}
+
+void EndPage::showStoring() {
+  store_->setVisible(!setup_.cohort.empty() && !synthetic_);
+  store_->setEnabled(!work_.busy() && !inCohort_);
+  store_->setText(inCohort_ ? "Is in the cohort" : "&Put into the cohort");
+  if (storeText_->text().isEmpty() && setup_.cohort.empty() && !synthetic_)
+    say(storeText_, "To keep figures and to hold them against a norm, name a cohort when the trainer starts.");
+}
+
+void EndPage::store() {
+  storing_ = attempt_;
+  strip_->begin("Putting the attempt into the cohort");
+  work_.start([file = file_, cohort = setup_.cohort, threads = setup_.threads](LongWork::Control& control) {
+    return putIntoCohort(file, cohort, threads, control);
+  });
+  showStoring();
+}
+
+void EndPage::leave() { replay_->close(); }
+
+bool EndPage::settled() const {
+  const bool practice = setup_.mode == recorder::Mode::practice;
+  return !reading_ && !work_.busy() &&
+         (!practice || !replay_->isOpen() || (replay_->position().settled && picture_->shown() > 0));
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/trainer/course.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "gui/trainer/scene_choice.h"
+#include "recorder/errors.h"
+#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/recorder/support/small_scene.h"
+
+namespace calot::gui {
+namespace {
+
+const std::vector<std::filesystem::path> assets{CALOT_SOURCE_DIR "/assets"};
+
+TEST(Course, LeadsFromTheFirstTouchToTheWholeOperation) {
+  const Course course = findCourse(assets);
+  ASSERT_EQ(course.tasks.size(), 5U);
+  EXPECT_EQ(course.tasks.front().scene, "touch-liver");
+  EXPECT_EQ(course.tasks.back().scene, "cholecystectomy");
+  for (const CourseTask& task : course.tasks) EXPECT_FALSE(scenePicture(task.scene, assets).empty()) << task.scene;
+}
+
+TEST(Course, ReaderAndSchemaAgree) { analytics::support::expectAgreement(courseRules(), "schemas/course.schema.json"); }
+
+TEST(Course, OrdersTheScenes) {
+  std::vector<std::string> faults;
+  const std::vector<SceneChoice> scenes = sceneChoices(assets, faults);
+  EXPECT_TRUE(faults.empty());
+  const Course course = findCourse(assets);
+  ASSERT_GE(scenes.size(), course.tasks.size());
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const bool inCourse = i < course.tasks.size();
+    EXPECT_EQ(scenes[i].title.empty(), !inCourse);
+    if (inCourse) {
+      EXPECT_EQ(scenes[i].name, course.tasks[i].scene);
+      EXPECT_EQ(scenes[i].goal, course.tasks[i].goal);
+    }
+  }
+}
+
+TEST(Course, AnyOtherFolderOfAssetsHasNone) {
+  EXPECT_TRUE(findCourse({"/nowhere"}).tasks.empty());
+  EXPECT_TRUE(scenePicture("touch-liver", {"/nowhere"}).empty());
+}
+
+TEST(Course, WhatIsWrongIsNamedWithItsPlace) {
+  const recorder::test::Folder folder;
+  const auto faultOf = [&](const std::string& tasks) -> std::string {
+    std::ofstream(folder / "c.json") << R"({"format": "calot-course", "formatVersion": 1, "name": "c", "title": "C", )"
+                                     << R"("tasks": )" << tasks << "}";
+    try {
+      static_cast<void>(readCourse(folder / "c.json"));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::damaged);
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string task = R"({"scene": "a", "title": "A", "goal": "Do."})";
+  EXPECT_EQ(faultOf("[" + task + "]"), "no error");
+  EXPECT_NE(faultOf("[]").find("/tasks"), std::string::npos);
+  EXPECT_NE(faultOf(R"([{"scene": "a", "title": "A"}])").find("goal"), std::string::npos);
+  EXPECT_NE(faultOf("[" + task + ", " + task + "]").find("/tasks/1/scene"), std::string::npos)
+      << "two tasks of one scene: which is next?";
+}
+
+}  // namespace
+}  // namespace calot::gui
