@@ -10,6 +10,7 @@
 #include <locale>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "analytics/cohort/embedded.h"
@@ -76,6 +77,33 @@ TEST(Study, comparesPerformersAndWatermarksThem) {
   EXPECT_NE(text.find("0.150"), std::string::npos);
   EXPECT_NE(text.find("no instrument in this hand"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
+}
+
+TEST(Study, saysHowFarItIsAndCanBeBrokenOff) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  std::vector<double> shares;
+  std::set<std::string> doing;
+  const Study watched = makeStudy(database, performers, [&](double share, const char* what) {
+    shares.push_back(share);
+    doing.insert(what);
+  });
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  ASSERT_FALSE(shares.empty());
+  EXPECT_GT(shares.front(), 0.0);
+  EXPECT_LT(shares.back(), 1.0);
+  EXPECT_EQ(doing, (std::set<std::string>{"comparing groups", "reading values"}));
+  EXPECT_GE(shares.size(), watched.recruited + watched.rows.size()) << "each attempt and each row are told of";
+  EXPECT_EQ(textOf(watched), textOf(makeStudy(database, performers))) << "to watch changes nothing";
+
+  struct Enough {};
+  int calls = 0;
+  const auto breakOff = [&](double, const char*) {
+    if (++calls == 3) throw Enough{};
+  };
+  EXPECT_THROW((void)makeStudy(database, performers, breakOff), Enough);
+  EXPECT_EQ(calls, 3) << "nothing is done after that";
 }
 
 TEST(Study, syntheticAttemptsStayOutUnlessAskedFor) {

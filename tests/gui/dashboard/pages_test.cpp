@@ -263,8 +263,11 @@ TEST_F(Pages, AStudyIsShownAndExported) {
   EXPECT_TRUE(text.contains("skilled"));
   EXPECT_EQ(child<QComboBox>(page, "study-row")->count(), 1);
   EXPECT_TRUE(child<QLabel>(page, "study-effect")->text().replace(QChar(QChar::Nbsp), ' ').contains("A = "));
+  QSignalSpy written(&page, &StudyPage::written);
   page.exportHtml(file("study.html"));
+  ASSERT_TRUE(written.wait(patience));
   page.exportCsv(file("csv"));
+  ASSERT_TRUE(written.wait(patience));
   EXPECT_TRUE(fs::exists(root_ / "study.html"));
   for (const char* name : {"study.csv", "values.csv", "flow.csv"})
     EXPECT_TRUE(fs::exists(root_ / "csv" / name)) << name;
@@ -272,6 +275,32 @@ TEST_F(Pages, AStudyIsShownAndExported) {
   ASSERT_TRUE(shown.wait(patience));
   EXPECT_FALSE(page.ready());
   EXPECT_TRUE(child<QLabel>(page, "study-state")->text().startsWith("There is no study")) << "and why";
+}
+
+TEST_F(Pages, AStudyIsBrokenOffAndBegunAgain) {
+  fs::remove(root_ / "c.db");
+  {
+    analytics::CohortDatabase database(file("c.db").toStdString(), Access::create);
+    for (int i = 0; i < 12; ++i)
+      database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1 + 0.01 * i)});
+  }
+  DashboardWindow window(apps::assessProgram());
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  StudyPage& page = *window.findChild<StudyPage*>();
+  QSignalSpy shown(&page, &StudyPage::studyShown);
+  showPage(window, 4);
+  // Its answer comes by the event loop, which has not run since.
+  ASSERT_TRUE(page.busy());
+  child<QPushButton>(page, "work-cancel")->click();
+  EXPECT_FALSE(page.busy());
+  EXPECT_FALSE(page.ready());
+  EXPECT_TRUE(child<QLabel>(page, "study-state")->text().startsWith("Cancelled"));
+  QTest::qWait(200);
+  EXPECT_EQ(shown.count(), 0) << "what was broken off is not shown";
+  window.reload();
+  ASSERT_TRUE(shown.wait(patience));
+  EXPECT_TRUE(page.ready());
 }
 
 TEST_F(Pages, PicturesOfAllPagesAreWritten) {
