@@ -8,12 +8,12 @@ namespace calot::gui {
 using Access = analytics::CohortDatabase::Access;
 
 CohortDocument::CohortDocument(const std::string& path)
-    : database_(path, Access::read), attempts_(database_.listAttempts()) {}
+    : database_(path, Access::read), lines_(std::make_shared<const AttemptLines>(database_.listAttempts())) {}
 
 const analytics::AttemptRow* CohortDocument::attempt(const std::string& uuid) const {
-  const auto at = std::find_if(attempts_.begin(), attempts_.end(),
+  const auto at = std::find_if(attempts().begin(), attempts().end(),
                                [&](const analytics::AttemptRow& attempt) { return attempt.uuid == uuid; });
-  return at == attempts_.end() ? nullptr : &*at;
+  return at == attempts().end() ? nullptr : &*at;
 }
 
 const std::vector<analytics::Norm>& CohortDocument::norms() const {

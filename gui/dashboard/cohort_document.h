@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
+#include "gui/dashboard/attempt_lines.h"
 
 namespace calot::gui {
 
@@ -17,7 +19,9 @@ class CohortDocument {
   explicit CohortDocument(const std::string& path);
 
   [[nodiscard]] const std::string& path() const { return database_.path(); }
-  [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return attempts_; }
+  [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return lines_->attempts(); }
+  /// The same, ready to be shown in a table.
+  [[nodiscard]] const std::shared_ptr<const AttemptLines>& lines() const { return lines_; }
   /// @throws calot::Error
   [[nodiscard]] std::vector<analytics::CheckpointValue> values(const std::string& uuid) const {
     return database_.values(uuid);
@@ -38,7 +42,7 @@ class CohortDocument {
 
  private:
   analytics::CohortDatabase database_;
-  std::vector<analytics::AttemptRow> attempts_;
+  std::shared_ptr<const AttemptLines> lines_;
   mutable std::optional<std::vector<analytics::Norm>> norms_;
 };
 

@@ -25,7 +25,7 @@
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/compare_page.h"
-#include "gui/dashboard/exclusion_command.h"
+#include "gui/dashboard/decision_command.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
@@ -139,6 +139,8 @@ void DashboardWindow::buildMenus() {
   exclude_ = edit->addAction("&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), this,
                              [this] { askForExclusion(); });
   exclude_->setEnabled(false);
+  edit->addAction("Add &tag …", QKeySequence(Qt::CTRL | Qt::Key_T), this, [this] { askForTag(true); });
+  edit->addAction("Remove ta&g …", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_T), this, [this] { askForTag(false); });
   edit->addAction("&Verify again", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_V), this, [this] { verifySelected(); });
   edit->addAction("&Side by side", QKeySequence(Qt::CTRL | Qt::Key_B), this, [this] { pairSelected(); });
   QMenu* const view = menuBar()->addMenu("&View");
@@ -164,6 +166,8 @@ void DashboardWindow::buildMenus() {
 }
 
 void DashboardWindow::connectPages() {
+  connect(&writer_, &CohortWriter::written, this, &DashboardWindow::reload);
+  connect(&writer_, &CohortWriter::failed, this, &DashboardWindow::showProblem);
   connect(greeting_, &GreetingPage::openRequested, this, &DashboardWindow::askForDatabase);
   connect(greeting_, &GreetingPage::newRequested, this, [this] { askForNewDatabase(); });
   connect(greeting_, &GreetingPage::importRequested, this, [this] { askForRecordings(); });
@@ -304,27 +308,27 @@ void DashboardWindow::showRecording(const QString& file, const QString& uuid) {
   importRecordings({file});
 }
 
+std::vector<analytics::AttemptRow> DashboardWindow::chosenAttempts() const {
+  std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
+  if (chosen.empty() && attempts_->selected() != nullptr) chosen.push_back(*attempts_->selected());
+  return chosen;
+}
+
 void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {
   const analytics::AttemptRow* current = attempts_->selected();
   if (current == nullptr) return;
   const bool exclude = !current->excluded;
-  std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
-  if (chosen.empty()) chosen.push_back(*current);
+  Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
   // Those that are so already stay as they are.
-  std::erase_if(chosen, [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
-  const bool several = chosen.size() > 1;
-  if (several) undo_->beginMacro(exclude ? "exclude attempts" : "include attempts");
-  for (const analytics::AttemptRow& attempt : chosen) {
-    undo_->push(new ExclusionCommand(
-        {document_->path(), attempt.uuid, reason.toStdString(), by.toStdString(), exclude, attempt.exclusionReason},
-        [this](const QString& fault) {
-          if (fault.isEmpty())
-            reload();
-          else
-            showProblem(fault);
-        }));
-  }
-  if (several) undo_->endMacro();
+  std::erase_if(decision.attempts,
+                [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
+  undo_->push(exclusionCommand(writer_, decision, exclude, reason.toStdString()).release());
+}
+
+void DashboardWindow::tagSelected(const QString& tag, bool add, const QString& by) {
+  if (attempts_->selected() == nullptr) return;
+  const Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
+  undo_->push(tagCommand(writer_, decision, add, tag.toStdString()).release());
 }
 
 void DashboardWindow::verifySelected() {

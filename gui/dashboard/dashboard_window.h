@@ -8,6 +8,7 @@
 
 #include "gui/dashboard/background.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/cohort_writer.h"
 #include "gui/dashboard/import_queue.h"
 
 class QAction;
@@ -30,7 +31,7 @@ class StudyPage;
 class TraineePage;
 
 /// The dashboard: pages over one cohort database. It only puts pages together; what they show is decided by models that
-/// know no window. The database is written by imports, ratings and exclusions alone.
+/// know no window. The database is written by imports, ratings, exclusions and tags alone.
 class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
@@ -57,6 +58,8 @@ class DashboardWindow : public QMainWindow {
   /// Excludes the selected attempts from studies, or takes them in again where the current one is excluded. Can be
   /// undone.
   void excludeOrInclude(const QString& reason, const QString& by);
+  /// Puts a tag on the selected attempts, or takes it off. Can be undone. @pre tag as analytics::checkTag()
+  void tagSelected(const QString& tag, bool add, const QString& by);
   /// Simulates the selected attempts' recordings again; progress as of an import.
   void verifySelected();
   /// Puts two selected attempts side by side.
@@ -88,6 +91,8 @@ class DashboardWindow : public QMainWindow {
   void askForNewDatabase();
   void askForRecordings();
   void askForExclusion();
+  void askForTag(bool add);
+  [[nodiscard]] std::vector<analytics::AttemptRow> chosenAttempts() const;  ///< selected, or the current one
   void showSettings();
   void savePicture(QWidget& page, const QString& file);
 
@@ -109,6 +114,7 @@ class DashboardWindow : public QMainWindow {
   QDockWidget* importDock_ = nullptr;
   QTimer* refresh_ = nullptr;  ///< while an import runs
   ImportQueue imports_;
+  CohortWriter writer_;
   Background loader_;
 };
 

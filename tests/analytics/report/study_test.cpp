@@ -134,7 +134,7 @@ TEST(Study, countsWhyAttemptsStayOut) {
   add(27, [](AttemptRecord& a) { a.purpose = "golden"; });
   add(28, [](AttemptRecord& a) { a.profile.clear(); });
   add(29, [](AttemptRecord&) {});
-  database.excludeAttempt(uuidOf(29), "fire alarm", "instructor");
+  database.excludeAttempts({uuidOf(29)}, "fire alarm", "instructor");
   const Study study = makeStudy(database, performers);
   EXPECT_EQ(study.recruited, 19U);
   EXPECT_EQ(study.analysed, 9U);
