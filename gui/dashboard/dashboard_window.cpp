@@ -141,6 +141,7 @@ void DashboardWindow::buildMenus() {
   exclude_->setEnabled(false);
   edit->addAction("Add &tag …", QKeySequence(Qt::CTRL | Qt::Key_T), this, [this] { askForTag(true); });
   edit->addAction("Remove ta&g …", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_T), this, [this] { askForTag(false); });
+  edit->addAction("Make a &norm …", QKeySequence(Qt::CTRL | Qt::Key_M), this, [this] { askForNorm(); });
   edit->addAction("&Verify again", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_V), this, [this] { verifySelected(); });
   edit->addAction("&Side by side", QKeySequence(Qt::CTRL | Qt::Key_B), this, [this] { pairSelected(); });
   QMenu* const view = menuBar()->addMenu("&View");

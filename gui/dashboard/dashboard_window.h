@@ -31,7 +31,7 @@ class StudyPage;
 class TraineePage;
 
 /// The dashboard: pages over one cohort database. It only puts pages together; what they show is decided by models that
-/// know no window. The database is written by imports, ratings, exclusions and tags alone.
+/// know no window. The database is written by imports, ratings, exclusions, tags and norms alone.
 class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
@@ -92,6 +92,7 @@ class DashboardWindow : public QMainWindow {
   void askForRecordings();
   void askForExclusion();
   void askForTag(bool add);
+  void askForNorm();
   [[nodiscard]] std::vector<analytics::AttemptRow> chosenAttempts() const;  ///< selected, or the current one
   void showSettings();
   void savePicture(QWidget& page, const QString& file);

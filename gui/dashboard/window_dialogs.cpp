@@ -5,6 +5,7 @@
 
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
+#include "gui/dashboard/norm_dialog.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/settings_dialog.h"
 #include "gui/words/problem_words.h"
@@ -83,6 +84,15 @@ void DashboardWindow::askForTag(bool add) {
   }
   settings::setPerson(by);
   tagSelected(tag, add, by);
+}
+
+void DashboardWindow::askForNorm() {
+  if (!document_) return;
+  std::vector<std::string> selected;
+  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) selected.push_back(attempt.uuid);
+  NormDialog dialog(document_, selected, this);
+  connect(&dialog, &NormDialog::made, this, &DashboardWindow::reload);
+  dialog.exec();
 }
 
 void DashboardWindow::showSettings() {
