@@ -16,6 +16,16 @@ const analytics::AttemptRow* CohortDocument::attempt(const std::string& uuid) co
   return at == attempts().end() ? nullptr : &*at;
 }
 
+std::shared_ptr<const FigureValues> CohortDocument::figureValues() const {
+  const std::lock_guard lock(valuesMutex_);
+  if (!values_) {
+    const analytics::CohortDatabase database(path(), Access::read);  // a connection is of one thread
+    values_ =
+        std::make_shared<const FigureValues>([&](const FigureValues::Take& take) { database.eachValue({}, take); });
+  }
+  return values_;
+}
+
 const std::vector<analytics::Norm>& CohortDocument::norms() const {
   if (!norms_) norms_ = analytics::AssessmentDatabase(path(), Access::read).norms();
   return *norms_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "gui/dashboard/attempt_lines.h"
+#include "gui/dashboard/figure_values.h"
 
 namespace calot::gui {
 
@@ -30,8 +32,8 @@ class CohortDocument {
   [[nodiscard]] std::vector<analytics::ValueInterval> intervals(const std::string& uuid) const {
     return database_.intervals(uuid);
   }
-  /// @throws calot::Error
-  [[nodiscard]] std::vector<analytics::AttemptValue> allValues() const { return database_.allValues(); }
+  /// All values, by figure; any thread, the first that asks reads them. @throws calot::Error
+  [[nodiscard]] std::shared_ptr<const FigureValues> figureValues() const;
   [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
   /// Read when they are first asked for. @throws calot::Error
   [[nodiscard]] const std::vector<analytics::Norm>& norms() const;
@@ -44,6 +46,8 @@ class CohortDocument {
   analytics::CohortDatabase database_;
   std::shared_ptr<const AttemptLines> lines_;
   mutable std::optional<std::vector<analytics::Norm>> norms_;
+  mutable std::mutex valuesMutex_;
+  mutable std::shared_ptr<const FigureValues> values_;
 };
 
 }  // namespace calot::gui

@@ -46,6 +46,8 @@ class DashboardWindow : public QMainWindow {
   /// Opens a database, one of an older schema after it was brought up to date. On failure says why in one line on the
   /// window, keeps what was open, and returns false.
   bool openDatabase(const QString& path);
+  /// The same, read on another thread: a large one takes longer than the window may be kept from answering.
+  void openLater(const QString& path);
   /// Makes an empty database, or opens the one that is there.
   bool createDatabase(const QString& path);
   /// Reads the open database again, in the background.
@@ -67,7 +69,7 @@ class DashboardWindow : public QMainWindow {
 
   [[nodiscard]] ImportQueue& imports() { return imports_; }
   /// Writes a PNG of each page into a folder that exists, after what it shows has been read: attempts.png, attempt.png,
-  /// compare.png, study.png, trainee.png, pair.png, ratings.png and settings.png (or greeting.png).
+  /// compare.png, study.png, trainee.png, pair.png, ratings.png, norm.png and settings.png (or greeting.png).
   /// @throws calot::Error (failure) if one cannot be written.
   void savePictures(const QString& folder);
 
@@ -87,7 +89,7 @@ class DashboardWindow : public QMainWindow {
   void buildImport();
   void connectPages();
   void openAttempt(const QString& uuid);
-  bool upgradeDatabase(const QString& path);
+  void takeOpened(const std::shared_ptr<const CohortDocument>& document, bool upgraded);
   void askForNewDatabase();
   void askForRecordings();
   void askForExclusion();
@@ -116,7 +118,8 @@ class DashboardWindow : public QMainWindow {
   QTimer* refresh_ = nullptr;  ///< while an import runs
   ImportQueue imports_;
   CohortWriter writer_;
-  Background loader_;
+  Background loader_;  ///< reads again what is open
+  Background opener_;  ///< opens another
 };
 
 }  // namespace calot::gui

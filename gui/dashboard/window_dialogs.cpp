@@ -16,7 +16,7 @@ namespace calot::gui {
 void DashboardWindow::askForDatabase() {
   const QString path =
       QFileDialog::getOpenFileName(this, "Open a cohort database", {}, "Cohort databases (*.db);;All files (*)");
-  if (!path.isEmpty()) openDatabase(path);
+  if (!path.isEmpty()) openLater(path);
 }
 
 void DashboardWindow::askForNewDatabase() {

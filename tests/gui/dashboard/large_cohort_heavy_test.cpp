@@ -71,7 +71,7 @@ class LargeCohortHeavy : public ::testing::Test {
   [[nodiscard]] QString database() const { return QString::fromStdString((root_ / "c.db").string()); }
   void open() {
     QSignalSpy shown(&*window_, &DashboardWindow::documentShown);
-    window_->openDatabase(database());
+    window_->openLater(database());
     ASSERT_TRUE(shown.count() > 0 || shown.wait(longest));
     QTest::qWait(500);
   }

@@ -354,8 +354,10 @@ TEST_F(Pages, PicturesOfAllPagesAreWritten) {
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   window.savePictures(folder_.path());
   for (const char* name : {"attempts.png", "attempt.png", "compare.png", "study.png", "trainee.png", "pair.png",
-                           "ratings.png", "settings.png"})
-    EXPECT_GT(QImage(file(name)).width(), name == std::string("settings.png") ? 400 : 600) << name;
+                           "ratings.png", "norm.png", "settings.png"})
+    EXPECT_GT(QImage(file(name)).width(),
+              std::string(name) == "settings.png" || std::string(name) == "norm.png" ? 400 : 600)
+        << name;
   EXPECT_THROW(window.savePictures(file("missing")), Error);
 }
 
