@@ -9,6 +9,7 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm_rule.h"
+#include "analytics/cohort/check.h"
 
 namespace calot::analytics {
 
@@ -18,7 +19,9 @@ Norm createNorm(const std::string& database, NormRequest request, const std::vec
   const auto tell = [&](double share, const char* doing) {
     if (progress) progress(share, doing);
   };
+  tell(0.0, "checking the cohort");
   AssessmentDatabase assessment(database, Access::write);
+  refuseUnsound(database);
   const CohortDatabase cohort(database, Access::read);
   if (request.who.protocol) {
     for (const Participant& p : cohort.participants()) request.who.protocol->experience[p.pseudonym] = p.experience;
