@@ -16,7 +16,7 @@ import program
 import recording_file
 from cohort_content import content, query
 from import_test import synthetic, text_of
-from program import PROGRAM, SCENE, recording
+from program import PROGRAM, SCENE, calot, recording
 
 WHO = "Withdrawn-Q7"
 
@@ -60,7 +60,7 @@ class Verb:
 
 class Record(Verb):
     def command(self, work):
-        return "record", "--scene", SCENE, "--performer", "unskilled", "--seed", 5, "--seconds", 3, "-o", work / "r.h5"
+        return "record", "--scene", SCENE, "--performer", "unskilled", "--seed", 5, "--seconds", 8, "-o", work / "r.h5"
 
     def again(self, work):
         return *self.command(work), "--force"
@@ -84,6 +84,9 @@ class Record(Verb):
 class Cohort(Verb):
     def sound(self, work, name="c.db"):
         """Of a cohort that may not be there yet: how many attempts it has."""
+        if (work / f"{name}-journal").exists():  # killed before there was a log: nothing is in it yet
+            self.test.assertIn(calot("cohort", "check", work / name).code, (0, 4))
+            return 0
         if not (work / name).exists() or query(work / name, "SELECT count(*) FROM sqlite_master")[0][0] == 0:
             return 0
         self.test.well("cohort", "check", work / name)
@@ -227,19 +230,37 @@ class Withdraw(Cohort):
         return held, sorted(p.name for p in (work / "data").iterdir())
 
 
+def state_of(folder):
+    state = []
+    for path in folder.rglob("*"):
+        try:
+            about = path.stat()
+        except FileNotFoundError:  # gone since
+            continue
+        state.append((str(path), about.st_size, about.st_mtime_ns))
+    return sorted(state)
+
+
 class KilledAnywhere(program.ProgramTest):
-    def run_killed(self, command, after):
-        """@returns how long it ran until its end or the kill, and whether it was killed"""
+    def run_killed(self, command, work, full, draw):
+        """Half of the kills come at any moment, half after the first change of a file: there is most to be lost.
+        @returns seconds that it took where it ended by itself, or None"""
+        before = state_of(work)
         process = subprocess.Popen([str(PROGRAM), *map(str, command)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL)
         begin = time.monotonic()
-        try:
-            process.wait(timeout=after)
-            return time.monotonic() - begin, False
-        except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGKILL)
-            process.wait()
-            return after, True
+        if draw.random() < 0.5:
+            while process.poll() is None and state_of(work) == before:
+                time.sleep(0.001)
+            end = time.monotonic() + draw.uniform(0.0, 0.4 * full) ** 2 / full
+        else:
+            end = begin + draw.uniform(0.0, full)
+        while process.poll() is None and time.monotonic() < end:
+            time.sleep(0.001)
+        if process.poll() is not None:
+            return time.monotonic() - begin
+        process.send_signal(signal.SIGKILL)
+        return time.monotonic() - begin if process.wait() != -signal.SIGKILL else None
 
     def test_at_random_moments(self):
         draw = program.seeded("killed anywhere")
@@ -263,13 +284,13 @@ class KilledAnywhere(program.ProgramTest):
             rounds += 1
             verb, work = verbs[name], self.path("work")
             shutil.copytree(verb.original, work)
-            took, killed = self.run_killed(verb.command(work), draw.uniform(0.0, full[name]))
-            if not killed:
+            took = self.run_killed(verb.command(work), work, full[name], draw)
+            if took is not None:
                 full[name] = min(full[name], took)  # the machine was busy when it was timed
-            kills[name] += killed
-            with self.subTest(verb=name, after=took, round=rounds):
+            kills[name] += took is None
+            with self.subTest(verb=name, round=rounds):
                 partly[name] += verb.killed(work)
-                again = program.calot(*verb.again(work))
+                again = calot(*verb.again(work))
                 if name == "Withdraw" and again.code == 3:  # the rows had gone: what they left in free pages goes on request
                     self.well("cohort", "scrub", work / "c.db")
                 else:
