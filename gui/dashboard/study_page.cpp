@@ -209,7 +209,8 @@ void StudyPage::setDocument(std::shared_ptr<const CohortDocument> document) {
   made_ = checked_ = false;
   if (another) fillChoices();
   fillProtocols();
-  if (isVisible()) make();
+  // While recordings are imported a cohort is read again and again: what is being computed is shown before the next.
+  if (isVisible() && (another || !computed_)) make();
 }
 
 void StudyPage::showEvent(QShowEvent* event) {
@@ -307,7 +308,7 @@ void StudyPage::make() {
 
 void StudyPage::take(Computed& computed) {
   study_ = computed.study;
-  checked_ = checked_ || study_ != nullptr;
+  checked_ = made_ && study_ != nullptr;  // of the document as it is now
   csv_->setEnabled(ready());
   html_->setEnabled(ready());
   {
@@ -336,6 +337,7 @@ void StudyPage::take(Computed& computed) {
   }
   showRow();
   emit studyShown();
+  if (!made_) make();
 }
 
 void StudyPage::showRow() {
