@@ -62,7 +62,7 @@ QImage forestPicture(const analytics::Study& study, double ratio) {
   return image;
 }
 
-constexpr int patience = 300;  // ms before progress is shown
+constexpr int shownAfter = 300;  // ms before progress is shown
 
 }  // namespace
 
@@ -290,7 +290,7 @@ void StudyPage::make() {
   request.protocol = protocol_->currentData().toString().toStdString();
   request.check = !checked_;
   computed_ = std::make_shared<Computed>();
-  strip_->begin("Computing the study", patience);
+  strip_->begin("Computing the study", shownAfter);
   work_.start([computed = computed_, request, database = document_->path(),
                ratio = devicePixelRatioF()](LongWork::Control& control) {
     StudyAnswer answer = studyOf(database, request, [&](double share, const char* doing) {
