@@ -11,7 +11,7 @@ constexpr const char* kindsOfMissing =
     "0 value, 1 not applicable, 2 not available, 3 absent hand, 4 too little coverage";
 
 // table, column, title, unit, allowed values, what stands where there is none
-constexpr std::array<ColumnNote, 255> notes{{
+constexpr std::array<ColumnNote, 257> notes{{
     {"participant", "id", "number of the row, which other tables name"},
     {"participant", "pseudonym", "pseudonym"},
     {"participant", "study_group", "study group", "", "", "empty"},

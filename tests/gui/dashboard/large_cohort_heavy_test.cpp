@@ -39,7 +39,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double longestTurn = 50.0;  // ms
-constexpr int longest = 600000;       // ms for anything to end
+constexpr int endsWithin = 600000;    // ms for anything to end
 
 class LargeCohortHeavy : public ::testing::Test {
  protected:
@@ -72,7 +72,7 @@ class LargeCohortHeavy : public ::testing::Test {
   void open() {
     QSignalSpy shown(&*window_, &DashboardWindow::documentShown);
     window_->openLater(database());
-    ASSERT_TRUE(shown.count() > 0 || shown.wait(longest));
+    ASSERT_TRUE(shown.count() > 0 || shown.wait(endsWithin));
     QTest::qWait(500);
   }
   template <class T>
@@ -87,7 +87,7 @@ class LargeCohortHeavy : public ::testing::Test {
     QTest::qWait(50);
   }
   void wait(const std::function<bool()>& condition) {
-    EXPECT_TRUE(QTest::qWaitFor(condition, longest));
+    EXPECT_TRUE(QTest::qWaitFor(condition, endsWithin));
     QTest::qWait(200);
   }
   /// What a person does at one place, one thing after the other.
@@ -109,7 +109,7 @@ TEST_F(LargeCohortHeavy, AttemptsAreOpenedFilteredSortedAndSelected) {
   watch.judge("opened", longestTurn);
   window_->reload();
   QSignalSpy shown(&*window_, &DashboardWindow::documentShown);
-  ASSERT_TRUE(shown.wait(longest));
+  ASSERT_TRUE(shown.wait(endsWithin));
   QTest::qWait(300);
   watch.judge("read again", longestTurn);
   auto* search = part<QLineEdit>("search");
@@ -229,7 +229,7 @@ TEST_F(LargeCohortHeavy, ARecordingIsVerifiedAndAttemptsAreExcluded) {
   watch.begin();
   QSignalSpy shown(&*window_, &DashboardWindow::documentShown);
   window_->excludeOrInclude("a reason", "A. Nalyst");
-  ASSERT_TRUE(shown.wait(longest));
+  ASSERT_TRUE(shown.wait(endsWithin));
   QTest::qWait(1000);
   watch.judge("50 attempts excluded", longestTurn);
 }

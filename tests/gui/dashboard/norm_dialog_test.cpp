@@ -23,7 +23,7 @@ namespace calot::gui {
 namespace {
 
 using Access = analytics::CohortDatabase::Access;
-constexpr int wait = 120000;  // ms
+constexpr int normPatience = 120000;  // ms
 
 /// Skilled ones have shorter paths than unskilled ones; all are synthetic, in practice mode.
 class NormDialogs : public ::testing::Test {
@@ -55,7 +55,7 @@ class NormDialogs : public ::testing::Test {
     QSignalSpy made(&*dialog_, &NormDialog::made), refused(&*dialog_, &NormDialog::refused);
     part<QPushButton>("norm-make")->click();
     EXPECT_FALSE(part<QPushButton>("norm-make")->isEnabled()) << "one at a time";
-    EXPECT_TRUE(QTest::qWaitFor([&] { return made.count() + refused.count() > 0; }, wait));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return made.count() + refused.count() > 0; }, normPatience));
     EXPECT_EQ(made.count(), good ? 1 : 0) << part<QLabel>("norm-result")->text().toStdString();
     return part<QLabel>("norm-result")->text();
   }
