@@ -19,14 +19,15 @@ CohortWriter::~CohortWriter() {
   thread_.waitForDone();
 }
 
-void CohortWriter::write(const std::string& database, Change change) {
-  thread_.start([back = back_, database, change = std::move(change)] {
+void CohortWriter::write(const std::string& database, Change change, std::function<void()> undone) {
+  thread_.start([back = back_, database, change = std::move(change), undone = std::move(undone)] {
     QString fault;
     try {
       analytics::CohortDatabase cohort(database, analytics::CohortDatabase::Access::write);
       change(cohort);
     } catch (const std::exception& error) {
       fault = QString::fromStdString(problemText(error));
+      undone();
     }
     back->pass([&](CohortWriter& writer) {
       QMetaObject::invokeMethod(

@@ -26,7 +26,8 @@ class CohortWriter : public QObject {
   /// Waits until all is written.
   ~CohortWriter() override;
   /// Ends with written() or failed(). @param change throws calot::Error where it cannot be
-  void write(const std::string& database, Change change);
+  /// @param undone called on the writer's thread where nothing was written, before failed()
+  void write(const std::string& database, Change change, std::function<void()> undone);
 
  signals:
   void written();

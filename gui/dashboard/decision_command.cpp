@@ -36,14 +36,10 @@ void DecisionCommand::write(const CohortWriter::Change& change) {
     setObsolete(true);  // what could not be done leaves nothing to undo
     return;
   }
-  writer_.write(database_, [state = state_, change](analytics::CohortDatabase& cohort) {
-    try {
-      if (!state->failed) change(cohort);
-    } catch (...) {
-      state->failed = true;
-      throw;
-    }
-  });
+  const auto apply = [state = state_, change](analytics::CohortDatabase& cohort) {
+    if (!state->failed) change(cohort);
+  };
+  writer_.write(database_, apply, [state = state_] { state->failed = true; });
 }
 
 std::unique_ptr<DecisionCommand> exclusionCommand(CohortWriter& writer, const Decision& decision, bool exclude,

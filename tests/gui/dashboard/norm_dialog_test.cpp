@@ -83,7 +83,7 @@ TEST_F(NormDialogs, ANormIsMadeAndWhatItLetsThroughIsSaid) {
   EXPECT_TRUE(text.startsWith("SYNTHETIC"));
   EXPECT_TRUE(text.contains("Norm clinic version 1"));
   EXPECT_TRUE(text.contains("of 10 competent members pass")) << text.toStdString();
-  EXPECT_TRUE(text.contains("ormative")) << "what it may be used for";
+  EXPECT_TRUE(text.contains("FORMATIVE")) << "what it may be used for";
   EXPECT_TRUE(make(true).contains("version 2")) << "the same name again";
 }
 
