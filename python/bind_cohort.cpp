@@ -68,6 +68,7 @@ py::dict attemptDict(const analytics::AttemptRow& a) {
   row["verdict"] = analytics::nameOf(a.verification.verdict);
   row["excluded"] = a.excluded;
   row["withdrawn"] = a.withdrawn;
+  row["tags"] = a.tags;
   return row;
 }
 

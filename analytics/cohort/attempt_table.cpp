@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <utility>
 
 #include "analytics/cohort/tables.h"
 
@@ -95,13 +97,25 @@ std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& u
   SQLite::Statement select(db, std::string(attemptColumns) + "WHERE a.uuid = ?");
   select.bind(1, uuid);
   if (!select.executeStep()) return std::nullopt;
-  return attemptRow(select);
+  AttemptRow row = attemptRow(select);
+  SQLite::Statement tags(db, "SELECT tag FROM attempt_tag WHERE attempt = ? ORDER BY tag");
+  tags.bind(1, attemptId(db, uuid));
+  while (tags.executeStep()) row.tags.push_back(text(tags.getColumn(0)));
+  return row;
 }
 
 std::vector<AttemptRow> readAttempts(SQLite::Database& db) {
   SQLite::Statement select(db, std::string(attemptColumns) + "ORDER BY a.start_utc, a.uuid");
   std::vector<AttemptRow> rows;
   while (select.executeStep()) rows.push_back(attemptRow(select));
+  // Few have any: looking for them beside each attempt would cost more.
+  std::map<std::string, std::vector<std::string>> tagsOf;
+  SQLite::Statement tags(db, "SELECT a.uuid, t.tag FROM attempt_tag t JOIN attempt a ON a.id = t.attempt ORDER BY 2");
+  while (tags.executeStep()) tagsOf[text(tags.getColumn(0))].push_back(text(tags.getColumn(1)));
+  if (tagsOf.empty()) return rows;
+  for (AttemptRow& row : rows) {
+    if (const auto at = tagsOf.find(row.uuid); at != tagsOf.end()) row.tags = std::move(at->second);
+  }
   return rows;
 }
 

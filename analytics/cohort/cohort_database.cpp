@@ -7,17 +7,12 @@
 #include <iterator>
 #include <utility>
 
-#include "analytics/cohort/connection.h"
+#include "analytics/cohort/cohort_storage.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
 
 using namespace tables;
-
-struct CohortDatabase::Storage {
-  std::string path;
-  std::unique_ptr<SQLite::Database> db;
-};
 
 std::string nameOf(Verdict verdict) {
   switch (verdict) {
@@ -199,49 +194,6 @@ void CohortDatabase::checkMetric(const ExternalMetric& metric) const {
 
 std::vector<ExternalMetric> CohortDatabase::externalMetrics() const {
   return guarded(path(), [&] { return readExternalMetrics(*storage_->db); });
-}
-
-namespace {
-
-void checkDecision(const std::string& reason, const std::string& by) {
-  const auto blank = [](const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; };
-  if (blank(by)) throw Error(ErrorKind::invalid, "exclusion: name who decides");
-  if (blank(reason)) throw Error(ErrorKind::invalid, "exclusion: a reason is wanted");
-}
-
-}  // namespace
-
-void CohortDatabase::excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by) {
-  checkDecision(reason, by);
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
-    SQLite::Statement put(db,
-                          "INSERT INTO exclusion VALUES (?, ?, ?, ?) ON CONFLICT DO UPDATE SET reason = "
-                          "excluded.reason, excluded_by = excluded.excluded_by, excluded_utc = excluded.excluded_utc");
-    SQLite::bind(put, id, reason, by, nowUtc());
-    put.exec();
-    audit(db, "attempt-exclude", attempt, fmt::format("{} (by {})", reason, by));
-    transaction.commit();
-  });
-}
-
-void CohortDatabase::includeAttempt(const std::string& attempt, const std::string& reason, const std::string& by) {
-  checkDecision(reason, by);
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
-    SQLite::Statement clear(db, "DELETE FROM exclusion WHERE attempt = ?");
-    clear.bind(1, id);
-    if (clear.exec() == 0)
-      throw Error(ErrorKind::refused, Where{path()}, fmt::format("attempt {} is not excluded", attempt));
-    audit(db, "attempt-include", attempt, fmt::format("{} (by {})", reason, by));
-    transaction.commit();
-  });
 }
 
 std::string CohortDatabase::attemptNamed(const std::string& text) const {

@@ -94,13 +94,17 @@ struct AttemptRecord {
 
 /// A row of the list of attempts, with what the database adds.
 struct AttemptRow : AttemptRecord {
-  std::string group, arm, site;  ///< the participant's
-  std::string verifiedUtc;       ///< when the verdict was reached
-  std::string importedUtc;       ///< when the attempt first came in
-  bool withdrawn = false;        ///< the participant has withdrawn from research
-  bool excluded = false;         ///< by hand, or withdrawn
-  std::string exclusionReason;   ///< reason and by whom
+  std::string group, arm, site;   ///< the participant's
+  std::string verifiedUtc;        ///< when the verdict was reached
+  std::string importedUtc;        ///< when the attempt first came in
+  bool withdrawn = false;         ///< the participant has withdrawn from research
+  bool excluded = false;          ///< by hand, or withdrawn
+  std::string exclusionReason;    ///< reason and by whom
+  std::vector<std::string> tags;  ///< words to find it by, in the order of their bytes
 };
+
+/// A tag is one word: 1 to 40 characters, no blank, comma or control character. @throws Error (invalid)
+void checkTag(const std::string& tag);
 
 /// Result of storeAttempt().
 enum class Imported : std::uint8_t { added, unchanged, extended };
@@ -174,11 +178,19 @@ class CohortDatabase {
   void checkMetric(const ExternalMetric& metric) const;
   [[nodiscard]] std::vector<ExternalMetric> externalMetrics() const;  ///< all versions, by name and version
 
-  /// Marks an attempt as excluded from studies, or replaces the mark; audited. @throws Error (invalid) without reason
-  /// or name; (refused) if there is no such attempt.
-  void excludeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
-  /// Removes the mark; audited. @throws Error as excludeAttempt, and 3 if the attempt is not excluded.
-  void includeAttempt(const std::string& attempt, const std::string& reason, const std::string& by);
+  /// Marks attempts as excluded from studies, or replaces the mark; all or none, each audited. @throws Error (invalid)
+  /// without reason or name; (refused) if there is no such attempt.
+  void excludeAttempts(const std::vector<std::string>& attempts, const std::string& reason, const std::string& by);
+  /// Removes the marks; all or none, each audited. @throws Error as excludeAttempts, and (refused) if one is not
+  /// excluded.
+  void includeAttempts(const std::vector<std::string>& attempts, const std::string& reason, const std::string& by);
+
+  /// Puts a word on attempts, by which people find them again; nothing is computed from it. All or none, each audited.
+  /// @returns how many did not have it yet @throws Error (invalid) as checkTag(), or without name; (refused) if there
+  /// is no such attempt.
+  std::size_t tagAttempts(const std::vector<std::string>& attempts, const std::string& tag, const std::string& by);
+  /// Takes it off again. @returns how many had it @throws Error as tagAttempts
+  std::size_t untagAttempts(const std::vector<std::string>& attempts, const std::string& tag, const std::string& by);
 
   /// The uuid that begins with `text`. @throws Error (refused) if there is none, or more than one.
   [[nodiscard]] std::string attemptNamed(const std::string& text) const;

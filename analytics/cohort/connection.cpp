@@ -60,6 +60,14 @@ std::unique_ptr<SQLite::Database> connect(const std::string& path, Access access
     // A reader of a WAL database creates an index file beside it. If it may not (read-only medium) and nobody writes,
     // the file alone is the whole database.
     const int code = error.getErrorCode() & 0xFF;
+    if (code == SQLITE_READONLY && std::filesystem::exists(path + "-journal")) {
+      // A writer was killed before the database had a log: only a connection that may write takes back what it began.
+      SQLite::Database back(path, SQLite::OPEN_READWRITE, patience);
+      pragma(back, "schema_version");
+      db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, patience);
+      pragma(*db, "schema_version");
+      return db;
+    }
     if ((code != SQLITE_CANTOPEN && code != SQLITE_READONLY) || std::filesystem::exists(path + "-wal")) throw;
     db = std::make_unique<SQLite::Database>(uriOf(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI, patience);
     pragma(*db, "schema_version");

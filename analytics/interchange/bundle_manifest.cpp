@@ -35,7 +35,7 @@ std::string bundleManifest(const Bundle& bundle, const std::string& scope) {
                "starts are moved by one random length of time a participant, 30 to 365 days earlier or "
                "later, kept nowhere; what lies between a participant's attempts is true"},
               {"withheld",
-               "stations, keys, seeds, chain heads, file names, notes, reasons of exclusion, audit, "
+               "stations, keys, seeds, chain heads, file names, notes, tags, reasons of exclusion, audit, "
                "protocols, norms; words of experience that fewer than three participants share"},
               {"recordings",
                "none: they hold pseudonym, start and station under a content chain that a rewritten "

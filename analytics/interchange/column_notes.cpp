@@ -11,7 +11,7 @@ constexpr const char* kindsOfMissing =
     "0 value, 1 not applicable, 2 not available, 3 absent hand, 4 too little coverage";
 
 // table, column, title, unit, allowed values, what stands where there is none
-constexpr std::array<ColumnNote, 255> notes{{
+constexpr std::array<ColumnNote, 257> notes{{
     {"participant", "id", "number of the row, which other tables name"},
     {"participant", "pseudonym", "pseudonym"},
     {"participant", "study_group", "study group", "", "", "empty"},
@@ -51,6 +51,8 @@ constexpr std::array<ColumnNote, 255> notes{{
     {"exclusion", "reason", "why it stays out of studies"},
     {"exclusion", "excluded_by", "by whose word"},
     {"exclusion", "excluded_utc", "when", "", "ISO 8601 UTC with Z"},
+    {"attempt_tag", "attempt", "row of attempt"},
+    {"attempt_tag", "tag", "word that people find it by"},
     {"recording", "attempt", "row of attempt"},
     {"recording", "file_name", "name of the recording's file, without folder"},
     {"recording", "chain_head", "BLAKE2b-256 head of the content chain, as seen at import"},

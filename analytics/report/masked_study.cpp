@@ -50,7 +50,7 @@ void describeLock(Study& study, const AnalysisLock& lock, const AnalysisLock& no
 }  // namespace
 
 Study makeMaskedStudy(const CohortDatabase& database, const AssessmentDatabase& assessment, const StudyOptions& options,
-                      bool swapped) {
+                      bool swapped, const StudyProgress& progress) {
   const Protocol& protocol = options.protocol->protocol;
   StudyOptions masked = withCohortData(database, maskedOptions(options, swapped));
   std::vector<AttemptRow> attempts = database.listAttempts();
@@ -58,7 +58,7 @@ Study makeMaskedStudy(const CohortDatabase& database, const AssessmentDatabase& 
     std::string& group = protocol.performers ? a.profile : a.group;
     group = maskedName(group, protocol, swapped);
   }
-  Study study = makeStudy(attempts, database.allValues(), masked, database.path());
+  Study study = makeStudy(attempts, database.allValues(), masked, database.path(), progress);
   addRatings(study, assessment);
   for (StudyRow& row : study.rows) {
     row.publishedExpert = row.publishedNovice = std::nullopt;
@@ -95,16 +95,16 @@ AnalysisLock presentAnalysis(const CohortDatabase& database, const AssessmentDat
 }
 
 Study makeProtocolStudy(const CohortDatabase& database, const AssessmentDatabase& assessment,
-                        const StudyOptions& options, bool masked) {
+                        const StudyOptions& options, bool masked, const StudyProgress& progress) {
   const std::string& path = database.path();
   const std::string& sha256 = options.protocol->protocol.sha256;
   const std::optional<AnalysisLock> lock = readAnalysisLock(path, sha256);
   if (!lock) {
     const std::optional<bool> drawn = readGroupMask(path, sha256);
     if (drawn || masked)
-      return makeMaskedStudy(database, assessment, options, drawn ? *drawn : drawGroupMask(path, sha256));
+      return makeMaskedStudy(database, assessment, options, drawn ? *drawn : drawGroupMask(path, sha256), progress);
   }
-  Study study = makeStudy(database, options);
+  Study study = makeStudy(database, options, progress);
   addRatings(study, assessment);
   if (lock) describeLock(study, *lock, presentAnalysis(database, assessment, options));
   return study;

@@ -15,7 +15,7 @@ namespace calot::analytics {
 /// @param swapped the protocol's second population is group 1. @pre options have a protocol
 /// @throws Error as makeStudy(), whose messages name the masked groups
 Study makeMaskedStudy(const CohortDatabase& database, const AssessmentDatabase& assessment, const StudyOptions& options,
-                      bool swapped);
+                      bool swapped, const StudyProgress& progress = {});
 
 /// Choices beside the protocol that decide the figures, a line each: what a lock compares.
 std::string analysisOptions(const StudyOptions& options);
@@ -32,6 +32,6 @@ AnalysisLock presentAnalysis(const CohortDatabase& database, const AssessmentDat
 /// @param masked asks for it: which group is "group 1" is drawn, where it never was
 /// @throws Error as makeStudy()
 Study makeProtocolStudy(const CohortDatabase& database, const AssessmentDatabase& assessment,
-                        const StudyOptions& options, bool masked);
+                        const StudyOptions& options, bool masked, const StudyProgress& progress = {});
 
 }  // namespace calot::analytics

@@ -142,9 +142,12 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
 
 using TakeValue = std::function<void(const AttemptValue&)>;
 
+/// Reading the values takes longer than comparing them, unless the groups are large: a share each.
+constexpr double readingShare = 0.6;
+
 /// @param eachValue gives every value to what it is called with, by attempt
 Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void(const TakeValue&)>& eachValue,
-              const StudyOptions& asked, const std::string& name) {
+              const StudyOptions& asked, const std::string& name, const StudyProgress& progress) {
   const StudyOptions options = asked.protocol ? byProtocol(asked) : asked;
   Study study;
   study.heading = "exploratory";
@@ -185,8 +188,13 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
   CoverageCollector coverage;
   std::string attempt;  // values come by attempt
   auto at = member.end();
+  std::size_t read = 0;  // attempts; those of external metrics come once more, behind all others
   eachValue([&](const AttemptValue& item) {
-    if (attempt != item.attempt) at = member.find(attempt = item.attempt);
+    if (attempt != item.attempt) {
+      at = member.find(attempt = item.attempt);
+      const double part = static_cast<double>(++read) / static_cast<double>(recruited.size());
+      if (progress) progress(readingShare * std::min(part, 1.0), "reading values");
+    }
     if (at == member.end()) return;
     const auto [place, isNew] = columns.try_emplace(ColumnKey{item.value.name, item.value.subject});
     Column& column = place->second;
@@ -255,7 +263,12 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
                                   [](const StudyRow& row) { return row.checkpoint == phaseDurationName; });
   study.phasesLeftOut = phases && !unasked.empty();
   if (study.phasesLeftOut) study.remarks.emplace_back("Other checkpoints of single phases are left out.");
-  for (StudyRow& row : study.rows) compareGroups(row, study, duration);
+  for (std::size_t i = 0; i < study.rows.size(); ++i) {
+    if (progress)
+      progress(readingShare + (1.0 - readingShare) * static_cast<double>(i) / static_cast<double>(study.rows.size()),
+               "comparing groups");
+    compareGroups(study.rows[i], study, duration);
+  }
   addPublished(study);
   finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   return study;
@@ -271,16 +284,16 @@ StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options
   return options;
 }
 
-Study makeStudy(const CohortDatabase& database, const StudyOptions& options) {
+Study makeStudy(const CohortDatabase& database, const StudyOptions& options, const StudyProgress& progress) {
   const StudyOptions known = withCohortData(database, options);
   const auto each = [&](const TakeValue& take) { database.eachValue(unaskedPhases(known), take); };
-  return studyOf(database.listAttempts(), each, known, database.path());
+  return studyOf(database.listAttempts(), each, known, database.path(), progress);
 }
 
 Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
-                const StudyOptions& asked, const std::string& name) {
+                const StudyOptions& asked, const std::string& name, const StudyProgress& progress) {
   const auto each = [&](const TakeValue& take) { std::for_each(values.begin(), values.end(), take); };
-  return studyOf(recruited, each, asked, name);
+  return studyOf(recruited, each, asked, name, progress);
 }
 
 }  // namespace calot::analytics

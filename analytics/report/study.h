@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -223,13 +224,17 @@ struct Study {
   std::vector<FormReport> ratings;             ///< addRatings()
 };
 
+/// How far a study is: the share that is done, from 0 to 1, and what is being done ("reading values"). Called often, on
+/// the thread that makes the study; what it throws ends the study.
+using StudyProgress = std::function<void(double share, const char* doing)>;
+
 /// Two groups side by side, one value per participant. A participant with several attempts needs
 /// `StudyChoices::attemptRule`; a performer's attempt without participant counts as one synthetic participant.
 /// Practice, branches, goldens, excluded attempts, unfinished recordings, technical failures and recordings that did
 /// not verify stay out, counted in the flow.
 /// @throws Error (refused) when there are not two groups, a participant has several attempts and there is no rule, or
 /// comparability keys or checkpoint versions would mix; Error (invalid) for a name that is none, of a cohort too.
-Study makeStudy(const CohortDatabase& database, const StudyOptions& options);
+Study makeStudy(const CohortDatabase& database, const StudyOptions& options, const StudyProgress& progress = {});
 
 /// What makeStudy() of a database adds to the options: the named cohort's participants, recorded experience.
 /// @throws Error (invalid) where there is no such cohort
@@ -238,7 +243,7 @@ StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options
 /// The same of attempts and values at hand: CohortDatabase::listAttempts() and allValues(). @param name of where they
 /// are from, for errors
 Study makeStudy(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
-                const StudyOptions& options, const std::string& name);
+                const StudyOptions& options, const std::string& name, const StudyProgress& progress = {});
 
 /// Adds results of forms completed by or about the analysed participants.
 void addRatings(Study& study, const AssessmentDatabase& database);

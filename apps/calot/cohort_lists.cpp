@@ -2,6 +2,7 @@
 #include "apps/calot/cohort_lists.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iostream>
@@ -29,27 +30,28 @@ using Align = analytics::TextTable::Align;
 using Json = nlohmann::ordered_json;
 
 struct ListOptions {
-  std::string cohort, participant, group, scene;
+  std::string cohort, participant, group, scene, tag;
   bool all = false, json = false;
 };
 
 /// Which of the rows are asked for.
 bool isAsked(const AttemptRow& a, const ListOptions& o) {
   return (o.participant.empty() || a.participant == o.participant) && (o.group.empty() || a.group == o.group) &&
-         (o.scene.empty() || a.scene == o.scene) && (o.all || !a.excluded);
+         (o.scene.empty() || a.scene == o.scene) &&
+         (o.tag.empty() || std::find(a.tags.begin(), a.tags.end(), o.tag) != a.tags.end()) && (o.all || !a.excluded);
 }
 
 std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profile : a.participant; }
 
 Json jsonOf(const AttemptRow& a) {
-  return {{"attempt", a.uuid},       {"participant", a.participant},
-          {"group", a.group},        {"synthetic", a.synthetic},
-          {"profile", a.profile},    {"scene", a.scene},
-          {"mode", wordFor(a.mode)}, {"outcome", wordFor(a.outcome)},
-          {"start_utc", a.startUtc}, {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
-          {"file", a.fileName},      {"verdict", nameOf(a.verification.verdict)},
-          {"excluded", a.excluded},  {"exclusion_reason", a.exclusionReason},
-          {"withdrawn", a.withdrawn}};
+  return {{"attempt", a.uuid},        {"participant", a.participant},
+          {"group", a.group},         {"synthetic", a.synthetic},
+          {"profile", a.profile},     {"scene", a.scene},
+          {"mode", wordFor(a.mode)},  {"outcome", wordFor(a.outcome)},
+          {"start_utc", a.startUtc},  {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
+          {"file", a.fileName},       {"verdict", nameOf(a.verification.verdict)},
+          {"excluded", a.excluded},   {"exclusion_reason", a.exclusionReason},
+          {"withdrawn", a.withdrawn}, {"tags", a.tags}};
 }
 
 /// Beginnings of the uuids, as long as it takes to tell all of the database's apart: what other commands accept.
@@ -76,7 +78,8 @@ int listAttempts(const ListOptions& o) {
                               {"day (UTC)", Align::left},
                               {"seconds", Align::right},
                               {"outcome", Align::left},
-                              {"verdict", Align::left}});
+                              {"verdict", Align::left},
+                              {"tags", Align::left}});
   std::string notes;
   std::size_t synthetic = 0;
   Json list = Json::array();
@@ -86,7 +89,7 @@ int listAttempts(const ListOptions& o) {
     const std::string beginning = a.uuid.substr(0, length);
     table.add({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
                fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
-               nameOf(a.verification.verdict)});
+               nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
     if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
     synthetic += a.synthetic ? 1 : 0;
   }
@@ -152,6 +155,7 @@ void addAttemptList(CLI::App& attempt, Run& run) {
   command->add_option("--participant", o->participant, "Only this participant's");
   command->add_option("--group", o->group, "Only this group's");
   command->add_option("--scene", o->scene, "Only of this scene");
+  command->add_option("--tag", o->tag, "Only those that have this tag");
   command->add_flag("--all", o->all, "Those that are excluded, too");
   command->add_flag("--json", o->json, "Print JSON");
   command->callback([o, &run] { run = [o] { return listAttempts(*o); }; });

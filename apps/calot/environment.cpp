@@ -77,19 +77,31 @@ void Progress::erase() {
   std::fflush(stderr);
 }
 
-void Progress::show(std::uint64_t done, std::uint64_t of) {
-  if (!terminal_) return;
+bool Progress::isDue() {
+  if (!terminal_) return false;
   const std::int64_t now =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
           .count();
-  if (now - last_ < 100) return;
+  if (now - last_ < 100) return false;
   last_ = now;
+  return true;
+}
+
+void Progress::draw(const std::string& text) {
   lineDrawn = true;
-  const std::string text = of > 0 ? fmt::format("\r\033[K{}: {} of {} ({:.0f} %)", what_, done, of,
-                                                100.0 * static_cast<double>(done) / static_cast<double>(of))
-                                  : fmt::format("\r\033[K{}: {}", what_, done);
-  std::fputs(text.c_str(), stderr);
+  std::fputs(("\r\033[K" + text).c_str(), stderr);
   std::fflush(stderr);
+}
+
+void Progress::show(std::uint64_t done, std::uint64_t of) {
+  if (!isDue()) return;
+  draw(of > 0 ? fmt::format("{}: {} of {} ({:.0f} %)", what_, done, of,
+                            100.0 * static_cast<double>(done) / static_cast<double>(of))
+              : fmt::format("{}: {}", what_, done));
+}
+
+void Progress::showShare(double share) {
+  if (isDue()) draw(fmt::format("{}: {:.0f} %", what_, 100.0 * share));
 }
 
 std::string wholeNumber(const std::string& text) {

@@ -75,6 +75,7 @@ constexpr Example examples[] = {
     {"attempt", "calot attempt exclude 3f2a --cohort c.db --reason \"camera failed\" --by \"A. Instructor\""},
     {"attempt exclude", "calot attempt exclude 3f2a --cohort c.db --reason \"camera failed\" --by \"A. Instructor\""},
     {"attempt include", "calot attempt include 3f2a --cohort c.db --reason \"film found\" --by \"A. Instructor\""},
+    {"attempt tag", "calot attempt tag 3f2a add teaching --cohort c.db --by \"A. Instructor\""},
     {"regrade", "calot regrade c.db recordings"},
     {"cohort", "calot cohort list c.db"},
     {"cohort merge", "calot cohort merge all.db site2.db"},

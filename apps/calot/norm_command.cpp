@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analytics/assessment/create_norm.h"
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/registry.h"
@@ -100,20 +101,7 @@ Json jsonOf(const analytics::Norm& norm) {
 
 void print(const analytics::Norm& norm) {
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
-  const auto [competent, others] = analytics::passRates(norm);
-  analytics::printWrapped(
-      fmt::format("Norm {} version {}, made on {} by {}: {} members, judged by {}; {}", norm.name, norm.version,
-                  norm.createdUtc, norm.by, norm.members.size(), norm.judgedBy, norm.comparabilityKey),
-      std::cout);
-  analytics::printWrapped(
-      fmt::format(
-          "Rule: no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of {} "
-          "others.",
-          analytics::neededPasses(norm),
-          std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }),
-          competent.passed, competent.members, others.passed, others.members),
-      std::cout);
-  analytics::printWrapped(analytics::useOf(norm), std::cout);
+  for (const std::string& line : analytics::normSummary(norm)) analytics::printWrapped(line, std::cout);
   std::cout << '\n';
   analytics::ReportTable table{"Pass marks",
                                {{"checkpoint", Align::left},
@@ -135,10 +123,7 @@ void print(const analytics::Norm& norm) {
                           c.inRule ? "counts" : "", c.reason});
   }
   analytics::printTable(table, std::cout);
-  for (const std::string& warning :
-       {analytics::ownFailureWarning(norm), analytics::uncountedWarning(norm), analytics::passMarkWarning(norm)}) {
-    if (!warning.empty()) analytics::printWrapped(warning, std::cout);
-  }
+  for (const std::string& warning : analytics::normWarnings(norm)) analytics::printWrapped(warning, std::cout);
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
 }
 
@@ -151,17 +136,13 @@ int create(NormOptions& o) {
   if (!o.attemptRule.empty()) o.request.who.attemptRule = analytics::AttemptRule::first;
   for (const std::string& text : o.fixed) o.request.fixed.push_back(analytics::parseFixedCut(text));
   if (!o.borderline.form.empty()) o.request.borderline = o.borderline;
-  analytics::AssessmentDatabase database(o.database, Access::write);
-  const analytics::CohortDatabase cohort(o.database, Access::read);
-  if (!o.protocol.empty()) {
-    analytics::ProtocolInUse& use = o.request.who.protocol.emplace();
-    use.protocol = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
-    for (const analytics::Participant& p : cohort.participants()) use.experience[p.pseudonym] = p.experience;
-  }
+  if (!o.protocol.empty())
+    o.request.who.protocol.emplace().protocol = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
+  Progress progress("making the norm");
   const analytics::Norm norm =
-      analytics::makeNorm(cohort.listAttempts(), cohort.allValues(), database.ratings(), o.request, o.database);
-  const std::uint32_t version = database.storeNorm(norm);
-  print(database.norm(norm.name, version));
+      analytics::createNorm(o.database, o.request, {}, [&](double share, const char*) { progress.showShare(share); });
+  Progress::erase();
+  print(norm);
   return static_cast<int>(ExitCode::yes);
 }
 

@@ -16,6 +16,7 @@
 #include "analytics/report/study_tables.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/design_options.h"
+#include "apps/calot/environment.h"
 #include "apps/calot/report_files.h"
 #include "apps/calot/results.h"
 #include "apps/calot/study_options.h"
@@ -77,7 +78,9 @@ void print(const analytics::Study& study, bool all) {
 }
 
 int runTwoGroups(ParsedStudyOptions& options) {
-  const analytics::Study study = studyOf(options.source);
+  Progress progress("computing the study", options.json);
+  const analytics::Study study = studyOf(options.source, [&](double share, const char*) { progress.showShare(share); });
+  Progress::erase();
   if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
   writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));

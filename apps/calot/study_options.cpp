@@ -58,7 +58,7 @@ void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table
       ->needs(&table);
 }
 
-analytics::Study plainStudyOf(StudySource& options) {
+analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgress& progress) {
   if (!options.attemptRule.empty()) {
     options.choices.attemptRule =
         options.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
@@ -78,9 +78,10 @@ analytics::Study plainStudyOf(StudySource& options) {
   const analytics::AssessmentDatabase assessment(options.database, read);
   if (!options.protocol.empty()) options.cohort = protocolStudyOptions(options, assessment);
   const analytics::CohortDatabase cohort(options.database, read);
-  if (options.cohort.protocol) return analytics::makeProtocolStudy(cohort, assessment, options.cohort, options.masked);
+  if (options.cohort.protocol)
+    return analytics::makeProtocolStudy(cohort, assessment, options.cohort, options.masked, progress);
   if (options.masked) throw Error(ErrorKind::invalid, "study: --masked needs the --protocol whose groups are masked");
-  analytics::Study study = analytics::makeStudy(cohort, options.cohort);
+  analytics::Study study = analytics::makeStudy(cohort, options.cohort, progress);
   analytics::addRatings(study, assessment);
   return study;
 }
@@ -96,8 +97,8 @@ analytics::StudyOptions protocolStudyOptions(const StudySource& source, const an
   return options;
 }
 
-analytics::Study studyOf(StudySource& options) {
-  analytics::Study study = plainStudyOf(options);
+analytics::Study studyOf(StudySource& options, const analytics::StudyProgress& progress) {
+  analytics::Study study = plainStudyOf(options, progress);
   if (study.better.empty() && !(study.protocol && study.protocol->masked))
     study.remarks.emplace_back("--better GROUP says which group is expected to do better.");
   for (std::string& remark : study.remarks) {

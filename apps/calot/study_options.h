@@ -26,6 +26,6 @@ void addStudySource(CLI::App& command, StudySource& source);
 analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::AssessmentDatabase& database);
 
 /// @throws Error as makeStudy() and makeTableStudy(); (invalid) where neither a cohort nor a table is named.
-analytics::Study studyOf(StudySource& source);
+analytics::Study studyOf(StudySource& source, const analytics::StudyProgress& progress = {});
 
 }  // namespace calot::apps

@@ -12,6 +12,13 @@ namespace calot::gui {
 
 void LongWork::Control::progress(double share, const QString& what) {
   if (broken_) throw Broken{};
+  {
+    const std::lock_guard lock(mutex_);
+    const int percent = static_cast<int>(100.0 * share);
+    if (percent == percent_ && what == what_) return;
+    percent_ = percent;
+    what_ = what;
+  }
   back_->pass([&](LongWork& work) {
     QMetaObject::invokeMethod(
         &work, [back = back_, share, what] { back->pass([&](LongWork& w) { w.take(share, what); }); },

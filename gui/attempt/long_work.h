@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <QElapsedTimer>
 #include <QObject>
 #include <QString>
@@ -19,6 +20,7 @@ class LongWork : public QObject {
   /// What the work sees of this; any thread.
   class Control {
    public:
+    /// May be called as often as the work likes: the interface hears of each percent once, and of every new text.
     /// @param share done, from 0 to 1 @throws Broken where it was broken off
     void progress(double share, const QString& what);
     [[nodiscard]] bool broken() const { return broken_; }
@@ -27,6 +29,9 @@ class LongWork : public QObject {
     friend class LongWork;
     std::atomic<bool> broken_ = false;
     std::shared_ptr<Link<LongWork>> back_;
+    std::mutex mutex_;  ///< of what was last passed on
+    int percent_ = -1;
+    QString what_;
   };
   struct Broken {};
   /// Ends with what to say of it. @throws Error, or what Control throws

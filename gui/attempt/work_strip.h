@@ -8,6 +8,7 @@
 class QLabel;
 class QProgressBar;
 class QPushButton;
+class QTimer;
 
 namespace calot::gui {
 
@@ -17,12 +18,14 @@ class WorkStrip : public QWidget {
  public:
   /// @param work outlives this
   explicit WorkStrip(LongWork& work, QWidget* parent = nullptr);
-  void begin(const QString& what);
+  /// @param after ms: shorter work shows nothing, so that a page does not jump
+  void begin(const QString& what, int after = 0);
 
  private:
   QLabel* text_;
   QProgressBar* bar_;
   QPushButton* cancel_;
+  QTimer* appear_;
 };
 
 }  // namespace calot::gui

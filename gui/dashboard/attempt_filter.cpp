@@ -2,6 +2,7 @@
 #include "gui/dashboard/attempt_filter.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "gui/dashboard/attempt_table_model.h"
 
@@ -9,26 +10,36 @@ namespace calot::gui {
 
 AttemptFilter::AttemptFilter(QObject* parent) : QSortFilterProxyModel(parent) {
   setSortRole(AttemptTableModel::sortRole);
-  setSortCaseSensitivity(Qt::CaseInsensitive);
 }
 
 void AttemptFilter::setSearch(const QString& text) {
   words_ = text.toLower().split(' ', Qt::SkipEmptyParts);
-  invalidateFilter();
+  refilter();
 }
 
 void AttemptFilter::setVerdict(std::optional<analytics::Verdict> verdict) {
   verdict_ = verdict;
-  invalidateFilter();
+  refilter();
 }
 
 void AttemptFilter::setOperators(Operators operators) {
   operators_ = operators;
-  invalidateFilter();
+  refilter();
+}
+
+void AttemptFilter::setTag(const QString& tag) {
+  if (tag_ == tag.toStdString()) return;
+  tag_ = tag.toStdString();
+  refilter();
 }
 
 bool AttemptFilter::filterAcceptsRow(int sourceRow, const QModelIndex& sourceParent) const {
   const QModelIndex index = sourceModel()->index(sourceRow, 0, sourceParent);
+  if (!tag_.empty()) {
+    const auto* model = qobject_cast<const AttemptTableModel*>(sourceModel());
+    const std::vector<std::string>& tags = model->attempt(sourceRow).tags;
+    if (std::find(tags.begin(), tags.end(), tag_) == tags.end()) return false;
+  }
   if (verdict_ && index.data(AttemptTableModel::verdictRole).toInt() != static_cast<int>(*verdict_)) return false;
   const bool synthetic = index.data(AttemptTableModel::syntheticRole).toBool();
   if (operators_ == Operators::people && synthetic) return false;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <QSortFilterProxyModel>
 #include <QStringList>
+#include <string>
 
 #include "analytics/cohort/cohort_database.h"
 
@@ -20,12 +21,18 @@ class AttemptFilter : public QSortFilterProxyModel {
   void setSearch(const QString& text);
   void setVerdict(std::optional<analytics::Verdict> verdict);
   void setOperators(Operators operators);
+  void setTag(const QString& tag);  ///< empty: any, or none
 
  protected:
   [[nodiscard]] bool filterAcceptsRow(int sourceRow, const QModelIndex& sourceParent) const override;
 
  private:
+  /// The whole table is laid out anew: rows that go one by one, as invalidateFilter() has them, take seconds of
+  /// thousands.
+  void refilter() { invalidate(); }
+
   QStringList words_;
+  std::string tag_;
   std::optional<analytics::Verdict> verdict_;
   Operators operators_ = Operators::all;
 };

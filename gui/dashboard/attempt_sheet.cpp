@@ -8,6 +8,7 @@
 #include <QSaveFile>
 
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/check.h"
 #include "analytics/report/grade_sheet.h"
 #include "gui/attempt/open_recording.h"
 #include "gui/attempt/replay_player.h"
@@ -138,7 +139,9 @@ QString writeOnePage(const SheetRequest& request, LongWork::Control& control) {
 }
 
 QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control) {
-  control.progress(0.0, "Reading the cohort");
+  control.progress(0.0, "Checking the cohort");
+  analytics::refuseUnsound(request.database);
+  control.progress(0.05, "Reading the cohort");
   const analytics::CohortDatabase cohort(request.database, analytics::CohortDatabase::Access::read);
   const analytics::Norm norm = analytics::AssessmentDatabase(request.database, analytics::CohortDatabase::Access::read)
                                    .norm(request.norm, request.normVersion);

@@ -6,50 +6,15 @@
 #include "gui/attempt/words.h"
 
 namespace calot::gui {
-namespace {
 
-QString cellText(const analytics::AttemptRow& attempt, int column) {
-  switch (column) {
-    case AttemptTableModel::attemptColumn:
-      return QString::fromStdString(attempt.uuid).left(8);
-    case AttemptTableModel::operatorColumn:
-      return operatorText(attempt);
-    case AttemptTableModel::groupColumn:
-      return QString::fromStdString(attempt.group);
-    case AttemptTableModel::sceneColumn:
-      return QString::fromStdString(attempt.scene);
-    case AttemptTableModel::modeColumn:
-      return modeText(attempt.mode);
-    case AttemptTableModel::outcomeColumn:
-      return outcomeText(attempt.outcome) + (attempt.excluded ? ", excluded" : "");
-    case AttemptTableModel::startColumn:
-      return startText(attempt.startUtc);
-    case AttemptTableModel::verificationColumn:
-      return badgeText(attempt.verification.verdict);
-    case AttemptTableModel::syntheticColumn:
-      return attempt.synthetic ? QStringLiteral("synthetic") : QString();
-    default:
-      return {};
-  }
-}
-
-QString searchText(const analytics::AttemptRow& attempt) {
-  QString text = QString::fromStdString(attempt.uuid) + '\n' + QString::fromStdString(attempt.profile) + '\n' +
-                 QString::fromStdString(attempt.fileName);
-  for (int c = 0; c < AttemptTableModel::columnTotal; ++c) text += '\n' + cellText(attempt, c);
-  return text.toLower();
-}
-
-}  // namespace
-
-void AttemptTableModel::setAttempts(std::vector<analytics::AttemptRow> attempts) {
+void AttemptTableModel::setLines(std::shared_ptr<const AttemptLines> lines) {
   beginResetModel();
-  attempts_ = std::move(attempts);
+  lines_ = std::move(lines);
   endResetModel();
 }
 
 int AttemptTableModel::rowCount(const QModelIndex& parent) const {
-  return parent.isValid() ? 0 : static_cast<int>(attempts_.size());
+  return parent.isValid() || !lines_ ? 0 : static_cast<int>(lines_->attempts().size());
 }
 int AttemptTableModel::columnCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : columnTotal; }
 
@@ -58,12 +23,11 @@ QVariant AttemptTableModel::data(const QModelIndex& index, int role) const {
   const analytics::AttemptRow& row = attempt(index.row());
   switch (role) {
     case Qt::DisplayRole:
-      return cellText(row, index.column());
+      return lines_->cell(index.row(), index.column());
     case sortRole:
-      if (index.column() == startColumn) return QString::fromStdString(row.startUtc);
-      return cellText(row, index.column());
+      return lines_->rank(index.row(), index.column());
     case searchRole:
-      return searchText(row);
+      return lines_->search(index.row());
     case verdictRole:
       return static_cast<int>(row.verification.verdict);
     case syntheticRole:
@@ -84,6 +48,7 @@ QVariant AttemptTableModel::data(const QModelIndex& index, int role) const {
       if (index.column() == verificationColumn) return badgeOf(row).explanation;
       if (index.column() == syntheticColumn && row.synthetic) return "Made by a performer, not by a person.";
       if (index.column() == outcomeColumn && row.excluded) return QString::fromStdString(row.exclusionReason);
+      if (index.column() == tagsColumn) return lines_->cell(index.row(), tagsColumn);
       return {};
     default:
       return {};
@@ -92,7 +57,8 @@ QVariant AttemptTableModel::data(const QModelIndex& index, int role) const {
 
 QVariant AttemptTableModel::headerData(int section, Qt::Orientation orientation, int role) const {
   static constexpr const char* titles[columnTotal] = {
-      "Attempt", "Participant or profile", "Group", "Scene", "Mode", "Outcome", "Start", "Verification", "Synthetic"};
+      "Attempt", "Participant or profile", "Group",     "Scene", "Mode", "Outcome",
+      "Start",   "Verification",           "Synthetic", "Tags"};
   if (orientation != Qt::Horizontal || role != Qt::DisplayRole || section < 0 || section >= columnTotal) return {};
   return QString(titles[section]);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <QAbstractTableModel>
-#include <vector>
 
-#include "analytics/cohort/cohort_database.h"
+#include "gui/dashboard/attempt_lines.h"
 
 namespace calot::gui {
 
@@ -12,20 +12,9 @@ namespace calot::gui {
 class AttemptTableModel : public QAbstractTableModel {
   Q_OBJECT
  public:
-  enum Column {
-    attemptColumn,
-    operatorColumn,
-    groupColumn,
-    sceneColumn,
-    modeColumn,
-    outcomeColumn,
-    startColumn,
-    verificationColumn,
-    syntheticColumn,
-    columnTotal
-  };
+  using enum AttemptLines::Column;
   enum Role {
-    sortRole = Qt::UserRole,  ///< what a column is ordered by
+    sortRole = Qt::UserRole,  ///< int: what a column is ordered by
     searchRole,               ///< QString: all that the search box looks through, lower case; same for every column
     verdictRole,              ///< int: analytics::Verdict
     syntheticRole,            ///< bool
@@ -33,9 +22,12 @@ class AttemptTableModel : public QAbstractTableModel {
   };
 
   using QAbstractTableModel::QAbstractTableModel;
-  void setAttempts(std::vector<analytics::AttemptRow> attempts);
+  /// @pre not null
+  void setLines(std::shared_ptr<const AttemptLines> lines);
   /// @pre 0 <= row < rowCount()
-  [[nodiscard]] const analytics::AttemptRow& attempt(int row) const { return attempts_[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] const analytics::AttemptRow& attempt(int row) const {
+    return lines_->attempts()[static_cast<std::size_t>(row)];
+  }
 
   [[nodiscard]] int rowCount(const QModelIndex& parent = {}) const override;
   [[nodiscard]] int columnCount(const QModelIndex& parent = {}) const override;
@@ -43,7 +35,7 @@ class AttemptTableModel : public QAbstractTableModel {
   [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
 
  private:
-  std::vector<analytics::AttemptRow> attempts_;
+  std::shared_ptr<const AttemptLines> lines_;
 };
 
 }  // namespace calot::gui

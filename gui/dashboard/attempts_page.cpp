@@ -85,6 +85,11 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
   operators_->addItem("People and synthetic");
   operators_->addItem("Not synthetic");
   operators_->addItem("Synthetic only");
+  tag_ = new QComboBox;
+  tag_->setObjectName("tag");
+  tag_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  tag_->setMinimumContentsLength(8);
+  tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
   count_ = new QLabel;
   count_->setObjectName("count");
   const auto add = [&](const char* text, QWidget* field, int stretch) {
@@ -96,21 +101,26 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
   add("&Search", search_, 1);
   add("Verifi&cation", verdict_, 0);
   add("&Made by", operators_, 0);
+  add("Ta&g", tag_, 0);
   row->addWidget(count_);
   buildColumns(*row);
   layout.addLayout(row);
 
   connect(search_, &QLineEdit::textChanged, this, [this](const QString& text) {
     filter_.setSearch(text);
-    showCount();
+    afterFilter();
   });
   connect(verdict_, &QComboBox::currentIndexChanged, this, [this](int index) {
     filter_.setVerdict(index <= 0 ? std::nullopt : std::optional(verdicts[static_cast<std::size_t>(index - 1)]));
-    showCount();
+    afterFilter();
   });
   connect(operators_, &QComboBox::currentIndexChanged, this, [this](int index) {
     filter_.setOperators(static_cast<AttemptFilter::Operators>(index));
-    showCount();
+    afterFilter();
+  });
+  connect(tag_, &QComboBox::currentIndexChanged, this, [this](int index) {
+    filter_.setTag(index <= 0 ? QString() : tag_->itemText(index));
+    afterFilter();
   });
 }
 
@@ -165,7 +175,8 @@ void AttemptsPage::setDocument(std::shared_ptr<const CohortDocument> document) {
   document_ = std::move(document);
   {
     const QSignalBlocker quiet(table_->selectionModel());
-    attempts_.setAttempts(document_->attempts());
+    attempts_.setLines(document_->lines());
+    fillTags();
     showCount();
     // The same attempt stays selected where it is still there.
     if (filter_.rowCount() > 0) table_->selectRow(std::max(0, rowOf(uuid)));
@@ -186,6 +197,7 @@ void AttemptsPage::select(const QString& uuid) {
     search_->clear();
     verdict_->setCurrentIndex(0);
     operators_->setCurrentIndex(0);
+    tag_->setCurrentIndex(0);
   }
   if (const int row = rowOf(uuid); row >= 0) {
     table_->selectRow(row);
@@ -205,6 +217,27 @@ void AttemptsPage::showCount() {
     if (chosen > 1) text += QString(", %1 selected").arg(chosen);
   }
   count_->setText(text);
+}
+
+/// What was current may be hidden now: then it is the first of what is left.
+void AttemptsPage::afterFilter() {
+  showCount();
+  if (table_->currentIndex().isValid()) return;
+  if (filter_.rowCount() > 0)
+    table_->selectRow(0);
+  else
+    showSelected();
+}
+
+void AttemptsPage::fillTags() {
+  const QSignalBlocker quiet(tag_);
+  const QString before = tag_->currentIndex() > 0 ? tag_->currentText() : QString();
+  tag_->clear();
+  tag_->addItem("any, or none");
+  tag_->addItems(document_->lines()->tags());
+  tag_->setCurrentIndex(before.isEmpty() ? 0 : std::max(0, tag_->findText(before)));
+  tag_->setEnabled(tag_->count() > 1);
+  if (tag_->currentIndex() == 0) filter_.setTag({});
 }
 
 void AttemptsPage::selectNext() {

@@ -49,6 +49,8 @@ class AttemptsPage : public QWidget {
   void buildDetails(QBoxLayout& layout);
   void buildColumns(QBoxLayout& layout);
   void showCount();
+  void afterFilter();
+  void fillTags();
   void showSelected();
   [[nodiscard]] int rowOf(const QString& uuid) const;  ///< in the filtered table; -1: not there
 
@@ -59,6 +61,7 @@ class AttemptsPage : public QWidget {
   QLineEdit* search_ = nullptr;
   QComboBox* verdict_ = nullptr;
   QComboBox* operators_ = nullptr;
+  QComboBox* tag_ = nullptr;
   QLabel* count_ = nullptr;
   QTableView* table_ = nullptr;
   AttemptBanner* banner_ = nullptr;

@@ -8,12 +8,22 @@ namespace calot::gui {
 using Access = analytics::CohortDatabase::Access;
 
 CohortDocument::CohortDocument(const std::string& path)
-    : database_(path, Access::read), attempts_(database_.listAttempts()) {}
+    : database_(path, Access::read), lines_(std::make_shared<const AttemptLines>(database_.listAttempts())) {}
 
 const analytics::AttemptRow* CohortDocument::attempt(const std::string& uuid) const {
-  const auto at = std::find_if(attempts_.begin(), attempts_.end(),
+  const auto at = std::find_if(attempts().begin(), attempts().end(),
                                [&](const analytics::AttemptRow& attempt) { return attempt.uuid == uuid; });
-  return at == attempts_.end() ? nullptr : &*at;
+  return at == attempts().end() ? nullptr : &*at;
+}
+
+std::shared_ptr<const FigureValues> CohortDocument::figureValues() const {
+  const std::lock_guard lock(valuesMutex_);
+  if (!values_) {
+    const analytics::CohortDatabase database(path(), Access::read);  // a connection is of one thread
+    values_ =
+        std::make_shared<const FigureValues>([&](const FigureValues::Take& take) { database.eachValue({}, take); });
+  }
+  return values_;
 }
 
 const std::vector<analytics::Norm>& CohortDocument::norms() const {

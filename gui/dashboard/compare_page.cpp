@@ -73,31 +73,32 @@ void ComparePage::readValues() {
   read_ = true;
   ready_ = false;
   caption_->setText("Reading the values …");
-  background_.run([this, path = document_->path()]() -> Background::Completion {
-    const auto values = std::make_shared<std::vector<analytics::AttemptValue>>();
+  background_.run([this, document = document_]() -> Background::Completion {
+    std::shared_ptr<const FigureValues> values;
     QString fault;
     try {
-      *values = CohortDocument(path).allValues();
+      values = document->figureValues();
     } catch (const std::exception& error) {
       fault = QString::fromStdString(problemText(error));
     }
     return [this, values, fault] {
       if (!fault.isEmpty()) emit problem(fault);
-      takeValues(std::move(*values));
+      takeValues(values);
     };
   });
 }
 
-void ComparePage::takeValues(std::vector<analytics::AttemptValue> values) {
+void ComparePage::takeValues(std::shared_ptr<const FigureValues> values) {
   values_ = std::move(values);
   ready_ = true;
-  figures_ = figuresOf(values_);
   keys_ = comparabilityKeysOf(document_->attempts());
   {
     const QSignalBlocker quietFigure(figure_), quietKey(key_), quietGroup(groupBy_);
     const QString figure = figure_->currentText(), key = key_->currentText();
     figure_->clear();
-    for (const Figure& f : figures_) figure_->addItem(figureTitle(f.name, f.subject));
+    if (values_) {
+      for (const Figure& f : values_->figures()) figure_->addItem(figureTitle(f.name, f.subject));
+    }
     key_->clear();
     for (const std::string& k : keys_) key_->addItem(QString::fromStdString(k));
     figure_->setCurrentIndex(std::max(0, figure_->findText(figure)));
@@ -121,9 +122,9 @@ void ComparePage::redraw() {
     caption_->clear();
     return;
   }
-  request.figure = figures_[static_cast<std::size_t>(figure)];
+  request.figure = values_->figures()[static_cast<std::size_t>(figure)];
   request.comparabilityKey = keys_[static_cast<std::size_t>(key)];
-  const Comparison comparison = compare(document_->attempts(), values_, request);
+  const Comparison comparison = compare(document_->attempts(), values_->of(static_cast<std::size_t>(figure)), request);
   chart_->showComparison(comparison, figureTitle(request.figure.name, request.figure.subject));
   caption_->setText(QString::fromStdString(captionOf(comparison)));
 }

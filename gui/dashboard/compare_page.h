@@ -35,14 +35,13 @@ class ComparePage : public QWidget {
 
  private:
   void readValues();
-  void takeValues(std::vector<analytics::AttemptValue> values);
+  void takeValues(std::shared_ptr<const FigureValues> values);
   void redraw();
 
   std::shared_ptr<const CohortDocument> document_;
   bool read_ = false, ready_ = false;
   Background background_;
-  std::vector<analytics::AttemptValue> values_;
-  std::vector<Figure> figures_;
+  std::shared_ptr<const FigureValues> values_;  ///< null: they could not be read
   std::vector<std::string> keys_;
   QComboBox* figure_ = nullptr;
   QComboBox* groupBy_ = nullptr;

@@ -14,16 +14,6 @@ using analytics::AttemptValue;
 using analytics::CheckpointValue;
 using analytics::Verdict;
 
-std::vector<Figure> figuresOf(const std::vector<AttemptValue>& values) {
-  std::vector<Figure> figures;
-  for (const AttemptValue& v : values) {
-    if (!v.value.value) continue;
-    Figure figure{v.value.name, v.value.subject};
-    if (std::find(figures.begin(), figures.end(), figure) == figures.end()) figures.push_back(std::move(figure));
-  }
-  return figures;
-}
-
 std::vector<std::string> comparabilityKeysOf(const std::vector<AttemptRow>& attempts) {
   std::map<std::string, int> count;
   for (const AttemptRow& a : attempts) ++count[a.comparabilityKey];

@@ -17,8 +17,6 @@ struct Figure {
   std::string subject;
   bool operator==(const Figure&) const = default;
 };
-/// All figures with at least one value, in the order of first appearance.
-[[nodiscard]] std::vector<Figure> figuresOf(const std::vector<analytics::AttemptValue>& values);
 /// Comparability keys of the attempts, the one with most attempts first, then by name.
 [[nodiscard]] std::vector<std::string> comparabilityKeysOf(const std::vector<analytics::AttemptRow>& attempts);
 

@@ -12,7 +12,7 @@
 namespace calot::gui {
 namespace {
 
-constexpr std::size_t maxPoints = 2000;  // of a group; redrawing more takes longer than a frame
+constexpr std::size_t maxDots = 1000;  // of all groups: more take longer to lay out than an interface may wait
 constexpr std::size_t fewestForBox = 5;
 
 QBoxPlotSeries* boxesOf(const Comparison& comparison) {
@@ -44,12 +44,19 @@ QScatterSeries* comparisonSeries(bool synthetic) {
   return series;
 }
 
+/// Every how manieth attempt of a group has a dot.
+std::size_t strideOf(const Comparison& comparison) {
+  std::size_t points = 0;
+  for (const ComparisonGroup& group : comparison.group) points += group.point.size();
+  return 1 + points / maxDots;
+}
+
 std::vector<DotChart::Dot> comparisonDots(const Comparison& comparison, bool synthetic) {
+  const std::size_t stride = strideOf(comparison);
   std::vector<DotChart::Dot> dots;
   const QString unit = QString::fromStdString(comparison.unit);
   for (std::size_t g = 0; g < comparison.group.size(); ++g) {
     const std::vector<ComparisonPoint>& points = comparison.group[g].point;
-    const std::size_t stride = 1 + points.size() / maxPoints;
     for (std::size_t i = 0; i < points.size(); i += stride) {
       if (points[i].synthetic != synthetic) continue;
       // Neighbours in value stand at five different places beside the box, always the same ones.
@@ -76,7 +83,10 @@ void ComparisonChart::showComparison(const Comparison& comparison, const QString
 
 void ComparisonChart::redraw() {
   clearChart();
-  chart()->setTitle(comparison_.group.empty() ? title_ + ": nothing to show" : title_);
+  const std::size_t stride = strideOf(comparison_);
+  chart()->setTitle(comparison_.group.empty() ? title_ + ": nothing to show"
+                    : stride > 1              ? QString("%1 (a dot for one attempt in %2)").arg(title_).arg(stride)
+                                              : title_);
   if (comparison_.group.empty()) {
     dress(*chart());
     return;

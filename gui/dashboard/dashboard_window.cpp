@@ -27,7 +27,6 @@
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/compare_page.h"
-#include "gui/dashboard/exclusion_command.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
@@ -46,6 +45,23 @@ namespace {
 
 constexpr int noticeFor = 8000;     // ms
 constexpr int refreshEvery = 3000;  // ms, while an import runs
+
+struct Opened {
+  std::shared_ptr<const CohortDocument> document;
+  bool upgraded = false;  ///< it was of an older schema
+};
+
+/// Any thread. @throws Error as CohortDocument
+Opened openOrUpgrade(const std::string& path) {
+  try {
+    return {std::make_shared<const CohortDocument>(path)};
+  } catch (const Error& error) {
+    const std::vector<Remedy>& remedies = error.remedies();
+    if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) == remedies.end()) throw;
+  }
+  const analytics::CohortDatabase upgraded(path, analytics::CohortDatabase::Access::write);
+  return {std::make_shared<const CohortDocument>(path), true};
+}
 
 QStringList localFiles(const QMimeData& data) {
   QStringList files;
@@ -139,6 +155,9 @@ void DashboardWindow::buildMenus() {
   exclude_ = edit->addAction("&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), this,
                              [this] { askForExclusion(); });
   exclude_->setEnabled(false);
+  edit->addAction("Add &tag …", QKeySequence(Qt::CTRL | Qt::Key_T), this, [this] { askForTag(true); });
+  edit->addAction("Remove ta&g …", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_T), this, [this] { askForTag(false); });
+  edit->addAction("Make a &norm …", QKeySequence(Qt::CTRL | Qt::Key_M), this, [this] { askForNorm(); });
   edit->addAction("&Verify again", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_V), this, [this] { verifySelected(); });
   edit->addAction("&Side by side", QKeySequence(Qt::CTRL | Qt::Key_B), this, [this] { pairSelected(); });
   QMenu* const view = menuBar()->addMenu("&View");
@@ -164,6 +183,8 @@ void DashboardWindow::buildMenus() {
 }
 
 void DashboardWindow::connectPages() {
+  connect(&writer_, &CohortWriter::written, this, &DashboardWindow::reload);
+  connect(&writer_, &CohortWriter::failed, this, &DashboardWindow::showProblem);
   connect(greeting_, &GreetingPage::openRequested, this, &DashboardWindow::askForDatabase);
   connect(greeting_, &GreetingPage::newRequested, this, [this] { askForNewDatabase(); });
   connect(greeting_, &GreetingPage::importRequested, this, [this] { askForRecordings(); });
@@ -232,30 +253,40 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   emit documentShown();
 }
 
+void DashboardWindow::takeOpened(const std::shared_ptr<const CohortDocument>& document, bool upgraded) {
+  loader_.forget();  // the former one, read again
+  setDocument(document);
+  if (upgraded)
+    showProblem("This cohort was of an older Calot and has been brought up to date. A copy as it was is beside it.");
+}
+
 bool DashboardWindow::openDatabase(const QString& path) {
-  loader_.forget();
+  opener_.forget();
   try {
-    setDocument(std::make_shared<const CohortDocument>(path.toStdString()));
+    const Opened opened = openOrUpgrade(path.toStdString());
+    takeOpened(opened.document, opened.upgraded);
     return true;
   } catch (const Error& error) {
-    const std::vector<Remedy>& remedies = error.remedies();
-    if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) != remedies.end())
-      return upgradeDatabase(path);
     showProblem(QString::fromStdString(problemText(error)));
     return false;
   }
 }
 
-bool DashboardWindow::upgradeDatabase(const QString& path) {
-  try {
-    const analytics::CohortDatabase upgraded(path.toStdString(), analytics::CohortDatabase::Access::write);
-    setDocument(std::make_shared<const CohortDocument>(path.toStdString()));
-    showProblem("This cohort was of an older Calot and has been brought up to date. A copy as it was is beside it.");
-    return true;
-  } catch (const Error& error) {
-    showProblem(QString::fromStdString(problemText(error)));
-    return false;
-  }
+void DashboardWindow::openLater(const QString& path) {
+  statusBar()->showMessage("Opening " + QFileInfo(path).fileName() + " …");
+  opener_.run([this, path = path.toStdString()]() -> Background::Completion {
+    try {
+      return [this, opened = openOrUpgrade(path)] {
+        statusBar()->clearMessage();
+        takeOpened(opened.document, opened.upgraded);
+      };
+    } catch (const std::exception& error) {
+      return [this, text = QString::fromStdString(problemText(error))] {
+        statusBar()->clearMessage();
+        showProblem(text);
+      };
+    }
+  });
 }
 
 bool DashboardWindow::createDatabase(const QString& path) {
@@ -304,51 +335,6 @@ void DashboardWindow::showRecording(const QString& file, const QString& uuid) {
   importRecordings({file});
 }
 
-void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {
-  const analytics::AttemptRow* current = attempts_->selected();
-  if (current == nullptr) return;
-  const bool exclude = !current->excluded;
-  std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
-  if (chosen.empty()) chosen.push_back(*current);
-  // Those that are so already stay as they are.
-  std::erase_if(chosen, [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
-  const bool several = chosen.size() > 1;
-  if (several) undo_->beginMacro(exclude ? "exclude attempts" : "include attempts");
-  for (const analytics::AttemptRow& attempt : chosen) {
-    undo_->push(new ExclusionCommand(
-        {document_->path(), attempt.uuid, reason.toStdString(), by.toStdString(), exclude, attempt.exclusionReason},
-        [this](const QString& fault) {
-          if (fault.isEmpty())
-            reload();
-          else
-            showProblem(fault);
-        }));
-  }
-  if (several) undo_->endMacro();
-}
-
-void DashboardWindow::verifySelected() {
-  if (!document_) return;
-  QStringList files, missing;
-  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) {
-    const std::filesystem::path file = findRecording(attempt, document_->path(), settings::recordingPlaces());
-    (file.empty() ? missing : files) += QString::fromStdString(file.empty() ? attempt.fileName : file.string());
-  }
-  if (!missing.isEmpty())
-    showProblem("Not found, so not verified: " + missing.join(", ") + ". Settings name the folders with recordings.");
-  if (!files.isEmpty()) importRecordings(files);
-}
-
-void DashboardWindow::pairSelected() {
-  const std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
-  if (chosen.size() != 2) {
-    showProblem("Select two attempts on the page Attempts (Ctrl and a click, or Shift and an arrow).");
-    return;
-  }
-  for (std::size_t side = 0; side < 2; ++side) pair_->setAttempt(side, chosen[side].uuid);
-  tabs_->setCurrentWidget(pair_);
-}
-
 void DashboardWindow::showProblem(const QString& message) {
   problem_->setText(message);
   problem_->show();
@@ -363,7 +349,7 @@ void DashboardWindow::dropEvent(QDropEvent* event) {
   if (files.isEmpty()) return;
   event->acceptProposedAction();
   if (files.size() == 1 && files[0].endsWith(".db")) {
-    openDatabase(files[0]);
+    openLater(files[0]);
   } else if (!document_) {
     showProblem("Open a cohort database first, or make one: recordings are imported into it.");
   } else {

@@ -8,6 +8,7 @@
 
 #include "gui/attempt/background.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/cohort_writer.h"
 #include "gui/dashboard/import_queue.h"
 
 class QAction;
@@ -30,7 +31,7 @@ class StudyPage;
 class TraineePage;
 
 /// The dashboard: pages over one cohort database. It only puts pages together; what they show is decided by models that
-/// know no window. The database is written by imports, ratings and exclusions alone.
+/// know no window. The database is written by imports, ratings, exclusions, tags and norms alone.
 class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
@@ -45,6 +46,8 @@ class DashboardWindow : public QMainWindow {
   /// Opens a database, one of an older schema after it was brought up to date. On failure says why in one line on the
   /// window, keeps what was open, and returns false.
   bool openDatabase(const QString& path);
+  /// The same, read on another thread: a large one takes longer than the window may be kept from answering.
+  void openLater(const QString& path);
   /// Makes an empty database, or opens the one that is there.
   bool createDatabase(const QString& path);
   /// Reads the open database again, in the background.
@@ -57,6 +60,8 @@ class DashboardWindow : public QMainWindow {
   /// Excludes the selected attempts from studies, or takes them in again where the current one is excluded. Can be
   /// undone.
   void excludeOrInclude(const QString& reason, const QString& by);
+  /// Puts a tag on the selected attempts, or takes it off. Can be undone. @pre tag as analytics::checkTag()
+  void tagSelected(const QString& tag, bool add, const QString& by);
   /// Simulates the selected attempts' recordings again; progress as of an import.
   void verifySelected();
   /// Puts two selected attempts side by side.
@@ -64,7 +69,7 @@ class DashboardWindow : public QMainWindow {
 
   [[nodiscard]] ImportQueue& imports() { return imports_; }
   /// Writes a PNG of each page into a folder that exists, after what it shows has been read: attempts.png, attempt.png,
-  /// compare.png, study.png, trainee.png, pair.png, ratings.png and settings.png (or greeting.png).
+  /// compare.png, study.png, trainee.png, pair.png, ratings.png, norm.png and settings.png (or greeting.png).
   /// @throws calot::Error (failure) if one cannot be written.
   void savePictures(const QString& folder);
 
@@ -84,10 +89,13 @@ class DashboardWindow : public QMainWindow {
   void buildImport();
   void connectPages();
   void openAttempt(const QString& uuid);
-  bool upgradeDatabase(const QString& path);
+  void takeOpened(const std::shared_ptr<const CohortDocument>& document, bool upgraded);
   void askForNewDatabase();
   void askForRecordings();
   void askForExclusion();
+  void askForTag(bool add);
+  void askForNorm();
+  [[nodiscard]] std::vector<analytics::AttemptRow> chosenAttempts() const;  ///< selected, or the current one
   void showSettings();
   void savePicture(QWidget& page, const QString& file);
 
@@ -109,7 +117,9 @@ class DashboardWindow : public QMainWindow {
   QDockWidget* importDock_ = nullptr;
   QTimer* refresh_ = nullptr;  ///< while an import runs
   ImportQueue imports_;
-  Background loader_;
+  CohortWriter writer_;
+  Background loader_;  ///< reads again what is open
+  Background opener_;  ///< opens another
 };
 
 }  // namespace calot::gui

@@ -19,10 +19,10 @@ namespace {
 
 constexpr int mostListed = 2000;  // attempts in a choice: a longer list is no choice
 
-QString attemptText(const analytics::AttemptRow& attempt) {
+QString attemptText(const AttemptLines& lines, int row) {
   return QString("%1 · %2 · %3 · %4")
-      .arg(operatorText(attempt), QString::fromStdString(attempt.scene), startText(attempt.startUtc),
-           badgeText(attempt.verification.verdict));
+      .arg(lines.cell(row, AttemptLines::operatorColumn), lines.cell(row, AttemptLines::sceneColumn),
+           lines.cell(row, AttemptLines::startColumn), lines.cell(row, AttemptLines::verificationColumn));
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ void PairSide::setDocument(std::shared_ptr<const CohortDocument> document) {
     choice_->addItem("Choose an attempt …", QString());
     const auto& attempts = document_->attempts();
     for (std::size_t i = attempts.size(); i-- > 0 && choice_->count() <= mostListed;)
-      choice_->addItem(attemptText(attempts[i]), QString::fromStdString(attempts[i].uuid));
+      choice_->addItem(attemptText(*document_->lines(), static_cast<int>(i)), QString::fromStdString(attempts[i].uuid));
     if (!wanted_.empty()) uuid_ = std::exchange(wanted_, {});
     const int at = uuid_.empty() ? 0 : choice_->findData(QString::fromStdString(uuid_));
     choice_->setCurrentIndex(std::max(0, at));

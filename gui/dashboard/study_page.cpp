@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <optional>
+#include <utility>
 
 #include <QBoxLayout>
 #include <QCheckBox>
@@ -24,12 +25,11 @@
 
 #include "analytics/report/study_tables.h"
 #include "gui/attempt/words.h"
+#include "gui/attempt/work_strip.h"
 #include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/page_begin.h"
 #include "gui/dashboard/roc_chart.h"
 #include "gui/report/drawing_painter.h"
-#include "gui/words/problem_words.h"
-#include "recorder/errors.h"
 
 namespace calot::gui {
 namespace {
@@ -48,7 +48,31 @@ QString effectText(const analytics::StudyRow& row) {
   return parts.join(QString::fromUtf8(" · "));
 }
 
+/// What a text shows under forestAddress; null where the study has none. Any thread.
+QImage forestPicture(const analytics::Study& study, double ratio) {
+  const std::optional<analytics::Drawing> forest = analytics::forestOf(study);
+  if (!forest) return {};
+  QImage image(static_cast<int>(std::ceil(forest->width * ratio)), static_cast<int>(std::ceil(forest->height * ratio)),
+               QImage::Format_ARGB32_Premultiplied);
+  image.setDevicePixelRatio(ratio);
+  image.fill(Qt::white);
+  QPainter painter(&image);
+  painter.setRenderHint(QPainter::Antialiasing);
+  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height));
+  return image;
+}
+
+constexpr int shownAfter = 300;  // ms before progress is shown
+
 }  // namespace
+
+/// All that takes time, made on the thread of the work.
+struct StudyPage::Computed {
+  std::shared_ptr<const analytics::Study> study;
+  std::string refusal;
+  QString text;
+  QImage forest;
+};
 
 StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
@@ -58,6 +82,8 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   state_->setTextFormat(Qt::PlainText);
   state_->setWordWrap(true);
   layout->addWidget(state_);
+  strip_ = new WorkStrip(work_);
+  layout->addWidget(strip_);
 
   text_ = new QTextBrowser;
   text_->setObjectName("study-text");
@@ -154,6 +180,25 @@ void StudyPage::connectParts() {
   connect(first_, &QComboBox::currentIndexChanged, this, [this] { allowChoices(); });
   for (QCheckBox* box : {synthetic_, practice_}) connect(box, &QCheckBox::toggled, this, [this] { make(); });
   connect(row_, &QComboBox::currentIndexChanged, this, [this] { showRow(); });
+  connect(&work_, &LongWork::done, this, [this](const QString& text) {
+    if (computed_) {
+      take(*std::exchange(computed_, nullptr));
+    } else {
+      state_->setText(text);
+      emit written();
+    }
+  });
+  connect(&work_, &LongWork::failed, this, [this](const QString& reason) {
+    if (std::exchange(computed_, nullptr))
+      state_->setText("There is no study with these choices: " + reason);
+    else
+      emit written();
+    emit problem(reason);
+  });
+  connect(&work_, &LongWork::cancelled, this, [this] {
+    computed_.reset();
+    state_->setText("Cancelled: no study was computed. Another choice, or Reload (F5), begins again.");
+  });
   connect(csv_, &QPushButton::clicked, this, [this] { saveAs(false); });
   connect(html_, &QPushButton::clicked, this, [this] { saveAs(true); });
 }
@@ -161,10 +206,11 @@ void StudyPage::connectParts() {
 void StudyPage::setDocument(std::shared_ptr<const CohortDocument> document) {
   const bool another = !document_ || document_->path() != document->path();
   document_ = std::move(document);
-  made_ = false;
+  made_ = checked_ = false;
   if (another) fillChoices();
   fillProtocols();
-  if (isVisible()) make();
+  // While recordings are imported a cohort is read again and again: what is being computed is shown before the next.
+  if (isVisible() && (another || !computed_)) make();
 }
 
 void StudyPage::showEvent(QShowEvent* event) {
@@ -229,7 +275,7 @@ void StudyPage::allowChoices() {
 void StudyPage::make() {
   if (!document_ || !isVisible()) return;
   made_ = true;
-  study_.reset();
+  study_ = nullptr;
   csv_->setEnabled(false);
   html_->setEnabled(false);
   state_->setText("Computing …");
@@ -242,16 +288,29 @@ void StudyPage::make() {
   request.first = first_->currentText().toStdString();
   request.second = second_->currentText().toStdString();
   request.protocol = protocol_->currentData().toString().toStdString();
-  background_.run([this, request, database = document_->path()]() -> Background::Completion {
-    auto answer = std::make_shared<StudyAnswer>(studyOf(database, request));
-    return [this, answer] { take(std::move(*answer)); };
+  request.check = !checked_;
+  computed_ = std::make_shared<Computed>();
+  strip_->begin("Computing the study", shownAfter);
+  work_.start([computed = computed_, request, database = document_->path(),
+               ratio = devicePixelRatioF()](LongWork::Control& control) {
+    StudyAnswer answer = studyOf(database, request, [&](double share, const char* doing) {
+      control.progress(share, QString("Computing the study: ") + doing);
+    });
+    computed->refusal = std::move(answer.refusal);
+    if (!answer.study) return QString();
+    control.progress(1.0, "Computing the study: laying out");
+    computed->study = std::make_shared<const analytics::Study>(*std::move(answer.study));
+    computed->text = QString::fromStdString(studyText(*computed->study));
+    computed->forest = forestPicture(*computed->study, ratio);
+    return QString();
   });
 }
 
-void StudyPage::take(StudyAnswer answer) {
-  study_ = std::move(answer.study);
-  csv_->setEnabled(study_.has_value());
-  html_->setEnabled(study_.has_value());
+void StudyPage::take(Computed& computed) {
+  study_ = computed.study;
+  checked_ = made_ && study_ != nullptr;  // of the document as it is now
+  csv_->setEnabled(ready());
+  html_->setEnabled(ready());
   {
     const QSignalBlocker quiet(row_);
     const QString before = row_->currentText();
@@ -269,29 +328,16 @@ void StudyPage::take(StudyAnswer answer) {
   }
   if (study_) {
     state_->setText(QString("%1 of %2 attempts are analysed.").arg(study_->analysed).arg(study_->recruited));
-    showForest();
-    text_->setHtml(QString::fromStdString(studyText(*study_)));
+    if (!computed.forest.isNull())
+      text_->document()->addResource(QTextDocument::ImageResource, QUrl(forestAddress), computed.forest);
+    text_->setHtml(computed.text);
   } else {
-    state_->setText("There is no study with these choices: " + QString::fromStdString(answer.refusal));
+    state_->setText("There is no study with these choices: " + QString::fromStdString(computed.refusal));
     text_->clear();
   }
   showRow();
   emit studyShown();
-}
-
-void StudyPage::showForest() {
-  const std::optional<analytics::Drawing> forest = analytics::forestOf(*study_);
-  if (!forest) return;
-  const double ratio = devicePixelRatioF();
-  QImage image(static_cast<int>(std::ceil(forest->width * ratio)), static_cast<int>(std::ceil(forest->height * ratio)),
-               QImage::Format_ARGB32_Premultiplied);
-  image.setDevicePixelRatio(ratio);
-  image.fill(Qt::white);
-  QPainter painter(&image);
-  painter.setRenderHint(QPainter::Antialiasing);
-  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height));
-  painter.end();
-  text_->document()->addResource(QTextDocument::ImageResource, QUrl(forestAddress), image);
+  if (!made_) make();
 }
 
 void StudyPage::showRow() {
@@ -315,22 +361,17 @@ void StudyPage::showRow() {
                                   numberText(curve.area)));
 }
 
-void StudyPage::exportCsv(const QString& folder) {
-  try {
-    const std::string warning = exportStudyCsv(*study_, document_->path(), folder.toStdString(), true);
-    state_->setText(warning.empty() ? "Written: " + folder : QString::fromStdString(warning));
-  } catch (const Error& error) {
-    emit problem(QString::fromStdString(problemText(error)));
-  }
-}
+void StudyPage::exportCsv(const QString& folder) { write(folder, false); }
+void StudyPage::exportHtml(const QString& file) { write(file, true); }
 
-void StudyPage::exportHtml(const QString& file) {
-  try {
-    const std::string warning = exportStudyHtml(*study_, document_->path(), file.toStdString(), true);
-    state_->setText(warning.empty() ? "Written: " + file : QString::fromStdString(warning));
-  } catch (const Error& error) {
-    emit problem(QString::fromStdString(problemText(error)));
-  }
+void StudyPage::write(const QString& target, bool html) {
+  if (!study_ || busy()) return;
+  state_->setText("Writing " + target + " …");  // short, and not to be broken off: half a file helps nobody
+  work_.start([study = study_, database = document_->path(), target, html](LongWork::Control&) {
+    const std::string warning = html ? exportStudyHtml(*study, database, target.toStdString(), true)
+                                     : exportStudyCsv(*study, database, target.toStdString(), true);
+    return warning.empty() ? "Written: " + target : QString::fromStdString(warning);
+  });
 }
 
 void StudyPage::saveAs(bool html) {

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <QWidget>
 
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/study_view.h"
 
@@ -20,22 +19,26 @@ namespace calot::gui {
 
 class ComparisonChart;
 class RocChart;
+class WorkStrip;
 
-/// Two groups side by side, one value per participant: tables, box plots with points, ROC, effect sizes, export.
+/// Two groups side by side, one value per participant: tables, box plots with points, ROC, effect sizes, export. A
+/// study is computed on another thread, and can be broken off.
 class StudyPage : public QWidget {
   Q_OBJECT
  public:
   explicit StudyPage(QWidget* parent = nullptr);
   /// @pre not null. The study is made when the page is first shown.
   void setDocument(std::shared_ptr<const CohortDocument> document);
-  /// Writes what is shown; what is there is replaced. @pre a study is shown
+  /// Writes what is shown, on another thread; what is there is replaced. @pre a study is shown
   void exportCsv(const QString& folder);
   void exportHtml(const QString& file);
-  [[nodiscard]] bool ready() const { return study_.has_value(); }
+  [[nodiscard]] bool busy() const { return work_.busy(); }  ///< computing, or writing
+  [[nodiscard]] bool ready() const { return study_ != nullptr; }
 
  signals:
   void problem(const QString& message);
   void studyShown();  ///< or its refusal
+  void written();     ///< exportCsv() or exportHtml() has ended, well or not
 
  protected:
   void showEvent(QShowEvent* event) override;
@@ -48,15 +51,18 @@ class StudyPage : public QWidget {
   void fillProtocols();
   void allowChoices();
   void make();
-  void take(StudyAnswer answer);
-  void showForest();
+  struct Computed;
+  void take(Computed& computed);
   void showRow();
+  void write(const QString& target, bool html);
   void saveAs(bool html);
 
   std::shared_ptr<const CohortDocument> document_;
   bool made_ = false;
-  std::optional<analytics::Study> study_;
-  Background background_;
+  bool checked_ = false;  ///< the document as it is, by a study of it
+  std::shared_ptr<const analytics::Study> study_;
+  LongWork work_;
+  std::shared_ptr<Computed> computed_;  ///< what work_ computes, or null: it writes
 
   QComboBox* groupBy_ = nullptr;
   QComboBox* first_ = nullptr;
@@ -67,6 +73,7 @@ class StudyPage : public QWidget {
   QCheckBox* synthetic_ = nullptr;
   QCheckBox* practice_ = nullptr;
   QLabel* state_ = nullptr;
+  WorkStrip* strip_ = nullptr;
   QTextBrowser* text_ = nullptr;
   QComboBox* row_ = nullptr;
   QLabel* effect_ = nullptr;

@@ -5,6 +5,7 @@
 #include <exception>
 #include <set>
 
+#include "analytics/cohort/check.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/report/html_text.h"
 #include "analytics/report/masked_study.h"
@@ -62,8 +63,13 @@ std::string noteExport(const analytics::Study& study, const std::string& databas
 
 }  // namespace
 
-StudyAnswer studyOf(const std::string& database, const StudyRequest& request) {
+StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
+                    const analytics::StudyProgress& progress) {
   try {
+    if (request.check) {
+      if (progress) progress(0.0, "checking the cohort");
+      analytics::refuseUnsound(database);
+    }
     analytics::StudyOptions options;
     options.grouping =
         request.groupBy == GroupBy::profile ? analytics::Grouping::performer : analytics::Grouping::group;
@@ -83,8 +89,8 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request) {
     } else if (!request.first.empty() && !request.second.empty())
       options.groups = {request.first, request.second};
     const analytics::CohortDatabase cohort(database, Access::read);
-    if (options.protocol) return {analytics::makeProtocolStudy(cohort, assessment, options, false), {}};
-    analytics::Study study = analytics::makeStudy(cohort, options);
+    if (options.protocol) return {analytics::makeProtocolStudy(cohort, assessment, options, false, progress), {}};
+    analytics::Study study = analytics::makeStudy(cohort, options, progress);
     analytics::addRatings(study, assessment);
     return {std::move(study), {}};
   } catch (const std::exception& error) {

@@ -21,6 +21,7 @@ struct StudyRequest {
   std::string first, second;  ///< groups to compare, or both empty: the only two that are there
   /// SHA-256 of a registered protocol, which makes all choices but the key; empty: none
   std::string protocol;
+  bool check = true;  ///< the whole database first, as `calot cohort check`: a changed byte must not change a figure
 };
 
 /// The study, with ratings; or why there is none.
@@ -28,8 +29,10 @@ struct StudyAnswer {
   std::optional<analytics::Study> study;
   std::string refusal;  ///< one line
 };
-/// Opens the database on its own: for a thread that is not the interface's. Does not throw.
-StudyAnswer studyOf(const std::string& database, const StudyRequest& request);
+/// Opens the database on its own: for a thread that is not the interface's. Throws nothing but what `progress` throws,
+/// which ends it.
+StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
+                    const analytics::StudyProgress& progress = {});
 
 /// Groups that attempts have, by name, for the choice of two.
 std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, GroupBy groupBy);

@@ -144,22 +144,18 @@ void TraineePage::readValues() {
   read_ = true;
   ready_ = false;
   caption_->setText("Reading the values …");
-  struct Read {
-    std::vector<analytics::AttemptValue> values;
+  background_.run([this, document = document_]() -> Background::Completion {
+    std::shared_ptr<const FigureValues> values;
     QString fault;
-  };
-  background_.run([this, path = document_->path()]() -> Background::Completion {
-    const auto read = std::make_shared<Read>();
     try {
-      read->values = CohortDocument(path).allValues();
+      values = document->figureValues();
     } catch (const std::exception& error) {
-      read->fault = QString::fromStdString(problemText(error));
+      fault = QString::fromStdString(problemText(error));
     }
-    return [this, read] {
-      if (!read->fault.isEmpty()) emit problem(read->fault);
-      values_ = std::move(read->values);
+    return [this, values, fault] {
+      if (!fault.isEmpty()) emit problem(fault);
+      values_ = values;
       ready_ = true;
-      figures_ = figuresOf(values_);
       trainees_ = traineesOf(document_->attempts());
       {
         const QSignalBlocker quietTrainee(trainee_), quietFigure(figure_);
@@ -168,7 +164,9 @@ void TraineePage::readValues() {
         for (const Trainee& t : trainees_)
           trainee_->addItem(QString::fromStdString(t.name) + (t.synthetic ? " (performer)" : ""));
         figure_->clear();
-        for (const Figure& f : figures_) figure_->addItem(figureTitle(f.name, f.subject));
+        if (values_) {
+          for (const Figure& f : values_->figures()) figure_->addItem(figureTitle(f.name, f.subject));
+        }
         trainee_->setCurrentIndex(std::max(0, trainee_->findText(trainee)));
         figure_->setCurrentIndex(std::max(0, figure_->findText(figure)));
       }
@@ -204,23 +202,25 @@ void TraineePage::redraw() {
   } catch (const Error& error) {
     emit problem(QString::fromStdString(problemText(error)));
   }
-  const Figure& shown = figures_[static_cast<std::size_t>(figure)];
+  const auto index = static_cast<std::size_t>(figure);
+  const Figure& shown = values_->figures()[index];
   const TraineeHistory history =
-      historyOf(document_->attempts(), values_, *norms, trainees_[static_cast<std::size_t>(trainee)], shown,
+      historyOf(document_->attempts(), values_->of(index), *norms, trainees_[static_cast<std::size_t>(trainee)], shown,
                 key_->currentText().toStdString());
   chart_->showHistory(history, trainee_->currentText() + ": " + figureTitle(shown.name, shown.subject));
   caption_->setText(curveText(history));
   fillTable(history);
-  fillTasks(trainees_[static_cast<std::size_t>(trainee)], shown, *norms);
+  fillTasks(trainees_[static_cast<std::size_t>(trainee)], index, *norms);
   showGoal(history, *norms);
 }
 
-void TraineePage::fillTasks(const Trainee& trainee, const Figure& figure, const std::vector<analytics::Norm>& norms) {
+void TraineePage::fillTasks(const Trainee& trainee, std::size_t figure, const std::vector<analytics::Norm>& norms) {
   const std::vector<std::string> keys = keysOf(document_->attempts(), trainee);
   tasks_->setRowCount(static_cast<int>(keys.size()));
   for (int row = 0; row < tasks_->rowCount(); ++row) {
     const std::string& key = keys[static_cast<std::size_t>(row)];
-    const TraineeHistory history = historyOf(document_->attempts(), values_, norms, trainee, figure, key);
+    const TraineeHistory history =
+        historyOf(document_->attempts(), values_->of(figure), norms, trainee, values_->figures()[figure], key);
     QString first = "none", last = "none";
     for (const HistoryAttempt& entry : history.attempts) {
       if (!entry.value) continue;
@@ -245,8 +245,10 @@ void TraineePage::showGoal(const TraineeHistory& history, const std::vector<anal
   const std::vector<const analytics::Norm*> fitting = normsFor(newest, norms);
   if (fitting.empty()) return;
   std::vector<analytics::CheckpointValue> own;
-  for (const analytics::AttemptValue& value : values_) {
-    if (value.attempt == newest.uuid) own.push_back(value.value);
+  try {
+    own = document_->values(newest.uuid);
+  } catch (const Error& error) {
+    emit problem(QString::fromStdString(problemText(error)));
   }
   const AttemptStanding standing = standingOf(newest, own, *fitting.front());
   goal_->setText(standing.grade ? "Next goal: " + QString::fromStdString(analytics::nextGoal(*standing.grade).text)

@@ -38,13 +38,12 @@ class TraineePage : public QWidget {
   void fillKeys();
   void redraw();
   void fillTable(const TraineeHistory& history);
-  void fillTasks(const Trainee& trainee, const Figure& figure, const std::vector<analytics::Norm>& norms);
+  void fillTasks(const Trainee& trainee, std::size_t figure, const std::vector<analytics::Norm>& norms);
   void showGoal(const TraineeHistory& history, const std::vector<analytics::Norm>& norms);
 
   std::shared_ptr<const CohortDocument> document_;
   bool read_ = false, ready_ = false;
-  std::vector<analytics::AttemptValue> values_;
-  std::vector<Figure> figures_;
+  std::shared_ptr<const FigureValues> values_;  ///< null: they could not be read
   std::vector<Trainee> trainees_;
   Background background_;
 

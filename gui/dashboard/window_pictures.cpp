@@ -12,6 +12,7 @@
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/greeting_page.h"
+#include "gui/dashboard/norm_dialog.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/rating_page.h"
 #include "gui/dashboard/settings_dialog.h"
@@ -76,6 +77,11 @@ void DashboardWindow::savePictures(const QString& folder) {
   save(pair_, "pair.png", [this] { return pair_->settled(); });
   rating_->chooseForm("goals");
   save(rating_, "ratings.png", [this] { return rating_->settled(); });
+  NormDialog norm(document_, {}, this);
+  norm.show();
+  waitFor(atOnce);
+  savePicture(norm, folder + "/norm.png");
+  norm.hide();
   SettingsDialog settings(this);
   settings.show();
   waitFor(atOnce);

@@ -55,6 +55,34 @@ class Attempts(program.ProgramTest):
         self.assertEqual(content(cohort), before)
 
 
+    def test_tags(self):
+        cohort = self.path("c.db")
+        runs = [recording(f"skilled-{seed}", "--performer", "skilled", "--seed", seed, "--seconds", 1, "--mode", "assessment", "--purpose", "study")
+                for seed in (1, 2)]
+        uuid = json.loads(self.well("assess", *runs, "--cohort", cohort, "--json").out)["recordings"][0]["attempt"]
+        by = ("--cohort", cohort, "--by", "me")
+        said = json.loads(self.well("attempt", "tag", uuid[:8], "add", "teaching", *by, "--json").out)
+        self.assertEqual((said["schema"], said["attempt"], said["tags"], said["changed"]), ("calot-attempt-tag", uuid, ["teaching"], True))
+        self.assertFalse(json.loads(self.well("attempt", "tag", uuid, "add", "teaching", *by, "--json").out)["changed"])
+        self.assertIn("tags bleeding, teaching", self.well("attempt", "tag", uuid, "add", "bleeding", *by).out)
+        listed = json.loads(self.well("attempt", "list", "--cohort", cohort, "--tag", "bleeding", "--json").out)["attempts"]
+        self.assertEqual([(a["attempt"], a["tags"]) for a in listed], [(uuid, ["bleeding", "teaching"])])
+        self.assertRegex(self.well("attempt", "list", "--cohort", cohort).out, r"(?s)tags\n.*bleeding,\s+teaching")
+        self.well("regrade", cohort, os.path.dirname(runs[0]))
+        self.well("attempt", "tag", uuid, "remove", "bleeding", *by)
+        self.assertEqual(query(cohort, "SELECT action, subject, detail FROM audit WHERE action LIKE '%tag' ORDER BY id"),
+                         [("attempt-tag", uuid, "teaching (by me)"), ("attempt-tag", uuid, "bleeding (by me)"),
+                          ("attempt-untag", uuid, "bleeding (by me)")])
+        self.assertEqual(query(cohort, "SELECT tag FROM attempt_tag"), [("teaching",)])
+        before = content(cohort)
+        self.refused(3, "attempt", "tag", uuid, "remove", "bleeding", *by, names=(uuid, "bleeding"))
+        self.refused(3, "attempt", "tag", "zz", "add", "x", *by, names=("zz",))
+        self.refused(2, "attempt", "tag", uuid, "add", "two words", *by, names=("one word",))
+        self.refused(2, "attempt", "tag", uuid, "put", "x", *by)
+        self.refused(2, "attempt", "tag", uuid, "add", "x", "--cohort", cohort)
+        self.assertEqual(content(cohort), before)
+
+
 class Regrade(program.ProgramTest):
     def setUp(self):
         super().setUp()

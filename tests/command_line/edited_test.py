@@ -141,7 +141,8 @@ class EditedDatabase(program.ProgramTest):
             db.execute("DELETE FROM recording WHERE attempt = (SELECT id FROM attempt WHERE uuid = ?)", (self.attempt,))
         db.close()
         self.assertEqual(calot("cohort", "check", self.cohort).code, 4)
-        for command in self.ask:
+        norm = ("norm", "create", self.cohort, "m", "--by", "test", "--rule", "at-least:1", "--checkpoints", "all", *self.who)
+        for command in (*self.ask, norm):
             answer = self.refused(4, *command, names=(self.cohort, "has no recording"))
             self.assertEqual(answer.out, "")
 

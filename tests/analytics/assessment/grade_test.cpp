@@ -95,9 +95,9 @@ TEST_F(Grades, aPassMarkIsWhereTheCurvesCross) {
 }
 
 TEST_F(Grades, aNormWantsSomeMembersOfEachSide) {
-  for (unsigned i = 0; i < 5; ++i) cohort_.excludeAttempt(uuidOf(i), "test", "me");
+  for (unsigned i = 0; i < 5; ++i) cohort_.excludeAttempts({uuidOf(i)}, "test", "me");
   EXPECT_EQ(made().members.size(), 11U);
-  cohort_.excludeAttempt(uuidOf(5), "test", "me");
+  cohort_.excludeAttempts({uuidOf(5)}, "test", "me");
   expectRefusal(ErrorKind::refused, "a norm wants at least 3 competent members and as many others; there are 2 and 8",
                 [&] { (void)made(); });
 }

@@ -365,26 +365,6 @@ TEST(CohortDatabase, groupsCountParticipantsAndAttempts) {
   EXPECT_EQ(groups[1].attempts, 2U);
 }
 
-TEST(CohortDatabase, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
-  const Folder folder;
-  const std::string path = folder.file("c.db");
-  CohortDatabase database(path, Access::create);
-  database.upsertAttempt(attemptOf(1, "skilled"));
-  database.excludeAttempt(uuidOf(1), "fire alarm", "instructor 2");
-  EXPECT_TRUE(database.attempt(uuidOf(1))->excluded);
-  EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
-  database.includeAttempt(uuidOf(1), "heard nothing", "instructor 2");
-  EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
-  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.excludeAttempt(uuidOf(9), "x", "y"); });
-  expectRefusal(ErrorKind::refused, "not excluded", [&] { database.includeAttempt(uuidOf(1), "x", "y"); });
-  expectRefusal(ErrorKind::invalid, "a reason is wanted", [&] { database.excludeAttempt(uuidOf(1), " ", "y"); });
-  expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.includeAttempt(uuidOf(1), "x", ""); });
-  SQLite::Database raw(path, SQLite::OPEN_READWRITE);
-  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
-  EXPECT_THROW(raw.exec("DELETE FROM audit"), SQLite::Exception);
-  EXPECT_THROW(raw.exec("UPDATE audit SET subject = ''"), SQLite::Exception);
-}
-
 TEST(CohortDatabase, manyMayMakeItAtOnce) {
   const Folder folder;
   constexpr int rounds = 40, makers = 6;

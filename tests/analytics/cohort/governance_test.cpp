@@ -43,6 +43,7 @@ std::multiset<std::string> meaning(const std::string& path) {
   }
   for (const AttemptRow& a : database.listAttempts()) {
     std::string row = fmt::format("attempt {} {} {} {}", a.uuid, a.participant, a.steps, a.exclusionReason);
+    for (const std::string& tag : a.tags) row += " #" + tag;
     for (const CheckpointValue& v : database.values(a.uuid))
       row += fmt::format(" {}/{}={}", v.name, v.subject, v.value.value_or(-1.0));
     rows.insert(row);
@@ -74,7 +75,8 @@ TEST(Merge, isTheUnionWhicheverWayRoundAndDoneTwiceIsDoneOnce) {
           attempt.chainHead[1] = std::byte{9};
         }
         database.storeAttempt(attempt, valuesOf(attempt.complete ? n : 0.5 * n, n));
-        if (n % 5 == 0) database.excludeAttempt(attempt.uuid, "alarm", "me");
+        if (n % 5 == 0) database.excludeAttempts({attempt.uuid}, "alarm", "me");
+        if (random() % 3 == 0) database.tagAttempts({attempt.uuid}, random() % 2 == 0 ? "teaching" : "odd", "me");
       }
       if (database.participant("P1")) {
         ParticipantChange change;

@@ -119,7 +119,7 @@ TEST_F(CohortDesign, whoWasNotFinishedIsFollowedAsLongAsTheAttemptLasted) {
   DesignChoices choices = choicesOf(Design::timeToCriterion);
   choices.groups = {"novice", "student"};
   choices.attemptRule = AttemptRule::first;
-  cohort_.excludeAttempt(support::uuidOf(5), "test", "me");  // P5's other one
+  cohort_.excludeAttempts({support::uuidOf(5)}, "test", "me");  // P5's other one
   const DesignData data = read(choices);
   ASSERT_EQ(data.figures.size(), 1U);
   std::size_t unfinished = 0;

@@ -66,7 +66,8 @@ class Bundles : public testing::Test {
     attempt(82, "Leaver-2");
     add("Silent-3", "novice", {});
     attempt(83, "Silent-3");
-    database_.excludeAttempt(uuidOf(11), "Mrs Secret fell ill", "Dr Whisper");
+    database_.excludeAttempts({uuidOf(11)}, "Mrs Secret fell ill", "Dr Whisper");
+    database_.tagAttempts({uuidOf(1)}, "Secret", "Dr Whisper");
     AttemptRecord broken = humanAttempt(84, "SITE-7301");
     broken.verification.verdict = Verdict::diverged;
     database_.storeAttempt(broken, {});

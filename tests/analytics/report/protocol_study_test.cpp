@@ -110,12 +110,12 @@ TEST_F(ProtocolStudy, isExploratoryUnlessRegisteredBeforeTheFirstAttempt) {
   AttemptRecord early = humanAttempt(40, "E0b");
   database_.addParticipant({"E0b", "expert", "", "", {{"operations", "300"}}, {}});
   database_.storeAttempt(early, figures(9, 9, 9, 9));
-  database_.excludeAttempt(early.uuid, "device failed", "me");
+  database_.excludeAttempts({early.uuid}, "device failed", "me");
   const Study late = study(document());
   EXPECT_EQ(late.heading, "exploratory");
   EXPECT_NE(late.protocol->whyExploratory.find("the first attempt is of 2026-01-01"), std::string::npos);
   EXPECT_TRUE(late.protocol->deviations.empty()) << "the protocol names this reason";
-  database_.excludeAttempt(early.uuid, "looked odd", "me");
+  database_.excludeAttempts({early.uuid}, "looked odd", "me");
   ASSERT_EQ(study(document()).protocol->deviations.size(), 1U);
   EXPECT_NE(study(document()).protocol->deviations[0].find("looked odd"), std::string::npos);
 }

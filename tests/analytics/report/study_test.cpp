@@ -10,6 +10,7 @@
 #include <locale>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "analytics/cohort/embedded.h"
@@ -78,6 +79,33 @@ TEST(Study, comparesPerformersAndWatermarksThem) {
   EXPECT_EQ(text.find("nan"), std::string::npos);
 }
 
+TEST(Study, saysHowFarItIsAndCanBeBrokenOff) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  addPerformers(database);
+  std::vector<double> shares;
+  std::set<std::string> doing;
+  const Study watched = makeStudy(database, performers, [&](double share, const char* what) {
+    shares.push_back(share);
+    doing.insert(what);
+  });
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  ASSERT_FALSE(shares.empty());
+  EXPECT_GT(shares.front(), 0.0);
+  EXPECT_LT(shares.back(), 1.0);
+  EXPECT_EQ(doing, (std::set<std::string>{"comparing groups", "reading values"}));
+  EXPECT_GE(shares.size(), watched.recruited + watched.rows.size()) << "each attempt and each row are told of";
+  EXPECT_EQ(textOf(watched), textOf(makeStudy(database, performers))) << "to watch changes nothing";
+
+  struct Enough {};
+  int calls = 0;
+  const auto breakOff = [&](double, const char*) {
+    if (++calls == 3) throw Enough{};
+  };
+  EXPECT_THROW((void)makeStudy(database, performers, breakOff), Enough);
+  EXPECT_EQ(calls, 3) << "nothing is done after that";
+}
+
 TEST(Study, syntheticAttemptsStayOutUnlessAskedFor) {
   const Folder folder;
   CohortDatabase database(folder.file("c.db"), Access::create);
@@ -106,7 +134,7 @@ TEST(Study, countsWhyAttemptsStayOut) {
   add(27, [](AttemptRecord& a) { a.purpose = "golden"; });
   add(28, [](AttemptRecord& a) { a.profile.clear(); });
   add(29, [](AttemptRecord&) {});
-  database.excludeAttempt(uuidOf(29), "fire alarm", "instructor");
+  database.excludeAttempts({uuidOf(29)}, "fire alarm", "instructor");
   const Study study = makeStudy(database, performers);
   EXPECT_EQ(study.recruited, 19U);
   EXPECT_EQ(study.analysed, 9U);

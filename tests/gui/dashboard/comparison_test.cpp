@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analytics/checkpoints/registry.h"
+#include "gui/dashboard/figure_values.h"
 
 namespace calot::gui {
 namespace {
@@ -104,11 +105,24 @@ TEST(Comparison, MostUsedKeyComesFirst) {
       (std::vector<std::string>{"z", "x", "y"}));
 }
 
-TEST(Comparison, FiguresNeedAValue) {
+TEST(FigureValues, AreByFigureAndNeedAValue) {
   AttemptValue missing = seconds("a", 0.0);
   missing.value.value.reset();
-  EXPECT_TRUE(figuresOf({missing}).empty());
-  EXPECT_EQ(figuresOf({seconds("a", 1.0), seconds("b", 2.0)}).size(), 1U);
+  const FigureValues none([&](const FigureValues::Take& take) { take(missing); });
+  EXPECT_TRUE(none.figures().empty());
+  AttemptValue other = seconds("a", 3.0);
+  other.value.subject = "left";
+  const FigureValues values([&](const FigureValues::Take& take) {
+    take(missing);
+    take(other);
+    take(seconds("b", 2.0));
+  });
+  ASSERT_EQ(values.figures().size(), 2U);
+  EXPECT_EQ(values.figures()[0], request.figure);
+  ASSERT_EQ(values.of(0).size(), 2U) << "who has no value is there, too";
+  EXPECT_FALSE(values.of(0)[0].value.value);
+  EXPECT_EQ(values.of(1).size(), 1U);
+  EXPECT_EQ(values.of(1)[0].value.value, 3.0);
 }
 
 }  // namespace

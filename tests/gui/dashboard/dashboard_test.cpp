@@ -286,12 +286,24 @@ TEST_F(Dashboard, TenThousandAttemptsAreSortedAndSearched) {
   AttemptTableModel model;
   AttemptFilter filter;
   filter.setSourceModel(&model);
-  model.setAttempts(rows);
+  rows[5].tags = {"odd", "teaching"};
+  rows[7].tags = {"teaching"};
+  model.setLines(std::make_shared<const AttemptLines>(rows));
   filter.sort(AttemptTableModel::startColumn, Qt::DescendingOrder);
   filter.setSearch("unskilled 2026-03-05");
   EXPECT_EQ(filter.rowCount(), 0) << "the fifth of the month is an even number";
   filter.setSearch("skilled 2026-03-05");
   EXPECT_EQ(filter.rowCount(), 357);
+  filter.setSearch("");
+  filter.setTag("teaching");
+  ASSERT_EQ(filter.rowCount(), 2);
+  EXPECT_EQ(filter.index(0, AttemptTableModel::tagsColumn).data().toString(), "teaching") << "the later one first";
+  EXPECT_EQ(filter.index(1, AttemptTableModel::tagsColumn).data().toString(), "odd, teaching");
+  filter.setTag("teach");
+  EXPECT_EQ(filter.rowCount(), 0) << "a tag is a whole word";
+  filter.setTag("");
+  filter.setSearch("odd");
+  EXPECT_EQ(filter.rowCount(), 1) << "the search finds tags, too";
 }
 
 TEST_F(Dashboard, NumbersFollowTheLocaleButAreNeverReadBack) {

@@ -219,7 +219,9 @@ TEST_F(Instructor, ChoosesColumnsAndSeveralAttemptsAtOnce) {
                                    QItemSelectionModel::Select | QItemSelectionModel::Rows);
     EXPECT_EQ(window->findChild<AttemptsPage*>()->selectedAll().size(), 3U);
     EXPECT_TRUE(child<QLabel>(*window, "count")->text().contains("3 selected"));
+    QSignalSpy shown(&*window, &DashboardWindow::documentShown);
     window->excludeOrInclude("the light failed", "R1");
+    ASSERT_TRUE(shown.wait(test::patience));
     const auto excluded = [&] {
       int count = 0;
       for (const analytics::AttemptRow& a :
@@ -229,6 +231,7 @@ TEST_F(Instructor, ChoosesColumnsAndSeveralAttemptsAtOnce) {
     };
     EXPECT_EQ(excluded(), 3);
     window->findChild<QUndoStack*>()->undo();
+    ASSERT_TRUE(shown.wait(test::patience));
     EXPECT_EQ(excluded(), 0) << "in one go";
   }
   EXPECT_TRUE(child<QTableView>(*opened(), "attempts")->isColumnHidden(AttemptTableModel::modeColumn)) << "remembered";

@@ -30,6 +30,7 @@
 #include "analytics/cohort/assessment_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
+#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/figure_panel.h"
@@ -168,23 +169,67 @@ TEST_F(Pages, AnAttemptIsExcludedAndThatIsUndone) {
     for (const analytics::AttemptRow& attempt : database.listAttempts()) count += attempt.excluded ? 1 : 0;
     return count;
   };
+  // Written on a thread of its own; then the cohort is read again.
+  QSignalSpy shown(&window, &DashboardWindow::documentShown);
   window.excludeOrInclude("the light failed", "R1");
+  ASSERT_TRUE(shown.wait(patience));
   EXPECT_EQ(excluded(), 1);
-  EXPECT_TRUE(QTest::qWaitFor(
-      [&] {
-        return child<QLabel>(*window.findChild<AttemptsPage*>(), "identity")->text().contains("the light failed");
-      },
-      patience));
+  EXPECT_TRUE(child<QLabel>(*window.findChild<AttemptsPage*>(), "identity")->text().contains("the light failed"));
   QUndoStack& undo = *window.findChild<QUndoStack*>();
   undo.undo();
+  ASSERT_TRUE(shown.wait(patience));
   EXPECT_EQ(excluded(), 0);
   undo.redo();
-  EXPECT_EQ(excluded(), 1);
-  QSignalSpy shown(&window, &DashboardWindow::documentShown);
-  window.reload();
   ASSERT_TRUE(shown.wait(patience));
-  window.excludeOrInclude("it was another room's light", "R1");
+  EXPECT_EQ(excluded(), 1);
+  window.excludeOrInclude("it was another light", "R1");
+  ASSERT_TRUE(shown.wait(patience));
   EXPECT_EQ(excluded(), 0) << "an excluded one is taken in again";
+}
+
+TEST_F(Pages, AttemptsAreTaggedAndFoundByIt) {
+  DashboardWindow window(apps::assessProgram());
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  QTableView& table = *child<QTableView>(window, "attempts");
+  QComboBox& tag = *child<QComboBox>(window, "tag");
+  const int all = table.model()->rowCount();
+  ASSERT_GT(all, 1);
+  EXPECT_FALSE(tag.isEnabled()) << "there are none";
+  QSignalSpy shown(&window, &DashboardWindow::documentShown);
+  window.tagSelected("teaching", true, "R1");
+  ASSERT_TRUE(shown.wait(patience));
+  ASSERT_EQ(tag.findText("teaching"), 1);
+  tag.setCurrentIndex(1);
+  ASSERT_EQ(table.model()->rowCount(), 1);
+  EXPECT_EQ(table.model()->index(0, AttemptTableModel::tagsColumn).data().toString(), "teaching");
+  table.selectAll();
+  window.tagSelected("teaching", true, "R1");  // has it
+  ASSERT_TRUE(shown.wait(patience));
+  QUndoStack& undo = *window.findChild<QUndoStack*>();
+  undo.undo();
+  ASSERT_TRUE(shown.wait(patience));
+  EXPECT_EQ(table.model()->rowCount(), 1) << "what changed nothing takes nothing back";
+  undo.undo();
+  ASSERT_TRUE(shown.wait(patience));
+  EXPECT_EQ(table.model()->rowCount(), all) << "the tag is gone, and with it the filter";
+  const analytics::CohortDatabase database(file("c.db").toStdString(), Access::read);
+  for (const analytics::AttemptRow& attempt : database.listAttempts()) EXPECT_TRUE(attempt.tags.empty());
+}
+
+TEST_F(Pages, WhatCannotBeDecidedIsSaidAndLeavesNothingToUndo) {
+  DashboardWindow window(apps::assessProgram());
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  fs::remove(root_ / "c.db");
+  window.tagSelected("teaching", true, "R1");
+  QLabel& problem = *child<QLabel>(window, "problem");
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !problem.isHidden(); }, patience));
+  EXPECT_TRUE(problem.text().contains("c.db")) << problem.text().toStdString();
+  QUndoStack& undo = *window.findChild<QUndoStack*>();
+  undo.undo();
+  EXPECT_FALSE(undo.canRedo());
+  EXPECT_FALSE(undo.canUndo());
 }
 
 TEST_F(Pages, ARaterFillsInAFormAndChangesIt) {
@@ -263,8 +308,11 @@ TEST_F(Pages, AStudyIsShownAndExported) {
   EXPECT_TRUE(text.contains("skilled"));
   EXPECT_EQ(child<QComboBox>(page, "study-row")->count(), 1);
   EXPECT_TRUE(child<QLabel>(page, "study-effect")->text().replace(QChar(QChar::Nbsp), ' ').contains("A = "));
+  QSignalSpy written(&page, &StudyPage::written);
   page.exportHtml(file("study.html"));
+  ASSERT_TRUE(written.wait(patience));
   page.exportCsv(file("csv"));
+  ASSERT_TRUE(written.wait(patience));
   EXPECT_TRUE(fs::exists(root_ / "study.html"));
   for (const char* name : {"study.csv", "values.csv", "flow.csv"})
     EXPECT_TRUE(fs::exists(root_ / "csv" / name)) << name;
@@ -274,14 +322,42 @@ TEST_F(Pages, AStudyIsShownAndExported) {
   EXPECT_TRUE(child<QLabel>(page, "study-state")->text().startsWith("There is no study")) << "and why";
 }
 
+TEST_F(Pages, AStudyIsBrokenOffAndBegunAgain) {
+  fs::remove(root_ / "c.db");
+  {
+    analytics::CohortDatabase database(file("c.db").toStdString(), Access::create);
+    for (int i = 0; i < 12; ++i)
+      database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1 + 0.01 * i)});
+  }
+  DashboardWindow window(apps::assessProgram());
+  window.show();
+  ASSERT_TRUE(window.openDatabase(file("c.db")));
+  StudyPage& page = *window.findChild<StudyPage*>();
+  QSignalSpy shown(&page, &StudyPage::studyShown);
+  showPage(window, 4);
+  // Its answer comes by the event loop, which has not run since.
+  ASSERT_TRUE(page.busy());
+  child<QPushButton>(page, "work-cancel")->click();
+  EXPECT_FALSE(page.busy());
+  EXPECT_FALSE(page.ready());
+  EXPECT_TRUE(child<QLabel>(page, "study-state")->text().startsWith("Cancelled"));
+  QTest::qWait(200);
+  EXPECT_EQ(shown.count(), 0) << "what was broken off is not shown";
+  window.reload();
+  ASSERT_TRUE(shown.wait(patience));
+  EXPECT_TRUE(page.ready());
+}
+
 TEST_F(Pages, PicturesOfAllPagesAreWritten) {
   DashboardWindow window(apps::assessProgram(), {fs::path(CALOT_SOURCE_DIR) / "assets"});
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   window.savePictures(folder_.path());
   for (const char* name : {"attempts.png", "attempt.png", "compare.png", "study.png", "trainee.png", "pair.png",
-                           "ratings.png", "settings.png"})
-    EXPECT_GT(QImage(file(name)).width(), name == std::string("settings.png") ? 400 : 600) << name;
+                           "ratings.png", "norm.png", "settings.png"})
+    EXPECT_GT(QImage(file(name)).width(),
+              std::string(name) == "settings.png" || std::string(name) == "norm.png" ? 400 : 600)
+        << name;
   EXPECT_THROW(window.savePictures(file("missing")), Error);
 }
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/gui/dashboard/support/cohort.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <vector>
 
 #include "analytics/checkpoints/registry.h"
 
@@ -35,6 +40,41 @@ analytics::AttemptRecord attemptNumber(int i) {
 
 analytics::CheckpointValue pathLength(const std::string& hand, double metres) {
   return analytics::makeValue(*analytics::findCheckpoint("path-length"), hand, analytics::Origin::samples, metres);
+}
+
+void makeLargeCohort(const std::string& path, int attempts) {
+  constexpr int people = 200;
+  constexpr std::size_t figures = 40;
+  analytics::CohortDatabase database(path, analytics::CohortDatabase::Access::create);
+  const auto pseudonym = [](int i) { return "P" + std::to_string(1000 + i % people); };
+  for (int i = 0; i < people; ++i) {
+    analytics::Participant person;
+    person.pseudonym = pseudonym(i);
+    person.group = i % 2 == 0 ? "expert" : "novice";
+    database.addParticipant(person);
+  }
+  std::uint32_t state = 1;  // of a congruential generator
+  const auto next = [&] {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<double>(state >> 8U) / static_cast<double>(1U << 24U);
+  };
+  const auto& registry = analytics::checkpointRegistry();
+  for (int i = 0; i < attempts; ++i) {
+    analytics::AttemptRecord attempt = attemptNumber(i);
+    attempt.operatorKind = recorder::OperatorKind::human;
+    attempt.profile.clear();
+    attempt.profileVersion.clear();
+    attempt.synthetic = false;
+    attempt.participant = pseudonym(i);
+    attempt.startUtc = fmt::format("20{:02}-{:02}-{:02}T{:02}:{:02}:{:02}Z", 10 + i / 1000, 1 + i / 84 % 12,
+                                   1 + i / 3 % 28, i % 24, i % 60, i / 24 % 60);
+    std::vector<analytics::CheckpointValue> values;
+    values.reserve(figures);
+    for (std::size_t f = 0; f < std::min(figures, registry.size()); ++f)
+      values.push_back(analytics::makeValue(registry[f].definition, "", analytics::Origin::observables,
+                                            1.0 + 0.3 * (i % 2) + next()));
+    database.storeAttempt(attempt, values);
+  }
 }
 
 }  // namespace calot::gui::test

@@ -12,4 +12,8 @@ namespace calot::gui::test {
 analytics::AttemptRecord attemptNumber(int i);
 analytics::CheckpointValue pathLength(const std::string& hand, double metres);
 
+/// A cohort as a centre has it after years: attempts of 200 people, experts and novices, 40 figures each, all of one
+/// comparability key. @pre no such file
+void makeLargeCohort(const std::string& path, int attempts);
+
 }  // namespace calot::gui::test

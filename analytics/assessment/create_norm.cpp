@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/assessment/create_norm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "analytics/assessment/grade.h"
+#include "analytics/assessment/norm_rule.h"
+#include "analytics/cohort/check.h"
+
+namespace calot::analytics {
+
+Norm createNorm(const std::string& database, NormRequest request, const std::vector<std::string>& only,
+                const NormProgress& progress) {
+  using Access = CohortDatabase::Access;
+  const auto tell = [&](double share, const char* doing) {
+    if (progress) progress(share, doing);
+  };
+  tell(0.0, "checking the cohort");
+  AssessmentDatabase assessment(database, Access::write);
+  refuseUnsound(database);
+  const CohortDatabase cohort(database, Access::read);
+  if (request.who.protocol) {
+    for (const Participant& p : cohort.participants()) request.who.protocol->experience[p.pseudonym] = p.experience;
+  }
+  std::vector<AttemptRow> attempts = cohort.listAttempts();
+  const std::set<std::string> wanted(only.begin(), only.end());
+  if (!only.empty()) std::erase_if(attempts, [&](const AttemptRow& a) { return wanted.count(a.uuid) == 0; });
+  std::vector<AttemptValue> values;
+  std::string attempt;
+  std::size_t read = 0;
+  cohort.eachValue({}, [&](const AttemptValue& value) {
+    if (attempt != value.attempt) {
+      attempt = value.attempt;
+      tell(0.5 * std::min(1.0, static_cast<double>(++read) / static_cast<double>(attempts.size() + 1)),
+           "reading values");
+    }
+    if (only.empty() || wanted.count(value.attempt) > 0) values.push_back(value);
+  });
+  // Those of external metrics come behind all others.
+  std::stable_sort(values.begin(), values.end(),
+                   [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; });
+  tell(0.5, "finding pass marks");
+  const Norm norm = makeNorm(attempts, values, assessment.ratings(), request, database);
+  tell(1.0, "storing");
+  return assessment.norm(norm.name, assessment.storeNorm(norm));
+}
+
+std::vector<std::string> normSummary(const Norm& norm) {
+  const auto [competent, others] = passRates(norm);
+  const auto counting =
+      std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; });
+  return {fmt::format("Norm {} version {}, made on {} by {}: {} members, judged by {}; {}", norm.name, norm.version,
+                      norm.createdUtc, norm.by, norm.members.size(), norm.judgedBy, norm.comparabilityKey),
+          fmt::format("Rule: no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of "
+                      "{} others.",
+                      neededPasses(norm), counting, competent.passed, competent.members, others.passed, others.members),
+          useOf(norm)};
+}
+
+std::vector<std::string> normWarnings(const Norm& norm) {
+  std::vector<std::string> warnings{ownFailureWarning(norm), uncountedWarning(norm), passMarkWarning(norm)};
+  std::erase(warnings, std::string());
+  return warnings;
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/dashboard/norm_dialog.h"
+
+#include <algorithm>
+#include <QBoxLayout>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <utility>
+
+#include "analytics/assessment/create_norm.h"
+#include "gui/attempt/theme.h"
+#include "gui/attempt/work_strip.h"
+#include "gui/dashboard/comparison.h"
+#include "gui/dashboard/settings.h"
+#include "gui/dashboard/study_view.h"
+
+namespace calot::gui {
+namespace {
+
+constexpr const char* explanation =
+    "A norm is what later attempts are graded against. These figures count: time, path lengths, critical view, clip "
+    "errors, perforations and burns, as far as they have a pass mark. Other figures, raters' judgements and marks that "
+    "a person sets: calot norm create.";
+
+template <class T>
+T* named(T* widget, const char* name) {
+  widget->setObjectName(name);
+  return widget;
+}
+
+}  // namespace
+
+NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vector<std::string> selected,
+                       QWidget* parent)
+    : QDialog(parent),
+      document_(std::move(document)),
+      selected_(std::move(selected)),
+      name_(named(new QLineEdit, "norm-name")),
+      by_(named(new QLineEdit, "norm-by")),
+      attempts_(named(new QComboBox, "norm-attempts")),
+      groupBy_(named(new QComboBox, "norm-group-by")),
+      competent_(named(new QComboBox, "norm-competent")),
+      others_(named(new QComboBox, "norm-others")),
+      key_(named(new QComboBox, "norm-key")),
+      rule_(named(new QComboBox, "norm-rule")),
+      least_(named(new QSpinBox, "norm-least")),
+      first_(named(new QCheckBox("Of a participant's several attempts the &first counts"), "norm-first")),
+      practice_(named(new QCheckBox("&Practice attempts, too"), "norm-practice")),
+      synthetic_(named(new QCheckBox("&Synthetic attempts, too (the norm is marked)"), "norm-synthetic")),
+      result_(named(new QLabel, "norm-result")),
+      make_(named(new QPushButton("&Make the norm"), "norm-make")),
+      strip_(new WorkStrip(work_)) {
+  setWindowTitle("Make a norm");
+  resize(theme::inType(620), theme::inType(460));
+  auto* layout = new QVBoxLayout(this);
+  auto* told = new QLabel(explanation);
+  told->setWordWrap(true);
+  layout->addWidget(told);
+  auto* form = new QFormLayout;
+  buildChoices(*form);
+  layout->addLayout(form);
+  result_->setTextFormat(Qt::PlainText);
+  result_->setWordWrap(true);
+  result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+  layout->addWidget(result_, 1);
+  layout->addWidget(strip_);
+  auto* buttons = new QHBoxLayout;
+  auto* close = new QPushButton("&Close");
+  buttons->addStretch(1);
+  buttons->addWidget(make_);
+  buttons->addWidget(close);
+  layout->addLayout(buttons);
+  make_->setDefault(true);
+  connect(close, &QPushButton::clicked, this, &QDialog::accept);
+  connect(make_, &QPushButton::clicked, this, &NormDialog::make);
+  connect(&work_, &LongWork::done, this, [this](const QString& text) {
+    allow(true);
+    result_->setText(text);
+    emit made();
+  });
+  connect(&work_, &LongWork::failed, this, [this](const QString& reason) {
+    allow(true);
+    result_->setText("No norm was made: " + reason);
+    emit refused();
+  });
+  connect(&work_, &LongWork::cancelled, this, [this] {
+    allow(true);
+    result_->setText("Cancelled: no norm was made.");
+  });
+}
+
+void NormDialog::buildChoices(QFormLayout& form) {
+  const std::vector<analytics::AttemptRow>& all = document_->attempts();
+  name_->setMaxLength(64);
+  name_->setPlaceholderText("letters, digits, points, hyphens; the same name again is its next version");
+  by_->setMaxLength(64);
+  by_->setText(settings::person());
+  by_->setPlaceholderText("your pseudonym");
+  attempts_->addItem("all of the cohort");
+  if (selected_.size() > 1) {
+    attempts_->addItem(QString("only the %1 that are selected").arg(selected_.size()));
+    attempts_->setCurrentIndex(1);
+  }
+  groupBy_->addItem("study group", static_cast<int>(GroupBy::group));
+  groupBy_->addItem("performer's profile", static_cast<int>(GroupBy::profile));
+  const bool people = !groupsOf(all, GroupBy::group).empty();
+  groupBy_->setCurrentIndex(people ? 0 : 1);
+  synthetic_->setChecked(!people);
+  first_->setChecked(true);
+  practice_->setChecked(std::none_of(
+      all.begin(), all.end(), [](const analytics::AttemptRow& a) { return a.mode == recorder::Mode::assessment; }));
+  for (const std::string& key : comparabilityKeysOf(all)) key_->addItem(QString::fromStdString(key));
+  key_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  key_->setMinimumContentsLength(20);
+  rule_->addItem("all figures that count are passed");
+  rule_->addItem("at least so many of them are passed");
+  least_->setRange(1, 1000);
+  least_->setEnabled(false);
+  auto* rule = new QHBoxLayout;
+  rule->addWidget(rule_, 1);
+  rule->addWidget(least_);
+  form.addRow("&Name", name_);
+  form.addRow("Made &by", by_);
+  form.addRow("A&ttempts", attempts_);
+  form.addRow("&Groups by", groupBy_);
+  form.addRow("C&ompetent are", competent_);
+  form.addRow("&Others are", others_);
+  form.addRow("Comparable &within", key_);
+  form.addRow("&Rule", rule);
+  for (QCheckBox* box : {first_, practice_, synthetic_}) form.addRow(QString(), box);
+  connect(groupBy_, &QComboBox::currentIndexChanged, this, [this] { fillGroups(); });
+  connect(rule_, &QComboBox::currentIndexChanged, least_, [this](int index) { least_->setEnabled(index == 1); });
+  for (QLineEdit* line : {name_, by_}) connect(line, &QLineEdit::textChanged, this, [this] { allow(true); });
+  fillGroups();
+  allow(true);
+}
+
+void NormDialog::fillGroups() {
+  competent_->clear();
+  others_->clear();
+  for (const std::string& name :
+       groupsOf(document_->attempts(), static_cast<GroupBy>(groupBy_->currentData().toInt()))) {
+    competent_->addItem(QString::fromStdString(name));
+    others_->addItem(QString::fromStdString(name));
+  }
+  others_->setCurrentIndex(others_->count() > 1 ? 1 : -1);
+}
+
+void NormDialog::allow(bool ready) {
+  make_->setEnabled(ready && !name_->text().trimmed().isEmpty() && !by_->text().trimmed().isEmpty());
+}
+
+void NormDialog::make() {
+  analytics::NormRequest request;
+  request.name = name_->text().trimmed().toStdString();
+  request.by = by_->text().trimmed().toStdString();
+  request.leastPassed = rule_->currentIndex() == 1 ? static_cast<std::uint32_t>(least_->value()) : 0;
+  analytics::StudyOptions& who = request.who;
+  who.grouping = static_cast<GroupBy>(groupBy_->currentData().toInt()) == GroupBy::profile
+                     ? analytics::Grouping::performer
+                     : analytics::Grouping::group;
+  who.groups = {competent_->currentText().toStdString(), others_->currentText().toStdString()};
+  who.better = who.groups.front();
+  who.key = key_->currentText().toStdString();
+  who.includePractice = practice_->isChecked();
+  who.includeSynthetic = synthetic_->isChecked();
+  if (first_->isChecked()) who.attemptRule = analytics::AttemptRule::first;
+  const std::vector<std::string> only = attempts_->currentIndex() == 1 ? selected_ : std::vector<std::string>();
+  settings::setPerson(QString::fromStdString(request.by));
+  allow(false);
+  result_->clear();
+  strip_->begin("Making the norm");
+  work_.start([request, only, database = document_->path()](LongWork::Control& control) {
+    const analytics::Norm norm = analytics::createNorm(database, request, only, [&](double share, const char* doing) {
+      control.progress(share, QString("Making the norm: ") + doing);
+    });
+    QStringList lines;
+    for (const std::string& line : analytics::normSummary(norm)) lines += QString::fromStdString(line);
+    for (const std::string& line : analytics::normWarnings(norm)) lines += QString::fromStdString(line);
+    if (norm.synthetic) lines.prepend("SYNTHETIC: made of performers' attempts, of no person's.");
+    return lines.join("\n\n");
+  });
+}
+
+}  // namespace calot::gui

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <QDialog>
+#include <QStringList>
+#include <string>
+#include <vector>
+
+#include "gui/attempt/long_work.h"
+#include "gui/dashboard/cohort_document.h"
+
+class QCheckBox;
+class QComboBox;
+class QFormLayout;
+class QLabel;
+class QLineEdit;
+class QPushButton;
+class QSpinBox;
+
+namespace calot::gui {
+
+class WorkStrip;
+
+/// Makes a norm of two groups, as `calot norm create` does, and says what that says of it: whom its rule lets through,
+/// what it may be used for, and every warning.
+class NormDialog : public QDialog {
+  Q_OBJECT
+ public:
+  /// @param selected uuids of the attempts that are selected on the page
+  NormDialog(std::shared_ptr<const CohortDocument> document, std::vector<std::string> selected,
+             QWidget* parent = nullptr);
+
+ signals:
+  void made();     ///< a norm was stored
+  void refused();  ///< and why stands in the dialog
+
+ private:
+  void buildChoices(QFormLayout& form);
+  void fillGroups();
+  void make();
+  void allow(bool ready);
+
+  std::shared_ptr<const CohortDocument> document_;
+  std::vector<std::string> selected_;
+  LongWork work_;
+  QLineEdit *name_, *by_;
+  QComboBox *attempts_, *groupBy_, *competent_, *others_, *key_, *rule_;
+  QSpinBox* least_;
+  QCheckBox *first_, *practice_, *synthetic_;
+  QLabel* result_;
+  QPushButton* make_;
+  WorkStrip* strip_;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What people decide about attempts: exclusions and tags.
+#include <gtest/gtest.h>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <string>
+#include <vector>
+
+#include "analytics/cohort/cohort_database.h"
+#include "recorder/errors.h"
+#include "tests/analytics/cohort/support/cohort_support.h"
+#include "tests/analytics/support/refusal.h"
+
+namespace calot::analytics {
+namespace {
+
+using Access = CohortDatabase::Access;
+using support::attemptOf;
+using support::expectRefusal;
+using support::Folder;
+using support::uuidOf;
+using support::valuesOf;
+
+TEST(AttemptDecisions, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create);
+  database.upsertAttempt(attemptOf(1, "skilled"));
+  database.excludeAttempts({uuidOf(1)}, "fire alarm", "instructor 2");
+  EXPECT_TRUE(database.attempt(uuidOf(1))->excluded);
+  EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
+  database.includeAttempts({uuidOf(1)}, "heard nothing", "instructor 2");
+  EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
+  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.excludeAttempts({uuidOf(9)}, "x", "y"); });
+  expectRefusal(ErrorKind::refused, "not excluded", [&] { database.includeAttempts({uuidOf(1)}, "x", "y"); });
+  expectRefusal(ErrorKind::invalid, "a reason is wanted", [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
+  expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.includeAttempts({uuidOf(1)}, "x", ""); });
+  SQLite::Database raw(path, SQLite::OPEN_READWRITE);
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
+  EXPECT_THROW(raw.exec("DELETE FROM audit"), SQLite::Exception);
+  EXPECT_THROW(raw.exec("UPDATE audit SET subject = ''"), SQLite::Exception);
+}
+
+TEST(AttemptDecisions, tagsAreKeptOnceAndAudited) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create);
+  for (const unsigned n : {1U, 2U, 3U}) database.storeAttempt(attemptOf(n, "skilled"), valuesOf(n, n));
+  EXPECT_EQ(database.tagAttempts({uuidOf(1), uuidOf(2)}, "teaching", "me"), 2U);
+  EXPECT_EQ(database.tagAttempts({uuidOf(2), uuidOf(3)}, "teaching", "me"), 1U) << "one had it";
+  EXPECT_EQ(database.tagAttempts({uuidOf(2)}, "bleeding", "me"), 1U);
+  const std::vector<std::string> both{"bleeding", "teaching"};
+  EXPECT_EQ(database.attempt(uuidOf(2))->tags, both);
+  EXPECT_EQ(database.listAttempts()[1].tags, both);
+  EXPECT_EQ(database.untagAttempts({uuidOf(1), uuidOf(2)}, "bleeding", "me"), 1U);
+  EXPECT_EQ(database.attempt(uuidOf(2))->tags, std::vector<std::string>{"teaching"});
+  database.storeAttempt(attemptOf(2, "skilled"), valuesOf(7, 7));
+  EXPECT_EQ(database.attempt(uuidOf(2))->tags.size(), 1U) << "an import leaves them alone";
+  const std::string longest = "\xC3\xA4" + std::string(39, 'a');
+  EXPECT_EQ(database.tagAttempts({uuidOf(1)}, longest, "me"), 1U) << "40 characters, 41 bytes";
+  for (const std::string& wrong :
+       {std::string(), std::string("two words"), std::string("a,b"), std::string("a\nb"), longest + "a"})
+    expectRefusal(ErrorKind::invalid, "one word", [&] { database.tagAttempts({uuidOf(1)}, wrong, "me"); });
+  expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.tagAttempts({uuidOf(1)}, "x", " "); });
+  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.tagAttempts({uuidOf(1), uuidOf(9)}, "x", "me"); });
+  EXPECT_EQ(database.attempt(uuidOf(1))->tags.size(), 2U) << "all or none";
+  SQLite::Database raw(path, SQLite::OPEN_READWRITE);
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action IN ('attempt-tag', 'attempt-untag')").getInt(), 6);
+}
+
+}  // namespace
+}  // namespace calot::analytics
