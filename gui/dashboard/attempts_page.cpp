@@ -101,7 +101,7 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
   add("&Search", search_, 1);
   add("Verifi&cation", verdict_, 0);
   add("&Made by", operators_, 0);
-  add("Ta&g", tag_, 0);
+  add("&Tag", tag_, 0);
   row->addWidget(count_);
   buildColumns(*row);
   layout.addLayout(row);

@@ -36,7 +36,7 @@ const ObjectRule timeRule{"time", {{"column"}, {"unit"}}};
 const ObjectRule handRule{"hand", {{"position"}, {"quaternion", false}, {"matrix", false}, {"axis", false}}};
 
 /// Motions of one length are equal in ranks whenever they began, which a difference of two times in binary is not.
-double toNanosecond(double seconds) { return std::round(seconds * 1e9) / 1e9; }
+double toPicosecond(double seconds) { return std::round(seconds * 1e12) / 1e12; }
 
 std::vector<std::string> namesOf(const JsonPlace& place, std::size_t count) {
   std::vector<std::string> names;
@@ -183,7 +183,7 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
   motion.rate = map.rate;
   for (std::size_t i = 0; i < rows; ++i) {
     const double time = map.rate > 0.0 ? static_cast<double>(i) / map.rate
-                                       : toNanosecond((reader.at(0, i) - reader.at(0, 0)) * map.seconds);
+                                       : toPicosecond((reader.at(0, i) - reader.at(0, 0)) * map.seconds);
     if (i > 0 && !(time > motion.time.back())) reader.fail(i, "its time is not after the row before");
     if (!(time <= maxMotion))
       reader.fail(i,
