@@ -116,6 +116,20 @@ constexpr Example examples[] = {
     {"cache", "calot cache --clean"},
 };
 
+/// The manual's first page on this machine, or nothing.
+std::string manual() {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  for (const fs::path& folder : assetFolders()) {
+    const fs::path assets = fs::weakly_canonical(folder, ignored);  // of a build tree it is a link
+    for (const fs::path& page :
+         {assets / "../doc/calot-doc/html/index.html", assets.parent_path() / "docs" / "index.md"}) {
+      if (fs::exists(page, ignored)) return fs::weakly_canonical(page, ignored).string();
+    }
+  }
+  return {};
+}
+
 /// Descriptions of options and commands in lines that fit.
 class FittingFormatter final : public CLI::Formatter {
  public:
@@ -128,6 +142,15 @@ class FittingFormatter final : public CLI::Formatter {
     CLI::detail::format_help(out, command->get_display_name(true), fitting(command->get_description()),
                              get_column_width());
     return out.str();
+  }
+
+  /// Where the manual is on this machine is told to whoever reads here, and not by --help-json, of which pages are made
+  /// that are read elsewhere.
+  std::string make_footer(const CLI::App* command) const override {
+    std::string footer = CLI::Formatter::make_footer(command);
+    if (command->get_parent() != nullptr) return footer;
+    if (const std::string page = manual(); !page.empty()) footer += "The manual: " + page + "\n";
+    return footer;
   }
 
  private:
@@ -144,20 +167,6 @@ std::string examplesOf(const std::string& command) {
     if (each.command == command) text += fmt::format("\n  {}", each.line);
   }
   return text.empty() ? text : (text.find('\n', 1) == std::string::npos ? "Example:" : "Examples:") + text;
-}
-
-/// The manual's first page on this machine, or nothing.
-std::string manual() {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  for (const fs::path& folder : assetFolders()) {
-    const fs::path assets = fs::weakly_canonical(folder, ignored);  // of a build tree it is a link
-    for (const fs::path& page :
-         {assets / "../doc/calot-doc/html/index.html", assets.parent_path() / "docs" / "index.md"}) {
-      if (fs::exists(page, ignored)) return fs::weakly_canonical(page, ignored).string();
-    }
-  }
-  return {};
 }
 
 void dress(CLI::App& command, const std::string& words, const std::shared_ptr<CLI::FormatterBase>& formatter) {
@@ -178,9 +187,7 @@ void dress(CLI::App& command, const std::string& words, const std::shared_ptr<CL
 
 void dressHelp(CLI::App& app) {
   dress(app, "", std::make_shared<FittingFormatter>(terminalColumns()));
-  std::string footer = "calot COMMAND --help has the options of each command, and an example.";
-  if (const std::string page = manual(); !page.empty()) footer += "\nThe manual: " + page;
-  app.footer(footer);
+  app.footer("calot COMMAND --help has the options of each command, and an example.");
 }
 
 }  // namespace calot::apps

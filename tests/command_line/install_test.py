@@ -80,6 +80,16 @@ class Installed(ProgramTest):
         for file in (self.prefix / "bin").iterdir():
             self.assertNotIn(str(SOURCE).encode(), file.read_bytes(), file.name)
 
+    def test_manual_names_no_place_of_this_machine(self):
+        pages = list((self.prefix / "share/man/man1").iterdir())
+        self.assertGreater(len(pages), 20)
+        for file in pages:
+            with gzip.open(file, "rt") as page:
+                text = page.read().replace("\\-", "-")
+            self.assertNotIn(str(SOURCE), text, file.name)
+            self.assertNotIn("The manual: ", text, file.name)
+        self.assertIn("\nThe manual: ", run(BUILD / "bin/calot", "--help").stdout)
+
     def test_manual_and_completion_have_what_the_help_has(self):
         programs = ["calot", "calot-organs", *(["calot-dashboard", "calot-trainer"] if WINDOWS else [])]
         seen = 0
