@@ -13,33 +13,23 @@
 #include "gui/attempt/transport_bar.h"
 #include "gui/attempt/words.h"
 #include "gui/attempt/work_strip.h"
+#include "gui/trainer/panel_parts.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
+
+using parts::button;
+using parts::say;
+
 namespace {
 
 QLabel* words(const char* name) {
-  auto* const label = new QLabel;
-  label->setObjectName(name);
-  label->setTextFormat(Qt::PlainText);
-  label->setWordWrap(true);
+  QLabel* const label = parts::plainLabel(name);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   return label;
-}
-
-QPushButton* press(const char* text, const char* name) {
-  auto* const made = new QPushButton(text);
-  made->setObjectName(name);
-  made->setAutoDefault(true);  // Enter presses it
-  return made;
-}
-
-void say(QLabel* label, const QString& text) {
-  label->setText(text);
-  label->setVisible(!text.isEmpty());
 }
 
 QString figureWords(const FigureReport& figure) {
@@ -80,11 +70,11 @@ EndPage::EndPage(Setup setup, QWidget* parent)
       momentsTitle_(words("momentsTitle")),
       storeText_(words("storeText")),
       moments_(new QListWidget),
-      store_(press("&Put into the cohort", "store")),
-      back_(press("Go &back to 2 s before it", "endBack")),
-      again_(press("Sta&rt again", "again")),
-      next_(press("&Next task", "next")),
-      scenes_(press("&Other scene", "endScenes")),
+      store_(button("&Put into the cohort", "store")),
+      back_(button("Go &back to 2 s before it", "endBack")),
+      again_(button("Sta&rt again", "again")),
+      next_(button("&Next task", "next")),
+      scenes_(button("&Other scene", "endScenes")),
       picture_(new ScenePictureWidget),
       strip_(new WorkStrip(work_)) {
   replay_ = std::make_unique<Replay>(

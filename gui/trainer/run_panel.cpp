@@ -15,33 +15,19 @@
 #include <QStackedWidget>
 
 #include "gui/attempt/theme.h"
+#include "gui/trainer/panel_parts.h"
 
 namespace calot::gui {
+
+using parts::button;
+using parts::plainLabel;
+using parts::say;
+
 namespace {
 
 // Okabe and Ito's blue on a ground of its own: the words carry the meaning.
 constexpr const char* hintStyle =
     "QLabel { background: #e3eef6; color: #10263a; border-left: 5px solid #0072b2; padding: 8px; }";
-
-QLabel* plainLabel(const char* name, bool wrap = true) {
-  auto* const label = new QLabel;
-  label->setObjectName(name);
-  label->setTextFormat(Qt::PlainText);
-  label->setWordWrap(wrap);
-  return label;
-}
-
-QPushButton* button(const char* text, const char* name) {
-  auto* const made = new QPushButton(text);
-  made->setObjectName(name);
-  made->setAutoDefault(true);  // Enter presses it
-  return made;
-}
-
-void say(QLabel* label, const QString& text) {
-  if (label->text() != text) label->setText(text);
-  label->setVisible(!text.isEmpty());
-}
 
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   auto* const page = new QWidget;
