@@ -44,7 +44,7 @@ QScatterSeries* comparisonSeries(bool synthetic) {
   return series;
 }
 
-/// Every how manieth attempt of a group has a dot.
+/// A dot for one attempt in so many.
 std::size_t strideOf(const Comparison& comparison) {
   std::size_t points = 0;
   for (const ComparisonGroup& group : comparison.group) points += group.point.size();

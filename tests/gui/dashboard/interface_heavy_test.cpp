@@ -18,7 +18,6 @@
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/dashboard_window.h"
-#include "gui/dashboard/settings.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/loop_watch.h"
 #include "tests/gui/dashboard/support/recorded.h"
@@ -33,14 +32,11 @@ constexpr double maxStart = 1000.0;  // ms, of 10,000 attempts
 constexpr double maxGap = 50.0;      // ms between two turns of the interface
 constexpr double maxSeek = 300.0;    // ms till a picture of about that moment
 
-class InterfaceHeavy : public ::testing::Test {
+class InterfaceHeavy : public test::Waiting {
  protected:
   void SetUp() override {
-    if (std::getenv("CALOT_HEAVY") == nullptr) GTEST_SKIP() << "CALOT_HEAVY=1 measures how long a user waits";
-    test::startApplication();
-    settings::setRecordingFolders({});
-    settings::setCalotProgram(CALOT_PROGRAM);
-    (void)test::slowness();
+    Waiting::SetUp();
+    if (IsSkipped()) return;
     root_ = folder_.path().toStdString();
   }
   static void judge(const char* what, double took, double usual) {

@@ -26,7 +26,6 @@
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/compare_page.h"
 #include "gui/dashboard/dashboard_window.h"
-#include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "gui/dashboard/trainee_page.h"
 #include "tests/gui/dashboard/support/cohort.h"
@@ -41,14 +40,11 @@ namespace fs = std::filesystem;
 constexpr double longestTurn = 50.0;  // ms
 constexpr int endsWithin = 600000;    // ms for anything to end
 
-class LargeCohortHeavy : public ::testing::Test {
+class LargeCohortHeavy : public test::Waiting {
  protected:
   void SetUp() override {
-    if (std::getenv("CALOT_HEAVY") == nullptr) GTEST_SKIP() << "CALOT_HEAVY=1 measures how long a user waits";
-    test::startApplication();
-    settings::setRecordingFolders({});
-    settings::setCalotProgram(CALOT_PROGRAM);
-    (void)test::slowness();
+    Waiting::SetUp();
+    if (IsSkipped()) return;
     static QTemporaryDir made;
     const fs::path large = fs::path(made.path().toStdString()) / "c.db";
     if (!fs::exists(large)) {

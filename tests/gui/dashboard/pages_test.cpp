@@ -62,6 +62,13 @@ class Pages : public test::AssessedCohort {
     QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(&window, &event);
   }
+  /// A cohort of twelve in place of the two that were assessed. @param apart by how much every other path is longer (m)
+  void makeTwelve(double apart) {
+    fs::remove(root_ / "c.db");
+    analytics::CohortDatabase database(file("c.db").toStdString(), Access::create);
+    for (int i = 0; i < 12; ++i)
+      database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1 + 0.01 * i + apart * (i % 2))});
+  }
 };
 
 TEST_F(Pages, RecordingsThatAreDroppedAreAssessedAndShown) {
@@ -289,12 +296,7 @@ TEST_F(Pages, TwoRecordingsGoInStep) {
 }
 
 TEST_F(Pages, AStudyIsShownAndExported) {
-  fs::remove(root_ / "c.db");
-  {
-    analytics::CohortDatabase database(file("c.db").toStdString(), Access::create);
-    for (int i = 0; i < 12; ++i)
-      database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1 + 0.01 * i + 0.2 * (i % 2))});
-  }
+  makeTwelve(0.2);
   DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));
@@ -323,12 +325,7 @@ TEST_F(Pages, AStudyIsShownAndExported) {
 }
 
 TEST_F(Pages, AStudyIsBrokenOffAndBegunAgain) {
-  fs::remove(root_ / "c.db");
-  {
-    analytics::CohortDatabase database(file("c.db").toStdString(), Access::create);
-    for (int i = 0; i < 12; ++i)
-      database.storeAttempt(test::attemptNumber(i), {test::pathLength("left", 0.1 + 0.01 * i)});
-  }
+  makeTwelve(0.0);
   DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(file("c.db")));

@@ -12,6 +12,9 @@
 #include <iostream>
 #include <QStringList>
 
+#include "gui/dashboard/settings.h"
+#include "tests/gui/dashboard/support/recorded.h"
+
 namespace calot::gui::test {
 namespace {
 
@@ -86,6 +89,14 @@ double slowness() {
     return std::max(1.0, work / usualWork);
   }();
   return factor;
+}
+
+void Waiting::SetUp() {
+  if (std::getenv("CALOT_HEAVY") == nullptr) GTEST_SKIP() << "CALOT_HEAVY=1 measures how long a user waits";
+  startApplication();
+  settings::setRecordingFolders({});
+  settings::setCalotProgram(CALOT_PROGRAM);
+  (void)slowness();
 }
 
 }  // namespace calot::gui::test

@@ -2,6 +2,8 @@
 // How long the interface keeps a user waiting, for heavy tests.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <QElapsedTimer>
 #include <QTimer>
@@ -37,5 +39,11 @@ class LoopWatch {
 /// How many times slower this machine is than a usual one, at least 1: by processor time of a fixed piece of work,
 /// measured once.
 double slowness();
+
+/// Tests of how long a user waits: skipped unless CALOT_HEAVY is set, since they measure the machine, too.
+class Waiting : public ::testing::Test {
+ protected:
+  void SetUp() override;
+};
 
 }  // namespace calot::gui::test
