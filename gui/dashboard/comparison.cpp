@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
+#include <unordered_map>
 
 #include "analytics/statistics/descriptive.h"
 #include "gui/attempt/words.h"
@@ -52,7 +54,8 @@ void summarize(ComparisonGroup& group) {
 Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
                    const ComparisonRequest& request) {
   Comparison result;
-  std::map<std::string, const CheckpointValue*> found;
+  std::unordered_map<std::string_view, const CheckpointValue*> found;
+  found.reserve(values.size());
   std::uint32_t newest = 0;
   for (const AttemptValue& v : values) {
     if (v.value.name != request.figure.name || v.value.subject != request.figure.subject) continue;
@@ -60,6 +63,9 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
     newest = std::max(newest, v.value.version);
   }
   std::map<std::string, ComparisonGroup> groups;
+  // What a value is shown in depends on its definition and unit alone, which are looked up where the unit changes.
+  const std::string* unit = nullptr;
+  double factor = 1.0;
   for (const AttemptRow& attempt : attempts) {
     const auto entry = found.find(attempt.uuid);
     const CheckpointValue* const value = entry == found.end() ? nullptr : entry->second;
@@ -77,14 +83,20 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
     } else if (value == nullptr || !value->value) {
       ++result.withoutValue;
     } else {
-      const DisplayedValue shown = displayedValue(*value);
-      result.unit = shown.unit.toStdString();
+      if (unit == nullptr || *unit != value->unit) {
+        CheckpointValue one = *value;
+        one.value = 1.0;
+        const DisplayedValue shown = displayedValue(one);
+        result.unit = shown.unit.toStdString();
+        factor = shown.number;
+        unit = &value->unit;
+      }
       result.synthetic = result.synthetic || attempt.synthetic;
       ++result.shown;
       const std::string name = groupName(attempt, request.groupBy);
       ComparisonGroup& group = groups[name];
       group.name = name;
-      group.point.push_back({attempt.uuid, shown.number, attempt.synthetic});
+      group.point.push_back({attempt.uuid, *value->value * factor, attempt.synthetic});
     }
   }
   for (auto& entry : groups) {

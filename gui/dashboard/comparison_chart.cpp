@@ -12,7 +12,8 @@
 namespace calot::gui {
 namespace {
 
-constexpr std::size_t maxDots = 1000;  // of all groups: more take longer to lay out than an interface may wait
+constexpr std::size_t maxDots = 500;   // of all groups: more take longer to draw than an interface may wait
+constexpr std::size_t maxLabels = 40;  // more would cover each other
 constexpr std::size_t fewestForBox = 5;
 
 QBoxPlotSeries* boxesOf(const Comparison& comparison) {
@@ -30,8 +31,25 @@ QBoxPlotSeries* boxesOf(const Comparison& comparison) {
     series->append(set);
   }
   series->setBrush(theme::box());
-  series->setPen(QPen(theme::text(), 1.5));
+  series->setPen(QPen(theme::text(), comparison.group.size() <= maxLabels ? 1.5 : 1.0));
   return series;
+}
+
+QAbstractAxis* namedGroups(const Comparison& comparison) {
+  auto* axis = new QBarCategoryAxis;
+  // In two lines: Qt Charts cuts off a long label though there is space.
+  for (const ComparisonGroup& group : comparison.group)
+    axis->append(
+        QString("%1<br>n = %2").arg(QString::fromStdString(group.name).toHtmlEscaped()).arg(group.point.size()));
+  return axis;
+}
+
+QAbstractAxis* namelessGroups(const Comparison& comparison) {
+  auto* axis = new QValueAxis;
+  axis->setRange(-0.5, static_cast<double>(comparison.group.size()) - 0.5);
+  axis->setLabelsVisible(false);
+  axis->setGridLineVisible(false);
+  return axis;
 }
 
 QScatterSeries* comparisonSeries(bool synthetic) {
@@ -84,23 +102,24 @@ void ComparisonChart::showComparison(const Comparison& comparison, const QString
 void ComparisonChart::redraw() {
   clearChart();
   const std::size_t stride = strideOf(comparison_);
+  const bool labelled = comparison_.group.size() <= maxLabels;
+  QStringList less;
+  if (stride > 1) less += QString("a dot for one attempt in %1").arg(stride);
+  if (!labelled) less += QString("%1 groups, named by their dots").arg(comparison_.group.size());
   chart()->setTitle(comparison_.group.empty() ? title_ + ": nothing to show"
-                    : stride > 1              ? QString("%1 (a dot for one attempt in %2)").arg(title_).arg(stride)
-                                              : title_);
+                    : less.isEmpty()          ? title_
+                                              : title_ + " (" + less.join("; ") + ')');
   if (comparison_.group.empty()) {
     dress(*chart());
     return;
   }
-  auto* groups = new QBarCategoryAxis;
   double lower = comparison_.group.front().smallest, upper = comparison_.group.front().largest;
   for (const ComparisonGroup& group : comparison_.group) {
-    // In two lines: Qt Charts cuts off a long label though there is space.
-    groups->append(
-        QString("%1<br>n = %2").arg(QString::fromStdString(group.name).toHtmlEscaped()).arg(group.point.size()));
     lower = std::min(lower, group.smallest);
     upper = std::max(upper, group.largest);
   }
-  addAxes(groups, valueAxis(lower, upper, QString::fromStdString(comparison_.unit)));
+  addAxes(labelled ? namedGroups(comparison_) : namelessGroups(comparison_),
+          valueAxis(lower, upper, QString::fromStdString(comparison_.unit)));
   addSeries(boxesOf(comparison_));
   for (const bool synthetic : {false, true}) {
     const std::vector<Dot> dots = comparisonDots(comparison_, synthetic);

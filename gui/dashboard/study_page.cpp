@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include <QBoxLayout>
 #include <QCheckBox>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QFileDialog>
+#include <QFont>
 #include <QImage>
 #include <QLabel>
 #include <QPainter>
@@ -21,6 +24,7 @@
 #include <QTextBrowser>
 #include <QTextDocument>
 #include <QTextOption>
+#include <QTimer>
 #include <QUrl>
 
 #include "analytics/report/study_tables.h"
@@ -62,6 +66,29 @@ QImage forestPicture(const analytics::Study& study, double ratio) {
   return image;
 }
 
+/// What the study's text looks like on the page that asked for it.
+struct TextLook {
+  QFont font;
+  QTextOption option;
+  qreal width = 0.0;  ///< of its lines
+  qreal ratio = 1.0;  ///< of a picture's pixels
+};
+
+/// The study's text with its picture, laid out: on the window's own thread the tables of thousands of attempts would
+/// take longer than a person may be kept waiting. It then is the window's.
+std::unique_ptr<QTextDocument> textOf(const analytics::Study& study, const TextLook& look) {
+  auto text = std::make_unique<QTextDocument>();
+  text->setDefaultFont(look.font);
+  text->setDefaultTextOption(look.option);
+  const QImage forest = forestPicture(study, look.ratio);
+  if (!forest.isNull()) text->addResource(QTextDocument::ImageResource, QUrl(forestAddress), forest);
+  text->setHtml(QString::fromStdString(studyText(study)));
+  text->setTextWidth(look.width);
+  (void)text->size();  // lays out
+  text->moveToThread(QCoreApplication::instance()->thread());
+  return text;
+}
+
 constexpr int shownAfter = 300;  // ms before progress is shown
 
 }  // namespace
@@ -70,8 +97,7 @@ constexpr int shownAfter = 300;  // ms before progress is shown
 struct StudyPage::Computed {
   std::shared_ptr<const analytics::Study> study;
   std::string refusal;
-  QString text;
-  QImage forest;
+  std::unique_ptr<QTextDocument> text;
 };
 
 StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
@@ -291,8 +317,9 @@ void StudyPage::make() {
   request.check = !checked_;
   computed_ = std::make_shared<Computed>();
   strip_->begin("Computing the study", shownAfter);
-  work_.start([computed = computed_, request, database = document_->path(),
-               ratio = devicePixelRatioF()](LongWork::Control& control) {
+  const TextLook look{text_->font(), text_->document()->defaultTextOption(),
+                      static_cast<qreal>(text_->viewport()->width()), devicePixelRatioF()};
+  work_.start([computed = computed_, request, database = document_->path(), look](LongWork::Control& control) {
     StudyAnswer answer = studyOf(database, request, [&](double share, const char* doing) {
       control.progress(share, QString("Computing the study: ") + doing);
     });
@@ -300,8 +327,7 @@ void StudyPage::make() {
     if (!answer.study) return QString();
     control.progress(1.0, "Computing the study: laying out");
     computed->study = std::make_shared<const analytics::Study>(*std::move(answer.study));
-    computed->text = QString::fromStdString(studyText(*computed->study));
-    computed->forest = forestPicture(*computed->study, ratio);
+    computed->text = textOf(*computed->study, look);
     return QString();
   });
 }
@@ -328,16 +354,19 @@ void StudyPage::take(Computed& computed) {
   }
   if (study_) {
     state_->setText(QString("%1 of %2 attempts are analysed.").arg(study_->analysed).arg(study_->recruited));
-    if (!computed.forest.isNull())
-      text_->document()->addResource(QTextDocument::ImageResource, QUrl(forestAddress), computed.forest);
-    text_->setHtml(computed.text);
+    QTextDocument* const text = computed.text.release();
+    text->setParent(text_);
+    text_->setDocument(text);  // the one before goes with it
   } else {
     state_->setText("There is no study with these choices: " + QString::fromStdString(computed.refusal));
     text_->clear();
   }
-  showRow();
-  emit studyShown();
-  if (!made_) make();
+  // In another turn: text and charts together take longer than a person may be kept waiting.
+  QTimer::singleShot(0, this, [this] {
+    showRow();
+    emit studyShown();
+    if (!made_) make();
+  });
 }
 
 void StudyPage::showRow() {
