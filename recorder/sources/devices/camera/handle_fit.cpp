@@ -6,9 +6,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <limits>
 
+#include "recorder/sources/devices/camera/plane_rotation.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -115,7 +115,7 @@ std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight
   out.pose = pose;
   out.cost = here.cost;
   out.residual = std::sqrt(here.squares / static_cast<double>(corners.size()));
-  const Eigen::FullPivLU<Normal6> inverse(here.normal);
+  const Eigen::FullPivLU<Eigen::MatrixXd> inverse(here.normal);  // unrolled it takes seconds to compile
   if (!inverse.isInvertible()) return std::nullopt;
   const Mat3 covariance = inverse.inverse().topLeftCorner<3, 3>();
   const double noise = std::max(cornerSigma, out.residual / std::sqrt(2.0));
@@ -130,33 +130,26 @@ std::vector<Pose> posesOfSquare(const CameraRig& rig, std::span<const CornerSigh
   const Vec3 middle = 0.25 * (corners[0].point + corners[1].point + corners[2].point + corners[3].point);
   const Vec3 right = (corners[1].point - corners[0].point).normalized();
   const Vec3 down = (corners[0].point - corners[3].point).normalized();
-  Eigen::Matrix<double, 8, 9> equations = Eigen::Matrix<double, 8, 9>::Zero();
+  // Homography from the plane to directions with its last element 1: the tag's middle lies in front of the camera.
+  Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(8, 8);
+  Eigen::VectorXd seen(8);
   const double unit = (corners[1].point - corners[0].point).norm();
   for (int i = 0; i < 4; ++i) {
     const CornerSight& c = corners[static_cast<std::size_t>(i)];
     const Eigen::RowVector3d at(right.dot(c.point - middle) / unit, down.dot(c.point - middle) / unit, 1.0);
     equations.block<1, 3>(2 * i, 0) = at;
-    equations.block<1, 3>(2 * i, 6) = -c.direction.x() * at;
+    equations.block<1, 2>(2 * i, 6) = -c.direction.x() * at.head<2>();
     equations.block<1, 3>(2 * i + 1, 3) = at;
-    equations.block<1, 3>(2 * i + 1, 6) = -c.direction.y() * at;
+    equations.block<1, 2>(2 * i + 1, 6) = -c.direction.y() * at.head<2>();
+    seen.segment<2>(2 * i) = c.direction;
   }
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 8, 9>> svd(equations, Eigen::ComputeFullV);
-  const Eigen::Matrix<double, 9, 1> h = svd.matrixV().col(8);
+  const Eigen::VectorXd h = equations.partialPivLu().solve(seen);
   Mat3 homography;
-  homography << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
-  if (homography(2, 2) < 0.0) homography = -homography;
+  homography << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0;
   const double size = 0.5 * (homography.col(0).norm() + homography.col(1).norm());
-  if (!(size > 0.0) || !std::isfinite(size)) return {};
-  homography *= unit / size;
-  homography.col(0) /= unit;
-  homography.col(1) /= unit;
-  Mat3 columns;
-  columns << homography.col(0), homography.col(1), homography.col(0).cross(homography.col(1));
-  const Eigen::JacobiSVD<Mat3> nearestRotation(columns, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 rotation = nearestRotation.matrixU() * nearestRotation.matrixV().transpose();
-  if (!(rotation.determinant() > 0.0)) return {};
-  const Vec3 translation = homography.col(2);  // of the tag's middle, in the camera
-  if (!(translation.z() > nearest)) return {};
+  const Mat3 rotation = planeRotation(homography.col(0), homography.col(1));
+  const Vec3 translation = unit / size * homography.col(2);  // of the tag's middle, in the camera
+  if (!rotation.allFinite() || !(translation.z() > nearest)) return {};
 
   Mat3 inBody;
   inBody << right, down, right.cross(down);
@@ -169,8 +162,11 @@ std::vector<Pose> posesOfSquare(const CameraRig& rig, std::span<const CornerSigh
   const Vec3 sight = translation.normalized();
   const Vec3 normal = rotation.col(2);
   const Vec3 mirrored = 2.0 * normal.dot(sight) * sight - normal;
-  const Mat3 other = Quat::FromTwoVectors(normal, mirrored).toRotationMatrix() * rotation;
-  return {inDevice(rotation), inDevice(other)};
+  const double cosine = normal.dot(mirrored);
+  if (!(1.0 + cosine > 1e-9)) return {inDevice(rotation)};  // edge-on
+  const Mat3 axis = crossMatrix(normal.cross(mirrored));    // of the smallest rotation of one onto the other
+  const Mat3 turn = Mat3::Identity() + axis + axis * axis / (1.0 + cosine);
+  return {inDevice(rotation), inDevice(turn * rotation)};
 }
 
 }  // namespace calot::recorder

@@ -14,6 +14,7 @@
 #include "recorder/sources/devices/camera/block_fit.h"
 #include "recorder/sources/devices/camera/handle_fit.h"
 #include "recorder/sources/devices/camera/handle_geometry.h"
+#include "recorder/sources/devices/camera/plane_rotation.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -86,10 +87,7 @@ Pose poseOfHomography(const Mat3& h, double focal) {
   m.topRows<2>() /= focal;
   m /= 0.5 * (m.col(0).norm() + m.col(1).norm());
   if (m(2, 2) < 0.0) m = -m;
-  Mat3 columns;
-  columns << m.col(0), m.col(1), m.col(0).cross(m.col(1));
-  const Eigen::JacobiSVD<Mat3> svd(columns, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return {m.col(2), quaternionOf(svd.matrixU() * svd.matrixV().transpose())};
+  return {m.col(2), quaternionOf(planeRotation(m.col(0), m.col(1)))};
 }
 
 Block6 vectorOf(const Pose& pose) {
