@@ -141,7 +141,9 @@ await check('the free view turns, by hand and by key, and views change', async (
   await page.press('w');
   assert.ok(!turned.equals(await shot()), 'the key turns nothing');
   await page.press('h');
-  assert.ok(before.equals(await shot()), 'it does not come home');
+  // How finely it is drawn goes by what pictures cost, which another one may have changed.
+  const home = difference(decodePng(before), decodePng(await shot()));
+  assert.ok(home < mostDifference, `it does not come home: mean difference ${home.toFixed(2)} levels`);
   await page.press('v');
   assert.deepEqual([await page.seen('#label-endoscope'), await page.seen('#label-orbit')], [true, false]);
   await page.press('v');
@@ -197,7 +199,7 @@ await check('a recording whose writer was killed is read as far as it goes', asy
   const killed = join(work, 'killed.h5');
   const writer = spawn(given.calot, ['record', '--scene', 'touch-liver', '--performer', 'skilled', '--seed', '2', '--seconds', '30', '-o', killed], { env: { ...process.env, CALOT_CACHE: 'off' }, stdio: 'ignore' });
   const ended = new Promise((done) => writer.on('exit', done));
-  while (!existsSync(killed) || statSync(killed).size < 150_000) await sleep(20); // some keyframes are in it
+  while (!existsSync(killed) || statSync(killed).size < 400_000) await sleep(20); // some keyframes are in it
   writer.kill('SIGKILL');
   await ended;
   await page.drop(killed);
