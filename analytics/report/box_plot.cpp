@@ -14,8 +14,9 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t maxGroup = 20;  // in letters
-constexpr std::size_t minBox = 5;     // values: quartiles of fewer are interpolations between two of them
+constexpr std::size_t maxGroup = 20;     // in letters
+constexpr std::size_t minBox = 5;        // values: quartiles of fewer are interpolations between two of them
+constexpr std::size_t mostPoints = 200;  // drawn of a group: more are one dark column, and a report of megabytes
 constexpr double boxHalf = 26.0, pointRadius = 2.6;
 
 void drawBox(Drawing& drawing, const std::vector<double>& sorted, double x, const PlotScale& scale, std::size_t g) {
@@ -33,15 +34,21 @@ void drawBox(Drawing& drawing, const std::vector<double>& sorted, double x, cons
   drawing.line(Ink::median, x - boxHalf, scale.y(q2), x + boxHalf, scale.y(q2));
 }
 
+/// Every value is drawn, or one in so many of those in order.
+std::size_t strideOf(std::size_t values) { return 1 + (values - 1) / mostPoints; }
+
 void drawGroup(Drawing& drawing, std::span<const double> values, double x, const PlotScale& scale, std::size_t g) {
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   if (sorted.size() >= minBox) drawBox(drawing, sorted, x, scale, g);
-  // Side by side in five places in turn, so that equal values do not hide each other.
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const double aside = (static_cast<double>(i * 2 % 5) - 2.0) * 7.0;
+  const auto draw = [&](std::size_t i, std::size_t place) {
+    // Side by side in five places in turn, so that equal values do not hide each other.
+    const double aside = (static_cast<double>(place * 2 % 5) - 2.0) * 7.0;
     drawing.point(g == 0 ? Ink::firstPoint : Ink::secondPoint, x + aside, scale.y(sorted[i]), pointRadius);
-  }
+  };
+  const std::size_t stride = strideOf(sorted.size());
+  for (std::size_t i = 0; i + 1 < sorted.size(); i += stride) draw(i, i / stride);
+  draw(sorted.size() - 1, (sorted.size() - 1) / stride);  // both extremes, always
 }
 
 }  // namespace
@@ -68,8 +75,11 @@ std::optional<Drawing> drawBoxPlot(const BoxPlot& plot) {
   for (std::size_t g = 0; g < 2; ++g) {
     const double x = plotLeft + (plotRight - plotLeft) * (g == 0 ? 0.27 : 0.73);
     drawing.text(Ink::group, x, plotBottom + 17.0, cutTo(plot.groups[g], maxGroup));
-    drawing.text(Ink::group, x, plotBottom + 32.0, fmt::format("n = {}", plot.values[g].size()));
-    if (!plot.values[g].empty()) drawGroup(drawing, plot.values[g], x, *scale, g);
+    const std::size_t n = plot.values[g].size();
+    const bool each = n == 0 || strideOf(n) == 1;
+    drawing.text(Ink::group, x, plotBottom + 32.0,
+                 each ? fmt::format("n = {}", n) : fmt::format("n = {}, one in {} drawn", n, strideOf(n)));
+    if (n > 0) drawGroup(drawing, plot.values[g], x, *scale, g);
   }
   endPlot(drawing, plot.synthetic);
   return drawing;

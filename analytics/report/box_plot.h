@@ -20,7 +20,8 @@ struct BoxPlot {
 
 /// For each group a box from quartile to quartile (type 7) with the median, whiskers to the outermost
 /// values within 1.5 times the box's height (Tukey 1977), and every value as a point beside it; of fewer than five
-/// values the points alone. Values too large or too close for a scale are answered with none, as are two empty groups.
+/// values the points alone, of over 200 one in so many in order, with both extremes, which is said. Values too large or
+/// too close for a scale are answered with none, as are two empty groups.
 std::optional<Drawing> drawBoxPlot(const BoxPlot& plot);
 
 /// Four to nine round numbers (1, 2 or 5 times a power of ten apart) that lie within [low, high].

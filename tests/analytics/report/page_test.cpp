@@ -61,6 +61,22 @@ TEST(BoxPlot, hasTheQuartilesTheWhiskersAndEveryPoint) {
   EXPECT_NEAR(whiskers[1], expected(9.0), 0.02);
 }
 
+TEST(BoxPlot, drawsOneInSoManyOfThousandsWithBothExtremesAndSaysSo) {
+  std::vector<double> many(4825), few(200);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<double>(i * 7 % many.size());
+  for (std::size_t i = 0; i < few.size(); ++i) few[i] = static_cast<double>(20 * i);
+  const std::string svg = svgOf(*drawBoxPlot({.title = "t", .axis = "", .groups = {"x", "y"}, .values = {many, few}}));
+  EXPECT_NE(svg.find(">n = 4825, one in 25 drawn<"), std::string::npos);
+  EXPECT_NE(svg.find(">n = 200<"), std::string::npos);
+  const std::vector<double> y = attributes(svg, R"re(<circle class="point first" cx="[^"]*" cy="([^"]*)")re");
+  const std::vector<double> of = attributes(svg, R"re(<circle class="point second" cx="[^"]*" cy="([^"]*)")re");
+  ASSERT_EQ(of.size(), 200U);
+  ASSERT_EQ(y.size(), 194U);
+  const double perUnit = (of[199] - of[0]) / 3980.0;
+  EXPECT_NEAR(y.front(), of[0], 0.02);
+  EXPECT_NEAR(y.back(), of[0] + 4824.0 * perUnit, 0.02);
+}
+
 TEST(BoxPlot, staysInsideItsFrameForAnyValues) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal;
