@@ -21,14 +21,19 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// Values that agree to eleven digits are treated as tied: ranks must not depend on rounding errors.
+/// Values that agree to eleven digits are treated as tied: ranks must not depend on rounding errors. Each becomes the
+/// least one that it agrees with.
 void dropRounding(std::array<std::vector<double>, 2>& values) {
-  std::vector<double> all = values[0];
-  all.insert(all.end(), values[1].begin(), values[1].end());
-  if (all.empty()) return;
-  const auto [least, greatest] = std::minmax_element(all.begin(), all.end());
-  if (*greatest - *least > 1e-11 * std::max(std::abs(*least), std::abs(*greatest))) return;
-  for (std::vector<double>& group : values) std::fill(group.begin(), group.end(), *least);
+  std::vector<double*> all;
+  for (std::vector<double>& group : values) {
+    for (double& value : group) all.push_back(&value);
+  }
+  std::sort(all.begin(), all.end(), [](const double* a, const double* b) { return *a < *b; });
+  for (std::size_t i = 0; i < all.size();) {
+    const double least = *all[i];
+    for (; i < all.size() && *all[i] - least <= 1e-11 * std::max(std::abs(least), std::abs(*all[i])); ++i)
+      *all[i] = least;
+  }
 }
 
 void summarise(GroupSummary& s, const std::vector<double>& values) {

@@ -125,6 +125,17 @@ TEST(TableStudy, roundingIsNoDifference) {
   EXPECT_TRUE(study.rows[1].test) << "ten digits are a difference";
 }
 
+/// Two lengths of attempts, each but for its last bits: as many of both in each group leave no shift and no rank.
+TEST(TableStudy, valuesThatDifferByRoundingAreTiedAmongOthersThatDiffer) {
+  std::string text = "id,drug,clock\n";
+  for (int i = 0; i < 12; ++i)
+    text += fmt::format("{},{},{}\n", i, i < 6 ? "one" : "two", (i % 2 == 0 ? 11.7 : 11.0 + 2.0 / 3.0) + 2e-15 * i);
+  const Study study = studyOf(text, optionsFor("clock"));
+  EXPECT_EQ(*study.rows[0].shift, 0.0);
+  EXPECT_EQ(study.rows[0].test->u, 18.0);
+  EXPECT_EQ(study.rows[0].test->p, 1.0);
+}
+
 TEST(PublishedCoverage, isThatOfThePage) {
   std::ifstream file(std::string(CALOT_SOURCE_DIR) + "/docs/explanation/coverage.md");
   std::ostringstream text;
