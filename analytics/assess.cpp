@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -128,15 +129,17 @@ Assessment assessRecording(const std::string& file, const AssessSettings& wanted
   result.report = recorder::replayRecording(file, settings);
   const recorder::ReplayReport& report = result.report;
   if (report.verdict == recorder::ReplayVerdict::damaged) return result;
-  recorder::Recording recording(file);
-  if (header.attempt.empty()) header = recording.header();
+  // Opened once more only for what the replay did not tell: to read a short recording takes longer than to simulate it.
+  std::optional<recorder::Recording> recording;
+  const auto opened = [&]() -> recorder::Recording& { return recording ? *recording : recording.emplace(file); };
+  if (header.attempt.empty()) header = opened().header();
   AssessedAttempt& assessed = result.attempt.emplace();
   assessed.header = std::move(header);
   assessed.outcome = report.outcome;
   assessed.complete = report.complete;
   assessed.steps = report.steps;
   assessed.chainHead = report.chainHead;
-  if (const auto& signed_ = recording.signature(); report.chainIntact && signed_ && signed_->value) {
+  if (const auto& signed_ = report.signature; report.chainIntact && signed_ && signed_->value) {
     RecordingSignature& s = assessed.signature.emplace();
     const auto byte = [](std::uint8_t b) { return static_cast<std::byte>(b); };
     std::transform(signed_->publicKey.begin(), signed_->publicKey.end(), s.publicKey.begin(), byte);
@@ -153,8 +156,8 @@ Assessment assessRecording(const std::string& file, const AssessSettings& wanted
   if (ofRecord || (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact)) {
     if (hasMetrics)
       input = std::make_unique<MetricInput>(
-          recording.header(), recorder::sceneFromAssets(recording.header().assets).description, Origin::observables);
-    assessed.values = valuesFromObservables(recording, wanted.cutoff, input.get());
+          opened().header(), recorder::sceneFromAssets(opened().header().assets).description, Origin::observables);
+    assessed.values = valuesFromObservables(opened(), wanted.cutoff, input.get());
     if (input)
       assessed.external = computeMetrics(*wanted.metrics, input->folder(), "from recorded results, not re-simulated");
   }
