@@ -16,6 +16,7 @@
 #include <QFont>
 #include <QImage>
 #include <QLabel>
+#include <QList>
 #include <QPainter>
 #include <QPushButton>
 #include <QSignalBlocker>
@@ -74,9 +75,15 @@ struct TextLook {
   qreal ratio = 1.0;  ///< of a picture's pixels
 };
 
+/// Whoever lets go of a document of the window's thread leaves its end to that thread.
+struct DeleteLater {
+  void operator()(QObject* object) const { object->deleteLater(); }
+};
+using WindowsText = std::unique_ptr<QTextDocument, DeleteLater>;
+
 /// The study's text with its picture, laid out: on the window's own thread the tables of thousands of attempts would
 /// take longer than a person may be kept waiting. It then is the window's.
-std::unique_ptr<QTextDocument> textOf(const analytics::Study& study, const TextLook& look) {
+WindowsText textOf(const analytics::Study& study, const TextLook& look) {
   auto text = std::make_unique<QTextDocument>();
   text->setDefaultFont(look.font);
   text->setDefaultTextOption(look.option);
@@ -86,7 +93,7 @@ std::unique_ptr<QTextDocument> textOf(const analytics::Study& study, const TextL
   text->setTextWidth(look.width);
   (void)text->size();  // lays out
   text->moveToThread(QCoreApplication::instance()->thread());
-  return text;
+  return WindowsText(text.release());
 }
 
 constexpr int shownAfter = 300;  // ms before progress is shown
@@ -97,7 +104,7 @@ constexpr int shownAfter = 300;  // ms before progress is shown
 struct StudyPage::Computed {
   std::shared_ptr<const analytics::Study> study;
   std::string refusal;
-  std::unique_ptr<QTextDocument> text;
+  WindowsText text;
 };
 
 StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
@@ -354,9 +361,12 @@ void StudyPage::take(Computed& computed) {
   }
   if (study_) {
     state_->setText(QString("%1 of %2 attempts are analysed.").arg(study_->analysed).arg(study_->recruited));
+    // The browser deletes only a document that it made itself.
+    const QList<QTextDocument*> before = text_->findChildren<QTextDocument*>(Qt::FindDirectChildrenOnly);
     QTextDocument* const text = computed.text.release();
     text->setParent(text_);
-    text_->setDocument(text);  // the one before goes with it
+    text_->setDocument(text);
+    qDeleteAll(before);
   } else {
     state_->setText("There is no study with these choices: " + QString::fromStdString(computed.refusal));
     text_->clear();
