@@ -9,6 +9,7 @@
 #include "analytics/shards/values_writer.h"
 #include "recorder/errors.h"
 #include "recorder/recording/identify.h"
+#include "recorder/recording/probe.h"
 
 namespace calot::analytics {
 namespace {
@@ -48,6 +49,7 @@ std::vector<PlannedShare> assessPlan(const std::vector<std::filesystem::path>& p
 ComputedShare computeAssessShare(const std::vector<std::filesystem::path>& places, const Shard& shard,
                                  const std::filesystem::path& values, unsigned jobs, bool replace,
                                  const std::function<void(std::uint64_t done, std::uint64_t of)>& progress) {
+  const recorder::ProbeProcesses probes(jobs);  // before this process grows by what it reads
   const std::vector<std::filesystem::path> all = recordingsUnder(places);
   const std::vector<Dealt> planned = dealtFiles(all);
   const std::vector<std::size_t> share = deal(planned, shard.of)[shard.number - 1];

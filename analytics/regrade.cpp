@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analytics/recordings_found.h"
+#include "recorder/recording/probe.h"
 
 namespace calot::analytics {
 namespace {
@@ -135,6 +136,7 @@ std::vector<ValueChange> changesOf(const std::vector<CheckpointValue>& before,
 
 Regrade regrade(const std::string& path, const std::vector<std::filesystem::path>& places, unsigned jobs,
                 const std::function<void(std::uint64_t done, std::uint64_t of)>& progress) {
+  const recorder::ProbeProcesses probes(jobs);  // before this process grows by what it reads
   CohortDatabase database(path, CohortDatabase::Access::write);
   Regrade result;
   recorder::WorkerPool pool(jobs);

@@ -11,6 +11,7 @@
 #include "analytics/recordings_found.h"
 #include "analytics/shards/values_set.h"
 #include "analytics/shards/values_writer.h"
+#include "recorder/recording/probe.h"
 
 namespace calot::analytics {
 namespace {
@@ -53,6 +54,7 @@ std::vector<PlannedShare> regradePlan(const std::string& cohort, std::uint32_t s
 ComputedShare computeRegradeShare(const std::string& cohort, const std::vector<std::filesystem::path>& places,
                                   const Shard& shard, const std::filesystem::path& values, unsigned jobs, bool replace,
                                   const std::function<void(std::uint64_t done, std::uint64_t of)>& progress) {
+  const recorder::ProbeProcesses probes(jobs);  // before this process grows by what it reads
   const std::vector<AttemptRow> rows = attemptsOf(cohort);
   const std::vector<Dealt> planned = dealtAttempts(rows);
   const std::vector<std::size_t> share = deal(planned, shard.of)[shard.number - 1];

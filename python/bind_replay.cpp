@@ -10,6 +10,7 @@
 #include "python/step_facts.h"
 #include "recorder/engine/result_row.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/probe.h"
 #include "recorder/replay_words.h"
 #include "sim/math/executor.h"
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "recorder/errors.h"
-#include "recorder/recording/reader.h"
+#include "recorder/recording/probe.h"
 
 namespace calot::python {
 

@@ -12,6 +12,7 @@
 #include "recorder/live/worker_pool.h"
 #include "recorder/miss_count.h"
 #include "recorder/recording/layout.h"
+#include "recorder/recording/probe.h"
 #include "recorder/segments.h"
 #include "recorder/step_comparison.h"
 #include "sim/scene/version.h"

@@ -79,7 +79,7 @@ def main():
     parser.add_argument("count", type=int)
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build/shards")
     parser.add_argument("--calot", type=pathlib.Path, default=ROOT / "build/release/bin/calot")
-    parser.add_argument("--each", type=int, default=200, help="recordings in a share (200)")
+    parser.add_argument("--each", type=int, default=500, help="recordings in a share (500)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     o = parser.parse_args()
     o.folder.mkdir(parents=True, exist_ok=True)

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "recorder/errors.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::apps {

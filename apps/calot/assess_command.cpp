@@ -21,6 +21,7 @@
 #include "apps/calot/share_options.h"
 #include "apps/calot/value_report.h"
 #include "recorder/errors.h"
+#include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
@@ -196,6 +197,8 @@ int assess(const AssessOptions& o) {
   if (o.cutoff > 0.0) settings.cutoff = o.cutoff;
   settings.engine.apart = o.apart;
   settings.metrics = &metrics;
+  std::optional<recorder::ProbeProcesses> probes;
+  if (files.size() > 1) probes.emplace(1);
   for (const std::string& file : files) {
     analytics::JudgedRecording judged = analytics::judgedRecording(analytics::assessRecording(file, settings));
     Stored stored;

@@ -15,6 +15,7 @@
 #include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/scope/scope_source.h"

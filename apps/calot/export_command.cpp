@@ -19,6 +19,7 @@
 #include "recorder/errors.h"
 #include "recorder/recording/export_csv.h"
 #include "recorder/recording/header.h"
+#include "recorder/recording/probe.h"
 #include "recorder/sources/column_map.h"
 
 namespace calot::apps {

@@ -23,6 +23,7 @@
 #include "recorder/formats/file_bytes.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/formats/text_words.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::apps {

@@ -14,6 +14,7 @@
 #include "apps/common/exit_code.h"
 #include "recorder/errors.h"
 #include "recorder/recording/header.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/raw_statistics.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/stored_bytes.h"

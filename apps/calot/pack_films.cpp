@@ -11,6 +11,7 @@
 #include "analytics/intake/manifest_table.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_words.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::apps {

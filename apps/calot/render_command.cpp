@@ -12,6 +12,7 @@
 #include "apps/calot/wrong_word.h"
 #include "gui/film/film.h"
 #include "recorder/errors.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::apps {

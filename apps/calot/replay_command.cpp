@@ -6,6 +6,7 @@
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "apps/calot/commands.h"
@@ -14,6 +15,7 @@
 #include "apps/calot/results.h"
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
+#include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
@@ -61,6 +63,8 @@ int replay(const ReplayOptions& o) {
   };
   const std::size_t jobs =
       std::min<std::size_t>(o.jobs == 0 ? std::thread::hardware_concurrency() : o.jobs, o.files.size());
+  std::optional<recorder::ProbeProcesses> probes;
+  if (!single) probes.emplace(static_cast<unsigned>(jobs));
   std::vector<std::thread> threads;
   for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back(work);
   work();

@@ -12,6 +12,7 @@
 #include "recorder/errors.h"
 #include "recorder/formats/text_output.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/state_file.h"
 #include "recorder/replay.h"
 #include "sim/scene/flat.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/recording/reader.h"
+#include "recorder/recording/probe.h"
 
 namespace calot::gui {
 

@@ -21,41 +21,12 @@
 #include <vector>
 
 #include "recorder/errors.h"
+#include "recorder/recording/guard_answer.h"
 #include "recorder/recording/hdf5.h"
 
 namespace calot::recorder {
 
 namespace {
-
-constexpr char succeeded = 'r', failed = 'e';
-
-/// An error as text: one character for its kind, one for the number of its remedies, one for each of them, then file,
-/// place and fault, each ended by a zero byte.
-std::string packed(const Error& error) {
-  std::string text{static_cast<char>(error.kind()), static_cast<char>(error.remedies().size())};
-  for (const Remedy remedy : error.remedies()) text += static_cast<char>(remedy);
-  for (const std::string& part : {error.where().file, error.where().place, error.fault()})
-    text += part.substr(0, part.find('\0')) + '\0';
-  return text;
-}
-
-/// Nothing where the text is not of packed(): a child that a file has broken may send anything.
-std::optional<Error> unpacked(const std::string& text) {
-  if (text.size() < 2 || static_cast<unsigned char>(text[0]) > static_cast<unsigned char>(ErrorKind::undecided))
-    return std::nullopt;
-  std::size_t at = 2;
-  std::vector<Remedy> remedies;
-  for (std::size_t end = at + static_cast<unsigned char>(text[1]); at < end && at < text.size(); ++at)
-    remedies.push_back(static_cast<Remedy>(text[at]));
-  std::array<std::string, 3> part;
-  for (std::string& one : part) {
-    const std::size_t end = text.find('\0', at);
-    if (end == std::string::npos) return std::nullopt;
-    one = text.substr(at, end - at);
-    at = end + 1;
-  }
-  return Error(static_cast<ErrorKind>(text[0]), Where{part[0], part[1]}, part[2], std::move(remedies));
-}
 
 constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
 
@@ -75,28 +46,14 @@ Error tooLarge(const Where& where, const GuardLimits& limits) {
                       limits.memory / mebibyte)};
 }
 
-/// The reading library says in words of its own that it had no memory.
-bool isOfMemory(const Error& error) { return error.fault().find("memory allocation failed") != std::string::npos; }
-
-/// Runs the task and sends what came of it: a letter, then its text or the error.
+/// Runs the task and sends what came of it.
 [[noreturn]] void runChild(int out, const std::string& what, const std::function<std::string()>& task,
                            const GuardLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit noCore{0, 0};
   ::setrlimit(RLIMIT_CORE, &noCore);
   limitMemory(limits.memory);
-  std::string message;
-  try {
-    message = succeeded + task();
-  } catch (const Error& e) {
-    message = failed + packed(isOfMemory(e) ? tooLarge(e.where(), limits) : e);
-  } catch (const std::bad_alloc&) {
-    message = failed + packed(tooLarge(Where{what}, limits));
-  } catch (const std::length_error&) {
-    message = failed + packed(tooLarge(Where{what}, limits));
-  } catch (const std::exception& e) {
-    message = failed + packed(Error(ErrorKind::failure, e.what()));
-  }
+  const std::string message = packedAnswer(what, task, [&](const Where& where) { return tooLarge(where, limits); });
   for (std::size_t at = 0; at < message.size();) {
     const ssize_t n = ::write(out, message.data() + at, message.size() - at);
     if (n < 0 && errno == EINTR) continue;
@@ -165,9 +122,9 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
         ErrorKind::damaged, Where{what},
         fmt::format("reading it took longer than {} s; the file is damaged or not a recording", limits.time.count()));
   }
-  const bool ended = WIFEXITED(status) && !message.empty();
-  if (ended && message[0] == succeeded) return message.substr(1);
-  if (const auto error = ended ? unpacked(message.substr(1)) : std::nullopt) throw *error;
+  if (WIFEXITED(status)) {
+    if (std::optional<std::string> answer = unpackedAnswer(message)) return std::move(*answer);
+  }
   throw Error(ErrorKind::damaged, Where{what},
               fmt::format("the reading library failed on it (signal {}); the file is damaged or not a recording",
                           WIFSIGNALED(status) ? WTERMSIG(status) : 0));

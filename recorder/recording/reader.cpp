@@ -9,7 +9,6 @@
 
 #include "recorder/recording/chain.h"
 #include "recorder/recording/column_reader.h"
-#include "recorder/recording/guarded.h"
 #include "recorder/recording/header_reader.h"
 #include "recorder/recording/keyframe_reader.h"
 #include "recorder/recording/open_file.h"
@@ -197,33 +196,6 @@ ChainVerdict Recording::verifyChain() {
     return {false, last, last > 0 ? impl.status[last - 1].steps : 0, impl.status[last].steps,
             "the signature does not fit the content: one of both was changed after it was signed"};
   }
-  return verdict;
-}
-
-ChainVerdict probe(const std::filesystem::path& path) {
-  const std::string answer = runGuarded(
-      path.string(),
-      [&path] {
-        Recording recording(path);
-        for (std::uint64_t n = 0; n < recording.stepCount(); ++n) recording.step(n);
-        const ChainVerdict v = recording.verifyChain();
-        return fmt::format("{} {} {} {} {}", v.intact ? 1 : 0, v.flush, v.firstStep, v.endStep, v.what);
-      },
-      readingLimits(path));
-  ChainVerdict verdict;
-  std::size_t at = 0;
-  const auto number = [&] {
-    std::uint64_t value = 0;
-    for (; at < answer.size() && answer[at] != ' '; ++at)
-      value = value * 10 + static_cast<std::uint64_t>(answer[at] - '0');
-    ++at;
-    return value;
-  };
-  verdict.intact = number() == 1;
-  verdict.flush = number();
-  verdict.firstStep = number();
-  verdict.endStep = number();
-  verdict.what = at < answer.size() ? answer.substr(at) : "";
   return verdict;
 }
 

@@ -125,9 +125,4 @@ class Recording {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Opens an untrusted file in a child process, reads every row of it and computes its chain there: a crash or a hang of
-/// the reading library ends the child only. @return the chain's verdict. @throws Error as Recording does, and damaged
-/// when the child crashed or took too long. After it returned, opening the file in this process is safe.
-ChainVerdict probe(const std::filesystem::path& path);
-
 }  // namespace calot::recorder

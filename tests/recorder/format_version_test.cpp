@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "recorder/recording/layout.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
 #include "recorder/replay.h"

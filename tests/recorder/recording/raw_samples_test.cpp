@@ -15,6 +15,7 @@
 
 #include "recorder/errors.h"
 #include "recorder/recording/export_csv.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/raw_statistics.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"

@@ -9,6 +9,7 @@
 
 #include "recorder/errors.h"
 #include "recorder/recording/export_csv.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"

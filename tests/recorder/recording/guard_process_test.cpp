@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guarding processes that were made beforehand: as runGuarded, and not a burden to what goes on around them.
+#include "recorder/recording/guard_process.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "recorder/errors.h"
+#include "recorder/recording/probe.h"
+#include "tests/recorder/recording/support/synthetic.h"
+
+namespace calot::recorder {
+namespace {
+
+constexpr GuardLimits short_{std::chrono::seconds(1), std::size_t{256} << 20U};
+
+std::string doAsNamed(const std::string& file) {
+  if (file == "crash") ::raise(SIGKILL);
+  if (file == "hang")
+    for (;;) ::pause();
+  if (file == "swell") return std::string(std::size_t{512} << 20U, 'a');
+  if (file == "damaged") throw Error(ErrorKind::damaged, Where{"r.h5", "/ticks"}, "cut off", {Remedy::recover});
+  if (file == "large") return std::string(1000000, 'a');
+  if (file == "parent") return std::to_string(::getppid());
+  return "read " + file;
+}
+
+std::string outcome(GuardProcesses& processes, const std::string& file) {
+  try {
+    return processes.run(file, short_);
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+TEST(GuardProcesses, AnswerAsRunGuardedDoes) {
+  GuardProcesses processes(doAsNamed, 1);
+  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  EXPECT_NE(outcome(processes, "crash").find("crash: the reading library failed on it (signal 9)"), std::string::npos);
+  EXPECT_NE(outcome(processes, "hang").find("hang: reading it took longer than 1 s"), std::string::npos);
+#ifndef CALOT_SANITIZED  // a sanitizer's allocator has its memory beforehand
+  EXPECT_NE(outcome(processes, "swell").find("swell: reading it needs more than 256 MiB"), std::string::npos);
+#endif
+  EXPECT_EQ(outcome(processes, "damaged"), "r.h5: /ticks: cut off");
+  EXPECT_EQ(outcome(processes, "large"), std::string(1000000, 'a'));
+  EXPECT_EQ(outcome(processes, "b.h5"), "read b.h5");
+  try {
+    processes.run("damaged", short_);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::damaged);
+    EXPECT_EQ(e.remedies(), std::vector{Remedy::recover});
+  }
+}
+
+TEST(GuardProcesses, AreChildrenOfAProcessOfTheirOwn) {
+  GuardProcesses processes(doAsNamed, 1);
+  const std::string parent = outcome(processes, "parent");
+  EXPECT_NE(parent, std::to_string(::getpid()));
+  EXPECT_EQ(parent, outcome(processes, "parent"));
+}
+
+TEST(GuardProcesses, OneThatWasKilledIsNotMissed) {
+  GuardProcesses processes(doAsNamed, 1);
+  ASSERT_EQ(::kill(std::stoi(outcome(processes, "parent")), SIGKILL), 0);
+  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  EXPECT_EQ(outcome(processes, "parent"), std::to_string(::getpid()));
+}
+
+TEST(GuardProcesses, ServeMoreThreadsThanTheyAre) {
+  GuardProcesses processes(doAsNamed, 2);
+  std::vector<std::string> wrong(6);
+  std::vector<std::thread> threads;
+  for (std::size_t t = 0; t < wrong.size(); ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < 20; ++i) {
+        const std::string file = std::to_string(t) + "-" + std::to_string(i);
+        if (const std::string read = outcome(processes, file); read != "read " + file) wrong[t] = read;
+      }
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  EXPECT_EQ(wrong, std::vector<std::string>(wrong.size()));
+}
+
+// Another program that waits for the end of what it is sent would wait as long as the processes live.
+TEST(GuardProcesses, HoldNothingOpen) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  GuardProcesses processes(doAsNamed, 1);
+  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  ::close(pipe[1]);
+  ASSERT_EQ(::fcntl(pipe[0], F_SETFL, O_NONBLOCK), 0);
+  char none = 0;
+  EXPECT_EQ(::read(pipe[0], &none, 1), 0);  // the end; -1 where somebody could still write
+  ::close(pipe[0]);
+}
+
+TEST(ProbeProcesses, SayOfARecordingWhatProbeSays) {
+  const test::Folder folder;
+  test::writeRecording(folder / "whole.h5", test::makeHeader(), 60);
+  std::filesystem::copy_file(folder / "whole.h5", folder / "cut.h5");
+  std::filesystem::resize_file(folder / "cut.h5", std::filesystem::file_size(folder / "whole.h5") / 2);
+  const auto said = [&](const std::string& name) -> std::string {
+    try {
+      return probe(folder / name).intact ? "intact" : "broken";
+    } catch (const Error& e) {
+      return e.what();
+    }
+  };
+  const std::string cut = said("cut.h5"), none = said("none.h5");
+  const ProbeProcesses probes(2);
+  const ProbeProcesses more(2);  // does nothing
+  EXPECT_EQ(said("whole.h5"), "intact");
+  EXPECT_EQ(said("cut.h5"), cut);
+  EXPECT_EQ(said("none.h5"), none);
+  EXPECT_NE(none.find("no such file"), std::string::npos);
+}
+
+// Their copies of it would have lost its descriptors.
+TEST(ProbeProcesses, AreNotMadeWhileARecordingIsOpen) {
+  const test::Folder folder;
+  test::writeRecording(folder / "r.h5", test::makeHeader(), 60);
+  const Recording open(folder / "r.h5");
+  const ProbeProcesses probes(1);
+  EXPECT_TRUE(probe(folder / "r.h5").intact);
+}
+
+}  // namespace
+}  // namespace calot::recorder
