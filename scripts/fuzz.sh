@@ -7,8 +7,9 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-# Of a thousand executions. A recording and a database are files, of which a thousandth as many are done in a second.
-declare -A share=([recording]=1 [database]=1 [scene]=50 [mesh]=300 [kinematics]=150 [csv]=198 [protocol]=50 [form]=50 [openigtlink]=200)
+# Of ten thousand executions, so that all targets but the fastest take ten to twenty minutes: of a recording, which is a
+# file, forty are read in a second, of messages and meshes thirty thousand.
+declare -A share=([recording]=5 [database]=10 [scene]=200 [mesh]=3600 [kinematics]=2400 [csv]=600 [protocol]=200 [form]=200 [openigtlink]=2785)
 targets=(recording database scene mesh kinematics csv protocol form openigtlink)
 if [[ $# -gt 0 ]]; then targets=("$@"); fi
 runs=${CALOT_FUZZ_RUNS:-100000000}
@@ -20,11 +21,11 @@ mkdir -p "$root/build/fuzz/found"
 for target in "${targets[@]}"; do
   corpus="$root/build/fuzz/corpus/$target"
   mkdir -p "$corpus"
-  say "$target: $((runs * share[$target] / 1000)) executions, seed $seed"
+  say "$target: $((runs * share[$target] / 10000)) executions, seed $seed"
   # 4 KB are enough to be wrong in, of a database its pages. An input that takes ten seconds or 2 GB is one that was found.
   longest=4096
   if [[ $target == database ]]; then longest=1048576; fi
-  "$root/build/fuzz/bin/fuzz_$target" -runs=$((runs * share[$target] / 1000)) -seed="$seed" -max_len="$longest" -timeout=10 -rss_limit_mb=2048 \
+  "$root/build/fuzz/bin/fuzz_$target" -runs=$((runs * share[$target] / 10000)) -seed="$seed" -max_len="$longest" -timeout=10 -rss_limit_mb=2048 \
     -print_final_stats=1 -artifact_prefix="$root/build/fuzz/found/$target-" "$corpus" "$root/tests/fuzz/corpus/$target" \
     >"$root/build/fuzz/$target.log" 2>&1 || {
     tail -n 40 "$root/build/fuzz/$target.log" >&2

@@ -129,10 +129,12 @@ void NormDialog::buildChoices(QFormLayout& form) {
   form.addRow("Made &by", by_);
   form.addRow("A&ttempts", attempts_);
   form.addRow("&Groups by", groupBy_);
-  form.addRow("C&ompetent are", competent_);
+  form.addRow("Comp&etent are", competent_);
   form.addRow("&Others are", others_);
   form.addRow("Comparable &within", key_);
-  form.addRow("&Rule", rule);
+  auto* ruleName = new QLabel("&Rule");  // a row that is a layout has no widget of its own for the letter
+  ruleName->setBuddy(rule_);
+  form.addRow(ruleName, rule);
   for (QCheckBox* box : {first_, practice_, synthetic_}) form.addRow(QString(), box);
   connect(groupBy_, &QComboBox::currentIndexChanged, this, [this] { fillGroups(); });
   connect(rule_, &QComboBox::currentIndexChanged, least_, [this](int index) { least_->setEnabled(index == 1); });

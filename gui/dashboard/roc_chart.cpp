@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/roc_chart.h"
 
+#include <QEvent>
 #include <QtCharts/QLegend>
 #include <QtCharts/QLineSeries>
 #include <QtCharts/QValueAxis>
@@ -55,6 +56,12 @@ void RocChart::showCurve(const RocCurve& curve, const QString& title) {
   chance->append(1.0, 1.0);
   QLineSeries* const line = add(QPen(theme::first(), 2.2));
   for (const RocPoint& point : curve.points) line->append(point.falsePositive, point.truePositive);
+  dress(*chart());
+}
+
+void RocChart::changeEvent(QEvent* event) {
+  QChartView::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange || event->type() == QEvent::FontChange) dress(*chart());
 }
 
 }  // namespace calot::gui

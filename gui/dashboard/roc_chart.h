@@ -14,6 +14,9 @@ class RocChart : public QChartView {
   explicit RocChart(QWidget* parent = nullptr);
   void showCurve(const RocCurve& curve, const QString& title);
   void clear(const QString& title);
+
+ protected:
+  void changeEvent(QEvent* event) override;
 };
 
 }  // namespace calot::gui

@@ -23,6 +23,11 @@ namespace {
 
 using Access = analytics::CohortDatabase::Access;
 
+// A veil (alpha, red, green, blue) over whatever ground the window has, so that letters keep their contrast on a light
+// and on a dark one.
+constexpr const char* headRow = "<tr bgcolor=\"#38808080\">";
+constexpr const char* stripedRow = "<tr bgcolor=\"#18808080\">";
+
 std::string cell(const std::string& text, const char* tag, bool right) {
   return std::string("<") + tag + " style=\"white-space:nowrap\"" + (right ? " align=\"right\"" : " align=\"left\"") +
          ">" + analytics::escaped(text) + "</" + tag + ">";
@@ -30,14 +35,14 @@ std::string cell(const std::string& text, const char* tag, bool right) {
 
 std::string tableText(const analytics::ReportTable& table) {
   std::string html = "<h3>" + analytics::escaped(table.title) +
-                     "</h3><table cellspacing=\"0\" cellpadding=\"3\" border=\"0\"><tr bgcolor=\"#e8eef2\">";
+                     "</h3><table cellspacing=\"0\" cellpadding=\"3\" border=\"0\">" + headRow;
   const auto right = [&](std::size_t column) {
     return column < table.columns.size() && table.columns[column].second == analytics::TextTable::Align::right;
   };
   for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell(table.columns[c].first, "th", right(c));
   html += "</tr>";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    html += r % 2 == 1 ? "<tr bgcolor=\"#f5f7f8\">" : "<tr>";
+    html += r % 2 == 1 ? stripedRow : "<tr>";
     for (std::size_t c = 0; c < table.rows[r].size(); ++c) html += cell(table.rows[r][c], "td", right(c));
     html += "</tr>";
   }

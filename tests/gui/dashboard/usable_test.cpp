@@ -31,6 +31,7 @@
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/keys_dialog.h"
+#include "gui/dashboard/norm_dialog.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/settings_dialog.h"
 #include "tests/gui/dashboard/support/cohort.h"
@@ -225,8 +226,14 @@ TEST_F(Usable, NoTwoLettersClash) {
       }
     };
     for (const QWidget* widget : shown(content)) {
-      if (const auto* label = qobject_cast<const QLabel*>(widget); label != nullptr && label->buddy() != nullptr)
-        take(label->text());
+      if (const auto* label = qobject_cast<const QLabel*>(widget)) {
+        if (label->buddy() != nullptr) {
+          take(label->text());
+        } else if (label->textFormat() != Qt::PlainText) {
+          EXPECT_TRUE(mnemonicOf(label->text()).isNull())
+              << where << ": an & is shown in " << label->text().toStdString();
+        }
+      }
       if (const auto* button = qobject_cast<const QAbstractButton*>(widget)) take(button->text());
       if (const auto* box = qobject_cast<const QGroupBox*>(widget)) take(box->title());
       if (const auto* tabs = qobject_cast<const QTabBar*>(widget)) {
@@ -243,6 +250,9 @@ TEST_F(Usable, NoTwoLettersClash) {
   SettingsDialog dialog;
   dialog.show();
   clashes("settings", dialog, {});
+  NormDialog norm(std::make_shared<const CohortDocument>(path()), {});
+  norm.show();
+  clashes("norm", norm, {});
 }
 
 TEST_F(Usable, TheKeyboardReachesEverything) {
