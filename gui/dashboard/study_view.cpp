@@ -28,9 +28,12 @@ using Access = analytics::CohortDatabase::Access;
 constexpr const char* headRow = "<tr bgcolor=\"#38808080\">";
 constexpr const char* stripedRow = "<tr bgcolor=\"#18808080\">";
 
-std::string cell(const std::string& text, const char* tag, bool right) {
+/// @param veiled the row has a ground, which letters would put behind themselves once more
+std::string cell(const std::string& text, const char* tag, bool right, bool veiled) {
+  const std::string shown = analytics::escaped(text);
   return std::string("<") + tag + " style=\"white-space:nowrap\"" + (right ? " align=\"right\"" : " align=\"left\"") +
-         ">" + analytics::escaped(text) + "</" + tag + ">";
+         ">" + (veiled ? "<span style=\"background-color:transparent\">" + shown + "</span>" : shown) + "</" + tag +
+         ">";
 }
 
 std::string tableText(const analytics::ReportTable& table) {
@@ -39,11 +42,11 @@ std::string tableText(const analytics::ReportTable& table) {
   const auto right = [&](std::size_t column) {
     return column < table.columns.size() && table.columns[column].second == analytics::TextTable::Align::right;
   };
-  for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell(table.columns[c].first, "th", right(c));
+  for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell(table.columns[c].first, "th", right(c), true);
   html += "</tr>";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     html += r % 2 == 1 ? stripedRow : "<tr>";
-    for (std::size_t c = 0; c < table.rows[r].size(); ++c) html += cell(table.rows[r][c], "td", right(c));
+    for (std::size_t c = 0; c < table.rows[r].size(); ++c) html += cell(table.rows[r][c], "td", right(c), r % 2 == 1);
     html += "</tr>";
   }
   return html + "</table>";
