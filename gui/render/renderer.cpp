@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "gui/render/graphics.h"
+#include "gui/render/looks.h"
 #include "gui/render/scene_painter.h"
 #include "gui/render/view_check.h"
 #include "recorder/errors.h"
@@ -49,8 +50,9 @@ class Renderer::Worker {
                std::span<const Puff> smoke) {
     std::packaged_task<Image(ScenePainter&)> task([&](ScenePainter& painter) {
       const Sight sight = sightOf(width, height, view.verticalFieldOfView, settings.endoscopeMask);
-      return painter.paint(drawLists_.make(view, sight, settings.cavity, smoke), sight, view.verticalFieldOfView, width,
-                           height, settings);
+      const DrawList& list = drawLists_.make(view, sight, settings.cavity, smoke);
+      const auto alone = looks_.note(list, settings) ? std::unique_lock(compiling()) : std::unique_lock<std::mutex>();
+      return painter.paint(list, sight, view.verticalFieldOfView, width, height, settings);
     });
     std::future<Image> image = task.get_future();
     {
@@ -67,7 +69,15 @@ class Renderer::Worker {
     std::unique_ptr<ScenePainter> painter;  ///< last: it needs the context until its end
   };
 
+  /// Held while Mesa compiles, which is what its contexts share most. (Two crashes were seen in hundreds of runs in
+  /// which two contexts drew; nobody could bring one about.)
+  static std::mutex& compiling() {
+    static std::mutex lock;
+    return lock;
+  }
+
   static Drawing drawingBy(Graphics graphics) {
+    const std::lock_guard<std::mutex> alone(compiling());
     Drawing made{createContext(graphics), nullptr};
     made.context->makeCurrent();
     made.painter = std::make_unique<ScenePainter>(*made.context);
@@ -97,17 +107,20 @@ class Renderer::Worker {
       {
         std::unique_lock<std::mutex> lock(mutex_);
         wake_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
-        if (tasks_.empty()) return;
+        if (tasks_.empty()) break;
         task = std::move(tasks_.front());
         tasks_.pop_front();
       }
       task(*drawing->painter);
     }
+    const std::lock_guard<std::mutex> alone(compiling());
+    drawing.reset();
   }
 
   const Graphics wanted_;
   std::string name_;         ///< fixed once the thread has started
   DrawListMaker drawLists_;  ///< on the thread
+  LooksDrawn looks_;         ///< on the thread
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<std::packaged_task<Image(ScenePainter&)>> tasks_;

@@ -22,6 +22,7 @@ struct RenderSettings {
   Quality quality = Quality::film;
   bool endoscopeMask = true;  ///< the round field of an endoscope with its vignetting, black outside
   bool cavity = true;         ///< the abdominal wall behind everything; without it, alpha is 0 where nothing was drawn
+  bool ready = false;         ///< with the first picture, programs for all that may come are made: no later one waits
 };
 
 inline constexpr int minSide = 16;                     ///< of a picture (pixels)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "gui/render/looks.h"
 #include "recorder/errors.h"
 
 namespace calot::gui {
@@ -236,6 +237,15 @@ void ScenePainter::drawSmoke(const SmokeList& smoke, const Frame& frame) const {
   drawBlended(smoke_, smoke.index.size());
 }
 
+void ScenePainter::makeReady(const DrawList& list, const Frame& frame) {
+  gl_.Enable(GL_SCISSOR_TEST);
+  gl_.Scissor(0, 0, 0, 0);
+  for (const DrawPart& part : looksToCome(list)) drawLit(part, frame, targets_->radiance);
+  drawSheets({std::vector<SheetVertex>(3), {0, 1, 2}}, frame);
+  drawSmoke({std::vector<SmokeVertex>(3), {0, 1, 2}}, frame);
+  ready_ = true;
+}
+
 void ScenePainter::compose(const Frame& frame) const {
   const PictureTargets& targets = *targets_;
   clear(*targets.picture, GL_COLOR_BUFFER_BIT, frame.sight.halfX > 0.0F ? 1.0F : 0.0F);
@@ -290,6 +300,7 @@ void ScenePainter::draw(const DrawList& list, const Sight& sight, double vertica
   drawSurfaces(list, frame);
   drawSheets(list.sheets, frame);
   drawSmoke(list.smoke, frame);
+  if (settings.ready && !ready_ && !list.part.empty()) makeReady(list, frame);
   gl_.FrontFace(GL_CCW);
   if (film) compose(frame);
 }

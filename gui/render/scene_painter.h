@@ -57,11 +57,14 @@ class ScenePainter {
   void drawBlended(const TriangleBuffer& triangles, std::size_t indices) const;
   void drawSheets(const SheetList& sheets, const Frame& frame);
   void drawSmoke(const SmokeList& smoke, const Frame& frame) const;
+  /// Draws all that may come, nowhere.
+  void makeReady(const DrawList& list, const Frame& frame);
   void compose(const Frame& frame) const;
   [[nodiscard]] Image read() const;
 
   GlFunctions gl_;
   std::unique_ptr<ScenePrograms> film_, interactive_;
+  bool ready_ = false;
   std::unique_ptr<PictureTargets> targets_;
   SceneTextures textures_;
   TriangleBuffer surfaces_, sheets_, smoke_;

@@ -17,7 +17,7 @@ using recorder::MouseControl;
 namespace {
 constexpr double notch = 120.0;           // of QWheelEvent::angleDelta
 constexpr std::size_t drawersAtOnce = 2;  // the picture follows the hand: it is to come as often as the machine can
-constexpr double wantedRate = 30.0;       // pictures a second, as many as are handed out (ViewTap)
+constexpr double wantedRate = 100.0 / 3;  // pictures a second, as many as are handed out (ViewTap)
 }  // namespace
 
 OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::shared_ptr<recorder::ScopeInput> scope,

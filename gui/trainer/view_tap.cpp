@@ -5,7 +5,7 @@ namespace calot::gui {
 namespace {
 
 constexpr int maxUnderway = 3;
-constexpr std::chrono::nanoseconds period(1'000'000'000 / 30);
+constexpr std::chrono::milliseconds period(30);  // every third step: some are lost, thirty a second are to stay
 /// A window that is hidden shows nothing; it is tried again so often.
 constexpr std::chrono::milliseconds patience(500);
 
@@ -24,7 +24,7 @@ void ViewTap::onStep(const recorder::StepRecord& /*record*/) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
   if (underway_ >= maxUnderway && now < last_ + patience) return;
-  // Steps come every 10 ms, pictures every 33: the mean is kept, not the distance.
+  // The mean is kept, not the distance.
   next_ = now - next_ > period ? now + period : next_ + period;
   last_ = now;
   ++underway_;

@@ -12,7 +12,7 @@
 
 namespace calot::gui {
 
-/// Hands out views of a running attempt, as many as are looked at: at most thirty a second, and none while three are
+/// Hands out views of a running attempt, as many as are looked at: at most one in 30 ms, and none while three are
 /// still to be shown, since each costs the simulation's thread the surfaces of the scene.
 class ViewTap final : public recorder::Observer {
  public:

@@ -14,9 +14,12 @@ namespace {
 
 Graphics chosen = Graphics::automatic;  // of the GUI thread
 
-PictureLoop::Draw drawWith(const std::shared_ptr<Renderer>& renderer) {
-  return [renderer](const SceneView& view, int width, int height) {
-    return renderer->render(view, width, height, Quality::interactive);
+PictureLoop::Draw drawWith(const std::shared_ptr<Renderer>& renderer, bool ready) {
+  RenderSettings settings;
+  settings.quality = Quality::interactive;
+  settings.ready = ready;
+  return [renderer, settings](const SceneView& view, int width, int height) {
+    return renderer->render(view, width, height, settings);
   };
 }
 
@@ -37,11 +40,11 @@ ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers, dou
   setAccessibleName("Picture of the scene");
   setAttribute(Qt::WA_OpaquePaintEvent);
   loop_ = std::make_unique<PictureLoop>(
-      [this, graphics = chosen] {
+      [this, graphics = chosen, ready = rate > 0.0] {
         const auto renderer = std::make_shared<Renderer>(graphics);
         const std::lock_guard lock(mutex_);
         drawnBy_ = renderer->graphics();
-        return drawWith(renderer);
+        return drawWith(renderer, ready);
       },
       PictureLoop::Receiver{[this](ScenePicture picture) {
                               const std::lock_guard lock(mutex_);
