@@ -7,6 +7,7 @@
 
 #include "gui/render/clip_mesh.h"
 #include "gui/render/instrument_mesh.h"
+#include "gui/render/ligament_mesh.h"
 
 namespace calot::gui {
 namespace {
@@ -139,13 +140,26 @@ void DrawListMaker::addCavity(const SceneView& view) {
     cavity_ = makeCavity(shape);
     cavityShape_ = shape;
   }
+  std::vector<Vec3> vessels;
+  for (const SurfaceView& surface : view.surface)
+    if (surface.role == StructureRole::bileDuct || surface.role == StructureRole::artery)
+      vessels.insert(vessels.end(), surface.rest.begin(), surface.rest.end());
+  if (vessels != vessels_) {
+    ligament_ = makeLigament(vessels);
+    vessels_ = std::move(vessels);
+  }
   begin();
-  for (std::size_t v = 0; v < cavity_.position.size(); ++v)
-    addVertex(point(cavity_.position[v]), direction(cavity_.normal[v]), cavity_.position[v], cavity_.normal[v]);
+  std::vector<Index3> triangles;
+  for (const Mesh* mesh : {&cavity_, &ligament_}) {
+    const Index3 first = Index3::Constant(static_cast<int>(list_.vertex.size()) - static_cast<int>(base_));
+    for (std::size_t v = 0; v < mesh->position.size(); ++v)
+      addVertex(point(mesh->position[v]), direction(mesh->normal[v]), mesh->position[v], mesh->normal[v]);
+    for (const Index3& t : mesh->triangle) triangles.emplace_back(t + first);
+  }
   DrawPart part;
   part.appearance = Appearance::cavity;
   part.oneSided = true;
-  addPart(part, cavity_.triangle);
+  addPart(part, triangles);
 }
 
 const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, bool cavity,

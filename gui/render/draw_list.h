@@ -89,6 +89,8 @@ class DrawListMaker {
   DrawList list_;
   std::vector<SurfaceForm> form_;  ///< per surface of the view
   CavityShape cavityShape_;
+  std::vector<Vec3> vessels_;  ///< of which the ligament was made
+  Mesh ligament_;
   Mesh cavity_;
   Sight sight_;
   std::vector<std::uint8_t> place_;  ///< per vertex: placeIn()
