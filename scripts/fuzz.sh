@@ -7,8 +7,8 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-# Of ten thousand executions, so that all targets but the fastest take ten to twenty minutes: of a recording, which is a
-# file, forty are read in a second, of messages and meshes thirty thousand.
+# Of ten thousand executions, by what one costs: of a recording, which is a file, forty are read in a second, of messages
+# and meshes thirty thousand at first and some thousands once the corpus has grown.
 declare -A share=([recording]=5 [database]=10 [scene]=200 [mesh]=3600 [kinematics]=2400 [csv]=600 [protocol]=200 [form]=200 [openigtlink]=2785)
 targets=(recording database scene mesh kinematics csv protocol form openigtlink)
 if [[ $# -gt 0 ]]; then targets=("$@"); fi

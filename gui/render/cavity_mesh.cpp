@@ -46,12 +46,7 @@ Mesh makeCavity(const CavityShape& shape) {
       mesh.position.push_back(shape.centre + shape.radius * (1.0 + unevenness(d)) * d);
     }
   }
-  const auto at = [](int ring, int segment) { return ring * segments + segment % segments; };
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < segments; ++j) {
-      mesh.triangle.emplace_back(at(i, j), at(i, j + 1), at(i + 1, j));
-      mesh.triangle.emplace_back(at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
-    }
+  mesh.triangle = gridTriangles(rings + 1, segments, true);
   mesh.normal = vertexNormals(mesh.position, mesh.triangle);
   return mesh;
 }

@@ -41,13 +41,7 @@ Mesh makeLigament(std::span<const Vec3> vessels) {
       mesh.position.emplace_back(x, std::min(height - behind + fold(x, z), most - under), z);
     }
   }
-  const auto at = [&](int i, int j) { return i * (along + 1) + j; };
-  for (int i = 0; i < across; ++i) {
-    for (int j = 0; j < along; ++j) {
-      mesh.triangle.emplace_back(at(i, j), at(i, j + 1), at(i + 1, j));
-      mesh.triangle.emplace_back(at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
-    }
-  }
+  mesh.triangle = gridTriangles(across + 1, along + 1, false);
   mesh.normal = vertexNormals(mesh.position, mesh.triangle);
   return mesh;
 }

@@ -19,4 +19,16 @@ std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::ve
   return normal;
 }
 
+std::vector<Index3> gridTriangles(int rows, int columns, bool closed) {
+  std::vector<Index3> triangle;
+  const auto at = [&](int row, int column) { return row * columns + column % columns; };
+  for (int i = 0; i + 1 < rows; ++i) {
+    for (int j = 0; j < (closed ? columns : columns - 1); ++j) {
+      triangle.emplace_back(at(i, j), at(i, j + 1), at(i + 1, j));
+      triangle.emplace_back(at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
+    }
+  }
+  return triangle;
+}
+
 }  // namespace calot::gui

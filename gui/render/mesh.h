@@ -18,4 +18,8 @@ struct Mesh {
 /// without area gets z.
 [[nodiscard]] std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::vector<Index3>& triangle);
 
+/// Two triangles for each cell of a grid, whose vertices stand row by row, so many in each.
+/// @param closed the last vertex of a row is joined to its first
+[[nodiscard]] std::vector<Index3> gridTriangles(int rows, int columns, bool closed);
+
 }  // namespace calot::gui

@@ -14,11 +14,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <new>
 #include <optional>
-#include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "recorder/errors.h"
 #include "recorder/recording/guard_answer.h"
