@@ -15,14 +15,14 @@ namespace calot::python {
 
 namespace {
 
-constexpr double allButtons = 15.0;
+constexpr double allButtons = 63.0;
 
 /// Rounded: actions that are drawn at random are no whole numbers.
 std::uint8_t buttonsOf(double number, const char* hand) {
   if (!(number >= 0.0 && number <= allButtons))
     throw Error(ErrorKind::invalid,
-                fmt::format("the {} hand's command: its buttons are {}; give the sum of 1 cut, 2 coagulation, 4 fire "
-                            "and 8 lock",
+                fmt::format("the {} hand's command: its buttons are {}; give the sum of 1 cut, 2 coagulation, 4 fire, "
+                            "8 lock, 16 and 32 retract more and less",
                             hand, number));
   return static_cast<std::uint8_t>(std::lround(number));
 }

@@ -60,6 +60,8 @@ SceneFacts sceneFacts(const SceneDescription& scene) {
   facts.picture = {scene.camera, scene.verticalFieldOfView};
   facts.triangle = std::any_of(scene.fat.begin(), scene.fat.end(),
                                [](const FatDescription& fat) { return fat.triangleDepth > 0.0; });
+  facts.retractionOnRequest = std::any_of(scene.retraction.begin(), scene.retraction.end(),
+                                          [](const RetractionDescription& r) { return r.stage > 0.0; });
   return facts;
 }
 

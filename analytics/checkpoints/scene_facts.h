@@ -34,8 +34,9 @@ struct SceneFacts {
   std::vector<Organ> organ;
   std::vector<Vessel> vessel;
   std::vector<Connective> connective;
-  std::size_t fat = 0;    ///< bodies
-  bool triangle = false;  ///< a region of fat that is to be cleared is marked
+  std::size_t fat = 0;               ///< bodies
+  bool triangle = false;             ///< a region of fat that is to be cleared is marked
+  bool retractionOnRequest = false;  ///< the assistant can be asked to retract more or less
   recorder::PictureFrame picture = {};
 
   [[nodiscard]] bool hasCystic() const;  ///< there is a cystic vessel

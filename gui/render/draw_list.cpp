@@ -7,7 +7,6 @@
 
 #include "gui/render/clip_mesh.h"
 #include "gui/render/instrument_mesh.h"
-#include "gui/render/ligament_mesh.h"
 
 namespace calot::gui {
 namespace {
@@ -37,11 +36,11 @@ float referenceDistance(const std::vector<DrawVertex>& vertices) {
 }
 
 /// Blood and bile from open vessels cover skin, not the vessels' own cut faces.
-float stained(float face, const Vec3& p_W, std::span<const OpenEnd> open) {
+float stained(float face, const Vec3& p_W, std::span<const OpenEnd> open, double time) {
   constexpr float most = 0.45F;  // skin, fully stained (SurfaceView::face)
   if (face >= 1.0F) return face;
   for (const OpenEnd& end : open) {
-    const float stain = most * static_cast<float>(stainAt(end, p_W));
+    const float stain = most * static_cast<float>(stainAt(end, p_W, time));
     if (stain > std::abs(face)) face = end.bile ? -stain : stain;
   }
   return face;
@@ -94,14 +93,15 @@ void DrawListMaker::addPart(DrawPart part, const std::vector<Index3>& triangles)
   if (part.indexCount > 0) list_.part.push_back(part);
 }
 
-void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open) {
+void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open,
+                               double time) {
   form.update(surface.rest, surface.triangle);
   const std::vector<Vec3> normal = vertexNormals(surface.position, surface.triangle);
   begin();
   for (std::size_t v = 0; v < surface.position.size(); ++v)
     addVertex(point(surface.position[v]), direction(normal[v]), surface.rest[v], form.restNormal()[v],
               surface.charred.empty() ? 0.0F : std::clamp(surface.charred[v], 0.0F, maxCharred),
-              stained(surface.face.empty() ? 0.0F : surface.face[v], surface.position[v], open));
+              stained(surface.face.empty() ? 0.0F : surface.face[v], surface.position[v], open, time));
   DrawPart part;
   part.appearance = appearanceOf(surface.appearance);
   part.oneSided = form.closed();
@@ -135,34 +135,17 @@ void DrawListMaker::addMesh(const Mesh& mesh, Appearance appearance, const Pose&
   addPart(part, mesh.triangle);
 }
 
-void DrawListMaker::addCavity(const SceneView& view) {
-  if (const CavityShape shape = cavityShape(view); shape != cavityShape_) {
-    cavity_ = makeCavity(shape);
-    cavityShape_ = shape;
-  }
-  std::vector<Vec3> vessels;
-  for (const SurfaceView& surface : view.surface)
-    if (surface.role == StructureRole::bileDuct || surface.role == StructureRole::artery)
-      vessels.insert(vessels.end(), surface.rest.begin(), surface.rest.end());
-  if (vessels != vessels_) {
-    ligament_ = makeLigament(vessels);
-    vessels_ = std::move(vessels);
-  }
-  begin();
-  std::vector<Index3> triangles;
-  for (const Mesh* mesh : {&cavity_, &ligament_}) {
-    const Index3 first = Index3::Constant(static_cast<int>(list_.vertex.size()) - static_cast<int>(base_));
-    for (std::size_t v = 0; v < mesh->position.size(); ++v)
-      addVertex(point(mesh->position[v]), direction(mesh->normal[v]), mesh->position[v], mesh->normal[v]);
-    for (const Index3& t : mesh->triangle) triangles.emplace_back(t + first);
-  }
-  DrawPart part;
-  part.appearance = Appearance::cavity;
-  part.oneSided = true;
-  addPart(part, triangles);
+void DrawListMaker::addSurroundings(const SceneView& view) {
+  surroundings_.update(view);
+  const Pose still{Vec3::Zero(), Quat::Identity()};
+  const Viscera& viscera = surroundings_.viscera();
+  addMesh(viscera.bowel, Appearance::bowel, still, false);
+  addMesh(viscera.omentum, Appearance::omentum, still, false);
+  addMesh(surroundings_.ligament(), Appearance::cavity, still, false);
+  addMesh(surroundings_.wall(), Appearance::cavity, still, false);
 }
 
-const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, bool cavity,
+const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, bool surroundings,
                                     std::span<const Puff> smoke) {
   sight_ = sight;
   place_.clear();
@@ -173,7 +156,7 @@ const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, b
   toCamera_ = view.camera.orientation.normalized().conjugate().toRotationMatrix();
   form_.resize(view.surface.size());
   const std::vector<OpenEnd> open = openEnds(view);
-  for (std::size_t s = 0; s < view.surface.size(); ++s) addSurface(view.surface[s], form_[s], open);
+  for (std::size_t s = 0; s < view.surface.size(); ++s) addSurface(view.surface[s], form_[s], open, view.time);
   list_.referenceDistance = referenceDistance(list_.vertex);
   for (const ClipView& clip : view.clip) addMesh(makeClip(clip), Appearance::titanium, clip.pose, true);
   for (const OpenEnd& end : open)
@@ -186,9 +169,9 @@ const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, b
   }
   // Scenes list large organs first, which lie behind. Drawn in reverse, hidden ones cost little.
   std::reverse(list_.part.begin(), list_.part.end());
-  if (cavity) addCavity(view);
+  if (surroundings) addSurroundings(view);
   list_.sheets = makeSheetList(view);
-  list_.smoke = makeSmokeList(view.camera, smoke);
+  list_.smoke = makeSmokeList(view.camera, view.down, smoke);
   return list_;
 }
 

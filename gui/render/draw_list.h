@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "gui/render/cavity_mesh.h"
 #include "gui/render/mesh.h"
 #include "gui/render/ooze.h"
 #include "gui/render/sheet_list.h"
 #include "gui/render/sight.h"
 #include "gui/render/smoke.h"
 #include "gui/render/surface_form.h"
+#include "gui/render/surroundings.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -26,6 +26,8 @@ enum class Appearance : int {
   duct = 4,
   artery = 5,
   fat = 6,
+  omentum = 7,
+  bowel = 8,
   insulation = 10,  ///< black sleeve of a shaft
   steel = 11,
   ceramic = 12,
@@ -33,6 +35,11 @@ enum class Appearance : int {
   blood = 14,
   bile = 15,
 };
+
+/// Decoration around the scene: drawn behind all else, and without a shadow of its own.
+[[nodiscard]] constexpr bool isSurroundings(Appearance a) {
+  return a == Appearance::cavity || a == Appearance::omentum || a == Appearance::bowel;
+}
 
 /// From SurfaceView::appearance; unknown words are drawn as plain tissue.
 [[nodiscard]] Appearance appearanceOf(const std::string& word);
@@ -65,18 +72,18 @@ struct DrawList {
   float referenceDistance = 0.1F;  ///< distance at which the endoscope's exposure is right (m)
 };
 
-/// Builds successive draw lists and reuses what does not change between them: rest normals, the cavity, memory. A list
-/// depends on its view alone.
+/// Builds successive draw lists and reuses what does not change between them: rest normals, the surroundings, memory. A
+/// list depends on its view alone.
 class DrawListMaker {
  public:
   /// The list is valid until the next call. @pre checkView(view) has passed
-  [[nodiscard]] const DrawList& make(const SceneView& view, const Sight& sight, bool cavity,
+  [[nodiscard]] const DrawList& make(const SceneView& view, const Sight& sight, bool surroundings,
                                      std::span<const Puff> smoke = {});
 
  private:
-  void addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open);
+  void addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open, double time);
   void addMesh(const Mesh& mesh, Appearance appearance, const Pose& pose, bool lengthwise);
-  void addCavity(const SceneView& view);
+  void addSurroundings(const SceneView& view);
 
   void begin() { base_ = static_cast<std::uint32_t>(list_.vertex.size()); }
   [[nodiscard]] Vec3 point(const Vec3& p_W) const { return toCamera_ * (p_W - origin_); }
@@ -88,10 +95,7 @@ class DrawListMaker {
 
   DrawList list_;
   std::vector<SurfaceForm> form_;  ///< per surface of the view
-  CavityShape cavityShape_;
-  std::vector<Vec3> vessels_;  ///< of which the ligament was made
-  Mesh ligament_;
-  Mesh cavity_;
+  Surroundings surroundings_;
   Sight sight_;
   std::vector<std::uint8_t> place_;  ///< per vertex: placeIn()
   std::vector<std::uint32_t> cut_;   ///< triangles at the edge of the picture

@@ -11,7 +11,7 @@ constexpr int sheetLook = -1, smokeLook = -2, readyLook = -3;
 
 int lookOf(const DrawPart& part) { return 2 * static_cast<int>(part.appearance) + (part.harmed ? 1 : 0); }
 
-bool isTissue(Appearance a) { return a < Appearance::insulation && a != Appearance::cavity; }
+bool isTissue(Appearance a) { return a < Appearance::insulation && !isSurroundings(a); }
 
 }  // namespace
 
@@ -43,7 +43,9 @@ std::vector<DrawPart> looksToCome(const DrawList& list) {
   }
   for (const Appearance a : {Appearance::insulation, Appearance::steel, Appearance::ceramic}) add(a, false);
   if (vessels)
-    for (const Appearance a : {Appearance::titanium, Appearance::blood, Appearance::bile}) add(a, false);
+    for (const Appearance a :
+         {Appearance::titanium, Appearance::blood, Appearance::bile, Appearance::omentum, Appearance::bowel})
+      add(a, false);
   return parts;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "gui/render/loft.h"
@@ -19,6 +20,8 @@ constexpr double smallest = 0.45, largest = 0.85;   // radius of a drop over the
 constexpr double gravity = 9.81;                    // m/s^2
 constexpr double narrow = 0.0030, wider = 0.16;     // half width of the stain at the face (m), and more per m below
 constexpr double above = 0.0020, farthest = 0.045;  // m above and below the face that it reaches
+constexpr double wave = 0.013, speed = 0.009;       // from wave to wave of what runs (m), and how fast they are (m/s)
+constexpr double fresh = 0.22;                      // share of the stain that comes and goes with them
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -60,7 +63,8 @@ std::vector<OpenEnd> openEnds(const SceneView& view) {
     for (const auto& [middle, fan] : fans) {
       if (!(fan.area.norm() > 0.0)) continue;
       const double radius = std::sqrt(0.5 * fan.area.norm() / std::numbers::pi);
-      ends.push_back({surface.position[at(middle)], fan.area.normalized(), radius, carriesBile(surface.role)});
+      ends.push_back(
+          {surface.position[at(middle)], fan.area.normalized(), radius, view.down, carriesBile(surface.role)});
     }
   }
   return ends;
@@ -73,13 +77,12 @@ Mesh makeDrop(const OpenEnd& end, double time) {
   const double radius = end.radius * (smallest + (largest - smallest) * share);
   const double fallen = age > hanging ? 0.5 * gravity * (age - hanging) * (age - hanging) : 0.0;
   Mesh mesh = drop(radius);
-  const Vec3 place = 0.35 * end.radius * end.outwards - Vec3(0.0, 0.0, 0.7 * radius + fallen);
-  for (Vec3& p : mesh.position) p += place;
-  return mesh;
+  return moved(std::move(mesh), upright(end.down),
+               0.35 * end.radius * end.outwards + (0.7 * radius + fallen) * end.down);
 }
 
-double stainAt(const OpenEnd& end, const Vec3& p_W) {
-  const Vec3 d = p_W - end.position;
+double stainAt(const OpenEnd& end, const Vec3& p_W, double time) {
+  const Vec3 d = upright(end.down).conjugate() * (p_W - end.position);
   const double below = -d.z();
   if (below < -above || below > farthest) return 0.0;
   const double aside = std::hypot(d.x(), d.y());
@@ -91,7 +94,8 @@ double stainAt(const OpenEnd& end, const Vec3& p_W) {
   const double inside = 1.0 - aside / width;
   const double ends =
       std::clamp((farthest - below) / (0.4 * farthest), 0.0, 1.0) * std::clamp((below + above) / above, 0.0, 1.0);
-  return std::min(1.0, 1.8 * inside) * ends;
+  const double runs = 0.5 + 0.5 * std::sin(2.0 * std::numbers::pi * (below - speed * time) / wave);
+  return std::min(1.0, 1.8 * inside) * ends * (1.0 - fresh * runs);
 }
 
 }  // namespace calot::gui

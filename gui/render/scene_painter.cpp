@@ -72,9 +72,9 @@ void ScenePainter::drawPart(const DrawPart& part) const {
   if (part.oneSided) gl_.Disable(GL_CULL_FACE);
 }
 
-void ScenePainter::drawParts(const DrawList& list, bool withCavity) const {
+void ScenePainter::drawParts(const DrawList& list, bool withSurroundings) const {
   for (const DrawPart& part : list.part)
-    if (withCavity || part.appearance != Appearance::cavity) drawPart(part);
+    if (withSurroundings || !isSurroundings(part.appearance)) drawPart(part);
 }
 
 void ScenePainter::drawPicture() const {
@@ -102,6 +102,7 @@ void ScenePainter::prepareTargets(int width, int height, Quality quality) {
 void ScenePainter::setCamera(const ShaderProgram& program, float focalX, float focalY, float x, float y) const {
   program.use();
   program.set("noiseVolume", static_cast<int>(noiseUnit));
+  program.set("veinMap", static_cast<int>(veinUnit));
   program.set("focal", focalX, focalY);
   program.set("depthRange", nearPlane, farPlane);
   program.set("eye", x, y, 0.0F);
@@ -179,15 +180,15 @@ void ScenePainter::drawLit(const DrawPart& part, const Frame& frame, const Rende
 
 void ScenePainter::drawSurfaces(const DrawList& list, const Frame& frame) const {
   const PictureTargets& targets = *targets_;
-  const auto isCavity = [](const DrawPart& part) { return part.appearance == Appearance::cavity; };
-  const auto cavity = std::find_if(list.part.begin(), list.part.end(), isCavity);
-  const bool apart = targets.backdrop && cavity != list.part.end();
+  const auto isBehind = [](const DrawPart& part) { return isSurroundings(part.appearance); };
+  const bool apart = targets.backdrop && std::any_of(list.part.begin(), list.part.end(), isBehind);
   if (apart) {
     // Only where it is seen: with the depth of all that was drawn before.
     clear(*targets.backdrop, GL_COLOR_BUFFER_BIT);
     begin(*targets.backdrop, frame);
     gl_.DepthFunc(GL_LEQUAL);
-    drawLit(*cavity, frame, *targets.backdrop);
+    for (const DrawPart& part : list.part)
+      if (isBehind(part)) drawLit(part, frame, *targets.backdrop);
     gl_.DepthFunc(GL_LESS);
   }
   clear(targets.radiance, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, 1.0F);  // outside of the field
@@ -198,7 +199,7 @@ void ScenePainter::drawSurfaces(const DrawList& list, const Frame& frame) const 
   }
   hideSurround(frame);
   for (const DrawPart& part : list.part)
-    if (!(apart && isCavity(part))) drawLit(part, frame, targets.radiance);
+    if (!(apart && isBehind(part))) drawLit(part, frame, targets.radiance);
   if (!apart) return;
   const ShaderProgram& copy = frame.programs.backdrop;
   copy.use();

@@ -46,7 +46,7 @@ class ScenePainter {
   void setLighting(const ShaderProgram& program, const Frame& frame, const RenderTarget& target) const;
 
   void drawPart(const DrawPart& part) const;
-  void drawParts(const DrawList& list, bool withCavity) const;
+  void drawParts(const DrawList& list, bool withSurroundings) const;
   void drawLit(const DrawPart& part, const Frame& frame, const RenderTarget& target) const;
   /// One triangle over all that begin() left to draw on.
   void drawPicture() const;

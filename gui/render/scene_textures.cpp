@@ -8,6 +8,7 @@
 
 #include "gui/render/fibre_texture.h"
 #include "gui/render/noise_texture.h"
+#include "gui/render/vein_texture.h"
 
 namespace calot::gui {
 namespace {
@@ -36,11 +37,14 @@ SceneTextures::SceneTextures(const GlFunctions& gl) : gl_(gl) {
     gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   };
   make(filmNoise_, GL_RGBA16F, GL_FLOAT, volume.data(), GL_LINEAR_MIPMAP_LINEAR);
+  gl_.ActiveTexture(GL_TEXTURE0 + veinUnit);
+  veins_ = makeFlat(GL_R8, GL_RED, veinSide, veinSide, makeVeinTexture());
+  gl_.ActiveTexture(GL_TEXTURE0 + noiseUnit);
   make(interactiveNoise_, GL_RGBA8, GL_UNSIGNED_BYTE, asBytes(volume).data(), GL_LINEAR);
 }
 
 SceneTextures::~SceneTextures() {
-  for (const GLuint texture : {filmNoise_, interactiveNoise_, fibres_}) gl_.DeleteTextures(1, &texture);
+  for (const GLuint texture : {filmNoise_, interactiveNoise_, fibres_, veins_}) gl_.DeleteTextures(1, &texture);
 }
 
 void SceneTextures::bindNoise(Quality quality) const {
@@ -54,13 +58,19 @@ void SceneTextures::bindFibres() {
     gl_.BindTexture(GL_TEXTURE_2D, fibres_);
     return;
   }
-  const std::vector<std::uint8_t> texels = makeFibreTexture();
-  gl_.GenTextures(1, &fibres_);
-  gl_.BindTexture(GL_TEXTURE_2D, fibres_);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, fibreColumns, fibreRows, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  fibres_ = makeFlat(GL_RGBA8, GL_RGBA, fibreColumns, fibreRows, makeFibreTexture());
+}
+
+GLuint SceneTextures::makeFlat(GLint kept, GLenum format, int columns, int rows,
+                               const std::vector<std::uint8_t>& texels) const {
+  GLuint texture = 0;
+  gl_.GenTextures(1, &texture);
+  gl_.BindTexture(GL_TEXTURE_2D, texture);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, kept, columns, rows, 0, format, GL_UNSIGNED_BYTE, texels.data());
   gl_.GenerateMipmap(GL_TEXTURE_2D);
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
 }
 
 }  // namespace calot::gui

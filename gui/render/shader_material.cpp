@@ -14,8 +14,6 @@ struct Broad { vec4 a, b, c, d; };
 vec4 netOf(vec3 p) { return vec4(noise(p * 1.3 + 3.1).xyz, smoothstep(-0.15, 0.40, noise(p * 0.55 + 7.7).w)); }
 
 // In the coordinates of a net, lines run farther along some axes than along others.
-vec3 largeNet(vec3 mm) { return mm * vec3(1.0, 0.4, 0.7) / 10.0; }
-vec3 smallNet(vec3 mm) { return mm * vec3(1.0, 0.55, 0.8) / 5.0 + 4.0; }
 vec3 wallNet(vec3 mm) { return mm * vec3(1.0, 0.6, 0.8) / 21.0; }
 vec3 ductNet(vec3 mm) { return mm / 3.0 + 2.0; }
 vec3 fatNet(vec3 mm) { return mm / 7.0 + 5.0; }
@@ -26,11 +24,9 @@ Broad broadOf(vec3 rest) {
 #if LOOK == 1    // liver: wide, middle
   f.a = noise(mm / 43.0);
   f.b = noise(mm / 13.0 + 0.4 * f.a.xyz);
-#elif LOOK == 2  // gallbladder: middle, two nets; wide and pale
+#elif LOOK == 2  // gallbladder: middle; wide and pale
   f.a = noise(mm / 7.0);
-  f.b = netOf(largeNet(mm));
-  f.c = netOf(smallNet(mm));
-  f.d = vec4(noise(mm / 24.0 + 2.0).w, noise(mm / 17.0 + 9.0).w, 0.0, 0.0);
+  f.b = vec4(noise(mm / 24.0 + 2.0).w, noise(mm / 17.0 + 9.0).w, 0.0, 0.0);
 #elif LOOK == 3  // cavity: middle, net; wide
   vec4 wide = noise(mm / 61.0 + 1.0);
   f.a = noise(mm / 27.0 + 0.5 * wide.xyz);
@@ -46,6 +42,12 @@ Broad broadOf(vec3 rest) {
   f.a = noise(mm / 6.5 + 3.0);
   f.b = netOf(fatNet(mm));
   f.c = vec4(noise(mm / 15.0 + 8.0).w, 0.0, 0.0, 0.0);
+#elif LOOK == 7  // omentum: bend; wide, middle
+  f.a = noise(mm / 9.0 + 3.0);
+  f.b = vec4(noise(mm / 38.0 + 8.0).w, noise(mm / 17.0 + 1.0).w, 0.0, 0.0);
+#elif LOOK == 8  // bowel: middle; wide
+  f.a = noise(mm / 12.0 + 6.0);
+  f.b = vec4(noise(mm / 33.0 + 4.0).w, 0.0, 0.0, 0.0);
 #elif LOOK == 0  // plain tissue: middle
   f.a = noise(mm / 9.0);
 #endif
@@ -81,6 +83,15 @@ float vessels(vec3 p, vec4 net, float width) {
   return net.w * (1.0 - smoothstep(0.35 * w, w, away));
 }
 
+// Branching veins (vein_texture.h), from three sides; p in textures. Trunks run along y.
+uniform sampler2D veinMap;
+float veins(vec3 p, vec3 normal) {
+  vec3 side = normal * normal;
+  side *= side;
+  float seen = side.x * texture(veinMap, p.zy).x + side.y * texture(veinMap, p.xz + 0.37).x + side.z * texture(veinMap, p.xy).x;
+  return seen / (side.x + side.y + side.z);
+}
+
 Material liver(vec3 mm, Broad broad) {
   vec4 wide = broad.a, middle = broad.b;
   vec4 lobules = noise(mm / 1.9);
@@ -98,19 +109,16 @@ Material liver(vec3 mm, Broad broad) {
   return m;
 }
 
-Material gallbladder(vec3 mm, Broad broad) {
+Material gallbladder(vec3 mm, vec3 normal, Broad broad) {
   vec4 middle = broad.a;
   vec4 fine = fineNoise(mm / 1.3);
   Material m;
-  float tone = clamp(0.5 + 0.7 * broad.d.x + 0.35 * middle.w, 0.0, 1.0);
+  float tone = clamp(0.5 + 0.7 * broad.b.x + 0.35 * middle.w, 0.0, 1.0);
   m.albedo = mix(vec3(0.026, 0.055, 0.047), vec3(0.086, 0.108, 0.066), tone);
   // Serosa: pale where the wall is thicker, with a little fat under it.
-  float pale = smoothstep(0.10, 0.60, broad.d.y + 0.25 * middle.w);
+  float pale = smoothstep(0.10, 0.60, broad.b.y + 0.25 * middle.w);
   m.albedo = mix(m.albedo, vec3(0.200, 0.160, 0.080), 0.45 * pale);
-  float large = vessels(largeNet(mm), broad.b, 0.026);
-  float small = vessels(smallNet(mm), broad.c, 0.034);
-  m.albedo = mix(m.albedo, vec3(0.075, 0.012, 0.016), 0.50 * large);
-  m.albedo = mix(m.albedo, vec3(0.110, 0.024, 0.022), 0.38 * small);
+  m.albedo = mix(m.albedo, vec3(0.085, 0.014, 0.017), 0.62 * veins(mm / 46.0, normal));
   m.albedo *= 1.0 + 0.10 * fine.w;
   m.scatter = vec3(0.26, 0.24, 0.18);
   m.slope = 0.55 / 7.0 * middle.xyz + 0.030 / 1.3 * fine.xyz;
@@ -228,6 +236,41 @@ Material cavityWall(vec3 mm, Broad broad) {
   return m;
 }
 
+// Lobes as of fat, in a thin membrane that is pink where it is thin, with long vessels.
+Material omentum(vec3 mm, vec3 normal, Broad broad) {
+  vec4 bend = broad.a;
+  vec4 lobes = noise(mm / 5.6 + 0.25 * bend.xyz);
+  vec4 fine = fineNoise(mm / 1.9);
+  float folded = min(abs(lobes.w) * 1.6, 1.0);
+  Material m;
+  m.albedo = mix(vec3(0.330, 0.130, 0.045), vec3(0.520, 0.300, 0.105), smoothstep(0.08, 0.60, sqrt(folded)));
+  m.albedo = mix(m.albedo, vec3(0.420, 0.170, 0.105), 0.75 * smoothstep(-0.05, 0.55, broad.b.x + 0.4 * broad.b.y));
+  m.albedo = mix(m.albedo, vec3(0.240, 0.030, 0.028), 0.60 * veins(mm / 83.0, normal));
+  m.albedo *= 1.0 + 0.10 * fine.w;
+  m.scatter = vec3(0.40, 0.24, 0.10);
+  m.slope = 2.0 / 5.6 * sign(lobes.w) * (1.0 - folded) * lobes.xyz + 0.05 / 1.9 * fine.xyz;
+  m.mirror = vec3(0.030);
+  m.roughness = 0.42;
+  m.film = 0.8;
+  return m;
+}
+
+// Serosa of the bowel: pale pink, smooth, wet, with a fine net.
+Material bowel(vec3 mm, vec3 normal, Broad broad) {
+  vec4 middle = broad.a;
+  vec4 fine = fineNoise(mm / 1.5);
+  Material m;
+  m.albedo = mix(vec3(0.330, 0.110, 0.085), vec3(0.500, 0.235, 0.170), clamp(0.5 + 0.6 * broad.b.x + 0.35 * middle.w, 0.0, 1.0));
+  m.albedo = mix(m.albedo, vec3(0.260, 0.040, 0.038), 0.50 * veins(mm.yzx / 37.0, normal.yzx));
+  m.albedo *= 1.0 + 0.06 * fine.w;
+  m.scatter = vec3(0.38, 0.18, 0.13);
+  m.slope = 0.45 / 12.0 * middle.xyz + 0.02 / 1.5 * fine.xyz;
+  m.mirror = vec3(0.032);
+  m.roughness = 0.36;
+  m.film = 1.0;
+  return m;
+}
+
 Material tissue(vec3 mm, Broad broad) {
   vec4 middle = broad.a;
   vec4 fine = noise(mm / 1.7);
@@ -255,10 +298,14 @@ Material brushed(vec3 mm, vec3 mirror, float roughness) {
 }
 
 // One look a program (LOOK, HARMED): a software rasterizer works out every branch for every pixel.
-Material materialOf(vec3 rest, vec2 harm, Broad broad) {
+Material materialOf(vec3 rest, vec3 restNormal, vec2 harm, Broad broad) {
   vec3 mm = rest * 1000.0;
 #if LOOK == 3
   return cavityWall(mm, broad);
+#elif LOOK == 7
+  return omentum(mm, restNormal, broad);
+#elif LOOK == 8
+  return bowel(mm, restNormal, broad);
 #elif LOOK == 10 // insulation
   return solid(vec3(0.010, 0.010, 0.011), vec3(0.042), 0.33);
 #elif LOOK == 11 // steel
@@ -275,7 +322,7 @@ Material materialOf(vec3 rest, vec2 harm, Broad broad) {
 #if LOOK == 1
   Material m = liver(mm, broad);
 #elif LOOK == 2
-  Material m = gallbladder(mm, broad);
+  Material m = gallbladder(mm, restNormal, broad);
 #elif LOOK == 4
   Material m = duct(mm, broad);
 #elif LOOK == 5

@@ -138,7 +138,7 @@ void main() {
 #else
   Broad broad = broadOf(vRest);
 #endif
-  Material m = materialOf(vRest, vHarm, broad);
+  Material m = materialOf(vRest, vRestNormal, vHarm, broad);
   vec3 n0 = normalize(vNormal);
   if (!gl_FrontFacing) n0 = -n0;
 #if EXACT

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "gui/render/mesh.h"
 #include "sim/math/random.h"
 
 namespace calot::gui {
@@ -36,7 +37,8 @@ std::vector<Puff> SmokeTrail::at(double time) const {
   return puffs;
 }
 
-SmokeList makeSmokeList(const CameraSample& camera, std::span<const Puff> puffs) {
+SmokeList makeSmokeList(const CameraSample& camera, const Vec3& down, std::span<const Puff> puffs) {
+  const Quat up = upright(down);
   const Mat3 toCamera = camera.orientation.normalized().conjugate().toRotationMatrix();
   struct Seen {
     Vec3 p_C = Vec3::Zero();
@@ -50,7 +52,7 @@ SmokeList makeSmokeList(const CameraSample& camera, std::span<const Puff> puffs)
     const double y = random.uniform(-1.0, 1.0);
     const double offset = random.uniform();
     const double gone = 1.0 - std::exp(-puff.age / riseTime);  // of its way
-    const Vec3 p_W = puff.p_W + gone * Vec3(aside * x, aside * y, rise);
+    const Vec3 p_W = puff.p_W + gone * (up * Vec3(aside * x, aside * y, rise));
     const double left = 1.0 - puff.age / smokeSeconds;
     const double opacity = densest * puff.strength * left * left * std::min(1.0, puff.age / 0.06);
     seen.push_back({toCamera * (p_W - camera.position), smallest + grown * gone, opacity, offset});

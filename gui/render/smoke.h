@@ -53,7 +53,7 @@ struct SmokeList {
   std::vector<std::uint32_t> index;  ///< of triangles, farthest puffs first
 };
 
-/// Puffs as the camera sees them: they rise along z of W, slow down, spread, and thin out until smokeSeconds.
-[[nodiscard]] SmokeList makeSmokeList(const CameraSample& camera, std::span<const Puff> puffs);
+/// Puffs as the camera sees them: they rise against gravity, slow down, spread, and thin out until smokeSeconds.
+[[nodiscard]] SmokeList makeSmokeList(const CameraSample& camera, const Vec3& down, std::span<const Puff> puffs);
 
 }  // namespace calot::gui

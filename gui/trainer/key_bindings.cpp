@@ -104,6 +104,11 @@ std::optional<KeyAction> actionOf(int key) {
     case Qt::Key_V:
       action.kind = KeyAction::Kind::scopePedal;
       return action;
+    case Qt::Key_X:
+    case Qt::Key_C:
+      action.kind = KeyAction::Kind::retraction;
+      action.more = key == Qt::Key_X;
+      return action;
     case Qt::Key_Space:
       action.kind = KeyAction::Kind::switchHand;
       return action;
@@ -140,6 +145,7 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
   } else {
     out = {{instruments.driven, "right hand: " + instruments.names}, {instruments.other, "the same for the left hand"}};
   }
+  out.push_back({"X, C", "assistant: retract more, less"});
   if (scope) {
     const std::vector<KeyHelp> keys{{"J, L, I, K", "endoscope: look left, right, up, down"},
                                     {"O, U", "endoscope: in, out"},

@@ -18,6 +18,7 @@ struct KeyAction {
     switchHand,  ///< passes mouse and keyboard to the other hand
     toggleLock,
     mount,       ///< exchanges an instrument
+    retraction,  ///< asks the assistant for more or less
     scope,       ///< moves the endoscope while it is held
     scopePedal,  ///< while it is held, the mouse moves the endoscope
     pause,       ///< or goes on
@@ -27,6 +28,7 @@ struct KeyAction {
   recorder::ScopeControl scope = recorder::ScopeControl::right;
   InstrumentKind instrument = InstrumentKind::none;
   bool otherHand = false;  ///< mount: not the hand that is driven
+  bool more = false;       ///< retraction
 };
 
 /// @param key of Qt::Key

@@ -107,6 +107,9 @@ void OperationView::press(const KeyAction& action) {
     case KeyAction::Kind::mount:
       emit mountRequested(action.instrument, action.otherHand);
       break;
+    case KeyAction::Kind::retraction:
+      emit retractionRequested(action.more);
+      break;
     case KeyAction::Kind::scope:
       if (scope_) scope_->hold(action.scope, true);
       break;

@@ -37,6 +37,7 @@ class OperationView : public ScenePictureWidget {
 
  signals:
   void mountRequested(calot::InstrumentKind instrument, bool otherHand);
+  void retractionRequested(bool more);
   void pauseRequested();
   void handSwitched();
   void pointerHeld(bool held);

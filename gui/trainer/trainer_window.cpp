@@ -73,6 +73,9 @@ void TrainerWindow::connectPages() {
   connect(scenes_, &ScenesPage::demonstrationRequested, this,
           [this](const QString& file) { openScene(file, Purpose::demonstration); });
   connect(view_, &OperationView::mountRequested, this, &TrainerWindow::mount);
+  connect(view_, &OperationView::retractionRequested, this, [this](bool more) {
+    if (session_) session_->askForRetraction(more);
+  });
   connect(view_, &OperationView::pauseRequested, this, &TrainerWindow::togglePause);
   connect(view_, &OperationView::handSwitched, this, &TrainerWindow::refresh);
   connect(view_, &OperationView::pointerHeld, this, [this](bool held) {

@@ -117,6 +117,13 @@ bool TrainingSession::mount(Hand hand, InstrumentKind instrument) {
   return true;
 }
 
+bool TrainingSession::askForRetraction(bool more) {
+  const std::lock_guard lock(mutex_);
+  if (controlled_ == nullptr || status_.stage != Stage::running) return false;
+  controlled_->ask(more);
+  return true;
+}
+
 std::optional<double> TrainingSession::shown(std::uint64_t step) {
   tap_.shown();
   const std::optional<MotionClock::Time> motion = step > 0 ? motions_.of(step - 1) : std::nullopt;

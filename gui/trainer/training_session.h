@@ -89,6 +89,8 @@ class TrainingSession {
   bool goBack(double time);
   /// Exchanges a hand's instrument, which takes TrainingSettings::exchange; meanwhile the hand has none.
   bool mount(Hand hand, InstrumentKind instrument);
+  /// Asks the assistant for more or less retraction.
+  bool askForRetraction(bool more);
   /// Ends what runs as stopped and waits for its recording; no command does anything any more.
   void stop();
   /// A view was shown. @param step how many steps its State has behind it. @return how long ago the last motion in it

@@ -11,9 +11,11 @@ namespace {
 
 using Subject = EventWords::Subject;
 
-constexpr std::array<EventWords, 23> told{{
+constexpr std::array<EventWords, 25> told{{
     {EventKind::instrumentExchange, Subject::none, "instrument exchanged", false},
     {EventKind::instrumentsTouched, Subject::none, "instruments touched", false},
+    {EventKind::retractionMore, Subject::structure, "more retraction asked for", false},
+    {EventKind::retractionLess, Subject::structure, "less retraction asked for", false},
     {EventKind::graspSlip, Subject::structure, "slipped in the jaws", true},
     {EventKind::tissueTear, Subject::structure, "torn out of the jaws", true},
     {EventKind::strandsTorn, Subject::connective, "torn instead of burned", true},

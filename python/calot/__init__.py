@@ -9,7 +9,7 @@ from . import _calot
 from ._arrays import Group, Result
 from ._assess import Assessment, Value, assess, checkpoints, record
 from ._cohort import Cohort
-from ._environment import COAGULATE, CUT, FIRE, LOCK, Environment, Scene, action
+from ._environment import COAGULATE, CUT, FIRE, LOCK, RETRACT_LESS, RETRACT_MORE, Environment, Scene, action
 from ._errors import DamagedError, Error, FailureError, InvalidError, RefusedError, ReplayError, UndecidedError
 from ._moment import Camera, Instrument, Moment, Surface
 from ._recording import Recording, Replay, Signature, Tool, open, replay  # noqa: A004
@@ -35,7 +35,7 @@ def result_units() -> dict[str, str]:
 
 
 __all__ = [
-    "COAGULATE", "CUT", "FIRE", "LOCK", "Assessment", "Camera", "Cohort", "DamagedError", "Environment", "Error", "FailureError", "Group", "Instrument",
+    "COAGULATE", "CUT", "FIRE", "LOCK", "RETRACT_LESS", "RETRACT_MORE", "Assessment", "Camera", "Cohort", "DamagedError", "Environment", "Error", "FailureError", "Group", "Instrument",
     "InvalidError", "Moment", "Recording", "RefusedError", "Replay", "ReplayError", "Result", "Scene", "Signature", "Surface", "Tool", "UndecidedError", "Value",
     "action", "assess", "checkpoints", "instruments", "open", "record", "replay", "result_units", "scenes", "simulation_version", "step_result_version"]
 

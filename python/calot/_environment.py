@@ -18,7 +18,7 @@ from ._recording import Path
 from ._spaces import environment_base, space_classes
 
 #: Bits of an action's buttons.
-CUT, COAGULATE, FIRE, LOCK = 1, 2, 4, 8
+CUT, COAGULATE, FIRE, LOCK, RETRACT_MORE, RETRACT_LESS = 1, 2, 4, 8, 16, 32
 
 #: Names of the numbers of one hand's action, and their units.
 ACTION = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("jaw", "rad"), ("buttons", ""))
@@ -64,8 +64,8 @@ class Environment(_Base):  # type: ignore[misc]
     """An attempt at a scene, one step (10 ms) a call.
 
     An action has shape (2, 6): for the left and the right hand the tip's position x, y, z at the step's end (m, in the scene's frame W), the roll about the
-    shaft (rad), the opening of the jaws (rad), and the buttons as a sum of CUT, COAGULATE, FIRE and LOCK
-    (rounded to a whole number). The shaft passes through the hand's port. Between two actions the hands move evenly.
+    shaft (rad), the opening of the jaws (rad), and the buttons as a sum of CUT, COAGULATE, FIRE, LOCK,
+    RETRACT_MORE and RETRACT_LESS, which ask the assistant as they go down (rounded to a whole number). The shaft passes through the hand's port. Between two actions the hands move evenly.
 
     reward, done: called with each step's Result; without them the reward is 0.0, and an attempt is done when its procedure is, or the simulation ran away.
     seconds: of attempt time after which it is truncated; 0: the scene's own limit alone.
@@ -92,7 +92,7 @@ class Environment(_Base):  # type: ignore[misc]
             at = self._parts[-1][1].stop
         box, dictionary = space_classes()
         low = [[*self.scene.workspace[0], -np.pi, 0.0, 0.0]] * 2
-        high = [[*self.scene.workspace[1], np.pi, _WIDEST_JAW, 15.0]] * 2
+        high = [[*self.scene.workspace[1], np.pi, _WIDEST_JAW, 63.0]] * 2
         self.action_space: Any = box(np.array(low), np.array(high), shape=(2, len(ACTION)), dtype=np.float64)
         self.observation_space: Any = dictionary({part: box(-np.inf, np.inf, shape=shape, dtype=np.float64) for part, _, shape in self._parts})
 

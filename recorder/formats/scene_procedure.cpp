@@ -81,6 +81,8 @@ std::vector<RetractionDescription> readRetractions(const JsonPlace& place,
     object.read("displacement", retraction.displacement);
     object.read("start", retraction.start);
     object.read("duration", retraction.duration);
+    object.read("stage", retraction.stage);
+    object.read("most", retraction.most);
     object.read("stiffness", retraction.stiffness);
     object.read("damping", retraction.damping);
     all.push_back(retraction);

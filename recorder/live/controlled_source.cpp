@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/live/controlled_source.h"
 
+#include "sim/scene/measurement.h"
+
 namespace calot::recorder {
 
 bool ControlledSource::next(std::uint64_t tick, TickSamples& out) {
@@ -24,7 +26,23 @@ bool ControlledSource::next(std::uint64_t tick, TickSamples& out) {
     }
     exchange_[h].left = left;
   }
+  press(out);
   return true;
+}
+
+/// One tick pressed, one tick let go.
+void ControlledSource::press(TickSamples& out) {
+  pressed_ = !pressed_ && (more_ > 0 || less_ > 0);
+  if (!pressed_) return;
+  InstrumentSample* const hand = isMeasurement(out.hand[1])   ? &out.hand[1]
+                                 : isMeasurement(out.hand[0]) ? out.hand.data()
+                                                              : nullptr;
+  pressed_ = hand != nullptr;
+  if (!pressed_) return;
+  std::atomic<std::uint32_t>& asked = more_ > 0 ? more_ : less_;
+  hand->buttons =
+      static_cast<std::uint8_t>(hand->buttons | (&asked == &more_ ? button::retractMore : button::retractLess));
+  --asked;
 }
 
 void ControlledSource::exchange(Hand hand, InstrumentKind instrument, std::uint32_t ticks) {

@@ -39,6 +39,9 @@ class ControlledSource final : public SampleSource {
     std::uint32_t ticks = 0;  ///< still to go
   };
   [[nodiscard]] std::optional<Exchange> exchanging(Hand hand) const;
+  /// Asks the assistant for more or less retraction: a press of one tick, by the right hand where it is measured, else
+  /// by the left one.
+  void ask(bool more) { ++(more ? more_ : less_); }
   /// The source ends with the next tick. @pre outcome is not running
   void finish(Outcome outcome) { finished_ = outcome; }
 
@@ -53,6 +56,7 @@ class ControlledSource final : public SampleSource {
 
  private:
   static constexpr std::int16_t asGiven = -1;
+  void press(TickSamples& out);
 
   SampleSource& source_;
   std::atomic<bool> held_{false};
@@ -63,6 +67,8 @@ class ControlledSource final : public SampleSource {
   std::array<std::atomic<std::int16_t>, handCount> mounted_{asGiven, asGiven};
   std::array<Exchanging, handCount> exchange_;
   std::atomic<Outcome> finished_{Outcome::running};
+  std::atomic<std::uint32_t> more_{0}, less_{0};  ///< requests that are still to be pressed
+  bool pressed_ = false;                          ///< in the last tick: what is pressed anew was let go before
 };
 
 }  // namespace calot::recorder

@@ -131,8 +131,10 @@ struct RetractionDescription {
   Vec3 displacement = Vec3::Zero();  ///< that the springs' far ends go (m)
   double start = 0.0;                ///< s
   double duration = 2.0;             ///< until they are there (s)
-  double stiffness = 200.0;          ///< of all springs together (N/m)
-  double damping = 2.0;              ///< (N s/m)
+  double stage = 0.0;  ///< that the trainee may ask for, more or less: share of the displacement; 0: cannot be asked
+  double most = 1.0;   ///< greatest pull, in displacements, at least 1
+  double stiffness = 200.0;  ///< of all springs together (N/m)
+  double damping = 2.0;      ///< (N s/m)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -142,6 +144,8 @@ struct RetractionDescription {
     visit("displacement", self.displacement);
     visit("start", self.start);
     visit("duration", self.duration);
+    visit("stage", self.stage);
+    visit("most", self.most);
     visit("stiffness", self.stiffness);
     visit("damping", self.damping);
   }

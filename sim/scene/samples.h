@@ -25,6 +25,8 @@ inline constexpr std::uint8_t cutPedal = 1U << 0U;        ///< yellow pedal: cut
 inline constexpr std::uint8_t coagulatePedal = 1U << 1U;  ///< blue pedal: coagulation
 inline constexpr std::uint8_t fire = 1U << 2U;            ///< closes a clip
 inline constexpr std::uint8_t lock = 1U << 3U;            ///< ratchet of a grasper
+inline constexpr std::uint8_t retractMore = 1U << 4U;     ///< asks the assistant, as it goes down, for a stage more
+inline constexpr std::uint8_t retractLess = 1U << 5U;     ///< or less retraction
 }  // namespace button
 
 /// One hand during one tick (1 ms): the device's real pose, in W, before any constraint.

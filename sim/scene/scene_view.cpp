@@ -32,6 +32,7 @@ SceneView SceneViewer::view(const State& state) {
   view.camera.position = state.camera.position;
   view.camera.orientation = state.camera.orientation;
   view.verticalFieldOfView = model.scene().verticalFieldOfView;
+  if (const Vec3& gravity = model.scene().gravity; !gravity.isZero(0.0)) view.down = gravity.normalized();
   return view;
 }
 

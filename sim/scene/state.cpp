@@ -115,6 +115,7 @@ State initialState(const Model& model, std::uint64_t seed) {
     s.clips = hand.clips;
     s.touchingSince.assign(model.structures().size(), 0);
   }
+  state.retraction = retractionsAtStart(scene);
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::start(model, state); });
   return state;
 }
@@ -213,7 +214,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
       }
     }
   }
-  if (read.tissue.key.size() != read.tissue.force.size()) return false;
+  if (read.tissue.key.size() != read.tissue.force.size() || !fits(model.scene(), read.retraction)) return false;
   state = std::move(read);
   return true;
 }

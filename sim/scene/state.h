@@ -13,6 +13,7 @@
 #include "sim/math/random.h"
 #include "sim/scene/digests.h"
 #include "sim/scene/model.h"
+#include "sim/scene/retraction.h"
 #include "sim/scene/samples.h"
 #include "sim/scene/step_result.h"
 #include "sim/tissue/tissues.h"
@@ -144,13 +145,14 @@ struct TissueContactState {
 
 struct State : Tissues::States {
   /// Components that are written in every step stand before those of tissue.
-  static constexpr std::size_t tissueFrom = 6;
+  static constexpr std::size_t tissueFrom = 7;
 
   ClockState clock;
   CameraState camera;
   std::array<HandState, handCount> hand;
   InstrumentTouchState instruments;
   TissueContactState tissue;
+  RetractionState retraction;
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
   template <class Self, class Visit>
@@ -168,6 +170,7 @@ struct State : Tissues::States {
     visit("hand.right", self.hand[1]);
     visit("instruments", self.instruments);
     visit("tissue", self.tissue);
+    visit("retraction", self.retraction);
   }
 
   /// Calls visit(kind, prefix, index, part) for the others: each is named prefix and the name of the index-th of its

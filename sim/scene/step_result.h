@@ -62,6 +62,8 @@ enum class EventKind : std::uint16_t {
   wallInjured = 44,        ///< cautery injured a vessel's wall, once a vessel; subject: structure; value: as vesselCut
   vesselSealed = 45,  ///< beside vesselBurned: coagulation closed the artery; subject: structure; value: as vesselCut
   instrumentsTouched = 46,  ///< one instrument began to touch the other; value: first normal force (N)
+  retractionMore = 47,      ///< the assistant was asked for more; subject: structure; value: how far it now goes (m)
+  retractionLess = 48,      ///< the same for less
 };
 
 /// Subject of smoke from connective tissue 0.

@@ -73,7 +73,31 @@ void SampleStage::readHand(std::span<const TickSamples> samples, std::size_t h, 
   hand.realPosition = pose.position;
   hand.realOrientation = pose.orientation;
   hand.realJaw = std::min(notNegative(newest->jaw), maxJaw);
+  readRequests(samples, h, state, log);
   hand.buttons = newest->buttons;
+}
+
+/// A button asks once, as it goes down, in whichever tick of the step that is.
+void SampleStage::readRequests(std::span<const TickSamples> samples, std::size_t h, State& state, StepLog& log) const {
+  std::uint8_t before = state.hand[h].buttons;
+  for (const TickSamples& tick : samples) {
+    if (!isMeasurement(tick.hand[h])) continue;
+    const auto pressed = static_cast<std::uint8_t>(tick.hand[h].buttons & ~before);
+    before = tick.hand[h].buttons;
+    if ((pressed & button::retractMore) != 0) askAssistant(h, true, state, log);
+    if ((pressed & button::retractLess) != 0) askAssistant(h, false, state, log);
+  }
+}
+
+void SampleStage::askAssistant(std::size_t h, bool more, State& state, StepLog& log) const {
+  const double time = static_cast<double>(state.clock.step) * model_.stepSeconds();
+  for (std::size_t r = 0; r < model_.retractions().size(); ++r) {
+    const RetractionDescription& d = model_.scene().retraction[r];
+    if (!(d.stage > 0.0)) continue;
+    askForRetraction(d, r, time, more, state.retraction);
+    log.emit(more ? EventKind::retractionMore : EventKind::retractionLess, h, model_.retractions()[r].organ, d.centre,
+             state.retraction.goal[r] * d.displacement.norm());
+  }
 }
 
 void SampleStage::run(std::span<const TickSamples> samples, State& state, StepLog& log) const {

@@ -11,9 +11,9 @@
 
 namespace calot {
 
-/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, the camera, and the
-/// digests of the samples as they came. A sample that is no measurement (isMeasurement) changes nothing but is
-/// reported when it begins and when it ends.
+/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, what is asked of the
+/// assistant, the camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement)
+/// changes nothing but is reported when it begins and when it ends.
 class SampleStage {
  public:
   explicit SampleStage(const Model& model) : model_(model) {}
@@ -22,6 +22,8 @@ class SampleStage {
 
  private:
   void readHand(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
+  void readRequests(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
+  void askAssistant(std::size_t hand, bool more, State& state, StepLog& log) const;
   const Model& model_;
 };
 

@@ -68,9 +68,8 @@ void wakeBodies(const Model& model, Bodies& bodies, const InstrumentTravels& tra
     state.organ[model.tissuePairs()[pair].b].quietSteps = 0;
   }
   for (std::size_t r = 0; r < model.retractions().size(); ++r) {
-    const RetractionDescription& d = model.scene().retraction[r];
     const double time = static_cast<double>(state.clock.step) * bodies.step();
-    if (time >= d.start && time < d.start + d.duration) state.organ[model.retractions()[r].organ].quietSteps = 0;
+    if (isMoving(state.retraction, r, time)) state.organ[model.retractions()[r].organ].quietSteps = 0;
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     activity.awake[b] = !(model.scene().solver.sleeping && bodies[b].quietSteps(state) >= quietSteps);

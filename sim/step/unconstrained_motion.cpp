@@ -35,16 +35,16 @@ void UnconstrainedMotion::gatherTies(const Bodies& bodies, const Activity& activ
   }
 }
 
-/// An assistant's springs: their far ends follow the scene's displacement, smoothly.
+/// An assistant's springs: their far ends follow the displacement, smoothly.
 void UnconstrainedMotion::gatherRetractions(const Bodies& bodies, const State& state, std::size_t organ) {
   const double time = static_cast<double>(state.clock.step) * bodies.step();
   for (std::size_t r = 0; r < model_.retractions().size(); ++r) {
     const RetractionModel& retraction = model_.retractions()[r];
     const RetractionDescription& d = model_.scene().retraction[r];
     if (retraction.organ != organ || time < d.start) continue;
-    const double s = std::min((time - d.start) / d.duration, 1.0);
-    const Vec3 gone = s * s * (3.0 - 2.0 * s) * d.displacement;
-    const Vec3 speed = 6.0 * s * (1.0 - s) / d.duration * d.displacement;
+    const RetractionPlace pull = retractionAt(state.retraction, r, time);
+    const Vec3 gone = pull.share * d.displacement;
+    const Vec3 speed = pull.rate * d.displacement;
     const auto share = 1.0 / static_cast<double>(retraction.node.size());
     for (const int node : retraction.node) {
       MaterialPoint place;

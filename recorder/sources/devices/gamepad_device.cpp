@@ -164,6 +164,8 @@ void GamepadDevice::put(std::int64_t now, double seconds, DeviceInput& out) {
   bit(SDL_CONTROLLER_BUTTON_Y, button::coagulatePedal);
   bit(SDL_CONTROLLER_BUTTON_A, button::fire);
   bit(SDL_CONTROLLER_BUTTON_B, button::lock);
+  bit(SDL_CONTROLLER_BUTTON_DPAD_RIGHT, button::retractMore);
+  bit(SDL_CONTROLLER_BUTTON_DPAD_LEFT, button::retractLess);
   out.samples.push_back(sample);
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "gui/render/cavity_mesh.h"
 #include "gui/render/renderer.h"
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"

@@ -43,11 +43,12 @@ TEST(Smoke, LastsAsLongAsItSays) {
 /// Puffs rise, spread, and thin out.
 TEST(Smoke, DriftsAndThinsOut) {
   const CameraSample camera;  // at the origin, along z
+  const Vec3 down = -Vec3::UnitZ();
   Puff puff{Vec3(0.0, 0.0, 0.1), 0.1, 1.0, 7};
   double lastRadius = 0.0, lastDepth = 0.0, lastOpacity = 1.0;
   for (const double age : {0.1, 0.5, 1.0, 1.5, 2.0, 2.4}) {
     puff.age = age;
-    const SmokeList list = makeSmokeList(camera, std::vector<Puff>{puff});
+    const SmokeList list = makeSmokeList(camera, down, std::vector<Puff>{puff});
     ASSERT_EQ(list.vertex.size(), 4U);
     const double radius = 0.5 * static_cast<double>(list.vertex[1].position[0] - list.vertex[0].position[0]);
     const auto depth = static_cast<double>(list.vertex[0].position[2]);
@@ -59,7 +60,21 @@ TEST(Smoke, DriftsAndThinsOut) {
     lastOpacity = static_cast<double>(list.vertex[0].opacity);
   }
   puff.age = smokeSeconds;
-  EXPECT_TRUE(makeSmokeList(camera, std::vector<Puff>{puff}).vertex.empty());
+  EXPECT_TRUE(makeSmokeList(camera, down, std::vector<Puff>{puff}).vertex.empty());
+}
+
+TEST(Smoke, RisesAgainstGravity) {
+  const CameraSample camera;
+  const Vec3 down = Vec3(0.0, -0.94, -0.34).normalized();
+  const auto middle = [&](double age) {
+    Vec3 sum = Vec3::Zero();
+    const SmokeList list = makeSmokeList(camera, down, std::vector<Puff>{{Vec3(0.0, 0.0, 0.1), age, 1.0, 7}});
+    for (const SmokeVertex& v : list.vertex)
+      sum += Vec3(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
+                  static_cast<double>(v.position[2]));
+    return Vec3(0.25 * sum);
+  };
+  EXPECT_NEAR((middle(2.0) - middle(0.1)).dot(-down), 0.030 * (std::exp(-0.1 / 0.8) - std::exp(-2.0 / 0.8)), 1e-4);
 }
 
 TEST(Smoke, VeilsWhatLiesBehindAndNothingElse) {

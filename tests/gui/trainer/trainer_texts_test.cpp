@@ -276,6 +276,10 @@ TEST(KeyBindings, EveryKeyOnceAndEveryControlHasOne) {
   EXPECT_EQ(scope.size(), 10U) << "five joints, both ways";
   EXPECT_EQ(keyHelp(true, true, false).size(), keyHelp(true, false, false).size() + 5) << "told where it moves";
   EXPECT_EQ(mounts.size(), 2 * instruments().size()) << "every instrument for either hand";
+  ASSERT_TRUE(actionOf(Qt::Key_X) && actionOf(Qt::Key_C));
+  EXPECT_EQ(actionOf(Qt::Key_X)->kind, KeyAction::Kind::retraction);
+  EXPECT_TRUE(actionOf(Qt::Key_X)->more);
+  EXPECT_FALSE(actionOf(Qt::Key_C)->more);
   EXPECT_FALSE(actionOf(Qt::Key_Tab)) << "leads out of the picture";
 }
 

@@ -18,7 +18,7 @@ nlohmann::json sceneWithProcedure() {
   scene["procedure"] = nlohmann::json::parse(R"({"specimen": "liver", "fat": "pad",
     "divide": [{"vessel": "branch", "patient": 3, "specimen": 2, "patientAtStart": false}], "spare": ["trunk"]})");
   scene["retraction"] = nlohmann::json::parse(R"([{"organ": "liver", "centre": [0, 0.01, 0], "radius": 0.02,
-    "displacement": [0, 0.005, 0], "start": 1, "duration": 3, "stiffness": 100, "damping": 4}])");
+    "displacement": [0, 0.005, 0], "start": 1, "duration": 3, "stage": 0.5, "most": 3, "stiffness": 100, "damping": 4}])");
   scene["clip"] =
       nlohmann::json::parse(R"({"width": 0.001, "legs": 0.009, "leastGap": 0.002, "leastJunctionGap": 0.003})");
   scene["cautery"] =
@@ -50,6 +50,8 @@ TEST(SceneProcedure, EveryValueArrives) {
   EXPECT_EQ(scene.retraction[0].displacement, Vec3(0.0, 0.005, 0.0));
   EXPECT_EQ(scene.retraction[0].start, 1.0);
   EXPECT_EQ(scene.retraction[0].duration, 3.0);
+  EXPECT_EQ(scene.retraction[0].stage, 0.5);
+  EXPECT_EQ(scene.retraction[0].most, 3.0);
   EXPECT_EQ(scene.retraction[0].stiffness, 100.0);
   EXPECT_EQ(scene.retraction[0].damping, 4.0);
   EXPECT_EQ(scene.clip.width, 0.001);
@@ -81,6 +83,8 @@ TEST(SceneProcedure, EveryFaultIsNamedWithItsPlace) {
   EXPECT_EQ(fault("/procedure/spare/0", "\"branch\""), "/procedure/spare/0: this vessel is to be divided");
   EXPECT_EQ(fault("/procedure/spare/0", "\"twig\""), "/procedure/spare/0: the scene has no vessel of this name");
   EXPECT_EQ(fault("/retraction/0/organ", "\"pad\""), "/retraction/0/organ: the scene has no organ of this name");
+  EXPECT_EQ(fault("/retraction/0/stage", "1.5"), "/retraction/0/stage: 1.5 is not in [0, 1]");
+  EXPECT_EQ(fault("/retraction/0/most", "0.5"), "/retraction/0/most: 0.5 is not in [1, 10]");
   EXPECT_EQ(fault("/retraction/0/radius", "0"), "/retraction/0/radius: 0 is not in (0, 1]");
   EXPECT_EQ(fault("/hands/right/clips", "-1"), "/hands/right/clips: -1 is not in [0, 100]");
   EXPECT_EQ(fault("/fat/0/triangle/corners", "[[0, 0, 0], [0.01, 0, 0], [0.02, 0, 0]]"),
@@ -97,6 +101,8 @@ TEST(SceneProcedure, DefaultsAreTheSchemas) {
   EXPECT_EQ(DivideDescription().patient, number("divide", "patient"));
   EXPECT_EQ(DivideDescription().specimen, number("divide", "specimen"));
   EXPECT_EQ(RetractionDescription().duration, number("retraction", "duration"));
+  EXPECT_EQ(RetractionDescription().stage, number("retraction", "stage"));
+  EXPECT_EQ(RetractionDescription().most, number("retraction", "most"));
   EXPECT_EQ(RetractionDescription().stiffness, number("retraction", "stiffness"));
   EXPECT_EQ(RetractionDescription().damping, number("retraction", "damping"));
   EXPECT_EQ(ClipDescription().width, number("clip", "width"));

@@ -163,6 +163,92 @@ TEST(Retraction, PullsWhatLiesInItsSphereAndThenSleeps) {
   EXPECT_TRUE(rig.step(home).organ[0].asleep) << "held still, it is at rest";
 }
 
+/// Presses a button for one tick of a step, which other ticks have not.
+std::vector<Event> ask(test::Rig& rig, const SceneDescription& scene, std::uint8_t button, std::size_t tick) {
+  std::vector<TickSamples> samples(scene.ticksPerStep);
+  for (TickSamples& each : samples) {
+    each.camera = scene.camera;
+    for (std::size_t h = 0; h < handCount; ++h) {
+      each.hand[h].position = scene.hands[h].home;
+      each.hand[h].instrument = scene.hands[h].instrument;
+    }
+  }
+  samples[tick].hand[1].buttons = button;
+  return rig.stepper.step(rig.state, samples).events;
+}
+
+TEST(Retraction, IsAskedForByAButtonAndTold) {
+  SceneDescription scene = test::blockScene(300, 6);
+  RetractionDescription pull;
+  pull.organ = "block";
+  pull.centre = Vec3(0.03, 0.0, test::blockTop);
+  pull.radius = 0.012;
+  pull.displacement = Vec3(0.0, 0.0, 0.002);
+  pull.duration = 0.2;
+  pull.stage = 1.0;
+  pull.most = 2.0;
+  scene.retraction.push_back(pull);
+  pull.stage = 0.0;  // another one, which cannot be asked for
+  scene.retraction.push_back(pull);
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  const Vec3 home = scene.hands[0].home;
+  double before = 0.0;
+  for (int i = 0; i < 700; ++i) before = rig.step(home).organ[0].maxDisplacement;
+  EXPECT_TRUE(rig.step(home).organ[0].asleep);
+
+  const std::vector<Event> told = ask(rig, scene, button::retractMore, 4);
+  ASSERT_EQ(told.size(), 1U) << "once, of one tick among ten, by the one that can be asked";
+  EXPECT_EQ(told[0].kind, EventKind::retractionMore);
+  EXPECT_EQ(told[0].hand, 1);
+  EXPECT_EQ(told[0].subject, 0);
+  EXPECT_DOUBLE_EQ(told[0].value, 0.004);
+  EXPECT_EQ(told[0].position, pull.centre);
+  double after = 0.0;
+  for (int i = 0; i < 100; ++i) after = rig.step(home).organ[0].maxDisplacement;
+  EXPECT_GT(after, 1.3 * before) << "it woke and was pulled farther";
+
+  const std::vector<Event> less = ask(rig, scene, button::retractLess, 9);
+  ASSERT_EQ(less.size(), 1U);
+  EXPECT_EQ(less[0].kind, EventKind::retractionLess);
+  EXPECT_DOUBLE_EQ(less[0].value, 0.002);
+  EXPECT_TRUE(ask(rig, scene, 0, 0).empty());
+}
+
+/// Held down, a button asks once.
+TEST(Retraction, AButtonThatStaysDownAsksOnce) {
+  SceneDescription scene = test::blockScene(300, 6);
+  RetractionDescription pull;
+  pull.organ = "block";
+  pull.centre = Vec3(0.03, 0.0, test::blockTop);
+  pull.radius = 0.012;
+  pull.displacement = Vec3(0.0, 0.0, 0.002);
+  pull.stage = 0.25;
+  pull.most = 2.0;
+  scene.retraction.push_back(pull);
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  std::size_t asked = 0;
+  for (int i = 0; i < 20; ++i) {
+    TickSamples tick;
+    tick.camera = scene.camera;
+    tick.hand[0].position = scene.hands[0].home;
+    tick.hand[1].position = scene.hands[1].home;
+    tick.hand[0].buttons = button::retractMore;
+    tick.hand[1].valid = false;
+    tick.hand[1].buttons = button::retractLess;  // of a hand that nothing measured
+    const std::vector<TickSamples> samples(scene.ticksPerStep, tick);
+    for (const Event& e : rig.stepper.step(rig.state, samples).events) {
+      EXPECT_NE(e.kind, EventKind::retractionLess);
+      asked += e.kind == EventKind::retractionMore ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(asked, 1U);
+  EXPECT_EQ(rig.state.retraction.goal[0], 1.25);
+}
+
 TEST(ProcedureModelBuild, SaysWhatIsWrong) {
   const auto error = [](auto&& change) {
     SceneDescription scene = twoDucts();

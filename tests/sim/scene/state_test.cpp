@@ -97,7 +97,7 @@ TEST_F(StateTest, ChangingAFieldChangesItsDigestAndNoOther) {
 TEST_F(StateTest, ComponentsAreNamedInOrder) {
   EXPECT_EQ(model_->layout().components,
             (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right", "instruments", "tissue",
-                                      "organ.block", "organ.ball", "charred.block", "charred.ball"}));
+                                      "retraction", "organ.block", "organ.ball", "charred.block", "charred.ball"}));
 }
 
 /// An unwritten component keeps its digest, so a component that is written and not marked would be seen here.

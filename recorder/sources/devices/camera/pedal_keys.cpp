@@ -17,11 +17,11 @@ namespace {
 constexpr double jawSpeedOfKeys = 1.8;  // rad/s, as by the trainer's keys
 
 struct KeySet {
-  int open, close, lock, cut, cutToo, coagulate, coagulateToo, fire;
+  int open, close, lock, cut, cutToo, coagulate, coagulateToo, fire, more, less;
 };
 constexpr std::array<KeySet, handCount> keySets{
-    KeySet{KEY_Q, KEY_A, KEY_LEFTALT, KEY_Z, KEY_Z, KEY_X, KEY_X, KEY_1},
-    KeySet{KEY_P, KEY_L, KEY_RIGHTALT, KEY_COMMA, KEY_F1, KEY_DOT, KEY_F2, KEY_0}};
+    KeySet{KEY_Q, KEY_A, KEY_LEFTALT, KEY_Z, KEY_Z, KEY_X, KEY_X, KEY_1, KEY_2, KEY_3},
+    KeySet{KEY_P, KEY_L, KEY_RIGHTALT, KEY_COMMA, KEY_F1, KEY_DOT, KEY_F2, KEY_0, KEY_9, KEY_8}};
 
 }  // namespace
 
@@ -66,6 +66,8 @@ PedalKeys::Hold PedalKeys::hold(Hand hand) const {
   press(is(key.coagulate) || is(key.coagulateToo), button::coagulatePedal);
   press(is(key.fire), button::fire);
   press(is(key.lock), button::lock);
+  press(is(key.more), button::retractMore);
+  press(is(key.less), button::retractLess);
   out.jawRate = (is(key.open) ? jawSpeedOfKeys : 0.0) - (is(key.close) ? jawSpeedOfKeys : 0.0);
   return out;
 }

@@ -285,5 +285,23 @@ TEST(ControlledSource, AnExchangeTakesItsTime) {
   EXPECT_FALSE(controlled.exchanging(Hand::left));
 }
 
+/// A request is one tick pressed and one let go, by a hand that is measured.
+TEST(ControlledSource, AsksForRetractionTickByTick) {
+  SourceRig rig;
+  rig.source->waitForFirst(1.0);
+  ControlledSource controlled(*rig.source);
+  rig.run(controlled, 10);
+  controlled.ask(true);
+  controlled.ask(true);
+  controlled.ask(false);
+  std::vector<int> pressed;
+  for (int i = 0; i < 8; ++i) {
+    rig.run(controlled, 1);
+    pressed.push_back(rig.now.hand[0].buttons | rig.now.hand[1].buttons);
+  }
+  constexpr int more = button::retractMore, less = button::retractLess;
+  EXPECT_EQ(pressed, (std::vector<int>{more, 0, more, 0, less, 0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace calot::recorder

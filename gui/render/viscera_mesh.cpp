@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gui/render/viscera_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "gui/render/loft.h"
+
+namespace calot::gui {
+namespace {
+
+constexpr double gap = 0.002;     // between all of it and what may not be hidden (m)
+constexpr double buried = 0.011;  // how far the omentum's highest fold lies below the bowel's highest (m)
+
+// The omentum: a grid of cells about the hilum, from below the camera to below the liver.
+constexpr double cell = 0.004;  // m
+constexpr double aside = 0.17, towards = 0.13, away = 0.12;
+
+/// Folds of the apron, from 0 down (m): long ones across it, lobes on them.
+double apron(double x, double z) {
+  const double longFolds = std::sin(61.0 * x + 22.0 * z + 1.5 * std::sin(34.0 * z));
+  const double lobes = std::sin(230.0 * x + 60.0 * z + 0.4) * std::sin(190.0 * z - 90.0 * x);
+  const double small = std::sin(520.0 * x - 210.0 * z) * std::sin(470.0 * z + 160.0 * x + 0.9);
+  return 0.0042 * (longFolds - 1.0) + 0.0022 * (lobes - 1.0) + 0.0008 * (small - 1.0);
+}
+
+/// Towards its border it sinks away, so that nobody sees one.
+double sunk(double share) { return 0.06 * std::pow(std::abs(share), 6.0); }
+
+Mesh omentum(double x0, double z0, double top) {
+  Mesh mesh;
+  const int across = static_cast<int>(2.0 * aside / cell), along = static_cast<int>((towards + away) / cell);
+  for (int i = 0; i <= across; ++i) {
+    for (int j = 0; j <= along; ++j) {
+      const double x = x0 - aside + i * cell, z = z0 - towards + j * cell;
+      const double y = top + apron(x, z) - sunk((x - x0) / aside);
+      mesh.position.emplace_back(x, y, z);
+    }
+  }
+  mesh.triangle = gridTriangles(across + 1, along + 1, false);
+  mesh.normal = vertexNormals(mesh.position, mesh.triangle);
+  return mesh;
+}
+
+/// A piece of gut along a path in the horizontal plane: a tube that bulges between furrows.
+struct Gut {
+  std::vector<std::array<double, 2>> path;  ///< x, z from the hilum (m)
+  double radius;                            ///< at its bulges (m)
+  double furrows;                           ///< distance from one to the next (m)
+  double depth;                             ///< of a furrow, share of the radius
+};
+
+// Assumed: sizes of adults' bowel that is neither empty nor blown up.
+const Gut& colon() {
+  static const Gut gut{
+      {{0.20, 0.075}, {0.145, 0.060}, {0.100, 0.028}, {0.072, -0.008}, {0.062, -0.050}, {0.070, -0.10}},
+      0.0175,
+      0.026,
+      0.16};
+  return gut;
+}
+const Gut& duodenum() {
+  static const Gut gut{
+      {{-0.14, 0.020}, {-0.09, 0.018}, {-0.055, -0.002}, {-0.040, -0.035}, {-0.043, -0.09}}, 0.0135, 0.011, 0.035};
+  return gut;
+}
+
+/// Between the points of a path as Catmull and Rom have it.
+std::vector<Vec3> smoothed(const Gut& gut, double x0, double z0, double y) {
+  const auto at = [&](std::ptrdiff_t i) {
+    const auto last = static_cast<std::ptrdiff_t>(gut.path.size()) - 1;
+    const std::array<double, 2>& p = gut.path[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, last))];
+    return Vec3(x0 + p[0], y, z0 + p[1]);
+  };
+  constexpr int parts = 16;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i + 1 < gut.path.size(); ++i) {
+    const auto k = static_cast<std::ptrdiff_t>(i);
+    const Vec3 a = at(k - 1), b = at(k), c = at(k + 1), d = at(k + 2);
+    for (int part = 0; part < parts; ++part) {
+      const double t = static_cast<double>(part) / parts;
+      points.emplace_back(b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a))));
+    }
+  }
+  points.push_back(at(static_cast<std::ptrdiff_t>(gut.path.size()) - 1));
+  return points;
+}
+
+Mesh tubeOf(const Gut& gut, double x0, double z0, double top) {
+  constexpr int around = 36;
+  const std::vector<Vec3> path = smoothed(gut, x0, z0, top - gut.radius);
+  std::vector<Ring> rings;
+  double gone = 0.0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Vec3 along = (path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]).normalized();
+    const Vec3 side = Vec3::UnitY().cross(along).normalized();
+    if (i > 0) gone += (path[i] - path[i - 1]).norm();
+    // A furrow is sharp, a bulge round.
+    const double bulge = std::abs(std::sin(std::numbers::pi * gone / gut.furrows));
+    const double radius = gut.radius * (1.0 - gut.depth * (1.0 - std::pow(bulge, 0.6)));
+    Ring& ring = rings.emplace_back();
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / around;
+      ring.emplace_back(path[i] + radius * (std::cos(angle) * side + std::sin(angle) * Vec3::UnitY()));
+    }
+  }
+  return loft(rings);
+}
+
+void append(Mesh& to, const Mesh& mesh) {
+  const Index3 first = Index3::Constant(static_cast<int>(to.position.size()));
+  to.position.insert(to.position.end(), mesh.position.begin(), mesh.position.end());
+  to.normal.insert(to.normal.end(), mesh.normal.begin(), mesh.normal.end());
+  for (const Index3& t : mesh.triangle) to.triangle.emplace_back(t + first);
+}
+
+}  // namespace
+
+Viscera makeViscera(std::span<const Vec3> vessels, double lowest) {
+  Viscera viscera;
+  if (vessels.empty()) return viscera;
+  Box box;
+  for (const Vec3& p : vessels) box.include(p);
+  const Vec3 hilum = 0.5 * (box.lower + box.upper);
+  const double top = lowest - gap;
+  viscera.omentum = omentum(hilum.x(), hilum.z(), top - buried);
+  for (const Gut* const gut : {&colon(), &duodenum()}) append(viscera.bowel, tubeOf(*gut, hilum.x(), hilum.z(), top));
+  return viscera;
+}
+
+}  // namespace calot::gui
