@@ -118,7 +118,7 @@ Material gallbladder(vec3 mm, vec3 normal, Broad broad) {
   // Serosa: pale where the wall is thicker, with a little fat under it.
   float pale = smoothstep(0.10, 0.60, broad.b.y + 0.25 * middle.w);
   m.albedo = mix(m.albedo, vec3(0.200, 0.160, 0.080), 0.45 * pale);
-  m.albedo = mix(m.albedo, vec3(0.085, 0.014, 0.017), 0.62 * veins(mm / 46.0, normal));
+  m.albedo = mix(m.albedo, vec3(0.085, 0.014, 0.017), 0.48 * veins(mm / 60.0, normal));
   m.albedo *= 1.0 + 0.10 * fine.w;
   m.scatter = vec3(0.26, 0.24, 0.18);
   m.slope = 0.55 / 7.0 * middle.xyz + 0.030 / 1.3 * fine.xyz;
@@ -239,16 +239,16 @@ Material cavityWall(vec3 mm, Broad broad) {
 // Lobes as of fat, in a thin membrane that is pink where it is thin, with long vessels.
 Material omentum(vec3 mm, vec3 normal, Broad broad) {
   vec4 bend = broad.a;
-  vec4 lobes = noise(mm / 5.6 + 0.25 * bend.xyz);
+  vec4 lobes = noise(mm / 7.2 + 0.25 * bend.xyz);
   vec4 fine = fineNoise(mm / 1.9);
   float folded = min(abs(lobes.w) * 1.6, 1.0);
   Material m;
-  m.albedo = mix(vec3(0.330, 0.130, 0.045), vec3(0.520, 0.300, 0.105), smoothstep(0.08, 0.60, sqrt(folded)));
+  m.albedo = mix(vec3(0.400, 0.185, 0.065), vec3(0.540, 0.320, 0.115), smoothstep(0.05, 0.75, sqrt(folded)));
   m.albedo = mix(m.albedo, vec3(0.420, 0.170, 0.105), 0.75 * smoothstep(-0.05, 0.55, broad.b.x + 0.4 * broad.b.y));
-  m.albedo = mix(m.albedo, vec3(0.240, 0.030, 0.028), 0.60 * veins(mm / 83.0, normal));
+  m.albedo = mix(m.albedo, vec3(0.240, 0.030, 0.028), 0.55 * veins(mm / 83.0, normal));
   m.albedo *= 1.0 + 0.10 * fine.w;
   m.scatter = vec3(0.40, 0.24, 0.10);
-  m.slope = 2.0 / 5.6 * sign(lobes.w) * (1.0 - folded) * lobes.xyz + 0.05 / 1.9 * fine.xyz;
+  m.slope = 1.7 / 7.2 * sign(lobes.w) * (1.0 - folded) * lobes.xyz + 0.05 / 1.9 * fine.xyz;
   m.mirror = vec3(0.030);
   m.roughness = 0.42;
   m.film = 0.8;

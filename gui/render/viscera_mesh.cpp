@@ -18,7 +18,7 @@ constexpr double buried = 0.011;  // how far the omentum's highest fold lies bel
 
 // The omentum: a grid of cells about the hilum, from below the camera to below the liver.
 constexpr double cell = 0.004;  // m
-constexpr double aside = 0.17, towards = 0.13, away = 0.12;
+constexpr double halfWidth = 0.17, towards = 0.13, beyond = 0.22;
 
 /// Folds of the apron, from 0 down (m): long ones across it, lobes on them.
 double apron(double x, double z) {
@@ -33,11 +33,11 @@ double sunk(double share) { return 0.06 * std::pow(std::abs(share), 6.0); }
 
 Mesh omentum(double x0, double z0, double top) {
   Mesh mesh;
-  const int across = static_cast<int>(2.0 * aside / cell), along = static_cast<int>((towards + away) / cell);
+  const int across = static_cast<int>(2.0 * halfWidth / cell), along = static_cast<int>((towards + beyond) / cell);
   for (int i = 0; i <= across; ++i) {
     for (int j = 0; j <= along; ++j) {
-      const double x = x0 - aside + i * cell, z = z0 - towards + j * cell;
-      const double y = top + apron(x, z) - sunk((x - x0) / aside);
+      const double x = x0 - halfWidth + i * cell, z = z0 - towards + j * cell;
+      const double y = top + apron(x, z) - sunk((x - x0) / halfWidth);
       mesh.position.emplace_back(x, y, z);
     }
   }

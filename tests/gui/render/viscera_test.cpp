@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "gui/render/surface_form.h"
 #include "gui/render/surroundings.h"
 #include "tests/gui/render/support/shapes.h"
 
@@ -30,7 +29,7 @@ TEST(Viscera, LieBelowWhatMayNotBeHidden) {
 TEST(Viscera, AreAnApronSeenFromAboveAndClosedTubes) {
   const Viscera viscera = makeViscera(hilum, -0.06);
   for (const Vec3& n : viscera.omentum.normal) EXPECT_GT(n.y(), 0.0);
-  EXPECT_TRUE(isClosed(viscera.bowel.triangle));
+  EXPECT_GT(test::volume(viscera.bowel.position, viscera.bowel.triangle), 1e-4) << "their skin looks outwards";
   double above = 0.0;
   for (const Vec3& p : viscera.bowel.position) above = std::max(above, p.y() - (-0.06 - 0.002 - 0.011));
   EXPECT_GT(above, 0.008) << "the bowel rises over the apron";
