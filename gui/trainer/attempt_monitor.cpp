@@ -34,6 +34,8 @@ AttemptMonitor::AttemptMonitor(const Model& model)
     figures_.hand[h].instrument = model.scene().hands[h].instrument;
     figures_.hand[h].clips = model.scene().hands[h].clips;
   }
+  for (const RetractionDescription& pull : model.scene().retraction)
+    if (pull.stage > 0.0) figures_.retraction = pull.displacement.norm();
   figures_.vessel.resize(model.scene().vessels.size());
   figures_.seen = std::chrono::steady_clock::now();
 }
@@ -75,6 +77,9 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   }
   for (std::size_t v = 0; v < record.result.vessel.size(); ++v)
     figures_.vessel[v] = {record.result.vessel[v].clips, record.result.vessel[v].partings};
+  for (const Event& event : record.result.events)
+    if (event.kind == EventKind::retractionMore || event.kind == EventKind::retractionLess)
+      figures_.retraction = event.value;
   figures_.procedure = judgement;
   if (bed_ < record.result.connective.size()) figures_.attached = record.result.connective[bed_].attached;
   figures_.ticks += record.ticks.size();

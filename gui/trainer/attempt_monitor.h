@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "gui/trainer/mistakes.h"
@@ -36,6 +37,7 @@ struct AttemptFigures {
   std::vector<Vessel> vessel;
   ProcedureStatus procedure;
   bool touched = false;                                  ///< an instrument has touched, grasped or burned tissue so far
+  std::optional<double> retraction;  ///< how far the assistant's pull goes, where it can be asked for (m)
   double attached = 0.0;                                 ///< of the procedure's bed, as a share
   std::uint64_t ticks = 0;                               ///< of this run: a branch counts from its fork on
   std::uint64_t missedDeadlines = 0;                     ///< of those

@@ -76,6 +76,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       pointer_(plainLabel("pointer")),
       result_(plainLabel("result")),
       hand_{plainLabel("left"), plainLabel("right")},
+      assistant_(plainLabel("assistant")),
       progress_(new QProgressBar),
       lower_(new QStackedWidget),
       keys_(scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
@@ -136,6 +137,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   layout->addWidget(result_);
   layout->addSpacing(6);
   for (QLabel* const hand : hand_) layout->addWidget(hand);
+  layout->addWidget(assistant_);
   layout->addSpacing(10);
   layout->addWidget(lower_, 1);
   layout->addLayout(buttons);
@@ -163,6 +165,7 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   announce(pointer_, text.pointer);
   say(result_, text.result);
   for (std::size_t h = 0; h < handCount; ++h) say(hand_[h], text.hand[h]);
+  say(assistant_, text.assistant);
   progress_->setVisible(status.stage == Stage::takingParent);
   progress_->setValue(static_cast<int>(std::floor(100.0 * status.progress)));
 

@@ -43,6 +43,7 @@ class RunPanel : public QWidget {
   recorder::Mode mode_;
   QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *pointer_, *result_;
   std::array<QLabel*, handCount> hand_;
+  QLabel* assistant_;
   QProgressBar* progress_;
   QStackedWidget* lower_;
   QWidget *keys_, *mistakes_;

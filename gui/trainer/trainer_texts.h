@@ -19,6 +19,7 @@ struct PanelText {
   QString deadlines;
   bool late = false;  ///< deadlines were missed within the last second
   QString phase;
+  QString assistant;  ///< how far it retracts; empty where the scene has none that can be asked
   QString score;    ///< critical view and errors; practice only
   QString hint;     ///< practice only
   QString pointer;  ///< who has the mouse, and how that changes

@@ -230,6 +230,16 @@ TEST_F(Texts, AnExchangeIsShownWhileItLasts) {
   EXPECT_EQ(text.hand[0], "Left: grasper");
 }
 
+TEST_F(Texts, TheAssistantIsNamedWhereItCanBeAsked) {
+  TrainingStatus status = running();
+  const auto assistant = [&] {
+    return panelText(status, operation(), "", recorder::Mode::assessment, Hand::right).assistant;
+  };
+  EXPECT_EQ(assistant(), "");
+  status.figures.retraction = 0.009;
+  EXPECT_EQ(assistant(), "Assistant: retracts 9 mm");
+}
+
 TEST_F(Texts, WhoHasTheMouseAndWhatChangesIt) {
   TrainingStatus status = running();
   const auto say = [&](recorder::Mode mode, Pointer pointer) {
