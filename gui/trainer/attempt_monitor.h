@@ -36,13 +36,13 @@ struct AttemptFigures {
   std::array<Hand, handCount> hand;
   std::vector<Vessel> vessel;
   ProcedureStatus procedure;
-  bool touched = false;                                  ///< an instrument has touched, grasped or burned tissue so far
-  std::optional<double> retraction;  ///< how far the assistant's pull goes, where it can be asked for (m)
-  double attached = 0.0;                                 ///< of the procedure's bed, as a share
-  std::uint64_t ticks = 0;                               ///< of this run: a branch counts from its fork on
-  std::uint64_t missedDeadlines = 0;                     ///< of those
-  std::uint64_t missedLately = 0;                        ///< of the ticks of the last hundred steps
-  double stretched = 0.0;                                ///< by how much the tick clock was (s)
+  bool touched = false;               ///< an instrument has touched, grasped or burned tissue so far
+  std::optional<double> retraction;   ///< how far the assistant's pull goes, where it can be asked for (m)
+  double attached = 0.0;              ///< of the procedure's bed, as a share
+  std::uint64_t ticks = 0;            ///< of this run: a branch counts from its fork on
+  std::uint64_t missedDeadlines = 0;  ///< of those
+  std::uint64_t missedLately = 0;     ///< of the ticks of the last hundred steps
+  double stretched = 0.0;             ///< by how much the tick clock was (s)
   std::shared_ptr<const std::vector<Mistake>> mistakes;  ///< never null
   std::chrono::steady_clock::time_point seen;            ///< when the last step was over
 

@@ -139,7 +139,8 @@ PanelText panelText(const TrainingStatus& status, const SceneDescription& scene,
   out.late = status.stage == Stage::running && figures.missedLately > 0;
   if (figures.procedure.phase != Phase::none)
     out.phase = "Phase: " + QString::fromStdString(wordFor(figures.procedure.phase));
-  if (figures.retraction) out.assistant = QString("Assistant: retracts %1 mm").arg(1e3 * *figures.retraction, 0, 'f', 0);
+  if (figures.retraction)
+    out.assistant = QString("Assistant: retracts %1 mm").arg(1e3 * *figures.retraction, 0, 'f', 0);
   if (practice) out.score = scoreText(scene, figures);
   if (practice && status.stage == Stage::running) out.hint = QString::fromStdString(hintFor(scene, summary, figures));
   for (std::size_t h = 0; h < handCount; ++h)

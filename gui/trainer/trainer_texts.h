@@ -20,9 +20,9 @@ struct PanelText {
   bool late = false;  ///< deadlines were missed within the last second
   QString phase;
   QString assistant;  ///< how far it retracts; empty where the scene has none that can be asked
-  QString score;    ///< critical view and errors; practice only
-  QString hint;     ///< practice only
-  QString pointer;  ///< who has the mouse, and how that changes
+  QString score;      ///< critical view and errors; practice only
+  QString hint;       ///< practice only
+  QString pointer;    ///< who has the mouse, and how that changes
   std::array<QString, handCount> hand;
   QString result;  ///< of an attempt that has ended: outcome and file
 };

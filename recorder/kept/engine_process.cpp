@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "recorder/engine/wire_forms.h"
+#include "recorder/formats/scene_gravity.h"
 #include "recorder/kept/receive_message.h"
 #include "recorder/kept/recorded_names.h"
 
@@ -83,6 +84,7 @@ void EngineProcess::load(const AttemptHeader& header, const Where& where) {
   if (identity_.stepResultVersion != header.stepResultVersion)
     fail(fmt::format("its results are of version {}, those of its engine {}", header.stepResultVersion,
                      identity_.stepResultVersion));
+  if (!header.assets.empty()) down_ = downOf(header.assets.front());
   results_.emplace(header);
   if (const std::string fault = results_->fault(answer.columns); !fault.empty()) fail(fault);
 }
@@ -141,6 +143,7 @@ Keyframe EngineProcess::keyframe() { return wire::fromWire(ask<wire::Keyframe>(w
 SceneView EngineProcess::view() {
   SceneView view;
   if (!wire::fromWire(ask<wire::View>(wire::AskView{}), view)) fail("the engine's scene view cannot be read");
+  view.down = down_;
   return view;
 }
 

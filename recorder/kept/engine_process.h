@@ -12,6 +12,7 @@
 #include "recorder/identity.h"
 #include "recorder/kept/child_process.h"
 #include "recorder/kept/result_reader.h"
+#include "sim/scene/scene_view.h"
 
 namespace calot::recorder {
 
@@ -58,6 +59,7 @@ class EngineProcess final : public Engine {
   EngineIdentity identity_;
   DigestLayout layout_;
   std::optional<ResultReader> results_;
+  Vec3 down_ = SceneView().down;  ///< no engine tells of it
   std::uint64_t steps_ = 0;
   std::size_t ticksPerStep_ = 0;
   std::size_t announced_ = 0;  ///< steps whose answers were not taken yet

@@ -165,9 +165,19 @@ function setTimeline() {
   showVerdict();
 }
 
+/** Of a scene file; zeros where it tells of none. The engine says what else is wrong with the file. */
+function gravityOf(bytes) {
+  try {
+    const { gravity } = JSON.parse(new TextDecoder().decode(bytes));
+    if (Array.isArray(gravity) && gravity.length === 3 && gravity.every(Number.isFinite)) return gravity;
+  } catch { /* no scene file */ }
+  return [0, 0, 0];
+}
+
 const fromReader = {
   scene: ({ files }) => {
     mark('scene');
+    threads.picture.postMessage({ kind: 'gravity', gravity: gravityOf(files[0].content) });
     threads.player.postMessage({ kind: 'scene', files });
   },
   undecided: ({ simulation }) => refused(`it is of simulation version ${simulation}, and this page has the engine of version ${state.engine.simulation} alone (${state.engine.software})`),

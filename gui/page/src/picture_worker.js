@@ -182,6 +182,7 @@ export function pictureWorker() {
     },
     orbit(m) { orbit = m.camera; later(); },
     events(m) { events = m; },
+    gravity(m) { module?.calot_gravity(...m.gravity); },
     reset() {
       seen = false;
       orbit = null;

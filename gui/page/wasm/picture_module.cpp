@@ -26,6 +26,7 @@ struct Pictures {
   gui::ScenePainter painter{*context};
   std::array<gui::DrawListMaker, 2> lists;  ///< the endoscope's, and another camera's: both remember surfaces
   SceneView view;
+  Vec3 down = SceneView().down;  ///< of the scene, which no view of an engine tells
   std::vector<gui::Puff> smoke;
 };
 
@@ -71,12 +72,19 @@ __attribute__((export_name("calot_warm"))) void calot_warm() {
   p.painter.draw(gui::DrawListMaker().make(view, sight, true), sight, view.verticalFieldOfView, 64, 64, settings);
 }
 
+/// Gravity of the scene whose views are to come; three zeros: none.
+__attribute__((export_name("calot_gravity"))) void calot_gravity(double x, double y, double z) {
+  const Vec3 gravity(x, y, z);
+  pictures().down = gravity.isZero(0.0) ? SceneView().down : Vec3(gravity.normalized());
+}
+
 /// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is none
 __attribute__((export_name("calot_view"))) int calot_view() {
   recorder::wire::View wire;
   SceneView view;
   if (!recorder::decode(page::placed(), wire) || !recorder::wire::fromWire(std::move(wire), view)) return 0;
   gui::checkView(view);
+  view.down = pictures().down;
   pictures().view = std::move(view);
   pictures().smoke.clear();
   return 1;

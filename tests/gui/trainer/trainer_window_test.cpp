@@ -186,6 +186,51 @@ TEST_F(Trainer, MouseAndKeysDriveTheHands) {
   EXPECT_NEAR(left.x(), 0.0, 1e-5);
 }
 
+/// The small scene with an assistant.
+recorder::LoadedScene sceneWithAssistant() {
+  std::vector<recorder::Asset> files = trainertest::smallLoadedScene().assets;
+  std::string text(reinterpret_cast<const char*>(files[0].bytes.data()), files[0].bytes.size());
+  text.insert(text.find("\"ticksPerStep\""),
+              R"("retraction": [{"organ": "gallbladder", "centre": [0.0165, 0.0617, -0.0174], "radius": 0.02,
+              "displacement": [0, 0.004, 0], "duration": 0.5, "stage": 0.5, "most": 2}], )");
+  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+  files[0].bytes.assign(bytes, bytes + text.size());
+  return recorder::sceneFromAssets(std::move(files));
+}
+
+TEST_F(Trainer, KeysAskTheAssistantForRetraction) {
+  TrainerWindow& window = open();
+  window.begin(sceneWithAssistant());
+  ASSERT_TRUE(runs(0.1));
+  const auto retracts = [&](double length) {
+    return QTest::qWaitFor(
+        [&] {
+          const std::optional<double> now = window.session()->status().figures.retraction;
+          return now && std::abs(*now - length) < 1e-9;
+        },
+        patience);
+  };
+  EXPECT_TRUE(retracts(0.004));
+  QTest::keyClick(window.view(), Qt::Key_X);
+  EXPECT_TRUE(retracts(0.006));
+  window.refresh();
+  EXPECT_EQ(text("assistant"), "Assistant: retracts 6 mm");
+  QTest::keyClick(window.view(), Qt::Key_C);
+  EXPECT_TRUE(retracts(0.004));
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  const std::filesystem::path file = window.session()->status().file;
+  expectExact(file);
+  recorder::Recording recording(file);
+  std::vector<EventKind> asked;
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    for (const Event& event : recording.step(n).result.events)
+      if (event.kind == EventKind::retractionMore || event.kind == EventKind::retractionLess)
+        asked.push_back(event.kind);
+  }
+  EXPECT_EQ(asked, (std::vector<EventKind>{EventKind::retractionMore, EventKind::retractionLess}));
+}
+
 TEST_F(Trainer, KeysAndPedalMoveTheEndoscope) {
   TrainerWindow& window = open(nullptr, recorder::Mode::practice, std::make_shared<recorder::ScopeInput>());
   beginSmall();
