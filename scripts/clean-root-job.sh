@@ -29,8 +29,9 @@ want "%PDF" head -c 4 study.pdf
 calot render skilled-1.h5 --at 2 -o moment.png >/dev/null
 want "PNG" head -c 4 moment.png
 want "version 12: module /usr/share/calot/engines/engine-12.wasm" calot engine list
-want "version 18: program /usr/bin/calot-engine" calot engine list
-want "touch-liver.transcript: ok" calot engine check 18
+want "version 18: module /usr/share/calot/engines/engine-18.wasm" calot engine list
+want "version 19: program /usr/bin/calot-engine" calot engine list
+want "touch-liver.transcript: ok" calot engine check 19
 want "bit-exact" calot replay /usr/share/calot/golden/touch-liver.h5
 want "cholecystectomy" calot scenes
 
