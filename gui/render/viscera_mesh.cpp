@@ -17,19 +17,18 @@ constexpr double gap = 0.002;     // between all of it and what may not be hidde
 constexpr double buried = 0.011;  // how far the omentum's highest fold lies below the bowel's highest (m)
 
 // The omentum: a grid of cells about the hilum, from below the camera to below the liver.
-constexpr double cell = 0.004;  // m
-constexpr double halfWidth = 0.17, towards = 0.13, beyond = 0.22;
+constexpr double cell = 0.007;  // m
+constexpr double halfWidth = 0.24, towards = 0.13, beyond = 0.22;
 
 /// Folds of the apron, from 0 down (m): long ones across it, lobes on them.
 double apron(double x, double z) {
   const double longFolds = std::sin(61.0 * x + 22.0 * z + 1.5 * std::sin(34.0 * z));
   const double lobes = std::sin(230.0 * x + 60.0 * z + 0.4) * std::sin(190.0 * z - 90.0 * x);
-  const double small = std::sin(520.0 * x - 210.0 * z) * std::sin(470.0 * z + 160.0 * x + 0.9);
-  return 0.0042 * (longFolds - 1.0) + 0.0022 * (lobes - 1.0) + 0.0008 * (small - 1.0);
+  return 0.0042 * (longFolds - 1.0) + 0.0026 * (lobes - 1.0);
 }
 
 /// Towards its border it sinks away, so that nobody sees one.
-double sunk(double share) { return 0.06 * std::pow(std::abs(share), 6.0); }
+double sunk(double share) { return 0.06 * std::pow(std::abs(share), 8.0); }
 
 Mesh omentum(double x0, double z0, double top) {
   Mesh mesh;
@@ -56,11 +55,16 @@ struct Gut {
 
 // Assumed: sizes of adults' bowel that is neither empty nor blown up.
 const Gut& colon() {
-  static const Gut gut{
-      {{0.20, 0.075}, {0.145, 0.060}, {0.100, 0.028}, {0.072, -0.008}, {0.062, -0.050}, {0.070, -0.10}},
-      0.0175,
-      0.026,
-      0.16};
+  static const Gut gut{{{0.225, 0.100},
+                        {0.185, 0.078},
+                        {0.140, 0.056},
+                        {0.100, 0.026},
+                        {0.074, -0.010},
+                        {0.066, -0.050},
+                        {0.074, -0.10}},
+                       0.0175,
+                       0.026,
+                       0.16};
   return gut;
 }
 const Gut& duodenum() {
@@ -76,7 +80,7 @@ std::vector<Vec3> smoothed(const Gut& gut, double x0, double z0, double y) {
     const std::array<double, 2>& p = gut.path[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, last))];
     return Vec3(x0 + p[0], y, z0 + p[1]);
   };
-  constexpr int parts = 16;
+  constexpr int parts = 10;
   std::vector<Vec3> points;
   for (std::size_t i = 0; i + 1 < gut.path.size(); ++i) {
     const auto k = static_cast<std::ptrdiff_t>(i);
@@ -91,11 +95,14 @@ std::vector<Vec3> smoothed(const Gut& gut, double x0, double z0, double y) {
 }
 
 Mesh tubeOf(const Gut& gut, double x0, double z0, double top) {
-  constexpr int around = 36;
+  constexpr int around = 20;
   const std::vector<Vec3> path = smoothed(gut, x0, z0, top - gut.radius);
   std::vector<Ring> rings;
   double gone = 0.0;
   for (std::size_t i = 0; i < path.size(); ++i) {
+    // It comes up out of the omentum and goes down into it: nobody sees an end.
+    const double place = 2.0 * static_cast<double>(i) / static_cast<double>(path.size() - 1) - 1.0;
+    const Vec3 middle = path[i] - Vec3(0.0, 0.05 * std::pow(std::abs(place), 6.0), 0.0);
     const Vec3 along = (path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]).normalized();
     const Vec3 side = Vec3::UnitY().cross(along).normalized();
     if (i > 0) gone += (path[i] - path[i - 1]).norm();
@@ -105,7 +112,7 @@ Mesh tubeOf(const Gut& gut, double x0, double z0, double top) {
     Ring& ring = rings.emplace_back();
     for (int k = 0; k < around; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / around;
-      ring.emplace_back(path[i] + radius * (std::cos(angle) * side + std::sin(angle) * Vec3::UnitY()));
+      ring.emplace_back(middle + radius * (std::cos(angle) * side + std::sin(angle) * Vec3::UnitY()));
     }
   }
   return loft(rings);
