@@ -60,9 +60,10 @@ class CameraDevice final : public Device {
 };
 
 /// Films as a device; the same samples every time, on the clock of ticks.
+/// @param paced instead in real time, by the host's clock, as a live camera's (PacedFilm)
 /// @throws Error: damaged, for a file; invalid, where its size is not the calibrated lens'
 std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, const CameraRig& rig,
-                                        const std::string& identity, DeviceClock clock);
+                                        const std::string& identity, DeviceClock clock, bool paced = false);
 
 extern const DeviceKind cameraKind;
 

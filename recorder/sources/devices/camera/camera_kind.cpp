@@ -15,12 +15,13 @@
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/camera/camera_request.h"
 #include "recorder/sources/devices/camera/live_camera.h"
+#include "recorder/sources/devices/camera/paced_film.h"
 #include "recorder/sources/devices/camera/video_file.h"
 
 namespace calot::recorder {
 namespace {
 
-constexpr std::string_view keysMark = "keys=";
+constexpr std::string_view keysMark = "keys=", pacedMark = "paced";
 
 bool isNumber(const std::string& text) {
   return !text.empty() && text.size() <= 3 &&
@@ -75,6 +76,9 @@ OpenedDevice openCamera(const DeviceRequest& request) {
   std::unique_ptr<PedalKeys> keys;
   if (!wanted.keys.empty()) keys = std::make_unique<PedalKeys>(wanted.keys);
   if (!wanted.live) {
+    if (wanted.paced) {
+      return OpenedDevice{openFilms(wanted.cameras, rig, calibration.identity, monotonicNanoseconds, true), nullptr};
+    }
     auto ticks = std::make_shared<TickClock>();
     auto device = openFilms(wanted.cameras, rig, calibration.identity, [ticks] { return ticks->now; });
     return OpenedDevice{std::move(device), ticks};
@@ -123,6 +127,10 @@ CameraRequest parseCameraRequest(const DeviceRequest& request) {
       if (out.keys.empty()) request.refuse("keys= names no keyboard: keys=/dev/input/by-id/...");
       continue;
     }
+    if (part == pacedMark) {
+      out.paced = true;
+      continue;
+    }
     const bool live = isNumber(part) || part.starts_with("/dev/video");
     if (isNumber(part)) part = fmt::format("/dev/video{}", part);
     if (!out.cameras.empty() && live != out.live) request.refuse("a film and a live camera cannot be read together");
@@ -132,6 +140,7 @@ CameraRequest parseCameraRequest(const DeviceRequest& request) {
     out.cameras.push_back(part);
   }
   if (out.cameras.empty()) request.refuse("a camera's number or a film is missing: camera:0, camera:FILM.mkv");
+  if (out.live && out.paced) request.refuse("a live camera has its own pace: \"paced\" is for films");
   if (out.cameras.size() > 2) request.refuse("at most two cameras are read");
   return out;
 }
@@ -144,8 +153,10 @@ std::vector<std::unique_ptr<FrameSource>> openFilmSources(const std::vector<std:
 }
 
 std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, const CameraRig& rig,
-                                        const std::string& identity, DeviceClock clock) {
+                                        const std::string& identity, DeviceClock clock, bool paced) {
   std::vector<std::unique_ptr<FrameSource>> sources = openFilmSources(files);
+  if (paced)
+    for (std::unique_ptr<FrameSource>& source : sources) source = std::make_unique<PacedFilm>(std::move(source), clock);
   DeviceInfo info = cameraInfo(identity);
   std::string hashes;
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -158,13 +169,13 @@ std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, c
   info.sourceSha256 = files.size() == 1 ? hashes : sha256Hex(std::as_bytes(std::span(hashes)));
   info.detail = "plays " + info.sourceFile;
   info.operatorKind = OperatorKind::kinematics;
-  info.capabilities.realTime = false;
+  info.capabilities.realTime = paced;
   return std::make_unique<CameraDevice>(std::move(sources), rig, std::move(info), std::move(clock));
 }
 
 constinit const DeviceKind cameraKind{
     .name = "camera",
-    .usage = "camera:N|FILM[,N|FILM][,keys=KEYBOARD]",
+    .usage = "camera:N|[paced,]FILM[,N|FILM][,keys=KEYBOARD]",
     .help = "printed handles before one or two cameras, or in films of them",
     .list = listCameras,
     .open = openCamera,

@@ -14,10 +14,11 @@ namespace calot::recorder {
 struct CameraRequest {
   std::vector<std::string> cameras;  ///< one or two: /dev/videoN, or films
   bool live = false;
-  std::string keys;  ///< input device of the pedals, or empty
+  bool paced = false;  ///< films come in real time, as cameras' pictures do
+  std::string keys;    ///< input device of the pedals, or empty
 };
 
-/// "0", "/dev/video0", "FILM", "FILM,FILM", "0,2,keys=/dev/input/event3".
+/// "0", "/dev/video0", "FILM", "FILM,FILM", "paced,FILM", "0,2,keys=/dev/input/event3".
 /// @throws Error (invalid)
 CameraRequest parseCameraRequest(const DeviceRequest& request);
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "recorder/sources/devices/camera/frame_source.h"
+#include "recorder/sources/devices/device.h"
+
+namespace calot::recorder {
+
+/// A film that comes as a camera's pictures do: each at its time by the host's clock, from the first call on, and
+/// dropped where nobody took it before the one after the next was due. So the work beside a camera is measured without
+/// one.
+class PacedFilm final : public FrameSource {
+ public:
+  PacedFilm(std::unique_ptr<FrameSource> film, DeviceClock clock)
+      : film_(std::move(film)), clock_(std::move(clock)), period_(static_cast<std::int64_t>(1e9 / film_->rate())) {}
+
+  FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
+  [[nodiscard]] int width() const override { return film_->width(); }
+  [[nodiscard]] int height() const override { return film_->height(); }
+  [[nodiscard]] double rate() const override { return film_->rate(); }
+  [[nodiscard]] std::string name() const override { return film_->name(); }
+  [[nodiscard]] std::string reason() const override { return film_->reason(); }
+
+ private:
+  std::unique_ptr<FrameSource> film_;
+  DeviceClock clock_;
+  std::int64_t period_;
+  Frame pending_;
+  bool held_ = false;        ///< pending_ is a frame that is not due yet
+  std::int64_t begin_ = -1;  ///< of the film, by the clock
+};
+
+}  // namespace calot::recorder
