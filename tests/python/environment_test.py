@@ -92,7 +92,7 @@ class Record(program.ProgramTest):
         camera = calot.Camera.looking([0.0, 0.06, -0.12], [0.0, 0.0, 0.0])
         env.look(camera)
         still = env.hands
-        still[1, 5] = calot.COAGULATE
+        still[1, 5] = calot.COAGULATE + calot.RETRACT_MORE
         env.step(still)
         env.mount("right", "none")
         env.step(env.hands)
@@ -100,7 +100,7 @@ class Record(program.ProgramTest):
         r = calot.open(self.path("a.h5"))
         numbers = calot.instruments()
         self.assertEqual(list(r.tools["right"].instrument[[0, 10]]), [numbers["hook"], numbers["none"]])
-        self.assertEqual(set(r.tools["right"].buttons), {calot.COAGULATE})
+        self.assertEqual(set(r.tools["right"].buttons), {calot.COAGULATE + calot.RETRACT_MORE})
         self.assertLess(np.abs(r.camera.position[0] - camera.position).max(), 2.0**-20)
         self.assertLess(np.abs(r.camera.orientation[0] - camera.orientation).max(), 2.0**-15)
         self.assertEqual(r.outcome, "abandoned")
@@ -152,7 +152,7 @@ class Steps(program.ProgramTest):
     def test_a_wrong_action_changes_nothing(self):
         self.env.reset()
         still = self.env.hands
-        for place, number, word in (((0, 0), np.nan, "left hand's.*position"), ((1, 3), np.inf, "right hand's.*roll"), ((1, 5), 16, "buttons"), ((0, 5), -1, "buttons"), ((0, 5), np.nan, "buttons")):
+        for place, number, word in (((0, 0), np.nan, "left hand's.*position"), ((1, 3), np.inf, "right hand's.*roll"), ((1, 5), 64, "buttons"), ((0, 5), -1, "buttons"), ((0, 5), np.nan, "buttons")):
             wrong = still.copy()
             wrong[place] = number
             with self.assertRaisesRegex(calot.InvalidError, word):
