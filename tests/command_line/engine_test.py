@@ -13,6 +13,7 @@ import program
 
 SOURCE = pathlib.Path(os.environ["CALOT_SOURCE_DIR"])
 ENGINES = SOURCE / "assets/engines"
+FIRST_FORMAT = SOURCE / "tests/recorder/recording/data/format-1.h5"
 
 
 class Engine(program.ProgramTest):
@@ -70,6 +71,13 @@ class Engine(program.ProgramTest):
         for name in ("touch-liver.h5", "dissect-bed.h5"):
             file = SOURCE / "assets/golden" / name
             self.assertIn("bit-exact", self.well("replay", "--engine", ENGINES / f"engine-{newest}.wasm", file).out)
+
+    def test_the_version_before(self):
+        """Its golden recordings, and a recording in the first format, by its module."""
+        if not shutil.which("node"):
+            self.skipTest("no node here")
+        for file in (self.golden(18, "touch-liver.h5"), FIRST_FORMAT):
+            self.assertIn("bit-exact", self.well("replay", file).out)
 
     def test_a_recording_of_another_version(self):
         file = self.golden(12, "touch-liver.h5")
