@@ -62,7 +62,7 @@ export function glImports(gl, memory) {
     DrawElements: (mode, count, type, offset) => gl.drawElements(mode, count, type, offset >>> 0),
     FramebufferTexture2D: (target, attachment, what, n, level) => gl.framebufferTexture2D(target, attachment, what, tables.Texture.get(n), level),
     ReadPixels: (x, y, w, h, format, type, at) => gl.readPixels(x, y, w, h, format, type, bytes(at, 4 * w * h)),
-    TexImage2D: (target, level, internal, w, h, border, format, type, at) => gl.texImage2D(target, level, internal, w, h, border, format, type, bytes(at, 4 * w * h)),
+    TexImage2D: (target, level, internal, w, h, border, format, type, at) => gl.texImage2D(target, level, internal, w, h, border, format, type, bytes(at, (format === gl.RED ? 1 : 4) * w * h)),
     TexImage3D: (target, level, internal, w, h, d, border, format, type, at) => {
       const n = 4 * w * h * d;
       const texels = type === gl.FLOAT ? new Float32Array(memory().buffer, at >>> 0, n) : bytes(at, n);
