@@ -55,11 +55,11 @@ struct Gut {
 
 // Assumed: sizes of adults' bowel that is neither empty nor blown up.
 const Gut& colon() {
-  static const Gut gut{{{0.225, 0.100},
-                        {0.185, 0.078},
-                        {0.140, 0.056},
-                        {0.100, 0.026},
-                        {0.074, -0.010},
+  static const Gut gut{{{0.150, 0.155},
+                        {0.152, 0.105},
+                        {0.138, 0.060},
+                        {0.102, 0.024},
+                        {0.074, -0.012},
                         {0.066, -0.050},
                         {0.074, -0.10}},
                        0.0175,
@@ -102,7 +102,7 @@ Mesh tubeOf(const Gut& gut, double x0, double z0, double top) {
   for (std::size_t i = 0; i < path.size(); ++i) {
     // It comes up out of the omentum and goes down into it: nobody sees an end.
     const double place = 2.0 * static_cast<double>(i) / static_cast<double>(path.size() - 1) - 1.0;
-    const Vec3 middle = path[i] - Vec3(0.0, 0.05 * std::pow(std::abs(place), 6.0), 0.0);
+    const Vec3 middle = path[i] - Vec3(0.0, 0.05 * std::pow(std::abs(place), 9.0), 0.0);
     const Vec3 along = (path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]).normalized();
     const Vec3 side = Vec3::UnitY().cross(along).normalized();
     if (i > 0) gone += (path[i] - path[i - 1]).norm();
