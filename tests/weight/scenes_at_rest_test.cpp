@@ -189,5 +189,33 @@ INSTANTIATE_TEST_SUITE_P(All, ScenesAtRest,
                            return name;
                          });
 
+/// All that the assistant can be asked for, at once, in the whole operation (docs/reference/materials.md).
+TEST(RetractionOfTheOperation, AtItsMostTearsNothing) {
+  const SceneDescription scene = test::sceneNamed("cholecystectomy");
+  ASSERT_EQ(scene.retraction.size(), 1U);
+  ASSERT_GT(scene.retraction[0].stage, 0.0);
+  const std::unique_ptr<const Model> model = test::buildModel(scene);
+  ASSERT_TRUE(model);
+  test::Rig rig(*model);
+  TickSamples still;
+  still.camera = scene.camera;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    still.hand[h].position = scene.hands[h].home;
+    still.hand[h].instrument = scene.hands[h].instrument;
+  }
+  double attached = 0.0;
+  for (int step = 0; step < 600; ++step) {
+    std::vector<TickSamples> samples(scene.ticksPerStep, still);
+    if (step < 20) samples[0].hand[0].buttons = button::retractMore;  // let go in the same step
+    const StepResult& result = rig.stepper.step(rig.state, samples);
+    EXPECT_EQ(result.misses, 0U) << step;
+    for (const Event& event : result.events) EXPECT_EQ(event.kind, EventKind::retractionMore) << step;
+    attached = result.connective[0].attached;
+  }
+  EXPECT_EQ(rig.state.retraction.goal[0], scene.retraction[0].most);
+  EXPECT_EQ(retractionAt(rig.state.retraction, 0, 6.0).share, scene.retraction[0].most) << "it has arrived";
+  EXPECT_EQ(attached, 1.0);
+}
+
 }  // namespace
 }  // namespace calot
