@@ -10,6 +10,10 @@
 namespace calot::gui {
 namespace {
 
+/// Ligament and viscera are made for scenes whose y is up: their y of `down` is below this. In others they could hide
+/// what is operated on.
+constexpr double yUpBelow = -0.5;
+
 bool isOfHilum(StructureRole role) { return role == StructureRole::bileDuct || role == StructureRole::artery; }
 
 /// Height of the lowest point of what is operated on, and of what may be injured (m). The liver's lower border may lie
@@ -32,7 +36,8 @@ void Surroundings::update(const SceneView& view) {
   }
   std::vector<Vec3> vessels;
   for (const SurfaceView& surface : view.surface)
-    if (isOfHilum(surface.role)) vessels.insert(vessels.end(), surface.rest.begin(), surface.rest.end());
+    if (view.down.y() < yUpBelow && isOfHilum(surface.role))
+      vessels.insert(vessels.end(), surface.rest.begin(), surface.rest.end());
   if (vessels == vessels_) return;
   ligament_ = makeLigament(vessels);
   viscera_ = makeViscera(vessels, lowestOf(view));

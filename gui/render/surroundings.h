@@ -10,8 +10,8 @@
 
 namespace calot::gui {
 
-/// Abdominal wall, and where the scene has bile duct or hepatic artery their ligament, omentum and bowel. What was made
-/// for one view is kept as long as its organs at rest are the same.
+/// Abdominal wall, and where the scene has bile duct or hepatic artery, and y is up, their ligament, omentum and bowel.
+/// What was made for one view is kept as long as its organs at rest are the same.
 class Surroundings {
  public:
   void update(const SceneView& view);

@@ -43,7 +43,7 @@ struct SceneView {
   std::array<InstrumentView, handCount> instrument;
   CameraSample camera;
   double verticalFieldOfView = 1.0;  ///< rad
-  Vec3 down = -Vec3::UnitZ();        ///< where gravity pulls, unit
+  Vec3 down = -Vec3::UnitY();        ///< where gravity pulls, unit; of a scene without gravity -y, as scenes are drawn
 };
 
 }  // namespace calot

@@ -139,6 +139,7 @@ class OozePicture : public testing::Test {
     axes.col(2) = -Vec3::UnitX();
     view.camera.orientation = Quat(axes);
     view.camera.position = Vec3(0.11, 0.0, -0.008);
+    view.down = -Vec3::UnitZ();
     const SurfaceView liver =
         test::sheetOver("liver", 30, [](double u, double v) { return Vec3(0.009 - 0.01 * v, 0.1 * u, -0.1 * v); });
     view.surface = {liver, stump(vessel, middle)};

@@ -61,6 +61,11 @@ TEST(Surroundings, KeepWhatTheOrgansAtRestDoNotChange) {
     for (Vec3& p : surface.position) p += Vec3(0.0, -0.03, 0.0);
   around.update(view);
   EXPECT_EQ(around.viscera().omentum.position.data(), kept);
+  view.down = -Vec3::UnitZ();
+  around.update(view);
+  EXPECT_TRUE(around.viscera().omentum.position.empty()) << "y is not up";
+  EXPECT_TRUE(around.ligament().position.empty());
+  view.down = -Vec3::UnitY();
   view.surface.pop_back();
   around.update(view);
   EXPECT_TRUE(around.viscera().omentum.position.empty());

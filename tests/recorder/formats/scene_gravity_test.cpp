@@ -26,7 +26,7 @@ TEST(SceneGravity, IsADirection) {
 TEST(SceneGravity, IsTheDefaultWhereTheFileTellsOfNone) {
   for (const char* text : {"", "no scene", "[1]", "{}", R"({"gravity": 9.8})", R"({"gravity": [0, 0, 0]})",
                            R"({"gravity": [0, 1]})", R"({"gravity": [0, "down", 0]})", R"({"gravity": [1e999, 0, 0]})"})
-    EXPECT_EQ(down(text), -Vec3::UnitZ()) << text;
+    EXPECT_EQ(down(text), -Vec3::UnitY()) << text;
 }
 
 }  // namespace
