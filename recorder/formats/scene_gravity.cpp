@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/formats/scene_gravity.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sim/scene/scene_view.h"
+#include "sim/scene/down.h"
 
 namespace calot::recorder {
 
@@ -18,7 +17,7 @@ Vec3 downOf(const Asset& sceneFile) {
     if (!(*found)[a].is_number()) return SceneView().down;
     gravity[static_cast<int>(a)] = (*found)[a].get<double>();
   }
-  return std::isfinite(gravity.norm()) && gravity.norm() > 0.0 ? Vec3(gravity.normalized()) : SceneView().down;
+  return calot::downOf(gravity);
 }
 
 }  // namespace calot::recorder

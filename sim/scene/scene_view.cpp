@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/scene/scene_view.h"
 
+#include "sim/scene/down.h"
 #include "sim/scene/scene_viewer.h"
 
 namespace calot {
@@ -32,7 +33,7 @@ SceneView SceneViewer::view(const State& state) {
   view.camera.position = state.camera.position;
   view.camera.orientation = state.camera.orientation;
   view.verticalFieldOfView = model.scene().verticalFieldOfView;
-  if (const Vec3& gravity = model.scene().gravity; !gravity.isZero(0.0)) view.down = gravity.normalized();
+  view.down = downOf(model.scene().gravity);
   return view;
 }
 

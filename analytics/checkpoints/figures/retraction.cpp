@@ -7,14 +7,15 @@
 namespace calot::analytics {
 namespace {
 
-const CheckpointDefinition& requestsDefinition() {
-  static const CheckpointDefinition d{
-      .name = "retraction-requests",
-      .title = "Times that the assistant was asked to retract more or less",
+CheckpointDefinition retractionDefinition(const char* name, const char* title, Direction direction,
+                                          const char* formula) {
+  return {
+      .name = name,
+      .title = title,
       .unit = "1",
       .displayUnit = "1",
       .displayFactor = 1.0,
-      .direction = Direction::none,
+      .direction = direction,
       .window = "whole attempt",
       .aggregation = Aggregation::attempt,
       .instruments = "both together",
@@ -22,30 +23,22 @@ const CheckpointDefinition& requestsDefinition() {
       .origins = {Origin::resimulated, Origin::observables},
       .finality = Finality::running,
       .version = 1,
-      .definition = "#{requests for more retraction} + #{requests for less}, those at a limit of the pull too",
+      .definition = formula,
       .paperReading = "",
   };
+}
+
+const CheckpointDefinition& requestsDefinition() {
+  static const CheckpointDefinition d = retractionDefinition(
+      "retraction-requests", "Times that the assistant was asked to retract more or less", Direction::none,
+      "#{requests for more retraction} + #{requests for less}, those at a limit of the pull too");
   return d;
 }
 
 const CheckpointDefinition& reversalsDefinition() {
-  static const CheckpointDefinition d{
-      .name = "retraction-reversals",
-      .title = "Times that a request to the assistant was taken back",
-      .unit = "1",
-      .displayUnit = "1",
-      .displayFactor = 1.0,
-      .direction = Direction::lower,
-      .window = "whole attempt",
-      .aggregation = Aggregation::attempt,
-      .instruments = "both together",
-      .filter = "none",
-      .origins = {Origin::resimulated, Origin::observables},
-      .finality = Finality::running,
-      .version = 1,
-      .definition = "#{requests for less whose last one before was for more, and the reverse}",
-      .paperReading = "",
-  };
+  static const CheckpointDefinition d = retractionDefinition(
+      "retraction-reversals", "Times that a request to the assistant was taken back", Direction::lower,
+      "#{requests for less whose last one before was for more, and the reverse}");
   return d;
 }
 

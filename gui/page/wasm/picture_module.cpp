@@ -16,6 +16,7 @@
 #include "gui/render/view_check.h"
 #include "recorder/engine/messages.h"
 #include "recorder/engine/wire_forms.h"
+#include "sim/scene/down.h"
 
 namespace {
 
@@ -74,8 +75,7 @@ __attribute__((export_name("calot_warm"))) void calot_warm() {
 
 /// Gravity of the scene whose views are to come; three zeros: none.
 __attribute__((export_name("calot_gravity"))) void calot_gravity(double x, double y, double z) {
-  const Vec3 gravity(x, y, z);
-  pictures().down = gravity.isZero(0.0) ? SceneView().down : Vec3(gravity.normalized());
+  pictures().down = downOf(Vec3(x, y, z));
 }
 
 /// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is none

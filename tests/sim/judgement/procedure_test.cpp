@@ -137,16 +137,22 @@ TEST_F(Procedure, AVesselThatIsCutBeforeTheFirstClipIsNotSeenAnyMore) {
   EXPECT_EQ(now().twoStructures, 0);
 }
 
-TEST(Retraction, PullsWhatLiesInItsSphereAndThenSleeps) {
+/// A block that an assistant pulls upwards at one end, by this displacement (m).
+SceneDescription pulledBlock(double displacement) {
   SceneDescription scene = test::blockScene(300, 6);
   RetractionDescription pull;
   pull.organ = "block";
   pull.centre = Vec3(0.03, 0.0, test::blockTop);
   pull.radius = 0.012;
-  pull.displacement = Vec3(0.0, 0.0, 0.004);
-  pull.start = 0.2;
-  pull.duration = 0.5;
+  pull.displacement = Vec3(0.0, 0.0, displacement);
   scene.retraction.push_back(pull);
+  return scene;
+}
+
+TEST(Retraction, PullsWhatLiesInItsSphereAndThenSleeps) {
+  SceneDescription scene = pulledBlock(0.004);
+  scene.retraction[0].start = 0.2;
+  scene.retraction[0].duration = 0.5;
   const std::unique_ptr<const Model> model = test::buildModel(scene);
   ASSERT_TRUE(model);
   test::Rig rig(*model);
@@ -178,18 +184,11 @@ std::vector<Event> ask(test::Rig& rig, const SceneDescription& scene, std::uint8
 }
 
 TEST(Retraction, IsAskedForByAButtonAndTold) {
-  SceneDescription scene = test::blockScene(300, 6);
-  RetractionDescription pull;
-  pull.organ = "block";
-  pull.centre = Vec3(0.03, 0.0, test::blockTop);
-  pull.radius = 0.012;
-  pull.displacement = Vec3(0.0, 0.0, 0.002);
-  pull.duration = 0.2;
-  pull.stage = 1.0;
-  pull.most = 2.0;
-  scene.retraction.push_back(pull);
-  pull.stage = 0.0;  // another one, which cannot be asked for
-  scene.retraction.push_back(pull);
+  SceneDescription scene = pulledBlock(0.002);
+  scene.retraction[0].duration = 0.2;
+  scene.retraction[0].most = 2.0;
+  scene.retraction.push_back(scene.retraction[0]);  // another one, which cannot be asked for
+  scene.retraction[0].stage = 1.0;
   const std::unique_ptr<const Model> model = test::buildModel(scene);
   ASSERT_TRUE(model);
   test::Rig rig(*model);
@@ -204,7 +203,7 @@ TEST(Retraction, IsAskedForByAButtonAndTold) {
   EXPECT_EQ(told[0].hand, 1);
   EXPECT_EQ(told[0].subject, 0);
   EXPECT_DOUBLE_EQ(told[0].value, 0.004);
-  EXPECT_EQ(told[0].position, pull.centre);
+  EXPECT_EQ(told[0].position, scene.retraction[0].centre);
   double after = 0.0;
   for (int i = 0; i < 100; ++i) after = rig.step(home).organ[0].maxDisplacement;
   EXPECT_GT(after, 1.3 * before) << "it woke and was pulled farther";
@@ -218,15 +217,9 @@ TEST(Retraction, IsAskedForByAButtonAndTold) {
 
 /// Held down, a button asks once.
 TEST(Retraction, AButtonThatStaysDownAsksOnce) {
-  SceneDescription scene = test::blockScene(300, 6);
-  RetractionDescription pull;
-  pull.organ = "block";
-  pull.centre = Vec3(0.03, 0.0, test::blockTop);
-  pull.radius = 0.012;
-  pull.displacement = Vec3(0.0, 0.0, 0.002);
-  pull.stage = 0.25;
-  pull.most = 2.0;
-  scene.retraction.push_back(pull);
+  SceneDescription scene = pulledBlock(0.002);
+  scene.retraction[0].stage = 0.25;
+  scene.retraction[0].most = 2.0;
   const std::unique_ptr<const Model> model = test::buildModel(scene);
   ASSERT_TRUE(model);
   test::Rig rig(*model);
