@@ -4,15 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <cstddef>
 #include <string>
 
 namespace calot::recorder {
 namespace {
 
 Vec3 down(const std::string& text) {
-  Asset file{"scene.json", std::vector<std::byte>(text.size())};
-  std::memcpy(file.bytes.data(), text.data(), text.size());
+  Asset file{"scene.json", {}};
+  for (const char letter : text) file.bytes.push_back(static_cast<std::byte>(letter));
   return downOf(file);
 }
 
