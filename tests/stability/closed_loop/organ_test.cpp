@@ -91,10 +91,10 @@ class Organs : public testing::Test {
 
   static void expectCalm(Bench& bench, const std::string& what) {
     std::printf(
-        "%s: amplitude %.1f um, given %.3f mJ, rendered at most %.2f N, shown %.2f N, change %.3f N, softened %llu\n",
-        what.c_str(), 1e6 * bench.loop.amplitude(), 1e3 * bench.loop.maxGiven, bench.maxRendered, bench.loop.maxShown,
+        "%s: swing %.1f um, given %.3f mJ, rendered at most %.2f N, shown %.2f N, change %.3f N, softened %llu\n",
+        what.c_str(), 1e6 * bench.loop.swing(), 1e3 * bench.loop.maxGiven, bench.maxRendered, bench.loop.maxShown,
         bench.loop.maxChange, static_cast<unsigned long long>(bench.loop.output().statistics().softened));
-    EXPECT_LT(bench.loop.amplitude(), 0.0003) << what;
+    EXPECT_LT(bench.loop.swing(), 0.0003) << what;
     EXPECT_LE(bench.loop.maxGiven, recorder::EnergyTank::initial) << what;
     EXPECT_LE(bench.loop.maxShown, LoopSettings{}.hand.maxForce) << what;
     EXPECT_LE(bench.loop.maxChange, 0.001 * recorder::ForceOutput::maxSlew + 1e-9) << what;

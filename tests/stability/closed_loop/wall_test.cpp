@@ -28,11 +28,11 @@ double growth(const LoopSettings& settings, double stiffness) {
   loop.hand().strike(Vec3(0.001, 0.0, 0.0));
   double before = 0.0;
   for (int k = 0; k < 3000; ++k) {
-    if (k == 2000) before = loop.amplitude();
+    if (k == 2000) before = loop.swing();
     if (k % 1000 == 0) loop.watch();
     loop.tick(-stiffness * loop.position(), Vec3::Zero());
   }
-  return loop.amplitude() / before;
+  return loop.swing() / before;
 }
 
 /// Without a controller the limit is the known one: b > K (T / 2 + delay), Colgate and Schenkel 1997 for delay 0.
@@ -81,7 +81,7 @@ TEST_P(WallOf, IsPassiveStillAndWithinTheLimitWhateverItsStiffnessAndDelay) {
         const test::WallRun run = test::pressWall(settings, stiffness, damping);
         const std::string what =
             "K " + std::to_string(stiffness) + ", B " + std::to_string(damping) + ", delay " + std::to_string(delay);
-        EXPECT_LT(run.amplitude, test::stillAmplitude) << what;
+        EXPECT_LT(run.swing, test::stillSwing) << what;
         EXPECT_LE(run.given, EnergyTank::initial) << what;
         EXPECT_LE(run.maxShown, settings.hand.maxForce) << what;
       }
@@ -116,7 +116,7 @@ TEST(Wall, WithoutPassivityStiffWallsSwing) {
   LoopSettings settings;
   settings.passive = false;
   settings.delay = 5;
-  EXPECT_GT(test::pressWall(settings, 5000.0, 0.0).amplitude, test::stillAmplitude);
+  EXPECT_GT(test::pressWall(settings, 5000.0, 0.0).swing, test::stillSwing);
   EXPECT_GT(test::pressWall(settings, 5000.0, 0.0).given, EnergyTank::initial);
 }
 

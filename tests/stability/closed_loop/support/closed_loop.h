@@ -64,8 +64,11 @@ class ClosedLoop {
     maxGiven = std::max(maxGiven, hand_.work() - hand_.dissipated());
     ++tick_;
     if (tick_ > watchFrom) {
-      lowest_ = lowest_.cwiseMin(hand_.position());
-      highest_ = highest_.cwiseMax(hand_.position());
+      const Vec3& at = hand_.position();
+      lowest_ = lowest_.cwiseMin(at);
+      highest_ = highest_.cwiseMax(at);
+      rise_ = rise_.cwiseMax(at - lowest_);
+      fall_ = fall_.cwiseMax(highest_ - at);
     }
   }
 
@@ -73,12 +76,14 @@ class ClosedLoop {
   recorder::ForceOutput& output() { return output_; }
   [[nodiscard]] const Vec3& shown() const { return shown_; }
   [[nodiscard]] const Vec3& sent() const { return lastSent_; }
-  /// Extent of the motion since `watchFrom` (m).
-  [[nodiscard]] double amplitude() const { return tick_ > watchFrom ? (highest_ - lowest_).norm() : 0.0; }
+  /// From one turning point to the other, since `watchFrom` (m). What only creeps to where it will rest does not swing:
+  /// of each axis the lesser of the largest way up and the largest way down counts.
+  [[nodiscard]] double swing() const { return rise_.cwiseMin(fall_).norm(); }
   void watch() {
     watchFrom = tick_;
     lowest_ = Vec3::Constant(std::numeric_limits<double>::infinity());
     highest_ = -lowest_;
+    rise_ = fall_ = Vec3::Zero();
   }
 
   bool clutched = false, hidden = false, silent = false;
@@ -110,6 +115,7 @@ class ClosedLoop {
   std::int64_t tick_ = 0;
   Vec3 lowest_ = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 highest_ = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  Vec3 rise_ = Vec3::Zero(), fall_ = Vec3::Zero();
 };
 
 /// A wall at x = 0: stiffness and damping (N/m, N s/m) where x > 0, from the positions that the program knows.

@@ -10,7 +10,7 @@
 namespace calot::test {
 
 struct WallRun {
-  double amplitude = 0.0;  ///< m, over the last second of four
+  double swing = 0.0;      ///< m, over the last second of four
   double given = 0.0;      ///< J
   double maxShown = 0.0;   ///< N
   double stiffness = 0.0;  ///< N/m, of a slow press: mean force over mean depth, in the last second
@@ -34,16 +34,14 @@ inline WallRun pressWall(const LoopSettings& settings, double stiffness, double 
       depth += std::max(0.0, loop.hand().position().x() - 0.005);
     }
   }
-  return {loop.amplitude(), loop.maxGiven, loop.maxShown, depth > 0.0 ? force / depth : 0.0};
+  return {loop.swing(), loop.maxGiven, loop.maxShown, depth > 0.0 ? force / depth : 0.0};
 }
 
-inline constexpr double stillAmplitude = 0.0002;  ///< m, an order above what encoders of 10 um make of rest
+inline constexpr double stillSwing = 0.0002;  ///< m, an order above what encoders of 10 um make of rest
 
 /// Stiffest stable wall (N/m) up to `most`, to within 3 %.
 inline double zWidth(const LoopSettings& settings, double damping, double most) {
-  const auto stable = [&](double stiffness) {
-    return pressWall(settings, stiffness, damping).amplitude < stillAmplitude;
-  };
+  const auto stable = [&](double stiffness) { return pressWall(settings, stiffness, damping).swing < stillSwing; };
   if (stable(most)) return most;
   double low = 1.0, high = most;
   if (!stable(low)) return 0.0;
