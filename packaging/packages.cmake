@@ -68,7 +68,8 @@ if(CALOT_WINDOWS)
   calot_package(windows NAME calot-gui SUMMARY "dashboard and trainer of Calot"
     TEXT "${calot_about}This package has the dashboard, which shows cohorts and recordings, and the
 trainer, which runs an operation live in a window."
-    DEPENDS "calot (= ${calot_version}), fonts-dejavu-core, qt6-qpa-plugins, shared-mime-info" RECOMMENDS qt6-wayland)
+    DEPENDS "calot (= ${calot_version}), fonts-dejavu-core, qt6-qpa-plugins, shared-mime-info" RECOMMENDS qt6-wayland
+    SUGGESTS "qt6-speech-speechd-plugin, speech-dispatcher")
 endif()
 calot_package(documents NAME calot-doc ARCHITECTURE all SECTION doc SUMMARY "documentation of Calot"
   TEXT "${calot_about}This package has the documentation, the formats of files, examples for clusters

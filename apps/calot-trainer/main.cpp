@@ -25,6 +25,7 @@
 #include "gui/attempt/theme.h"
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/trainer_window.h"
+#include "gui/trainer/voice.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/errors.h"
 #include "recorder/formats/dates.h"
@@ -42,6 +43,7 @@ struct Options {
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
   std::string mode = "practice", pictures, graphics = "auto", cohort;
   LookOptions look;
+  bool aloud = false;
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
@@ -86,6 +88,7 @@ void add(CLI::App& app, Options& o) {
       "--cohort", o.cohort,
       "cohort database that attempts are put into, and whose norms and earlier attempts they are held against; "
       "made where it is not there");
+  app.add_flag("--aloud", o.aloud, "what the panel asks for and says is read aloud, too");
   addLook(app, o.look, "system, 100");
   addGraphics(app, o.graphics);
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
@@ -205,7 +208,12 @@ int run(int argc, char** argv) {
   QApplication::setApplicationName("Calot");
   gui::theme::apply(gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
                     o.look.type == 0 ? gui::theme::usualType : o.look.type);
+  if (o.aloud) {
+    if (const QString fault = gui::Voice().fault(); !fault.isEmpty())
+      throw Error(ErrorKind::failure, "--aloud: " + fault.toStdString());
+  }
   gui::TrainerWindow window(std::move(setup));
+  if (o.aloud) window.setAloud(true);
   if (!asked.isNull()) window.resize(asked);
   window.show();
   if (!o.pictures.empty()) {

@@ -189,7 +189,7 @@ void RunPanel::announce(QLabel* label, const QString& text) {
   if (!news) return;
   QAccessibleEvent alert(label, QAccessible::Alert);
   QAccessible::updateAccessibility(&alert);
-  emit announced(text);
+  emit announced(label->objectName(), text);
 }
 
 void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {

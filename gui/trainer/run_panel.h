@@ -33,12 +33,12 @@ class RunPanel : public QWidget {
   void restartRequested();
   void scenesRequested();
   void backRequested(double time);
-  void announced(const QString& text);  ///< read aloud by a screen reader, where there is one
+  void announced(const QString& subject, const QString& words);  ///< is worth being read aloud
 
  private:
   void showMistakes(const TrainingStatus& status, double stepSeconds);
   void goBack();
-  void announce(QLabel* label, const QString& text);  ///< shows it; its words are read aloud when they change
+  void announce(QLabel* label, const QString& text);  ///< shows it, and announces it when its words change
 
   recorder::Mode mode_;
   QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *pointer_, *result_;

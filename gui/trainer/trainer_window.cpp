@@ -15,6 +15,7 @@
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/trainer/scenes_page.h"
+#include "gui/trainer/voice.h"
 #include "gui/words/problem_words.h"
 #include "recorder/errors.h"
 
@@ -92,6 +93,9 @@ void TrainerWindow::connectPages() {
   connect(panel_, &RunPanel::restartRequested, this, &TrainerWindow::restart);
   connect(panel_, &RunPanel::scenesRequested, this, &TrainerWindow::chooseScene);
   connect(panel_, &RunPanel::backRequested, this, &TrainerWindow::goBack);
+  connect(panel_, &RunPanel::announced, this, [this](const QString& subject, const QString& words) {
+    if (aloudAction_->isChecked() && voice_ != nullptr) voice_->say(subject, words);
+  });
   connect(end_, &EndPage::againRequested, this, &TrainerWindow::restart);
   connect(end_, &EndPage::nextRequested, this, &TrainerWindow::nextTask);
   connect(end_, &EndPage::scenesRequested, this, &TrainerWindow::chooseScene);
@@ -254,6 +258,25 @@ void TrainerWindow::showProblem(const QString& message) {
   problem_->setVisible(!message.isEmpty());
 }
 
+void TrainerWindow::setAloud(bool on) {
+  const auto fail = [this](const QString& why) {
+    voiceFault_ = "Nothing can be read aloud: " + why;
+    showProblem(voiceFault_);
+    aloudAction_->setChecked(false);
+  };
+  aloudAction_->setChecked(on);
+  if (!on) {
+    if (voice_ != nullptr) voice_->stop();
+    return;
+  }
+  voiceFault_.clear();
+  if (voice_ == nullptr) {
+    voice_ = new Voice(this);
+    connect(voice_, &Voice::failed, this, fail);
+  }
+  if (const QString why = voice_->fault(); !why.isEmpty()) fail(why);
+}
+
 void TrainerWindow::refresh() {
   const bool open = session_ != nullptr;
   for (QAction* const action : {pauseAction_, finishAction_, restartAction_}) action->setEnabled(open);
@@ -272,7 +295,7 @@ void TrainerWindow::refresh() {
   panel_->show(status, text, tickLength * scene.ticksPerStep);
   if (status.stage == Stage::ended && status.attempt != ended_) showEnd(status, text.result);
   if (status.problem != "" || !end_->isVisible()) {
-    const QString problem = QString::fromStdString(status.problem);
+    const QString problem = status.problem.empty() ? voiceFault_ : QString::fromStdString(status.problem);
     if (problem != problem_->text() || problem.isEmpty() == problem_->isVisible()) showProblem(problem);
   }
 }

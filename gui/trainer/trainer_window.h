@@ -28,6 +28,7 @@ class EndPage;
 class OperationView;
 class RunPanel;
 class ScenesPage;
+class Voice;
 
 /// What a window is made for, whatever the scene.
 struct TrainerSetup {
@@ -71,6 +72,9 @@ class TrainerWindow : public QMainWindow {
   /// in while it ran. Ends what runs.
   [[nodiscard]] std::vector<std::string> endAndReport();
 
+  /// Whether what the panel announces is read aloud, too. What stands against it is shown on the window.
+  void setAloud(bool on);
+
   /// Writes a PNG of what is seen. @throws calot::Error (failure)
   void savePicture(const QString& file);
 
@@ -104,7 +108,9 @@ class TrainerWindow : public QMainWindow {
   OperationView* view_;
   RunPanel* panel_;
   EndPage* end_;
-  QAction *pauseAction_, *finishAction_, *restartAction_, *skipAction_;
+  QAction *pauseAction_, *finishAction_, *restartAction_, *skipAction_, *aloudAction_;
+  Voice* voice_ = nullptr;  ///< null until something is to be read aloud
+  QString voiceFault_;
   QTimer timer_;
   PictureRate rate_;         ///< of the scene
   bool windowLeft_ = false;  ///< the keyboard went elsewhere in the middle of a run, and has not come back to it

@@ -26,6 +26,11 @@ void TrainerWindow::buildMenus() {
   QMenu* const look = menuBar()->addMenu("&View");
   look->addAction("&Full screen", QKeySequence(Qt::Key_F11), this,
                   [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
+  aloudAction_ = look->addAction("Read &aloud");
+  aloudAction_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_L));
+  aloudAction_->setToolTip("What the panel asks for and says is spoken, too");
+  aloudAction_->setCheckable(true);
+  connect(aloudAction_, &QAction::triggered, this, &TrainerWindow::setAloud);
   look->addAction("&Operation", QKeySequence(Qt::Key_F6), this, [this] { view_->setFocus(); });
 }
 

@@ -22,6 +22,7 @@
 #include "recorder/recording/reader.h"
 #include "recorder/sources/devices/scope_keys.h"
 #include "recorder/sources/scope/scope_source.h"
+#include "tests/gui/trainer/support/spoken.h"
 #include "tests/gui/trainer/support/trainer_rig.h"
 
 namespace calot::gui {
@@ -387,7 +388,7 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   TrainerWindow& window = open();
   QStringList alerts;
   QObject::connect(window.findChild<RunPanel*>(), &RunPanel::announced, &window,
-                   [&](const QString& words) { alerts += words; });
+                   [&](const QString&, const QString& words) { alerts += words; });
   window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
   ASSERT_TRUE(runs(0.1));
   window.refresh();
@@ -398,7 +399,35 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   EXPECT_TRUE(text("hint").startsWith("Control 3 of 10")) << text("hint").toStdString();
   hold(Qt::Key_S, [&] { return text("hint").contains("Control 4 of 10"); });
   EXPECT_TRUE(alerts.filter("Control 1 of 10").size() == 1 && alerts.filter("Control 4 of 10").size() == 1)
-      << "a screen reader is told once each: " << alerts.join(" | ").toStdString();
+      << "announced once each: " << alerts.join(" | ").toStdString();
+}
+
+TEST_F(Trainer, ReadsAloudWhatItAsksForUntilItIsToldNotTo) {
+  TrainerWindow& window = open();
+  EXPECT_EQ(trainertest::SpokenEngine::last, nullptr) << "nobody asked for a voice";
+  QTest::keyClick(&window, Qt::Key_L, Qt::ControlModifier);
+  ASSERT_NE(trainertest::SpokenEngine::last, nullptr);
+  trainertest::SpokenEngine& engine = *trainertest::SpokenEngine::last;
+  const auto said = [&](const QString& words) {
+    engine.finish();
+    return !engine.begun.filter(words).isEmpty();
+  };
+  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said("Control 1 of 10"); }, patience));
+  QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said("Control 2 of 10"); }, patience));
+  QTest::keyClick(&window, Qt::Key_L, Qt::ControlModifier);
+  const qsizetype before = engine.begun.size();
+  QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
+  ASSERT_TRUE(text("hint").startsWith("Control 3 of 10")) << text("hint").toStdString();
+  EXPECT_FALSE(said("Control 3 of 10"));
+  EXPECT_EQ(engine.begun.size(), before);
+  // What stands against it is said where it can be read.
+  QTest::keyClick(&window, Qt::Key_L, Qt::ControlModifier);
+  engine.fail("no sound card");
+  window.refresh();
+  EXPECT_TRUE(text("problem").contains("no sound card")) << text("problem").toStdString();
+  EXPECT_TRUE(child<QLabel>("problem")->isVisible());
 }
 
 TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
