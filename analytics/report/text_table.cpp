@@ -130,8 +130,8 @@ std::string cutTo(const std::string& text, std::size_t width) {
 
 std::string significant(double value, int digits) {
   if (!std::isfinite(value)) return "-";
-  if (value == 0.0) return "0";
   const double size = std::abs(value);
+  if (size < arithmeticDust) return "0";
   if (size < 1e-4 || size >= 1e7) return fmt::format("{:.{}e}", value, digits - 1);
   const int magnitude = static_cast<int>(std::floor(std::log10(size)));
   return fmt::format("{:.{}f}", value, std::clamp(digits - 1 - magnitude, 0, 8));

@@ -31,7 +31,12 @@ class TextTable {
 /// The beginning of a text of more than `width` letters and three points: `width` in all. @pre width > 3.
 std::string cutTo(const std::string& text, std::size_t width);
 
-/// `digits` significant digits, never in a locale's way, no exponent between 1e-4 and 1e7: "0.0432", "113", "12.5".
+/// What sums of rounding leave where there was nothing, in any unit that figures are shown in: an instrument that
+/// nobody moved has a path of 1e-11 mm.
+inline constexpr double arithmeticDust = 1e-9;
+
+/// `digits` significant digits, never in a locale's way, no exponent between 1e-4 and 1e7: "0.0432", "113", "12.5"; "0"
+/// below arithmeticDust.
 std::string significant(double value, int digits = 4);
 
 /// The same, or "-" where there is none.

@@ -8,6 +8,7 @@
 #include <QTimeZone>
 
 #include "analytics/checkpoints/registry.h"
+#include "analytics/report/text_table.h"
 #include "gui/attempt/theme.h"
 #include "recorder/words.h"
 
@@ -92,8 +93,8 @@ QString startText(const std::string& startUtc) {
 }
 
 QString numberText(double value) {
-  if (value == 0.0) return QLocale().toString(0);
   const double magnitude = std::abs(value);
+  if (magnitude < analytics::arithmeticDust) return QLocale().toString(0);
   if (magnitude < 1e-6 || magnitude >= 1e15) return QLocale().toString(value, 'e', 3);
   const int decimals = std::clamp(3 - static_cast<int>(std::floor(std::log10(magnitude))), 0, 9);
   return QLocale().toString(value, 'f', decimals);

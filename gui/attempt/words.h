@@ -27,7 +27,7 @@ struct Badge {
 [[nodiscard]] QString operatorText(const analytics::AttemptRow& attempt);
 [[nodiscard]] QString startText(const std::string& startUtc);  ///< "2026-02-03 14:05 UTC"; as stored if it is no date
 
-/// Four significant digits, never an exponent between 0.000001 and 10^15.
+/// Four significant digits, never an exponent between 0.000001 and 10^15; 0 below analytics::arithmeticDust.
 [[nodiscard]] QString numberText(double value);
 
 /// A value at the edge: in the unit that its definition displays.

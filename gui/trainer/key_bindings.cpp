@@ -145,7 +145,7 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
   } else {
     out = {{instruments.driven, "right hand: " + instruments.names}, {instruments.other, "the same for the left hand"}};
   }
-  out.push_back({"X, C", "assistant: retract more, less"});
+  out.push_back({"X, C", "assistant: retract more, less", true});
   if (scope) {
     const std::vector<KeyHelp> keys{{"J, L, I, K", "endoscope: look left, right, up, down"},
                                     {"O, U", "endoscope: in, out"},

@@ -38,6 +38,7 @@ struct KeyAction {
 struct KeyHelp {
   std::string keys;
   std::string what;
+  bool assistant = false;  ///< only where the scene has one
 };
 /// @param mouse both hands are driven by mouse and keyboard; else only instruments are exchanged and runs held
 /// @param scope keys move the endoscope @param pauses the mode has a pause

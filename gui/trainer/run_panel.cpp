@@ -29,6 +29,8 @@ namespace {
 constexpr const char* hintStyle =
     "QLabel { background: #e3eef6; color: #10263a; border-left: 5px solid #0072b2; padding: 8px; }";
 
+constexpr const char* assistantKeys = "assistantKeys";
+
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   auto* const page = new QWidget;
   auto* const grid = new QGridLayout(page);
@@ -43,6 +45,10 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
     keys->setFont(bold);
     auto* const what = new QLabel(QString::fromStdString(help.what));
     what->setWordWrap(true);
+    if (help.assistant) {
+      keys->setObjectName(assistantKeys);
+      what->setObjectName(assistantKeys);
+    }
     grid->addWidget(keys, row, 0, Qt::AlignTop);
     grid->addWidget(what, row, 1, Qt::AlignTop);
     ++row;
@@ -166,6 +172,7 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   say(result_, text.result);
   for (std::size_t h = 0; h < handCount; ++h) say(hand_[h], text.hand[h]);
   say(assistant_, text.assistant);
+  for (QLabel* const keys : keys_->findChildren<QLabel*>(assistantKeys)) keys->setVisible(!text.assistant.isEmpty());
   progress_->setVisible(status.stage == Stage::takingParent);
   progress_->setValue(static_cast<int>(std::floor(100.0 * status.progress)));
 

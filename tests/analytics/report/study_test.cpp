@@ -518,6 +518,7 @@ TEST(Reference, publishedTableIsThatOfThePaper) {
 
 TEST(TextTable, writesSignificantDigits) {
   EXPECT_EQ(significant(0.0), "0");
+  EXPECT_EQ(significant(-1.6e-11), "0") << "what rounding leaves";
   EXPECT_EQ(significant(113.31), "113.3");
   EXPECT_EQ(significant(-0.012345), "-0.01235");
   EXPECT_EQ(significant(123456.7), "123457");

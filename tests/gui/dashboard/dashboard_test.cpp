@@ -310,6 +310,7 @@ TEST_F(Dashboard, NumbersFollowTheLocaleButAreNeverReadBack) {
   EXPECT_EQ(numberText(1234.4), "1234");
   EXPECT_EQ(numberText(0.0123456), "0.01235");
   EXPECT_EQ(numberText(0.0), "0");
+  EXPECT_EQ(numberText(-1.6e-11), "0");
   QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
   EXPECT_EQ(numberText(12.5), "12,50");
   DashboardWindow window(apps::assessProgram());

@@ -216,6 +216,7 @@ TEST_F(Trainer, KeysAskTheAssistantForRetraction) {
   EXPECT_TRUE(retracts(0.006));
   window.refresh();
   EXPECT_EQ(text("assistant"), "Assistant: retracts 6 mm");
+  EXPECT_FALSE(child<QLabel>("assistantKeys")->isHidden());
   QTest::keyClick(window.view(), Qt::Key_C);
   EXPECT_TRUE(retracts(0.004));
   window.session()->finish();
@@ -393,6 +394,7 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   ASSERT_TRUE(runs(0.1));
   window.refresh();
   EXPECT_TRUE(text("hint").startsWith("Control 1 of 10")) << text("hint").toStdString();
+  EXPECT_TRUE(child<QLabel>("assistantKeys")->isHidden()) << "the scene has none";
   hold(Qt::Key_Down, [&] { return text("hint").contains("Control 2 of 10"); });
   EXPECT_TRUE(text("hint").startsWith(QString::fromUtf8("✓ Done: moving")));
   QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
