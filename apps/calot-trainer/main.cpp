@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -179,6 +180,19 @@ std::optional<recorder::LoadedScene> sceneOf(const std::string& name) {
   return scene;
 }
 
+gui::TrainerWindow* shown = nullptr;
+QtMessageHandler usualMessages = nullptr;
+
+/// Where the display goes away, Qt says so and calls exit() in the middle of its work, beside threads that draw, record
+/// and simulate. What runs ends first, so that its recording is whole; what is left is not worth being taken apart.
+void onMessage(QtMsgType type, const QMessageLogContext& context, const QString& message) {
+  if (shown == nullptr || !message.contains("connection broke")) return usualMessages(type, context, message);
+  for (const std::string& line : shown->endAndReport()) fmt::print("{}\n", line);
+  fmt::print(stderr, "calot-trainer: the display is gone: {}\n", message.toStdString());
+  std::fflush(nullptr);
+  std::_Exit(static_cast<int>(ExitCode::failure));
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Practises or assesses an operation, live: every attempt is recorded.", programName};
   Options o;
@@ -228,7 +242,10 @@ int run(int argc, char** argv) {
     if (over || stopRequested()) window.close();
   });
   asking.start(100);
+  shown = &window;
+  usualMessages = qInstallMessageHandler(onMessage);
   const int code = QApplication::exec();
+  shown = nullptr;
   for (const std::string& line : window.endAndReport()) fmt::print("{}\n", line);
   return code;
 }

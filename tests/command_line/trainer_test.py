@@ -4,9 +4,11 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
+import unittest
 
 import program
 from program import SCENE, ProgramTest
@@ -96,6 +98,33 @@ class Trainer(ProgramTest):
         self.assertTrue(out.startswith(f"{file}: attempt "), out)
         self.assertIn(", stopped\n", out)
         self.assertRegex(file.name, rf"^{SCENE}-\d{{8}}T\d{{6}}Z\.h5$")
+        self.well("replay", file)
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "no Xvfb")
+    def test_a_display_that_goes_away_ends_it_and_the_recording_is_whole(self):
+        number, told = os.pipe()
+        screen = subprocess.Popen(["Xvfb", "-displayfd", str(told)], pass_fds=[told], stderr=subprocess.DEVNULL)
+        running = None
+        try:
+            os.close(told)
+            with os.fdopen(number) as line:
+                display = ":" + line.readline().strip()
+            running = subprocess.Popen([str(TRAINER), "--scene", SCENE, "--device", "null", "-o", str(self.folder)], stdout=subprocess.PIPE,
+                                       stderr=subprocess.PIPE, env={**os.environ, "DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}, text=True)
+            limit = time.monotonic() + program.PATIENCE
+            while not list(self.folder.glob("*.h5")) and time.monotonic() < limit:
+                time.sleep(0.05)
+            screen.kill()
+            out, err = running.communicate(timeout=program.PATIENCE)
+        finally:
+            screen.kill()
+            screen.wait()
+            if running:
+                running.kill()
+        self.assertEqual(running.returncode, 1, err)
+        self.assertIn("calot-trainer: the display is gone", err)
+        [file] = self.folder.glob("*.h5")
+        self.assertTrue(out.startswith(f"{file}: attempt "), out)
         self.well("replay", file)
 
 
