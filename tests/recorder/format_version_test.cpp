@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Format version 1 is read for ever: a recording of 2.6 s that was written when it was the newest (touch-liver with 300
-// tetrahedra, skilled performer, seed 1), with contact, observables and keyframes.
+// tetrahedra, skilled performer, seed 1), with contact, observables and keyframes. What it replays to, its kept engine
+// decides: tests/command_line/engine_test.py.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,8 +10,6 @@
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
-#include "recorder/replay.h"
-#include "sim/scene/version.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::recorder {
@@ -36,21 +35,6 @@ TEST(FormatVersion1, IsRead) {
   ASSERT_EQ(r.keyframeSteps(), (std::vector<std::uint64_t>{99, 199}));
   EXPECT_EQ(r.keyframe(1).state.size(), 21551U);
   EXPECT_EQ(r.keyframe(1).haptics.size(), 784U);
-}
-
-TEST(FormatVersion1, IsReplayedAndSought) {
-  Recording r(old);
-  if (r.header().simulationVersion != simulationVersion) GTEST_SKIP() << "of another simulation version";
-  for (const unsigned threads : {1U, 3U}) {
-    ReplaySettings settings;
-    settings.threads = threads;
-    EXPECT_EQ(replayRecording(old, settings).verdict, ReplayVerdict::exact) << threads;
-  }
-  Seeker seeker(r);
-  seeker.seek(199);
-  EXPECT_EQ(seeker.keyframe().state, r.keyframe(1).state);
-  seeker.seek(120);
-  EXPECT_EQ(seeker.steps(), 121U);
 }
 
 /// Saved, it stays what it is: the same version, the same chain.
