@@ -176,10 +176,8 @@ std::string meshReportText(const MeshReport& report) {
     fmt::format_to(out, "                   closed and consistently outward\n");
   } else {
     fmt::format_to(
-        out,
-        "                   {} open edges in {} holes, {} non-manifold edges, {} flipped edges, {} components "
-        "turned inward\n",
-        in.openEdges, in.holes, in.nonManifoldEdges, in.flippedEdges, in.inwardComponents);
+        out, "                   {} open edges, {} non-manifold edges, {} flipped edges, {} components turned inward\n",
+        in.openEdges, in.nonManifoldEdges, in.flippedEdges, in.inwardComponents);
   }
   if (in.degenerateTriangles + in.duplicateTriangles + in.coincidentVertices + in.unusedVertices > 0) {
     fmt::format_to(out,

@@ -273,10 +273,8 @@ std::string faultOf(const TriangleMesh& surface) {
       return "the surface has a vertex that is not finite or farther than 1000 km";
   }
   const SurfaceReport report = inspectSurface(surface);
-  if (report.openEdges > 0) {
-    return "the surface is open: " + std::to_string(report.openEdges) + " edges in " + std::to_string(report.holes) +
-           " holes have one triangle only; close it";
-  }
+  if (report.openEdges > 0)
+    return "the surface is open: " + std::to_string(report.openEdges) + " edges have one triangle only; close it";
   if (report.flippedEdges > 0) {
     return "neighbouring triangles disagree on what is outside at " + std::to_string(report.flippedEdges) + " edges";
   }
