@@ -114,6 +114,8 @@ int calibrateCamera(const CalibrateOptions& o) {
   if (!request.live && o.board.empty())
     throw Error(ErrorKind::invalid,
                 "calibrate: films of the handles need --board with films of the board by the same cameras");
+  if (request.paced)
+    throw Error(ErrorKind::invalid, "calibrate: every frame of a film counts, whatever its pace: leave out \"paced\"");
   if (request.live) requireTerminal();
   const recorder::RigSettings settings{o.rulerMillimetres / recorder::rulerLength, 1e-3 * o.readoutMilliseconds};
   if (!o.pictures.empty() && !std::filesystem::is_directory(o.pictures))

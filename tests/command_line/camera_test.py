@@ -131,6 +131,7 @@ class Films(ProgramTest):
         out = self.path("c.json")
         self.refused(2, "record", "--scene", SCENE, "--device", "camera:" + self.film("hands1"), "-o", self.path("x.h5"), names=("calibration",))
         self.refused(2, "devices", "calibrate", "camera:" + self.film("steps1"), "-o", out, names=("--board",))
+        self.refused(2, "devices", "calibrate", "camera:paced," + self.film("steps1"), "--board", self.film("board1"), "-o", out, names=("paced",))
         self.refused(4, "devices", "calibrate", "camera:" + self.film("steps1"), "--board", self.film("none"), "-o", out, names=("none.y4m",))
         self.refused(4, "devices", "calibrate", "camera:" + self.film("steps1"), "--board", self.film("hands1"), "-o", out,
                      names=("0 different views",))

@@ -140,6 +140,7 @@ CameraRequest parseCameraRequest(const DeviceRequest& request) {
     out.cameras.push_back(part);
   }
   if (out.cameras.empty()) request.refuse("a camera's number or a film is missing: camera:0, camera:FILM.mkv");
+  if (!out.live && !out.keys.empty()) request.refuse("keys= goes with live cameras: nobody's foot keeps a film's time");
   if (out.live && out.paced) request.refuse("a live camera has its own pace: \"paced\" is for films");
   if (out.cameras.size() > 2) request.refuse("at most two cameras are read");
   return out;
@@ -175,7 +176,7 @@ std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, c
 
 constinit const DeviceKind cameraKind{
     .name = "camera",
-    .usage = "camera:N|[paced,]FILM[,N|FILM][,keys=KEYBOARD]",
+    .usage = "camera:N[,N][,keys=KEYBOARD]|[paced,]FILM[,FILM]",
     .help = "printed handles before one or two cameras, or in films of them",
     .list = listCameras,
     .open = openCamera,

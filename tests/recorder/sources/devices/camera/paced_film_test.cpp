@@ -68,5 +68,10 @@ TEST(CameraRequest, FilmsMayBePaced) {
   EXPECT_THROW(asked("paced"), Error) << "of what?";
 }
 
+TEST(CameraRequest, KeysGoWithLiveCamerasOnly) {
+  EXPECT_EQ(asked("0,1,keys=/dev/input/event3").keys, "/dev/input/event3");
+  EXPECT_THROW(asked("a.mkv,keys=/dev/input/event3"), Error);
+}
+
 }  // namespace
 }  // namespace calot::recorder
