@@ -39,24 +39,13 @@ QString curveText(const TraineeHistory& history) {
 
 }  // namespace
 
-TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
+TraineePage::TraineePage(QWidget* parent) : FiguresPage("trainee-caption", parent) {
   auto* layout = new QVBoxLayout(this);
   auto* upper = new QHBoxLayout;
   auto* lower = new QHBoxLayout;  // keys are long: they have a line of their own
-  const auto add = [](QHBoxLayout* row, const char* name, const char* text, int stretch) {
-    auto* box = new QComboBox;
-    box->setObjectName(name);
-    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(12);
-    auto* label = new QLabel(text);
-    label->setBuddy(box);
-    row->addWidget(label);
-    row->addWidget(box, stretch);
-    return box;
-  };
-  trainee_ = add(upper, "trainee", "T&rainee", 1);
-  figure_ = add(upper, "trainee-figure", "&Checkpoint", 3);
-  key_ = add(lower, "trainee-key", "Comparable &within", 3);
+  trainee_ = addChoice(upper, "trainee", "T&rainee", 1);
+  figure_ = addChoice(upper, "trainee-figure", "&Checkpoint", 3);
+  key_ = addChoice(lower, "trainee-key", "Comparable &within", 3);
   layout->addLayout(upper);
   layout->addLayout(lower);
   goal_ = new QLabel;
@@ -104,18 +93,14 @@ TraineePage::TraineePage(QWidget* parent) : QWidget(parent) {
   splitter->setStretchFactor(1, 2);
   splitter->setChildrenCollapsible(false);
   layout->addWidget(splitter, 1);
-  caption_ = new QLabel;
-  caption_->setObjectName("trainee-caption");
-  caption_->setTextFormat(Qt::PlainText);
-  caption_->setWordWrap(true);
-  layout->addWidget(caption_);
+  layout->addWidget(caption());
   connectParts();
   setProperty(beginProperty, QVariant::fromValue<QObject*>(trainee_));
 }
 
 void TraineePage::connectParts() {
   connect(trainee_, &QComboBox::currentIndexChanged, this, [this] {
-    fillKeys();
+    if (ready()) fillKeys();
     redraw();
   });
   for (QComboBox* box : {figure_, key_}) connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
@@ -128,52 +113,19 @@ void TraineePage::connectParts() {
   });
 }
 
-void TraineePage::setDocument(std::shared_ptr<const CohortDocument> document) {
-  document_ = std::move(document);
-  read_ = false;
-  if (isVisible()) readValues();
-}
-
-void TraineePage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  readValues();
-}
-
-void TraineePage::readValues() {
-  if (read_ || !document_) return;
-  read_ = true;
-  ready_ = false;
-  caption_->setText("Reading the values …");
-  background_.run([this, document = document_]() -> Background::Completion {
-    std::shared_ptr<const FigureValues> values;
-    QString fault;
-    try {
-      values = document->figureValues();
-    } catch (const std::exception& error) {
-      fault = QString::fromStdString(problemText(error));
-    }
-    return [this, values, fault] {
-      if (!fault.isEmpty()) emit problem(fault);
-      values_ = values;
-      ready_ = true;
-      trainees_ = traineesOf(document_->attempts());
-      {
-        const QSignalBlocker quietTrainee(trainee_), quietFigure(figure_);
-        const QString trainee = trainee_->currentText(), figure = figure_->currentText();
-        trainee_->clear();
-        for (const Trainee& t : trainees_)
-          trainee_->addItem(QString::fromStdString(t.name) + (t.synthetic ? " (performer)" : ""));
-        figure_->clear();
-        if (values_) {
-          for (const Figure& f : values_->figures()) figure_->addItem(figureTitle(f.name, f.subject));
-        }
-        trainee_->setCurrentIndex(std::max(0, trainee_->findText(trainee)));
-        figure_->setCurrentIndex(std::max(0, figure_->findText(figure)));
-      }
-      fillKeys();
-      redraw();
-    };
-  });
+void TraineePage::takeValues() {
+  trainees_ = traineesOf(document().attempts());
+  {
+    const QSignalBlocker quietTrainee(trainee_), quietFigure(figure_);
+    const QString trainee = trainee_->currentText();
+    trainee_->clear();
+    for (const Trainee& t : trainees_)
+      trainee_->addItem(QString::fromStdString(t.name) + (t.synthetic ? " (performer)" : ""));
+    trainee_->setCurrentIndex(std::max(0, trainee_->findText(trainee)));
+    fillFigures(figure_);
+  }
+  fillKeys();
+  redraw();
 }
 
 void TraineePage::fillKeys() {
@@ -181,15 +133,16 @@ void TraineePage::fillKeys() {
   key_->clear();
   const int at = trainee_->currentIndex();
   if (at < 0) return;
-  for (const std::string& key : keysOf(document_->attempts(), trainees_[static_cast<std::size_t>(at)]))
+  for (const std::string& key : keysOf(document().attempts(), trainees_[static_cast<std::size_t>(at)]))
     key_->addItem(QString::fromStdString(key));
 }
 
 void TraineePage::redraw() {
+  if (!ready()) return;
   const int trainee = trainee_->currentIndex(), figure = figure_->currentIndex();
   if (trainee < 0 || figure < 0 || key_->currentIndex() < 0) {
     chart_->showHistory({}, "No attempts");
-    caption_->setText("No attempt has a participant or a profile yet.");
+    caption()->setText("No attempt has a participant or a profile yet.");
     table_->setRowCount(0);
     tasks_->setRowCount(0);
     goal_->clear();
@@ -198,29 +151,29 @@ void TraineePage::redraw() {
   std::vector<analytics::Norm> none;
   const std::vector<analytics::Norm>* norms = &none;
   try {
-    norms = &document_->norms();
+    norms = &document().norms();
   } catch (const Error& error) {
     emit problem(QString::fromStdString(problemText(error)));
   }
   const auto index = static_cast<std::size_t>(figure);
-  const Figure& shown = values_->figures()[index];
+  const Figure& shown = values()->figures()[index];
   const TraineeHistory history =
-      historyOf(document_->attempts(), values_->of(index), *norms, trainees_[static_cast<std::size_t>(trainee)], shown,
+      historyOf(document().attempts(), values()->of(index), *norms, trainees_[static_cast<std::size_t>(trainee)], shown,
                 key_->currentText().toStdString());
   chart_->showHistory(history, trainee_->currentText() + ": " + figureTitle(shown.name, shown.subject));
-  caption_->setText(curveText(history));
+  caption()->setText(curveText(history));
   fillTable(history);
   fillTasks(trainees_[static_cast<std::size_t>(trainee)], index, *norms);
   showGoal(history, *norms);
 }
 
 void TraineePage::fillTasks(const Trainee& trainee, std::size_t figure, const std::vector<analytics::Norm>& norms) {
-  const std::vector<std::string> keys = keysOf(document_->attempts(), trainee);
+  const std::vector<std::string> keys = keysOf(document().attempts(), trainee);
   tasks_->setRowCount(static_cast<int>(keys.size()));
   for (int row = 0; row < tasks_->rowCount(); ++row) {
     const std::string& key = keys[static_cast<std::size_t>(row)];
     const TraineeHistory history =
-        historyOf(document_->attempts(), values_->of(figure), norms, trainee, values_->figures()[figure], key);
+        historyOf(document().attempts(), values()->of(figure), norms, trainee, values()->figures()[figure], key);
     QString first = "none", last = "none";
     for (const HistoryAttempt& entry : history.attempts) {
       if (!entry.value) continue;
@@ -246,7 +199,7 @@ void TraineePage::showGoal(const TraineeHistory& history, const std::vector<anal
   if (fitting.empty()) return;
   std::vector<analytics::CheckpointValue> own;
   try {
-    own = document_->values(newest.uuid);
+    own = document().values(newest.uuid);
   } catch (const Error& error) {
     emit problem(QString::fromStdString(problemText(error)));
   }

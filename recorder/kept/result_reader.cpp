@@ -17,27 +17,6 @@ AttemptHeader withResults(AttemptHeader header) {
   return header;
 }
 
-const char* typeOf(Element element) {
-  switch (element) {
-    case Element::u1:
-      return "u1";
-    case Element::u2:
-      return "u2";
-    case Element::u4:
-      return "u4";
-    case Element::u8:
-      return "u8";
-    case Element::i8:
-      return "i8";
-    case Element::f4:
-      return "f4";
-    case Element::f8:
-      return "f8";
-    default:
-      return "";
-  }
-}
-
 }  // namespace
 
 ResultReader::ResultReader(const AttemptHeader& header) : layout_(withResults(header)) {
@@ -53,7 +32,7 @@ std::string ResultReader::fault(const std::vector<wire::Column>& declared) const
   for (std::size_t c = 0; c + 1 < offset_.size(); ++c) {
     const Column& column = layout_.columns[first_ + c];
     if (column.width > 0)
-      ours.push_back({column.path, typeOf(column.element), static_cast<std::uint32_t>(column.width)});
+      ours.push_back({column.path, numberType(column.element), static_cast<std::uint32_t>(column.width)});
   }
   if (ours == declared) return "";
   const auto differing = std::mismatch(ours.begin(), ours.end(), declared.begin(), declared.end());

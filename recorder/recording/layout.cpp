@@ -38,6 +38,27 @@ std::size_t elementBytes(Element element) {
   return 0;
 }
 
+const char* numberType(Element element) {
+  switch (element) {
+    case Element::u1:
+      return "u1";
+    case Element::u2:
+      return "u2";
+    case Element::u4:
+      return "u4";
+    case Element::u8:
+      return "u8";
+    case Element::i8:
+      return "i8";
+    case Element::f4:
+      return "f4";
+    case Element::f8:
+      return "f8";
+    default:
+      return "";
+  }
+}
+
 namespace {
 
 template <class T>

@@ -36,6 +36,8 @@ enum class Stream : std::uint8_t { ticks, steps, events, keyframes, keyframeWord
 inline constexpr std::size_t streamCount = 7;
 
 std::size_t elementBytes(Element element);
+/// "u1" to "f8", as NumPy and the engines' protocol name them; empty for what is a row of several.
+const char* numberType(Element element);
 
 struct Column {
   std::string path;

@@ -13,25 +13,6 @@ namespace {
 
 static_assert(packedEventBytes == eventBytes && packedRawSampleBytes == rawSampleBytes);
 
-const char* typeOf(Element element) {
-  switch (element) {
-    case Element::u1:
-      return "u1";
-    case Element::u2:
-      return "u2";
-    case Element::u4:
-      return "u4";
-    case Element::u8:
-      return "u8";
-    case Element::i8:
-      return "i8";
-    case Element::f4:
-      return "f4";
-    default:
-      return "f8";
-  }
-}
-
 /// Appends every visited value to its column, in the layout's order.
 struct PackingVisitor {
   const Layout& layout;
@@ -94,7 +75,7 @@ std::vector<RecordedColumn> emptyColumns(const Layout& layout, const AttemptHead
   std::vector<RecordedColumn> columns;
   for (std::size_t i = first; i < first + count; ++i) {
     const Column& c = layout.columns[i];
-    columns.push_back({c.path, typeOf(c.element), c.unit, c.width, c.vector, partsOf(c, header), {}});
+    columns.push_back({c.path, numberType(c.element), c.unit, c.width, c.vector, partsOf(c, header), {}});
   }
   return columns;
 }

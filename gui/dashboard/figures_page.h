@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <QWidget>
+
+#include "gui/attempt/background.h"
+#include "gui/dashboard/cohort_document.h"
+
+class QComboBox;
+class QHBoxLayout;
+class QLabel;
+
+namespace calot::gui {
+
+/// A page about the figures of all attempts. They are read in the background when it is first shown.
+class FiguresPage : public QWidget {
+  Q_OBJECT
+ public:
+  /// @pre not null. The values are read when the page is first shown.
+  void setDocument(std::shared_ptr<const CohortDocument> document);
+  [[nodiscard]] bool ready() const { return ready_; }  ///< the values were read
+
+ signals:
+  void problem(const QString& message);
+  void attemptActivated(const QString& uuid);
+
+ protected:
+  /// @param captionName of the caption, which the page puts into its layout
+  FiguresPage(const char* captionName, QWidget* parent);
+  void showEvent(QShowEvent* event) override;
+
+  [[nodiscard]] const CohortDocument& document() const { return *document_; }  ///< @pre ready()
+  [[nodiscard]] const FigureValues* values() const { return values_.get(); }   ///< null: they could not be read
+  [[nodiscard]] QLabel* caption() const { return caption_; }
+
+  /// The document's values were read, or could not be: the page fills its choices and is drawn.
+  virtual void takeValues() = 0;
+  /// Figures to choose from; the one that was chosen stays so, where it is still there.
+  void fillFigures(QComboBox* box) const;
+  /// A choice with its label in a row.
+  static QComboBox* addChoice(QHBoxLayout* row, const char* name, const char* text, int stretch);
+
+ private:
+  void readValues();
+
+  std::shared_ptr<const CohortDocument> document_;
+  std::shared_ptr<const FigureValues> values_;
+  bool read_ = false, ready_ = false;
+  QLabel* caption_;
+  Background background_;
+};
+
+}  // namespace calot::gui
