@@ -115,6 +115,14 @@ class Trainer : public ::testing::Test {
     EXPECT_TRUE(QTest::qWaitFor(until, patience));
     QTest::keyRelease(window_->view(), key);
   }
+  /// Moves the pointer within the picture. The event is sent: the platform's own comes when it likes, and not at all
+  /// where the pointer is there already.
+  void pointTo(const QPoint& there) {
+    QWidget& view = *window_->view();
+    QCursor::setPos(view.mapToGlobal(there));
+    QMouseEvent move(QEvent::MouseMove, there, view.mapToGlobal(there), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
+    QApplication::sendEvent(&view, &move);
+  }
   double jaw() { return window_->session()->status().figures.hand[1].jaw; }
 
   recorder::test::Folder folder_;
@@ -152,8 +160,8 @@ TEST_F(Trainer, MouseAndKeysDriveTheHands) {
   beginSmall();
   OperationView& view = *window.view();
   const QPoint middle = view.rect().center();
-  QTest::mouseMove(&view, middle);
-  QTest::mouseMove(&view, middle + QPoint(100, 0));
+  pointTo(middle);
+  pointTo(middle + QPoint(100, 0));
   hold(Qt::Key_S, [&] { return jaw() > 0.5; });
   QTest::keyClick(&view, Qt::Key_Space);
   hold(Qt::Key_Down, [&, begin = window.session()->status().figures.time] {
@@ -244,9 +252,9 @@ TEST_F(Trainer, KeysAndPedalMoveTheEndoscope) {
   };
   hold(Qt::Key_L, seconds(0.5));
   const QPoint middle = view.rect().center();
-  QTest::mouseMove(&view, middle);
+  pointTo(middle);
   QTest::keyPress(&view, Qt::Key_V);
-  QTest::mouseMove(&view, middle + QPoint(0, -100));
+  pointTo(middle + QPoint(0, -100));
   QTest::keyRelease(&view, Qt::Key_V);
   ASSERT_TRUE(QTest::qWaitFor(seconds(1.0), patience));
   window.session()->finish();
@@ -284,8 +292,8 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   EXPECT_TRUE(mistakes->item(0)->text().endsWith("clip dropped"));
   EXPECT_TRUE(mistakes->isVisible());
   // What the mouse does meanwhile moves nothing.
-  QTest::mouseMove(&view, view.rect().center());
-  QTest::mouseMove(&view, view.rect().center() + QPoint(60, 60));
+  pointTo(view.rect().center());
+  pointTo(view.rect().center() + QPoint(60, 60));
   QTest::keyClick(mistakes, Qt::Key_Return);
   ASSERT_TRUE(reaches(Stage::countdown));
   EXPECT_EQ(text("stage"), QString::fromUtf8("Going on in %1 …").arg(text("over")));
@@ -493,11 +501,6 @@ TEST_F(Trainer, ThePictureHoldsThePointerUntilAKeyFreesIt) {
   EXPECT_TRUE(text("pointer").contains("Escape frees it"));
   // Farther than the picture is wide.
   const double wide = 1.5 * view.width();
-  const auto pointTo = [&](const QPoint& there) {
-    QCursor::setPos(view.mapToGlobal(there));
-    QMouseEvent move(QEvent::MouseMove, there, view.mapToGlobal(there), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
-    QApplication::sendEvent(&view, &move);
-  };
   pointTo(view.rect().center());
   for (double x = 0.0; x < wide; x += 20.0) {
     const QPoint to = view.mapFromGlobal(QCursor::pos()) + QPoint(20, 0);
