@@ -75,17 +75,23 @@ std::string figureText(const std::vector<CheckpointValue>& values, const Summary
 
 /// A value's interval, and its parts: what step and mesh change, and the spread by constants. Empty where there is
 /// none.
-std::pair<std::string, std::string> intervalTexts(const std::vector<ValueInterval>& intervals,
-                                                  const CheckpointValue& of, double factor) {
+struct IntervalTexts {
+  std::string interval;
+  std::string parts;   ///< what step, mesh and constants add
+  std::string remark;  ///< why there is no interval
+};
+
+IntervalTexts intervalTexts(const std::vector<ValueInterval>& intervals, const CheckpointValue& of, double factor) {
   const ValueInterval* found = findInterval(intervals, of);
   if (found == nullptr) return {};
-  if (!found->lower) return {"none", found->reason};
-  if (*found->lower == *found->upper) return {"exact", ""};
+  if (!found->lower) return {"none", "", "no interval: " + found->reason};
+  if (*found->lower == *found->upper) return {"exact", "", ""};
   const auto shown = [&](double si) { return significant(si * factor); };
   const auto change = [&](double si) { return fmt::format("{}{}", si > 0.0 ? "+" : "", significant(si * factor, 2)); };
   return {fmt::format("[{}, {}]", shown(*found->lower), shown(*found->upper)),
           fmt::format("{}, {}, {}", change(found->stepEffect), change(found->meshEffect),
-                      significant(found->constantsSpread * factor, 2))};
+                      significant(found->constantsSpread * factor, 2)),
+          ""};
 }
 
 Verdict verdictOf(recorder::ReplayVerdict verdict) {
@@ -251,9 +257,9 @@ void printValues(const std::vector<CheckpointValue>& values, const std::vector<V
       continue;
     }
     const double factor = definition != nullptr ? definition->displayFactor : 1.0;
-    const auto [interval, parts] = intervalTexts(intervals, v, factor);
+    const auto [interval, parts, remark] = intervalTexts(intervals, v, factor);
     table.add({name, significant(*v.value * factor), interval, definition != nullptr ? definition->displayUnit : v.unit,
-               parts, nameOf(v.origin), v.note});
+               parts, nameOf(v.origin), v.note + (v.note.empty() || remark.empty() ? "" : "; ") + remark});
   }
   if (table.rows() > 0) table.print(out, 120);  // reasons go on below
 }

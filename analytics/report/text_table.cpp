@@ -19,6 +19,18 @@ std::size_t widthOf(const std::string& text) {
 
 constexpr std::size_t narrowest = 10;
 
+/// How far columns are made narrower, one after the other.
+enum class Narrowing { wholeWords, othersCut, allCut };
+
+/// With the two blanks before it that a line below has.
+std::size_t longestWord(const std::string& text) {
+  std::size_t longest = 0;
+  std::istringstream words(text);
+  bool first = true;
+  for (std::string word; words >> word; first = false) longest = std::max(longest, widthOf(word) + (first ? 0 : 2));
+  return longest;
+}
+
 /// The text broken at blanks into lines, those below the first indented; a word longer than a line is cut.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   if (widthOf(text) <= width) return {text};
@@ -64,14 +76,22 @@ void TextTable::print(std::ostream& out, std::size_t most) const {
     for (std::size_t c = 0; c < columns_.size(); ++c) sum += shown[c] ? width[c] + (sum == 0 ? 0 : 2) : 0;
     return sum;
   };
-  while (total() > most) {
-    std::size_t widest = columns_.size();
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      if (!shown[c] || columns_[c].second != Align::left || width[c] <= narrowest) continue;
-      if (widest == columns_.size() || width[c] > width[widest]) widest = c;
+  // Words are cut where nothing else helps, and those that say what a row is of last.
+  std::vector<std::size_t> wholeWords(columns_.size(), narrowest);
+  for (const auto& row : rows_) {
+    for (std::size_t c = 0; c < columns_.size(); ++c) wholeWords[c] = std::max(wholeWords[c], longestWord(row[c]));
+  }
+  for (const Narrowing to : {Narrowing::wholeWords, Narrowing::othersCut, Narrowing::allCut}) {
+    while (total() > most) {
+      std::size_t widest = columns_.size();
+      for (std::size_t c = 0; c < columns_.size(); ++c) {
+        const bool whole = to == Narrowing::wholeWords || (to == Narrowing::othersCut && c == 0);
+        if (!shown[c] || columns_[c].second != Align::left || width[c] <= (whole ? wholeWords[c] : narrowest)) continue;
+        if (widest == columns_.size() || width[c] > width[widest]) widest = c;
+      }
+      if (widest == columns_.size()) break;
+      --width[widest];
     }
-    if (widest == columns_.size()) break;
-    --width[widest];
   }
   const auto line = [&](const auto& cell, char fill) {
     std::string text;

@@ -218,6 +218,17 @@ TEST(TextTable, goesOnInTheNextLineBeforeItCuts) {
             "movement-straightness  1\n"
             "  left                 2\n")
       << "in the next row's empty cell";
+  TextTable figures(
+      {{"name", TextTable::Align::left}, {"origin", TextTable::Align::left}, {"", TextTable::Align::left}});
+  figures.add({"fat-remaining-inside", "samples", "gallbladder that was not freed"});
+  std::ostringstream whole;
+  figures.print(whole, 48);
+  EXPECT_EQ(whole.str(),
+            "name                  origin\n"
+            "--------------------  -------  -----------------\n"
+            "fat-remaining-inside  samples  gallbladder that\n"
+            "                                 was not freed\n")
+      << "a remark is broken before a name is cut";
   TextTable reasons({{"name", TextTable::Align::left}, {"reason", TextTable::Align::left}});
   reasons.add({"first", "some long text"});
   reasons.add({"second", ""});
