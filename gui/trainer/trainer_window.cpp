@@ -22,7 +22,8 @@
 namespace calot::gui {
 namespace {
 constexpr int refreshPeriod = 50;  // ms
-}
+constexpr int faultShown = 10000;  // ms, of what stops no attempt
+}  // namespace
 
 TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
     : QMainWindow(parent),
@@ -263,6 +264,7 @@ void TrainerWindow::setAloud(bool on) {
     voiceFault_ = "Nothing can be read aloud: " + why;
     showProblem(voiceFault_);
     aloudAction_->setChecked(false);
+    QTimer::singleShot(faultShown, this, [this] { voiceFault_.clear(); });
   };
   aloudAction_->setChecked(on);
   if (!on) {
