@@ -264,6 +264,8 @@ void TrainerWindow::setAloud(bool on) {
     voiceFault_ = "Nothing can be read aloud: " + why;
     showProblem(voiceFault_);
     aloudAction_->setChecked(false);
+    voice_->deleteLater();  // the next try is with another one
+    voice_ = nullptr;
     QTimer::singleShot(faultShown, this, [this] { voiceFault_.clear(); });
   };
   aloudAction_->setChecked(on);

@@ -109,7 +109,7 @@ class TrainerWindow : public QMainWindow {
   RunPanel* panel_;
   EndPage* end_;
   QAction *pauseAction_, *finishAction_, *restartAction_, *skipAction_, *aloudAction_;
-  Voice* voice_ = nullptr;  ///< null until something is to be read aloud
+  Voice* voice_ = nullptr;  ///< null where nothing is to be read aloud yet, or could be
   QString voiceFault_;
   QTimer timer_;
   PictureRate rate_;         ///< of the scene

@@ -438,6 +438,11 @@ TEST_F(Trainer, ReadsAloudWhatItAsksForUntilItIsToldNotTo) {
   window.refresh();
   EXPECT_TRUE(text("problem").contains("no sound card")) << text("problem").toStdString();
   EXPECT_TRUE(child<QLabel>("problem")->isVisible());
+  // It may have been put right meanwhile.
+  QTest::keyClick(&window, Qt::Key_L, Qt::ControlModifier);
+  ASSERT_NE(trainertest::SpokenEngine::last, nullptr);
+  QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
+  EXPECT_EQ(trainertest::SpokenEngine::last->begun.filter("Control 4 of 10").size(), 1);
 }
 
 TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {

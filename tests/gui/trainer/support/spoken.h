@@ -11,7 +11,9 @@ class SpokenEngine : public QTextToSpeechEngine {
   Q_OBJECT
  public:
   explicit SpokenEngine(QObject* parent) : QTextToSpeechEngine(parent) { last = this; }
-  ~SpokenEngine() override { last = nullptr; }
+  ~SpokenEngine() override {
+    if (last == this) last = nullptr;
+  }
 
   static inline SpokenEngine* last = nullptr;
   QStringList begun;  ///< everything that it was asked to say
