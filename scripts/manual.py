@@ -72,7 +72,7 @@ def meaning(option):
     if span:
         text += f" Range: {span.group(1)}."
     if option["default"]:
-        text += f" Default: {option['default']}."
+        text += " Default: the current folder." if option["default"] == "." else f" Default: {option['default']}."
     if option["many"]:
         text += " Takes several."
     for word in ("needs", "excludes"):
