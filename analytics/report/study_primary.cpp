@@ -108,6 +108,19 @@ std::string reachWarning(const Study& study) {
       beyond, tested, level, pText(least));
 }
 
+/// A p does not know how exact the simulation is.
+std::string simulationWarning(const Study& study) {
+  std::string undecided;
+  for (const StudyRow& row : study.rows) {
+    if (!row.leading || !row.simulation || !row.simulation->area || row.simulation->decided()) continue;
+    undecided += (undecided.empty() ? "" : ", ") + rowName(row);
+  }
+  if (undecided.empty()) return {};
+  return fmt::format(
+      "Warning: which group is ahead is not decided by this simulation, but by its step, mesh or constants, for: {}.",
+      undecided);
+}
+
 }  // namespace
 
 ReportTable primaryTable(const Study& study) {
@@ -129,6 +142,7 @@ ReportTable secondaryTable(const Study& study) {
 std::vector<std::string> primaryNotes(const Study& study) {
   std::vector<std::string> notes{resultLegend(study)};
   if (std::string text = reachWarning(study); !text.empty()) notes.push_back(std::move(text));
+  if (std::string text = simulationWarning(study); !text.empty()) notes.push_back(std::move(text));
   for (std::string& note : coverageWarnings(study)) notes.push_back(std::move(note));
   for (std::string& warning : intervalWarnings(study, true)) notes.push_back(std::move(warning));
   notes.insert(notes.end(), study.remarks.begin(), study.remarks.end());

@@ -17,6 +17,7 @@
 #include "analytics/cohort/registers.h"
 #include "analytics/report/page_html.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_tables.h"
 #include "analytics/report/text_table.h"
 #include "recorder/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
@@ -564,6 +565,14 @@ TEST(Study, saysWhatTheSimulationDoesNotDecide) {
   EXPECT_FALSE(path.decided());
   EXPECT_NE(textOf(study).find("not decided by this simulation"), std::string::npos) << textOf(study);
   EXPECT_NE(studyJson(study).find("\"decided\": false"), std::string::npos);
+  const std::vector<std::string> notes = primaryNotes(study);
+  const auto warned = [&](const char* figure) {
+    return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {
+      return note.starts_with("Warning: which group is ahead") && note.find(figure) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(warned("path-length left"));
+  EXPECT_FALSE(warned("elapsed-time"));
   EXPECT_FALSE(rowOf(study, "path-length", "right").simulation) << "has no value";
 }
 
