@@ -19,8 +19,7 @@ class TextTable {
   /// Header, rule, rows; columns two blanks apart; columns without cells are left out. Where the table is wider than
   /// `most`, the widest left-aligned columns are made narrower as far as it takes, but not below ten: their cells go on
   /// below, in a line of their own or in an empty cell of the next row, if that begins with an empty cell. Words are
-  /// cut
-  /// ("fat-remaini...") only where that does not suffice, and those of the first column last.
+  /// cut ("fat-remaini...") only where that does not suffice, and those of the first column last.
   void print(std::ostream& out, std::size_t most = std::string::npos) const;
   [[nodiscard]] std::size_t rows() const { return rows_.size(); }
 

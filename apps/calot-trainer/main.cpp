@@ -243,7 +243,8 @@ int run(int argc, char** argv) {
   });
   asking.start(100);
   shown = &window;
-  usualMessages = qInstallMessageHandler(onMessage);
+  usualMessages = qInstallMessageHandler(nullptr);  // known before another thread may say something
+  qInstallMessageHandler(onMessage);
   const int code = QApplication::exec();
   shown = nullptr;
   for (const std::string& line : window.endAndReport()) fmt::print("{}\n", line);
