@@ -15,8 +15,8 @@
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/external/metric_script.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
 #include "recorder/replay.h"
 
 namespace calot::analytics {

@@ -7,7 +7,7 @@
 
 #include "analytics/shards/values_set.h"
 #include "analytics/shards/values_writer.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/identify.h"
 #include "recorder/recording/probe.h"
 

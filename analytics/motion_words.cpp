@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
 
 namespace calot::analytics {
 namespace {

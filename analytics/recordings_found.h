@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/identify.h"
 

@@ -12,7 +12,7 @@
 #include "analytics/assess.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/live/worker_pool.h"
 
 namespace calot::analytics {

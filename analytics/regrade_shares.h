@@ -11,7 +11,7 @@
 
 #include "analytics/regrade.h"
 #include "analytics/shards/shard.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/identify.h"
 
 namespace calot::analytics {

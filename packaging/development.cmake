@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Headers, static libraries and `find_package(Calot)`: simulation, recorder and analytics, without devices and windows.
 set(calot_libraries calot_flags calot_sim_math calot_sim_geometry calot_sim_solid calot_sim_vessel calot_sim_carving calot_sim_contact
-  calot_sim_connective calot_sim_fat calot_sim calot_formats calot_engine calot_recording calot_recorder calot_statistics calot_checkpoints
+  calot_sim_connective calot_sim_fat calot_sim calot_base calot_formats calot_engine calot_recording calot_recorder calot_statistics calot_checkpoints
   calot_external calot_analytics)
 foreach(library IN LISTS calot_libraries)
   string(REPLACE "calot_" "" name ${library})

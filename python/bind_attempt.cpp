@@ -4,7 +4,7 @@
 #include "python/bindings.h"
 #include "python/driven_attempt.h"
 #include "recorder/engine/result_row.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace py = pybind11;
 

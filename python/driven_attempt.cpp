@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "python/places.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::python {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/replay.h"
 
 namespace calot::python {

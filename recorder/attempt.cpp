@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <sodium.h>
 
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
 #include "sim/scene/version.h"
 
 #ifndef CALOT_VERSION

@@ -7,9 +7,9 @@
 #include <functional>
 #include <string>
 
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
 #include "recorder/engine/session.h"
-#include "recorder/identity.h"
 #include "recorder/sources/source.h"
 #include "recorder/step_misses.h"
 

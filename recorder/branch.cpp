@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "recorder/base/errors.h"
 #include "recorder/engine/local_engine.h"
-#include "recorder/errors.h"
 #include "recorder/recording/publish.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"

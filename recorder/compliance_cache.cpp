@@ -12,8 +12,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "sim/math/digest.h"
 #include "sim/scene/version.h"
 

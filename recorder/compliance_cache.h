@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "recorder/shared_compliances.h"
 
 namespace calot::recorder {

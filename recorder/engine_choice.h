@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/base/errors.h"
 #include "recorder/engine/engine.h"
-#include "recorder/errors.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
 #include "sim/math/executor.h"

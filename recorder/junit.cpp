@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "recorder/formats/text_output.h"
+#include "recorder/base/text_output.h"
 #include "recorder/replay.h"
 
 namespace calot::recorder {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/errors.h"
-#include "recorder/identity.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/identity.h"
 #include "recorder/recording/reader.h"
 #include "recorder/shared_compliances.h"
 #include "sim/scene/model.h"

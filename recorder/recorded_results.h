@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "recorder/recording/reader.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/description.h"

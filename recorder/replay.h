@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "recorder/base/errors.h"
 #include "recorder/engine/engine.h"
 #include "recorder/engine_choice.h"
-#include "recorder/errors.h"
 #include "recorder/recording/brief_digest.h"
 #include "recorder/recording/reader.h"
 #include "recorder/step_misses.h"

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 

@@ -2,8 +2,8 @@
 // What people read for the recording's enumerations. What files store is spelled in recording/header.h.
 #pragma once
 
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
 
 namespace calot::recorder {
 

@@ -35,7 +35,7 @@ MODULES = {
     "judge": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/judge_module.cpp", "gui/words/event_words.cpp", "analytics/checkpoints/phases.cpp",
               "sim/judgement/judge.cpp", "recorder/engine/wire_forms.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp", "sim/geometry/*.cpp",
               "sim/scene/step_result.cpp", "sim/tissue/connective/connective_kind.cpp",
-              *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p]],
+              *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p or "recorder/base/" in p]],
     "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/web_context.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
                 "gui/render/instruments/*.cpp", "- gui/render/egl_context.cpp", "- gui/render/graphics.cpp", "- gui/render/osmesa_context.cpp", "- gui/render/picture.cpp", "- gui/render/png_file.cpp",
                 "- gui/render/renderer.cpp", "recorder/engine/wire_forms.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp"],

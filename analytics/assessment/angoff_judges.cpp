@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "analytics/statistics/borderline_regression.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

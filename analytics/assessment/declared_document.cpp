@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 
 namespace calot::analytics {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::analytics {
 

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "analytics/checkpoints/registry.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/registry.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::analytics {

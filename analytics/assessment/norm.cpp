@@ -13,7 +13,7 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/coverage_warning.h"
 #include "analytics/statistics/contrasting_groups.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/registry.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -10,10 +10,10 @@
 #include <span>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/json_reader.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/json_reader.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "analytics/checkpoints/registry.h"
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/nearest_word.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "analytics/assessment/declared_document.h"
 #include "analytics/statistics/repeated_attempts.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/engine/observer.h"
-#include "recorder/formats/json_reader.h"
 
 namespace calot::analytics {
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <set>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analytics/assessment/declared_document.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::analytics {
 

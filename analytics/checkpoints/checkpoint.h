@@ -15,8 +15,8 @@
 #include "analytics/checkpoints/definition.h"
 #include "analytics/checkpoints/external_metric.h"
 #include "analytics/checkpoints/scene_facts.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
 #include "sim/judgement/judgement.h"
 
 namespace calot::analytics {

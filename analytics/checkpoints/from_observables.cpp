@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "analytics/checkpoints/collector.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recorded_results.h"
 

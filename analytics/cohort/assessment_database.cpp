@@ -6,7 +6,7 @@
 
 #include "analytics/cohort/assessment_storage.h"
 #include "analytics/cohort/tables.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "analytics/cohort/embedded.h"
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/cohort/tables.h"
-#include "recorder/errors.h"
-#include "recorder/formats/secret_file.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/secret_file.h"
 
 namespace calot::analytics {
 namespace {

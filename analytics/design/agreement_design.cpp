@@ -12,7 +12,7 @@
 #include "analytics/statistics/bland_altman.h"
 #include "analytics/statistics/deming_regression.h"
 #include "analytics/statistics/spearman.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

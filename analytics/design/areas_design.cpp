@@ -6,7 +6,7 @@
 
 #include "analytics/design/design_parts.h"
 #include "analytics/statistics/delong.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

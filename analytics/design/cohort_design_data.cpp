@@ -13,8 +13,8 @@
 #include "analytics/report/study_groups.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_setting.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

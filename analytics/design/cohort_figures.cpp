@@ -10,7 +10,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/study_population.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

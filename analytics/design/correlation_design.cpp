@@ -8,7 +8,7 @@
 #include "analytics/design/design_parts.h"
 #include "analytics/design/paired_figures.h"
 #include "analytics/statistics/spearman.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

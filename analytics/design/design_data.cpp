@@ -9,9 +9,9 @@
 
 #include "analytics/report/study_groups.h"
 #include "analytics/statistics/repeated_attempts.h"
-#include "recorder/errors.h"
-#include "recorder/formats/nearest_word.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "analytics/statistics/multiplicity.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

@@ -11,7 +11,7 @@
 #include "analytics/statistics/attempts_to_criterion.h"
 #include "analytics/statistics/cusum.h"
 #include "analytics/statistics/kaplan_meier.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "analytics/report/study_groups.h"
 #include "analytics/report/study_population.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

@@ -10,7 +10,7 @@
 #include "analytics/statistics/generalizability.h"
 #include "analytics/statistics/intraclass_correlation.h"
 #include "analytics/statistics/measurement_error.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

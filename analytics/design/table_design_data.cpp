@@ -10,8 +10,8 @@
 #include "analytics/design/design_data.h"
 #include "analytics/report/study_groups.h"
 #include "analytics/report/table_records.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -6,7 +6,7 @@
 #include "analytics/design/line_plot.h"
 #include "analytics/statistics/censored_times.h"
 #include "analytics/statistics/kaplan_meier.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

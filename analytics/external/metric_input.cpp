@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "analytics/external/input_columns.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/words.h"
 #include "sim/judgement/judge.h"
 

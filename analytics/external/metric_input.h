@@ -7,8 +7,8 @@
 
 #include "analytics/checkpoints/definition.h"
 #include "analytics/external/temporary_folder.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {

@@ -14,8 +14,8 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/external/runner.h"
 #include "analytics/external/temporary_folder.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/external/script_process.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

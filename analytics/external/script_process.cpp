@@ -20,7 +20,7 @@
 #include <set>
 #include <system_error>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

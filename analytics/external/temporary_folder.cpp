@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

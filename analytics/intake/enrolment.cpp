@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/intake/motion_manifest.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

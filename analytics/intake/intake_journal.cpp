@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analytics/shards/row_text.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

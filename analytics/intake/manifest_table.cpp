@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analytics/report/csv_table.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

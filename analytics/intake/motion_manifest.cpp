@@ -10,7 +10,7 @@
 
 #include "analytics/intake/manifest_table.h"
 #include "analytics/motion_words.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/import_motion.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/column_map.h"
 
 namespace calot::analytics {

@@ -11,7 +11,7 @@
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/intake/manifest_table.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

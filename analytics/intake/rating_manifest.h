@@ -10,7 +10,7 @@
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

@@ -11,7 +11,7 @@
 
 #include "analytics/interchange/folder_output.h"
 #include "recorder/attempt.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

@@ -15,8 +15,8 @@
 #include "analytics/interchange/date_shift.h"
 #include "analytics/interchange/new_names.h"
 #include "analytics/report/csv_cells.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 #include "recorder/words.h"
 
 namespace calot::analytics {

@@ -9,9 +9,9 @@
 #include <span>
 #include <system_error>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::analytics {
 namespace fs = std::filesystem;

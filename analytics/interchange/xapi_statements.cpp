@@ -9,7 +9,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/attempt.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/header.h"
 
 namespace calot::analytics {

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "recorder/errors.h"
-#include "recorder/formats/nearest_word.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analytics/report/html_text.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 
 namespace calot::analytics {
 namespace {

@@ -10,8 +10,8 @@
 #include "analytics/report/csv_cells.h"
 #include "analytics/report/study_output.h"
 #include "analytics/statistics/descriptive.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::analytics {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

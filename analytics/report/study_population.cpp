@@ -6,8 +6,8 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/report/study_protocol.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

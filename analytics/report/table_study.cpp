@@ -12,8 +12,8 @@
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "analytics/report/table_records.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {

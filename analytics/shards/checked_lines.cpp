@@ -11,8 +11,8 @@
 #include <cstring>
 #include <span>
 
-#include "recorder/errors.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/json_reader.h"
 #include "sim/math/digest.h"
 
 namespace calot::analytics {

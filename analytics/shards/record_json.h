@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::analytics {
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 #include "sim/math/digest.h"
 
 namespace calot::analytics {

@@ -8,8 +8,8 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/shards/row_text.h"
 #include "recorder/attempt.h"
-#include "recorder/errors.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/json_reader.h"
 #include "sim/scene/step_result.h"
 #include "sim/scene/version.h"
 

@@ -8,8 +8,8 @@
 
 #include "analytics/shards/record_json.h"
 #include "analytics/shards/row_text.h"
-#include "recorder/errors.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::analytics {
 namespace {

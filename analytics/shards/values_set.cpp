@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analytics/shards/checked_lines.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::analytics {
 namespace {

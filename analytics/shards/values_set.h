@@ -11,7 +11,7 @@
 
 #include "analytics/shards/values_header.h"
 #include "analytics/shards/values_row.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::analytics {
 namespace fs = std::filesystem;

@@ -12,7 +12,7 @@
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/uncertainty/scene_variants.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/reader.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/common/program.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
 

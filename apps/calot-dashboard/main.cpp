@@ -19,9 +19,9 @@
 #include "gui/attempt/theme.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/settings.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/program_files.h"
 #include "recorder/compliance_cache.h"
-#include "recorder/errors.h"
-#include "recorder/formats/program_files.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/prepared_scene.h"
 

@@ -6,7 +6,7 @@
 #include <QStandardPaths>
 #include <system_error>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 

@@ -8,7 +8,7 @@
 
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

@@ -20,7 +20,7 @@
 #include "apps/calot/results.h"
 #include "apps/calot/share_options.h"
 #include "apps/calot/value_report.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 

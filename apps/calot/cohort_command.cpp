@@ -20,7 +20,7 @@
 #include "apps/calot/hex.h"
 #include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "apps/calot/wrong_word.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

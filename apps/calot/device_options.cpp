@@ -5,8 +5,8 @@
 
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/scope/scope_source.h"
 
 namespace calot::apps {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "recorder/attempt.h"
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/open_device.h"

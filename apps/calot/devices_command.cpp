@@ -15,7 +15,7 @@
 #include "apps/calot/simulate_device.h"
 #include "apps/calot/stop_request.h"
 #include "apps/calot/terminal_text.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/openigtlink_server.h"
 
 namespace calot::apps {

@@ -11,12 +11,12 @@
 #include <map>
 #include <system_error>
 
-#include "recorder/errors.h"
-#include "recorder/formats/nearest_word.h"
-#include "recorder/formats/program_files.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/nearest_word.h"
+#include "recorder/base/program_files.h"
+#include "recorder/base/text_output.h"
+#include "recorder/base/text_words.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/formats/text_output.h"
-#include "recorder/formats/text_words.h"
 
 namespace calot::apps {
 namespace {

@@ -16,7 +16,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/motion_import.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/export_csv.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/probe.h"

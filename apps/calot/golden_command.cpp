@@ -15,8 +15,8 @@
 #include "apps/calot/results.h"
 #include "apps/calot/stop_request.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::apps {
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::apps {
 

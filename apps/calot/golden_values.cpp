@@ -10,7 +10,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/text_table.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 

@@ -12,7 +12,7 @@
 
 #include "apps/calot/environment.h"
 #include "apps/calot/stop_request.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/device_pump.h"
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 

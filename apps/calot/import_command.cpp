@@ -20,7 +20,7 @@
 #include "apps/calot/value_report.h"
 #include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/column_map.h"
 
 namespace calot::apps {

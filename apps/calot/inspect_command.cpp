@@ -12,7 +12,7 @@
 #include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/raw_statistics.h"

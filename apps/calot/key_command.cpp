@@ -10,7 +10,7 @@
 #include "apps/calot/passphrase.h"
 #include "apps/calot/withdraw_command.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 

@@ -2,8 +2,8 @@
 #include "apps/calot/marker_sheet_file.h"
 
 #include "recorder/attempt.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 #ifdef CALOT_PDF
 #include "gui/report/sheet_pdf.h"
 #endif

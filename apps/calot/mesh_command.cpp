@@ -11,11 +11,11 @@
 #include "apps/calot/results.h"
 #include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_report.h"
 #include "recorder/formats/obj_file.h"
 #include "recorder/formats/surface_file.h"
-#include "recorder/formats/text_output.h"
 #include "recorder/formats/vtk.h"
 
 namespace calot::apps {

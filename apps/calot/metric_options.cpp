@@ -8,7 +8,7 @@
 
 #include "apps/calot/environment.h"
 #include "apps/common/advice.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 

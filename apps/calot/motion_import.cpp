@@ -16,7 +16,7 @@
 #include "apps/calot/results.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/kinematics_file.h"
 
 namespace calot::apps {

@@ -24,9 +24,9 @@
 #include "apps/calot/results.h"
 #include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::apps {
 namespace {

@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "analytics/intake/manifest_table.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 

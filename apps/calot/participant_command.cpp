@@ -13,7 +13,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/withdraw_command.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

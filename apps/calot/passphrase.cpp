@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "recorder/errors.h"
-#include "recorder/formats/secret_file.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/secret_file.h"
 
 namespace calot::apps {
 

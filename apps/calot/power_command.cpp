@@ -18,7 +18,7 @@
 #include "apps/calot/results.h"
 #include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

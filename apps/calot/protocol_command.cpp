@@ -20,7 +20,7 @@
 #include "apps/calot/study_options.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

@@ -20,10 +20,10 @@
 #include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/json_reader.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/json_reader.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::apps {
 namespace {

@@ -25,7 +25,7 @@
 #include "apps/common/exit_code.h"
 #include "gui/film/clean_film.h"
 #include "gui/film/film.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

@@ -12,7 +12,7 @@
 #include "apps/calot/stop_request.h"
 #include "apps/calot/wrong_word.h"
 #include "recorder/attempt.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/prepared_scene.h"

@@ -6,7 +6,7 @@
 
 #include "apps/calot/commands.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/recover.h"
 
 namespace calot::apps {

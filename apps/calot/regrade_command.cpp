@@ -15,7 +15,7 @@
 #include "apps/calot/regrade_report.h"
 #include "apps/calot/results.h"
 #include "apps/calot/share_options.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

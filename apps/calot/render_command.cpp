@@ -11,7 +11,7 @@
 #include "apps/calot/stop_request.h"
 #include "apps/calot/wrong_word.h"
 #include "gui/film/film.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 

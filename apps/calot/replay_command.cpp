@@ -13,8 +13,8 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/results.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 

@@ -2,7 +2,7 @@
 #include "apps/calot/report_files.h"
 
 #include "recorder/attempt.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/text_output.h"
 #ifdef CALOT_PDF
 #include "gui/report/pdf_report.h"
 #endif

@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "apps/calot/environment.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

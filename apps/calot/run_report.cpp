@@ -9,7 +9,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/results.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/words.h"
 
 namespace calot::apps {

@@ -16,7 +16,7 @@
 #include "apps/calot/terminal_text.h"
 #include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_check.h"
 #include "recorder/formats/scene_file.h"
 

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/text_output.h"
 #include "recorder/formats/surface_file.h"
-#include "recorder/formats/text_output.h"
 #include "sim/geometry/surface_report.h"
 
 namespace calot::apps {

@@ -14,7 +14,7 @@
 #include "apps/calot/terminal_text.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/scene/model.h"
 

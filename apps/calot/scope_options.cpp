@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/combined_device.h"
 #include "recorder/sources/devices/open_device.h"
 #include "recorder/sources/devices/scope_device.h"

@@ -9,7 +9,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::apps {

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 

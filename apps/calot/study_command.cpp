@@ -22,8 +22,8 @@
 #include "apps/calot/study_options.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::apps {
 namespace {

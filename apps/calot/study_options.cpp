@@ -6,7 +6,7 @@
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/wrong_word.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "analytics/checkpoints/motion.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 

@@ -19,7 +19,7 @@
 #include "apps/calot/stop_request.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/kept/engine_folders.h"
 
 namespace calot::apps {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "recorder/formats/nearest_word.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::apps {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 

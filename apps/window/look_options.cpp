@@ -5,8 +5,8 @@
 #include <QStringList>
 
 #include "gui/attempt/theme.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::apps {
 

@@ -12,7 +12,7 @@
 
 #include "gui/render/graphics.h"
 #include "gui/view/scene_picture_widget.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {

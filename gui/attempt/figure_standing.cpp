@@ -9,7 +9,7 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/statistics/descriptive.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/kept/engine_folders.h"
 #include "sim/scene/version.h"
 

@@ -11,7 +11,7 @@
 #include "gui/attempt/replay_plan.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"
 

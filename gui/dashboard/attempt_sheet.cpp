@@ -17,7 +17,7 @@
 #include "gui/render/renderer.h"
 #include "gui/report/one_page_pdf.h"
 #include "gui/report/pdf_report.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

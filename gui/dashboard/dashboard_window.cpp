@@ -38,7 +38,7 @@
 #include "gui/dashboard/study_page.h"
 #include "gui/dashboard/trainee_page.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

@@ -20,7 +20,7 @@
 #include "gui/dashboard/band_delegate.h"
 #include "gui/dashboard/table_view.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

@@ -15,8 +15,8 @@
 #include "analytics/report/study_tables.h"
 #include "analytics/statistics/descriptive.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::gui {
 namespace {

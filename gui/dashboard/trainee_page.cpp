@@ -18,7 +18,7 @@
 #include "gui/dashboard/history_chart.h"
 #include "gui/dashboard/page_begin.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

@@ -9,7 +9,7 @@
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/settings_dialog.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

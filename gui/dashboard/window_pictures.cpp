@@ -18,7 +18,7 @@
 #include "gui/dashboard/settings_dialog.h"
 #include "gui/dashboard/study_page.h"
 #include "gui/dashboard/trainee_page.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

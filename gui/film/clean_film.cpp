@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

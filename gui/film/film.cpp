@@ -17,8 +17,8 @@
 #include "gui/film/look_ahead.h"
 #include "gui/render/png_file.h"
 #include "gui/render/renderer.h"
+#include "recorder/base/errors.h"
 #include "recorder/engine_choice.h"
-#include "recorder/errors.h"
 
 namespace calot::gui {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "recorder/base/errors.h"
 #include "recorder/engine_choice.h"
-#include "recorder/errors.h"
 #include "recorder/kept/engine_folders.h"
 #include "sim/scene/version.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gui/film/blend.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include FT_FREETYPE_H
 
 namespace calot::gui {

@@ -11,7 +11,7 @@
 
 #include "analytics/checkpoints/phases.h"
 #include "analytics/checkpoints/registry.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recording/layout.h"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "gui/film/blend.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

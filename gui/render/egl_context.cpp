@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "gui/render/graphics_context.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

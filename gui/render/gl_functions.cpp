@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

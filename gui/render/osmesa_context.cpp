@@ -4,7 +4,7 @@
 #include <GL/osmesa.h>
 
 #include "gui/render/graphics_context.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

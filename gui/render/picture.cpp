@@ -4,7 +4,7 @@
 #include <charconv>
 
 #include "gui/render/view_check.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

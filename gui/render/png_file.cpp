@@ -11,7 +11,7 @@
 #include <string>
 #include <system_error>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

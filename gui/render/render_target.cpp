@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

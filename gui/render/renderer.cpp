@@ -15,7 +15,7 @@
 #include "gui/render/looks.h"
 #include "gui/render/scene_painter.h"
 #include "gui/render/view_check.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "gui/render/looks.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

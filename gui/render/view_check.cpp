@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "gui/render/renderer.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

@@ -5,7 +5,7 @@
 #include <QFontDatabase>
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

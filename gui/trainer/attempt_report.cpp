@@ -11,7 +11,7 @@
 #include "analytics/checkpoints/registry.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::gui {

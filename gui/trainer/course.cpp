@@ -4,7 +4,7 @@
 #include <set>
 #include <system_error>
 
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 
 namespace calot::gui {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::gui {
 

@@ -17,7 +17,7 @@
 #include "gui/trainer/trainer_texts.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 

@@ -5,7 +5,7 @@
 
 #include "gui/trainer/course.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::gui {

@@ -17,7 +17,7 @@
 #include "gui/trainer/scenes_page.h"
 #include "gui/trainer/voice.h"
 #include "gui/words/problem_words.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

@@ -10,9 +10,9 @@
 #include "gui/trainer/fresh_file.h"
 #include "gui/trainer/hints.h"
 #include "gui/words/problem_words.h"
+#include "recorder/base/errors.h"
 #include "recorder/blended_source.h"
 #include "recorder/branch.h"
-#include "recorder/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/words.h"
 

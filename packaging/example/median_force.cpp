@@ -6,7 +6,7 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "recorder/engine/observer.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/replay.h"
 
 namespace {

@@ -12,7 +12,7 @@
 
 #include "recorder/engine/keyframe_difference.h"
 #include "recorder/engine/observer.h"
-#include "recorder/recorded_procedure.h"
+#include "recorder/engine/recorded_procedure.h"
 #include "sim/scene/digests.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/step_result.h"

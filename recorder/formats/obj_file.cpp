@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/formats/obj_file.h"
 
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/text_output.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::recorder {
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 #include "recorder/formats/ply_header.h"
-#include "recorder/formats/text_words.h"
 
 namespace calot::recorder {
 namespace {

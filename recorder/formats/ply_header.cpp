@@ -7,8 +7,8 @@
 #include <array>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::recorder {
 namespace {

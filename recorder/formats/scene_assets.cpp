@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 
-#include "recorder/errors.h"
-#include "recorder/formats/json_faults.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/json_faults.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/formats/scene_connective.h"
 #include "recorder/formats/scene_fat.h"
 #include "recorder/formats/scene_names.h"

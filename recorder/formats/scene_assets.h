@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/base/identity.h"
 #include "recorder/formats/scene_surface.h"
-#include "recorder/identity.h"
 #include "sim/scene/description.h"
 
 namespace calot::recorder {

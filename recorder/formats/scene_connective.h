@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 #include "sim/scene/description.h"
 
 namespace calot::recorder {

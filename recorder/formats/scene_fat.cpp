@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/mesh_report.h"
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_roles.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::recorder {
 namespace fs = std::filesystem;

@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "recorder/errors.h"
-#include "recorder/formats/nearest_word.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/nearest_word.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::recorder {

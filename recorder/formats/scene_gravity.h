@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "sim/math/linear.h"
 
 namespace calot::recorder {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/formats/json_reader.h"
-#include "recorder/formats/nearest_word.h"
+#include "recorder/base/json_reader.h"
+#include "recorder/base/nearest_word.h"
 
 namespace calot::recorder {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "recorder/formats/json_faults.h"
+#include "recorder/base/json_faults.h"
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_names.h"
 #include "recorder/formats/scene_rules.h"
 #include "recorder/formats/surface_bytes.h"

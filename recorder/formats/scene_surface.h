@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "recorder/formats/json_reader.h"
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
+#include "recorder/base/json_reader.h"
 #include "sim/geometry/triangle_mesh.h"
 #include "sim/scene/description.h"
 #include "sim/tissue/structure_limit.h"

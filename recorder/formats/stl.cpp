@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::recorder {
 namespace {

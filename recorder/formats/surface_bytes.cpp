@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/obj.h"
 #include "recorder/formats/ply.h"
 #include "recorder/formats/stl.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/formats/surface_file.h"
 
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 
 namespace calot::recorder {
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "recorder/errors.h"
-#include "recorder/formats/text_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::recorder {
 

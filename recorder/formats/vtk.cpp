@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "recorder/formats/text_output.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::recorder {
 

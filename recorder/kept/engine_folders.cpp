@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "recorder/base/child_process.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/engine.h"
 #include "recorder/engine/messages.h"
-#include "recorder/errors.h"
-#include "recorder/identity.h"
-#include "recorder/kept/child_process.h"
 #include "recorder/kept/result_reader.h"
 #include "sim/scene/scene_view.h"
 

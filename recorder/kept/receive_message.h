@@ -4,8 +4,8 @@
 #include <chrono>
 #include <string>
 
+#include "recorder/base/child_process.h"
 #include "recorder/engine/messages.h"
-#include "recorder/kept/child_process.h"
 
 namespace calot::recorder {
 

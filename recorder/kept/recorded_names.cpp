@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::recorder {
 

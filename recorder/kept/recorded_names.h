@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "sim/scene/model.h"
 
 namespace calot::recorder {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/base/identity.h"
 #include "recorder/engine/wire.h"
-#include "recorder/identity.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {

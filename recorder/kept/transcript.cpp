@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "recorder/base/child_process.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/engine/messages.h"
 #include "recorder/engine/wire_forms.h"
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/kept/child_process.h"
 #include "recorder/kept/receive_message.h"
 
 namespace calot::recorder {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "recorder/live/newest.h"
+#include "recorder/base/newest.h"
 #include "sim/haptics/haptic_tick.h"
 #include "sim/scene/model.h"
 #include "sim/scene/samples.h"

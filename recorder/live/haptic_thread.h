@@ -11,12 +11,12 @@
 #include <span>
 #include <thread>
 
+#include "recorder/base/ring.h"
 #include "recorder/engine/observer.h"
 #include "recorder/live/contact_exchange.h"
 #include "recorder/live/cost_histogram.h"
 #include "recorder/live/paced_clock.h"
 #include "recorder/live/source_pause.h"
-#include "recorder/ring.h"
 #include "recorder/sources/source.h"
 
 namespace calot::recorder {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/recording/chain.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/header.h"

@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <system_error>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/csv_table.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/layout.h"

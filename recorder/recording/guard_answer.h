@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 

@@ -17,7 +17,7 @@
 #include <optional>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/guard_answer.h"
 #include "recorder/recording/hdf5.h"
 

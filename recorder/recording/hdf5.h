@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder::hdf5 {
 

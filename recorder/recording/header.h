@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {

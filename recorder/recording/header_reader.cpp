@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/layout.h"
 

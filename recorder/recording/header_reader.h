@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/reader.h"
 

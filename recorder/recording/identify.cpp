@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/reader.h"
 

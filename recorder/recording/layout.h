@@ -11,9 +11,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
-#include "recorder/recorded_procedure.h"
+#include "recorder/engine/recorded_procedure.h"
 #include "recorder/recording/brief_digest.h"
 #include "sim/tissue/tissues.h"
 

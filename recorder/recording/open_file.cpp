@@ -8,7 +8,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/shape.h"
 #include "recorder/recording/types.h"
 

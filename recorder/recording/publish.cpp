@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "recorder/device_sample.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
-#include "recorder/recorded_procedure.h"
+#include "recorder/engine/recorded_procedure.h"
 #include "recorder/recording/brief_digest.h"
+#include "recorder/recording/device_sample.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::recorder {

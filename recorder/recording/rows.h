@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/device_sample.h"
 #include "recorder/engine/observer.h"
+#include "recorder/recording/device_sample.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::recorder {

@@ -5,7 +5,7 @@
 
 #include <system_error>
 
-#include "recorder/formats/text_output.h"
+#include "recorder/base/text_output.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/shape.h"

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "recorder/errors.h"
-#include "recorder/formats/secret_file.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/secret_file.h"
 
 namespace calot::recorder {
 namespace {

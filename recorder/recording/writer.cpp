@@ -12,11 +12,11 @@
 #include <system_error>
 #include <thread>
 
+#include "recorder/base/spsc_queue.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/keyframe_code.h"
 #include "recorder/recording/keyframe_schedule.h"
 #include "recorder/recording/publish.h"
-#include "recorder/recording/spsc_queue.h"
 
 namespace calot::recorder {
 

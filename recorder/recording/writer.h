@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "recorder/device_sample.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
+#include "recorder/recording/device_sample.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::recorder {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/csv_numbers.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/csv_numbers.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {

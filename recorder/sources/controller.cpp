@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/pointing.h"
 #include "sim/instruments/instruments.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "sim/scene/description.h"
 #include "sim/scene/samples.h"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {

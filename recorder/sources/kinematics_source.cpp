@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"
 #include "sim/math/bounds.h"

@@ -7,9 +7,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/nearest_word.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/nearest_word.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {

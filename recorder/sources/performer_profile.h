@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/sources/scope/scope_skill.h"
 
 namespace calot::recorder {

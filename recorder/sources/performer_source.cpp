@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/pointing.h"
 #include "sim/math/floating_point.h"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
 #include "sim/scene/samples.h"
 
 namespace calot::recorder {

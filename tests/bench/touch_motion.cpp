@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "analytics/report/csv_table.h"
-#include "recorder/formats/csv_numbers.h"
+#include "recorder/base/csv_numbers.h"
 #include "recorder/sources/column_map.h"
 
 #include "tests/fuzz/support/fuzz_target.h"

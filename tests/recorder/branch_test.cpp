@@ -5,8 +5,8 @@
 
 #include <optional>
 
+#include "recorder/base/errors.h"
 #include "recorder/blended_source.h"
-#include "recorder/errors.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/small_scene.h"

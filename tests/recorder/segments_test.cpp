@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "recorder/base/errors.h"
 #include "recorder/compare.h"
-#include "recorder/errors.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/lying_recording.h"
 

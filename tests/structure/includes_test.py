@@ -26,14 +26,14 @@ MAY_SEE = {
     "sim/contact": ("sim/math", "sim/geometry"),
     "sim/fat": ("sim/math", "sim/geometry", "sim/solid", "sim/carving", "sim/contact"),
     "sim/bullet": SIM,  # a library of its own above the core
-    "recorder contracts": ("sim",),
-    "recorder/formats": ("sim", "recorder contracts"),
-    "recorder/engine": ("sim", "recorder contracts", "recorder/formats"),
-    "recorder/recording": ("sim", "recorder contracts", "recorder/formats", "recorder/engine"),
-    "recorder/kept": ("sim", "recorder contracts", "recorder/formats", "recorder/engine", "recorder/recording"),
-    "recorder/sources": ("sim", "recorder contracts", "recorder/formats", "recorder/recording"),
-    "recorder/live": ("sim", "recorder contracts", "recorder/sources"),
-    "recorder": ("sim", "recorder contracts", "recorder"),  # the loop and replay, above their folders
+    "recorder/base": ("sim",),
+    "recorder/formats": ("sim", "recorder/base"),
+    "recorder/engine": ("sim", "recorder/base", "recorder/formats"),
+    "recorder/recording": ("sim", "recorder/base", "recorder/formats", "recorder/engine"),
+    "recorder/kept": ("sim", "recorder/base", "recorder/formats", "recorder/engine", "recorder/recording"),
+    "recorder/sources": ("sim", "recorder/base", "recorder/formats", "recorder/engine", "recorder/recording"),
+    "recorder/live": ("sim", "recorder/base", "recorder/engine", "recorder/sources"),
+    "recorder": ("sim", "recorder"),  # the loop and replay, above their folders
     "analytics": ("sim", "recorder", "analytics"),
     "analytics/assessment": ("sim", "recorder", "analytics"),
     "analytics/design": ("sim", "recorder", "analytics"),
@@ -46,10 +46,10 @@ MAY_SEE = {
     "analytics/uncertainty": ("sim", "recorder", "analytics/checkpoints"),
     "analytics/interchange": ("sim", "recorder", "analytics"),
     "analytics/report": ("sim", "recorder", "analytics"),
-    "gui/render": ("sim", "recorder contracts"),
-    "gui/words": ("sim", "recorder contracts", "analytics"),
+    "gui/render": ("sim", "recorder/base"),
+    "gui/words": ("sim", "recorder/base", "analytics"),
     "gui/film": ("sim", "recorder", "analytics", "gui/render", "gui/words"),
-    "gui/view": ("sim", "recorder contracts", "gui/render"),
+    "gui/view": ("sim", "recorder/base", "gui/render"),
     "gui/attempt": ("sim", "recorder", "analytics", "gui/render", "gui/view", "gui/words"),
     "gui/dashboard": ("sim", "recorder", "analytics", "gui/attempt", "gui/render", "gui/report", "gui/view", "gui/words"),
     "gui/page": ("sim", "recorder", "gui/render", "gui/words"),
@@ -57,15 +57,12 @@ MAY_SEE = {
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui", "apps/common"),
     "python": ("sim", "recorder", "analytics", "gui/render", "apps/common"),
-    "apps/common": ("recorder contracts",),
+    "apps/common": ("recorder/base",),
     "packaging/example": ("sim", "recorder", "analytics"),
     "apps/calot-bench": ("recorder", "apps/common", "tests/bench"),
     "tests/bench": ("sim", "recorder", "analytics", "gui/render"),
     "assets": ("sim", "recorder", "apps/common"),
 }
-# What lies at the top of recorder/ and belongs to all of its folders.
-CONTRACTS = ("recorder/device_sample.h", "recorder/errors.h", "recorder/identity.h", "recorder/engine/observer.h", "recorder/recorded_procedure.h", "recorder/ring.h")
-
 # Headers of a module that another one, which may see the module, may not: what is judged is StepResult.
 NEVER = {"sim/judgement": ("sim/scene/state.h", "sim/scene/model.h", "sim/scene/scene_view.h", "sim/scene/scene_viewer.h")}
 
@@ -96,8 +93,6 @@ ONLY = {
 
 
 def room_of(name):
-    if name in CONTRACTS:
-        return "recorder contracts"
     parts = pathlib.PurePosixPath(name).parts
     for length in (2, 1):
         candidate = "/".join(parts[:length])
@@ -117,8 +112,6 @@ def faults_of(path, text):
         yield 0, "belongs to no room: name it in tests/structure/includes_test.py"
         return
     allowed = MAY_SEE[room]
-    if "recorder" in allowed:
-        allowed += ("recorder contracts",)
     for number, name, quoted in cpp_text.includes(text):
         target = room_of(name)
         if quoted or target is not None:
@@ -166,7 +159,7 @@ def self_test():
     )
     bad = (
         ("sim/math/a.h", '#include "sim/geometry/mesh.h"'), ("sim/geometry/a.h", '#include "sim/solid/body.h"'),
-        ("sim/scene/a.cpp", '#include "recorder/errors.h"'), ("sim/judgement/a.cpp", '#include "sim/scene/state.h"'), ("sim/scene/a.cpp", "#include <fstream>"),
+        ("sim/scene/a.cpp", '#include "recorder/base/errors.h"'), ("sim/judgement/a.cpp", '#include "sim/scene/state.h"'), ("sim/scene/a.cpp", "#include <fstream>"),
         ("sim/solid/a.cpp", "#include <chrono>"), ("sim/solid/a.cpp", "#include <thread>"),
         ("sim/solid/a.cpp", "#include <unordered_map>"), ("sim/solid/a.cpp", "#include <fmt/format.h>"),
         ("sim/contact/a.cpp", "#include <BulletCollision/BroadphaseCollision/btDbvt.h>"), ("sim/bullet/a.cpp", "#include <thread>"),

@@ -10,8 +10,8 @@
 #include <typeinfo>
 #include <vector>
 
+#include "recorder/base/errors.h"
 #include "recorder/engine/engine_server.h"
-#include "recorder/errors.h"
 
 namespace {
 

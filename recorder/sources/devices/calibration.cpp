@@ -7,10 +7,10 @@
 #include <cmath>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/dates.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/dates.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/json_reader.h"
 
 namespace calot::recorder {
 namespace {

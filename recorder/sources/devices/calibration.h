@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
 #include "recorder/sources/devices/camera/camera_rig.h"
 #include "recorder/sources/devices/device.h"
 

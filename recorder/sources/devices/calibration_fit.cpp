@@ -9,8 +9,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
-#include "recorder/errors.h"
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {

@@ -5,8 +5,8 @@
 
 #include <cstddef>
 
-#include "recorder/errors.h"
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/mouse_device.h"
 
 namespace calot::recorder {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/device_sample.h"
-#include "recorder/identity.h"
+#include "recorder/base/identity.h"
+#include "recorder/recording/device_sample.h"
 #include "sim/math/linear.h"
 #include "sim/scene/samples.h"
 

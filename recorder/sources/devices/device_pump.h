@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "recorder/recording/spsc_queue.h"
+#include "recorder/base/spsc_queue.h"
 #include "recorder/sources/devices/device.h"
 
 namespace calot::recorder {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/sources/kinematics_file.h"
 
 namespace calot::recorder {

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/pointing.h"
 #include "sim/math/floating_point.h"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
 

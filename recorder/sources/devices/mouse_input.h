@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <mutex>
 
-#include "recorder/device_sample.h"
+#include "recorder/recording/device_sample.h"
 
 namespace calot::recorder {
 

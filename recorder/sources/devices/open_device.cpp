@@ -6,8 +6,8 @@
 #include <iterator>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/nearest_word.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/nearest_word.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/combined_device.h"
 #include "recorder/sources/devices/force/force_device.h"

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <optional>
 
-#include "recorder/device_sample.h"
-#include "recorder/ring.h"
+#include "recorder/base/ring.h"
+#include "recorder/recording/device_sample.h"
 
 namespace calot::recorder {
 

@@ -16,7 +16,7 @@
 #include <cstring>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 namespace {

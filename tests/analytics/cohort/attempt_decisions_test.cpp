@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 

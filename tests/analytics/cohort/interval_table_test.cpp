@@ -9,7 +9,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/merge.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 

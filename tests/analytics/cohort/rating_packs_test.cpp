@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/cohort/analysis_locks.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 
 namespace calot::analytics {

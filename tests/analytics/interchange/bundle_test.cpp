@@ -22,7 +22,7 @@
 #include "analytics/interchange/date_shift.h"
 #include "analytics/interchange/original_names.h"
 #include "analytics/report/csv_table.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 

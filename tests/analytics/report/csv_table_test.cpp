@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/analytics/support/refusal.h"
 
 namespace calot::analytics {

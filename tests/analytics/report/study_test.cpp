@@ -19,7 +19,7 @@
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 #include "analytics/report/text_table.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/report/support/study_support.h"
 #include "tests/analytics/support/refusal.h"

@@ -16,7 +16,7 @@
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 #include "analytics/statistics/published_coverage.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/analytics/support/refusal.h"
 
 namespace calot::analytics {

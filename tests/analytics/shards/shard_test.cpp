@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics::support {
 

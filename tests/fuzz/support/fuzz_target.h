@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 

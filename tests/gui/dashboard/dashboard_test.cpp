@@ -26,7 +26,7 @@
 #include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/checkpoint_table_model.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 

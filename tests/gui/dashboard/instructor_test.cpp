@@ -44,7 +44,7 @@
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/report/one_page_pdf.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/gui/dashboard/support/assessed.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"

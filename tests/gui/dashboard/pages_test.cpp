@@ -39,7 +39,7 @@
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "gui/view/scene_picture_widget.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/gui/dashboard/support/assessed.h"
 #include "tests/gui/dashboard/support/cohort.h"
 

@@ -10,7 +10,7 @@
 
 #include "gui/attempt/attempt_track.h"
 #include "gui/attempt/open_recording.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/replay.h"
 #include "tests/gui/dashboard/support/recorded.h"
 #include "tests/recorder/support/rerun.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

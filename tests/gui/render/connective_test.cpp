@@ -13,7 +13,7 @@
 #include "gui/render/fibre_texture.h"
 #include "gui/render/renderer.h"
 #include "gui/render/sheet_list.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

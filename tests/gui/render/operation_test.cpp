@@ -9,7 +9,7 @@
 #include <string>
 
 #include "gui/render/renderer.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "tests/gui/render/support/shapes.h"
 
 namespace calot::gui {

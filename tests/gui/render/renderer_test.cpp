@@ -16,7 +16,7 @@
 
 #include "gui/render/picture.h"
 #include "gui/render/png_file.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "sim/instruments/instruments.h"
 #include "tests/gui/render/support/shapes.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gui/render/renderer.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {

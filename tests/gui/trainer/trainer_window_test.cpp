@@ -18,7 +18,7 @@
 #include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/devices/scope_keys.h"
 #include "recorder/sources/scope/scope_source.h"

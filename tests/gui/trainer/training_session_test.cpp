@@ -8,7 +8,7 @@
 #include <cmath>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 #include "tests/gui/trainer/support/trainer_rig.h"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "sim/math/random.h"
 
 namespace calot::recorder {

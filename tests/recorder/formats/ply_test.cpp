@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/surface_file.h"
 #include "sim/geometry/surface_report.h"
 #include "sim/math/random.h"

@@ -11,7 +11,7 @@
 #include <regex>
 #include <set>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_rules.h"
 #include "sim/instruments/instruments.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "sim/geometry/surface_report.h"
 #include "sim/math/random.h"
 

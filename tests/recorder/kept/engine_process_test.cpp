@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/transcript.h"
 #include "recorder/replay.h"

@@ -7,10 +7,10 @@
 #include <optional>
 #include <thread>
 
+#include "recorder/base/newest.h"
+#include "recorder/base/ring.h"
 #include "recorder/engine/session.h"
 #include "recorder/live/contact_exchange.h"
-#include "recorder/live/newest.h"
-#include "recorder/ring.h"
 #include "sim/step/hand_haptics.h"
 #include "tests/recorder/support/small_scene.h"
 #include "tests/support/sanitized.h"

@@ -14,7 +14,7 @@
 #include <chrono>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"

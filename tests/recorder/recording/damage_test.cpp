@@ -14,7 +14,7 @@
 #include <optional>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/guarded.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
 #include "tests/recorder/recording/support/synthetic.h"
 

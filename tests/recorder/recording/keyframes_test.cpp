@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/keyframe_schedule.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"

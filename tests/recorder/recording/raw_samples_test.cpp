@@ -13,7 +13,7 @@
 #include <limits>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/export_csv.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/raw_statistics.h"

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"

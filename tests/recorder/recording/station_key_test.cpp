@@ -9,7 +9,7 @@
 #include <fstream>
 #include <random>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 namespace {

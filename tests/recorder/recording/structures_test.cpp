@@ -7,7 +7,7 @@
 #include <functional>
 #include <sstream>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/export_csv.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"

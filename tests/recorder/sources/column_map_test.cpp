@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "sim/math/random.h"
 
 namespace calot::recorder {

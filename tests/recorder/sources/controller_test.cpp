@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <sstream>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/sources/kinematics_source.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"

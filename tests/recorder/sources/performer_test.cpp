@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/performer_source.h"
 #include "recorder/sources/pointing.h"
 #include "tests/recorder/sources/support/test_scene.h"

@@ -7,7 +7,7 @@
 
 #include "assets/organs/fat_shape.h"
 #include "assets/organs/organ_shapes.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/formats/obj.h"
 #include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_distance.h"

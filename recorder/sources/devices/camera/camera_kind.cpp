@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/file_bytes.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/camera/camera_request.h"

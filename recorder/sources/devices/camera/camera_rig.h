@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 #include "sim/math/linear.h"
 #include "sim/scene/samples.h"
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/camera/block_fit.h"
 #include "recorder/sources/devices/camera/handle_fit.h"
 #include "recorder/sources/devices/camera/handle_geometry.h"

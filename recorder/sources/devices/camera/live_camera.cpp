@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/device.h"
 
 extern "C" {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/camera/grey_decoder.h"
 
 extern "C" {

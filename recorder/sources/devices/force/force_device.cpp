@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 namespace {

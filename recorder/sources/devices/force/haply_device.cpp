@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "sim/math/bounds.h"
 
 namespace calot::recorder {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analytics/checkpoints/collector.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
 #include "sim/scene/version.h"
 
 namespace calot::analytics::support {

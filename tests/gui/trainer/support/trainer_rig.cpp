@@ -6,7 +6,7 @@
 #include <cmath>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/replay.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/scripted_device.h"

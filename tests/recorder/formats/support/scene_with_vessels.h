@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::recorder::test {

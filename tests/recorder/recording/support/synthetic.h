@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/identity.h"
 #include "sim/math/random.h"
 
 namespace calot::recorder::test {

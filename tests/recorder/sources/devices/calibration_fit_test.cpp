@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "recorder/errors.h"
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
+#include "recorder/base/errors.h"
 #include "tests/recorder/sources/devices/support/calibration_streams.h"
 
 namespace calot::recorder {

@@ -8,8 +8,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "recorder/errors.h"
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/calibration_fit.h"
 #include "recorder/sources/devices/declared_calibration.h"
 #include "recorder/sources/devices/mouse_device.h"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/open_device.h"
 #include "recorder/sources/devices/scripted_device.h"

@@ -13,7 +13,7 @@
 #include <memory>
 #include <string>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/open_device.h"
 
 namespace calot::recorder {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/device_source.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 #include "tests/recorder/sources/devices/support/virtual_pad.h"

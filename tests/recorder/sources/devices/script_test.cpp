@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/null_device.h"
 #include "recorder/sources/devices/open_device.h"
 #include "recorder/sources/devices/scripted_device.h"

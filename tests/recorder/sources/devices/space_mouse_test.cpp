@@ -14,7 +14,7 @@
 #include <string>
 #include <thread>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/open_device.h"
 
 namespace calot::recorder {

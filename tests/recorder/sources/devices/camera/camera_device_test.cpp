@@ -12,7 +12,7 @@
 #include <deque>
 #include <filesystem>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_request.h"
 #include "recorder/sources/devices/open_device.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
 #include "recorder/sources/devices/camera/handle_fit.h"

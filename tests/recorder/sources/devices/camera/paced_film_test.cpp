@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/camera/camera_request.h"
 

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "recorder/attempt.h"
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/reader.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <memory>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/devices/open_device.h"
 #include "tests/recorder/sources/devices/force/support/haply_service.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/json_reader.h"
+#include "recorder/base/json_reader.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "recorder/errors.h"
-#include "recorder/formats/json_faults.h"
-#include "recorder/formats/nearest_word.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/json_faults.h"
+#include "recorder/base/nearest_word.h"
 
 namespace calot::recorder {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "recorder/errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 

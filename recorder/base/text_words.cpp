@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/json_faults.h"
+#include "recorder/base/json_faults.h"
 
 #include <algorithm>
 #include <string_view>

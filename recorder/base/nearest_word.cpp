@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/nearest_word.h"
+#include "recorder/base/nearest_word.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "recorder/formats/text_words.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::recorder {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/program_files.h"
+#include "recorder/base/program_files.h"
 
 #include <cstdlib>
 #include <system_error>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/dates.h"
+#include "recorder/base/dates.h"
 
 #include <gtest/gtest.h>
 
