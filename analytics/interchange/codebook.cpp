@@ -7,8 +7,8 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/interchange/column_notes.h"
-#include "analytics/report/csv_cells.h"
 #include "recorder/attempt.h"
+#include "recorder/base/csv_writer.h"
 
 namespace calot::analytics {
 namespace {

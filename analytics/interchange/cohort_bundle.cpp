@@ -14,7 +14,7 @@
 #include "analytics/interchange/codebook.h"
 #include "analytics/interchange/date_shift.h"
 #include "analytics/interchange/new_names.h"
-#include "analytics/report/csv_cells.h"
+#include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 #include "recorder/words.h"

@@ -12,7 +12,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/codebook.h"
 #include "analytics/interchange/folder_output.h"
-#include "analytics/report/csv_cells.h"
+#include "recorder/base/csv_writer.h"
 
 namespace calot::analytics {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/report/csv_cells.h"
 #include "analytics/report/study_output.h"
 #include "analytics/statistics/descriptive.h"
+#include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 

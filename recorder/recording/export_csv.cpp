@@ -7,8 +7,8 @@
 #include <memory>
 #include <system_error>
 
+#include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/csv_table.h"
 #include "recorder/recording/header.h"
 #include "recorder/recording/layout.h"
 
@@ -16,9 +16,28 @@ namespace calot::recorder {
 
 namespace {
 
-using Tables = std::vector<std::unique_ptr<CsvTable>>;
+/// The file of one group of the recording.
+class Table final : public CsvFile {
+ public:
+  /// @param folder "/ticks/left": the file is ticks_left.csv. @throws Error failure.
+  Table(const std::filesystem::path& stage, const std::string& folder)
+      : CsvFile(pathOf(stage, folder)), folder_(folder) {}
 
-CsvTable* find(Tables& tables, const std::string& folder) {
+  [[nodiscard]] const std::string& folder() const { return folder_; }
+
+ private:
+  static std::filesystem::path pathOf(const std::filesystem::path& stage, const std::string& folder) {
+    std::string name = folder.substr(1) + ".csv";
+    std::replace(name.begin(), name.end(), '/', '_');
+    return stage / name;
+  }
+
+  std::string folder_;
+};
+
+using Tables = std::vector<std::unique_ptr<Table>>;
+
+Table* find(Tables& tables, const std::string& folder) {
   for (const auto& t : tables) {
     if (t->folder() == folder) return t.get();
   }
@@ -72,9 +91,9 @@ struct TitleVisitor {
 
  private:
   void title(const std::string& folder, const std::string& name, const char* unit) {
-    CsvTable* table = find(tables, folder);
+    Table* table = find(tables, folder);
     if (table == nullptr) {
-      tables.push_back(std::make_unique<CsvTable>(stage, folder));
+      tables.push_back(std::make_unique<Table>(stage, folder));
       table = tables.back().get();
       table->put(std::string(clock));
     }
@@ -88,7 +107,7 @@ struct ValueVisitor {
   Tables& tables;
   std::uint64_t row = 0;
   const char* folderNow = nullptr;
-  CsvTable* table = nullptr;
+  Table* table = nullptr;
 
   template <class T>
   void operator()(const char* folder, const char*, const char*, const T& v) {
@@ -114,7 +133,7 @@ struct ValueVisitor {
   }
 
  private:
-  CsvTable& to(const char* folder) {
+  Table& to(const char* folder) {
     if (folder != folderNow) {
       folderNow = folder;
       table = find(tables, folder);
@@ -131,7 +150,7 @@ void endRows(Tables& tables) {
 }
 
 struct AttributeRows {
-  CsvTable& table;
+  Table& table;
   template <class T>
   void operator()(const char* name, const T& value) {
     table.put(std::string(name));
@@ -149,7 +168,7 @@ struct AttributeRows {
 };
 
 /// Raw samples of a hand's device.
-void writeRawSamples(Recording& recording, Hand hand, CsvTable& table) {
+void writeRawSamples(Recording& recording, Hand hand, Table& table) {
   for (const char* title : {"device_time (ns)", "host_time (ns)", "sequence", "tick", "position_x (m)",
                             "position_y (m)", "position_z (m)", "orientation_w", "orientation_x", "orientation_y",
                             "orientation_z", "gripper (rad)", "buttons", "valid", "used"}) {
@@ -195,7 +214,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   visitStep(digest, brief, forces, lateness, result, procedure, stepTitles);
   endRows(ticks);
   endRows(steps);
-  CsvTable events(stage, "/events");
+  Table events(stage, "/events");
   for (const char* title :
        {"step", "kind", "hand", "subject", "position_x (m)", "position_y (m)", "position_z (m)", "value"}) {
     events.put(std::string(title));
@@ -224,7 +243,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
     }
     if (progress) progress(n + 1);
   }
-  CsvTable attempt(stage, "/attempt");
+  Table attempt(stage, "/attempt");
   attempt.put(std::string("attribute"));
   attempt.put(std::string("value"));
   attempt.endRow();
@@ -232,7 +251,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   visitAttributes(header, rows);
   rows("complete", recording.complete());
   rows("outcome", std::string(outcomeNames[static_cast<std::size_t>(recording.outcome())]));
-  const auto finish = [&files](CsvTable& table) {
+  const auto finish = [&files](Table& table) {
     table.close();
     files.push_back(table.path());
   };
@@ -242,7 +261,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   finish(events);
   if (!header.deviceSamples) return;
   for (const Hand hand : {Hand::left, Hand::right}) {
-    CsvTable raw(stage, std::string("/device/") + handNames[static_cast<std::size_t>(hand)]);
+    Table raw(stage, std::string("/device/") + handNames[static_cast<std::size_t>(hand)]);
     writeRawSamples(recording, hand, raw);
     finish(raw);
   }

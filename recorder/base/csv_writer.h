@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes tables of text: RFC 4180, commas, lines ending in LF. csv.h reads them.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,18 +11,25 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
-#include "sim/scene/samples.h"
+namespace calot {
 
-namespace calot::recorder {
+/// A cell of text, quoted where it holds a comma, quote or line break.
+std::string csvQuoted(const std::string& text);
 
-/// One CSV file (RFC 4180), written value by value under its own name in a folder. Numbers read back to the same bits.
-class CsvTable {
+/// The same for tables that people open in a spreadsheet: an apostrophe precedes what it would evaluate as a formula.
+std::string csvCell(const std::string& text);
+
+/// Such cells, separated by commas, and the end of the line. @pre there is one
+std::string csvLine(const std::vector<std::string>& texts);
+
+/// A CSV file that is written value by value. Numbers read back to the same bits; text stands as it is.
+class CsvFile {
  public:
-  /// @param folder of the recording, "/ticks/left": the file is ticks_left.csv. @throws Error failure.
-  CsvTable(const std::filesystem::path& stage, const std::string& folder);
+  /// @throws Error failure.
+  explicit CsvFile(std::filesystem::path path);
 
-  [[nodiscard]] const std::string& folder() const { return folder_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
   void put(double v) { value("{:.17g}", v); }
@@ -30,7 +38,7 @@ class CsvTable {
   template <class T>
   requires std::is_enum_v<T>
   void put(T v) { value("{}", static_cast<unsigned>(v)); }
-  void put(const std::string& v);
+  void put(const std::string& v) { value("{}", csvQuoted(v)); }
   template <class T>
   requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) void put(T v) { value("{}", v); }
 
@@ -51,11 +59,10 @@ class CsvTable {
   struct Closer {
     void operator()(std::FILE* f) const { std::fclose(f); }
   };
-  std::string folder_;
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Closer> file_;
   fmt::memory_buffer line_;
   bool first_ = true;
 };
 
-}  // namespace calot::recorder
+}  // namespace calot
